@@ -1,0 +1,36 @@
+//! What an environment is: frozen parameters in `self`, the state by value, the draws passed in.
+
+use crate::random::Draw;
+
+/// What one step brings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<S> {
+    /// The state after the step.
+    pub state: S,
+    /// The reward of the step.
+    pub reward: f64,
+    /// Whether the state after the step is terminal (a time-out is not the environment's to say).
+    pub terminated: bool,
+}
+
+/// An environment: physics without a clock, a renderer or a generator of its own.
+pub trait Env {
+    /// All that changes from step to step.
+    type State: Copy;
+    /// What `step` takes: an index for discrete actions.
+    type Action: Copy;
+    /// What the agent sees, in the dtype in which Gymnasium hands it out.
+    type Observation;
+
+    /// How many actions there are.
+    fn actions(&self) -> usize;
+
+    /// The first state of an episode.
+    fn reset(&self, draw: &mut impl Draw) -> Self::State;
+
+    /// One step of the dynamics.
+    fn step(&self, state: Self::State, action: Self::Action, draw: &mut impl Draw) -> Step<Self::State>;
+
+    /// What the agent sees of a state.
+    fn observe(&self, state: &Self::State) -> Self::Observation;
+}

@@ -1,0 +1,131 @@
+//! `MountainCar-v0`: an underpowered car in a sinusoidal valley (A. W. Moore, 1990; Sutton & Barto, Example 10.1).
+
+use crate::env::{Env, Step};
+use crate::random::Draw;
+
+/// The starting position is uniform over these, unless Gymnasium's reset options say otherwise.
+const START: (f64, f64) = (-0.6, -0.4);
+const REWARD: f64 = -1.0;
+
+/// The constants of the dynamics, under Gymnasium's names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MountainCar {
+    /// The left wall, which absorbs the car's speed.
+    pub min_position: f64,
+    /// The right end of the track.
+    pub max_position: f64,
+    /// The speed is clipped to this, both ways.
+    pub max_speed: f64,
+    /// An episode ends at or beyond this position …
+    pub goal_position: f64,
+    /// … when the velocity is at least this.
+    pub goal_velocity: f64,
+    /// The acceleration of an action, a step.
+    pub force: f64,
+    /// The acceleration along the slope at its steepest, a step.
+    pub gravity: f64,
+}
+
+impl Default for MountainCar {
+    fn default() -> Self {
+        Self {
+            min_position: -1.2,
+            max_position: 0.6,
+            max_speed: 0.07,
+            goal_position: 0.5,
+            goal_velocity: 0.0,
+            force: 0.001,
+            gravity: 0.0025,
+        }
+    }
+}
+
+/// Where the car is and how fast it moves, in the f64 in which Gymnasium keeps them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MountainCarState {
+    /// In the track's units; the valley's floor is at -π/6.
+    pub position: f64,
+    /// Position units a step.
+    pub velocity: f64,
+}
+
+impl Env for MountainCar {
+    type State = MountainCarState;
+    type Action = usize;
+    type Observation = [f32; 2];
+
+    #[inline]
+    fn actions(&self) -> usize {
+        3
+    }
+
+    #[inline]
+    fn reset(&self, draw: &mut impl Draw) -> MountainCarState {
+        MountainCarState { position: draw.uniform(START.0, START.1), velocity: 0.0 }
+    }
+
+    #[inline]
+    fn step(&self, state: MountainCarState, action: usize, _draw: &mut impl Draw) -> Step<MountainCarState> {
+        let MountainCarState { mut position, mut velocity } = state;
+        let push = (action as f64 - 1.0) * self.force;
+        velocity += push + (3.0 * position).cos() * (-self.gravity);
+        velocity = clip(velocity, -self.max_speed, self.max_speed);
+        position += velocity;
+        position = clip(position, self.min_position, self.max_position);
+        if position == self.min_position && velocity < 0.0 {
+            velocity = 0.0;
+        }
+        Step {
+            state: MountainCarState { position, velocity },
+            reward: REWARD,
+            terminated: position >= self.goal_position && velocity >= self.goal_velocity,
+        }
+    }
+
+    #[inline]
+    fn observe(&self, state: &MountainCarState) -> [f32; 2] {
+        [state.position as f32, state.velocity as f32]
+    }
+}
+
+/// `np.clip`: NaN stays NaN.
+#[inline]
+fn clip(value: f64, low: f64, high: f64) -> f64 {
+    let raised = if value < low { low } else { value };
+    if raised > high { high } else { raised }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Pcg64, SeedSequence};
+
+    fn step(position: f64, velocity: f64, action: usize) -> Step<MountainCarState> {
+        let mut draw = Pcg64::new(&SeedSequence::new(&[0]));
+        MountainCar::default().step(MountainCarState { position, velocity }, action, &mut draw)
+    }
+
+    #[test]
+    fn the_left_wall_absorbs_speed() {
+        assert_eq!(step(-1.19, -0.05, 0).state, MountainCarState { position: -1.2, velocity: 0.0 });
+    }
+
+    #[test]
+    fn speed_is_limited_both_ways() {
+        assert_eq!(step(-0.5, 0.07, 2).state.velocity, 0.07);
+        assert_eq!(step(-0.5, -0.07, 0).state.velocity, -0.07);
+    }
+
+    #[test]
+    fn the_goal_ends_an_episode_only_at_its_velocity() {
+        assert!(step(0.49, 0.05, 2).terminated);
+        let patient = MountainCar { goal_velocity: 0.06, ..MountainCar::default() };
+        let mut draw = Pcg64::new(&SeedSequence::new(&[0]));
+        assert!(!patient.step(MountainCarState { position: 0.49, velocity: 0.05 }, 2, &mut draw).terminated);
+    }
+
+    #[test]
+    fn every_step_costs_one() {
+        assert_eq!(step(-0.5, 0.0, 1).reward, -1.0);
+    }
+}

@@ -1,0 +1,19 @@
+//! What a learner is: the owner of its table, its policy and its schedules.
+
+use crate::random::Draw;
+use crate::world::Next;
+
+/// A learner over rows `R`. Draws come from the agent's stream, in the order that the algorithm's reference states.
+pub trait Learner<R> {
+    /// The first action of an episode.
+    fn begin(&mut self, here: R, draw: &mut impl Draw) -> usize;
+
+    /// Learns from one step and returns the next action; what it returns where the episode ends is not used.
+    fn learn(&mut self, here: R, action: usize, reward: f64, next: Next<R>, draw: &mut impl Draw) -> usize;
+
+    /// Called after the last step of every episode.
+    fn end_episode(&mut self);
+
+    /// The tables, one after the other, rows first.
+    fn tables(&self) -> &[f64];
+}

@@ -1,0 +1,15 @@
+//! What an agent or an environment may ask of a stream.
+
+/// A stream of random numbers with `NumPy`'s draws.
+pub trait Draw {
+    /// The next float in [0, 1), on the grid of 2⁻⁵³: `rng.random()`.
+    fn random(&mut self) -> f64;
+
+    /// The next integer in 0 … `below` - 1: `rng.integers(0, below)`. Draws nothing when `below` is 1 (or 0).
+    fn integers(&mut self, below: u32) -> u32;
+
+    /// The next float in [`low`, `high`): `rng.uniform(low, high)`.
+    fn uniform(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.random()
+    }
+}

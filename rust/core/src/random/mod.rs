@@ -1,0 +1,13 @@
+//! NumPy's random streams: the same seed gives the same draws, bit for bit.
+
+mod draw;
+mod mt19937;
+mod pcg64;
+mod seed_sequence;
+mod stream;
+
+pub use draw::Draw;
+pub use mt19937::Mt19937;
+pub use pcg64::Pcg64;
+pub use seed_sequence::SeedSequence;
+pub use stream::Stream;

@@ -1,0 +1,58 @@
+//! `numpy.random.RandomState(seed)`: what `np.random.seed(seed)` sets, and what the article draws from.
+
+use rand_mt::Mt;
+
+use super::Draw;
+
+/// The Mersenne Twister with `NumPy`'s legacy seeding and legacy draws.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mt19937 {
+    engine: Mt,
+}
+
+impl Mt19937 {
+    /// `numpy.random.RandomState(seed)`. Not the same stream as `Generator(MT19937(seed))`.
+    pub fn new(seed: u32) -> Self {
+        Self { engine: Mt::new(seed) }
+    }
+}
+
+impl Draw for Mt19937 {
+    /// 53 bits from two words: `random_sample()`.
+    #[inline]
+    fn random(&mut self) -> f64 {
+        let high = f64::from(self.engine.next_u32() >> 5);
+        let low = f64::from(self.engine.next_u32() >> 6);
+        (high * 67_108_864.0 + low) / 9_007_199_254_740_992.0
+    }
+
+    /// Masks and rejects, as `randint(0, below)` does.
+    #[inline]
+    fn integers(&mut self, below: u32) -> u32 {
+        if below <= 1 {
+            return 0;
+        }
+        let largest = below - 1;
+        let mask = u32::MAX >> largest.leading_zeros();
+        loop {
+            let value = self.engine.next_u32() & mask;
+            if value <= largest {
+                return value;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_draws_of_seed_zero_are_numpys() {
+        // rng = np.random.RandomState(0); rng.random(), rng.randint(0, 3), rng.random()
+        let mut stream = Mt19937::new(0);
+        assert_eq!(stream.random(), 0.548_813_503_927_324_8);
+        assert_eq!(stream.integers(3), 1);
+        assert_eq!(stream.random(), 0.844_265_748_581_017_3);
+    }
+}

@@ -1,0 +1,116 @@
+//! A run as a value: all that it needs to go on, and the only training loop.
+
+use crate::learner::Learner;
+use crate::random::Draw;
+use crate::world::{Next, World};
+
+/// Where `advance` stops, whichever comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Until {
+    /// This many episodes are finished, counted from the run's beginning.
+    pub episodes: usize,
+    /// This many steps have been taken, counted from the call.
+    pub steps: u64,
+}
+
+/// What the finished episodes brought.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Episodes {
+    /// The sum of rewards of each episode.
+    pub returns: Vec<f64>,
+    /// The number of steps of each episode.
+    pub lengths: Vec<i64>,
+}
+
+/// The unfinished episode.
+#[derive(Clone, Copy, Debug)]
+struct Underway<S, R> {
+    state: S,
+    here: R,
+    action: usize,
+    total: f64,
+    length: i64,
+}
+
+/// A world, a learner and the agent's stream.
+#[derive(Clone, Debug)]
+pub struct Trainer<W: World, L, D> {
+    world: W,
+    learner: L,
+    draw: D,
+    episodes: Episodes,
+    underway: Option<Underway<W::State, W::Rows>>,
+}
+
+impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
+    /// A run that has not begun.
+    pub fn new(world: W, learner: L, draw: D) -> Self {
+        Self { world, learner, draw, episodes: Episodes::default(), underway: None }
+    }
+
+    /// The world.
+    pub fn world(&self) -> &W {
+        &self.world
+    }
+
+    /// The learner.
+    pub fn learner(&self) -> &L {
+        &self.learner
+    }
+
+    /// The finished episodes.
+    pub fn episodes(&self) -> &Episodes {
+        &self.episodes
+    }
+
+    /// Goes on until `until`; called again, it goes on as if it had not stopped.
+    ///
+    /// # Errors
+    /// The world's. What was learned before stays; the episode in which it happened is not counted.
+    pub fn advance(&mut self, until: Until) -> Result<(), W::Error> {
+        // The stream and the episode are locals here: behind `self` they would go through memory at every step.
+        let mut draw = self.draw.clone();
+        let result = self.advance_with(&mut draw, until);
+        self.draw = draw;
+        result
+    }
+
+    #[inline]
+    fn advance_with(&mut self, draw: &mut D, until: Until) -> Result<(), W::Error> {
+        let mut steps = until.steps;
+        while steps > 0 && self.episodes.returns.len() < until.episodes {
+            let mut now = match self.underway.take() {
+                Some(now) => now,
+                None => self.begin(draw)?,
+            };
+            loop {
+                let transition = self.world.step(&mut now.state, now.action)?;
+                now.total += transition.reward;
+                now.length += 1;
+                steps -= 1;
+                now.action = self.learner.learn(now.here, now.action, transition.reward, transition.next, draw);
+                let Next::Goes(there) = transition.next else {
+                    self.finish(now.total, now.length);
+                    break;
+                };
+                now.here = there;
+                if steps == 0 {
+                    self.underway = Some(now);
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, draw: &mut D) -> Result<Underway<W::State, W::Rows>, W::Error> {
+        let (state, here) = self.world.reset()?;
+        Ok(Underway { state, here, action: self.learner.begin(here, draw), total: 0.0, length: 0 })
+    }
+
+    fn finish(&mut self, total: f64, length: i64) {
+        self.learner.end_episode();
+        self.episodes.returns.push(total);
+        self.episodes.lengths.push(length);
+    }
+}
