@@ -34,3 +34,12 @@ pub trait Env {
     /// What the agent sees of a state.
     fn observe(&self, state: &Self::State) -> Self::Observation;
 }
+
+/// The constants of an environment by Gymnasium's names, for those who know them at run time only.
+pub trait Parameters: Default {
+    /// The names, as Gymnasium spells its attributes.
+    const NAMES: &'static [&'static str];
+
+    /// The constant of that name.
+    fn parameter(&mut self, name: &str) -> Option<&mut f64>;
+}

@@ -5,7 +5,7 @@ mod rounding;
 use std::error::Error;
 use std::fmt;
 
-pub use rounding::{Axis, Rounding};
+pub use rounding::{Axis, Real, Rounding};
 
 /// An observation that the features have no row for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -20,6 +20,8 @@ pub struct Episodes {
     pub returns: Vec<f64>,
     /// The number of steps of each episode.
     pub lengths: Vec<i64>,
+    /// Whether each ended in a terminal state, and not by its time limit alone.
+    pub terminated: Vec<bool>,
 }
 
 /// The unfinished episode.
@@ -89,11 +91,17 @@ impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
                 now.length += 1;
                 steps -= 1;
                 now.action = self.learner.learn(now.here, now.action, transition.reward, transition.next, draw);
-                let Next::Goes(there) = transition.next else {
-                    self.finish(now.total, now.length);
-                    break;
-                };
-                now.here = there;
+                match transition.next {
+                    Next::Goes(there) => now.here = there,
+                    Next::TimedOut(_) => {
+                        self.finish(now.total, now.length, false);
+                        break;
+                    }
+                    Next::Terminal => {
+                        self.finish(now.total, now.length, true);
+                        break;
+                    }
+                }
                 if steps == 0 {
                     self.underway = Some(now);
                     break;
@@ -108,9 +116,10 @@ impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
         Ok(Underway { state, here, action: self.learner.begin(here, draw), total: 0.0, length: 0 })
     }
 
-    fn finish(&mut self, total: f64, length: i64) {
+    fn finish(&mut self, total: f64, length: i64, terminated: bool) {
         self.learner.end_episode();
         self.episodes.returns.push(total);
         self.episodes.lengths.push(length);
+        self.episodes.terminated.push(terminated);
     }
 }

@@ -1,6 +1,6 @@
 //! `MountainCar-v0`: an underpowered car in a sinusoidal valley (A. W. Moore, 1990; Sutton & Barto, Example 10.1).
 
-use crate::env::{Env, Step};
+use crate::env::{Env, Parameters, Step};
 use crate::random::Draw;
 
 /// The starting position is uniform over these, unless Gymnasium's reset options say otherwise.
@@ -40,6 +40,24 @@ impl Default for MountainCar {
     }
 }
 
+impl Parameters for MountainCar {
+    const NAMES: &'static [&'static str] =
+        &["min_position", "max_position", "max_speed", "goal_position", "goal_velocity", "force", "gravity"];
+
+    fn parameter(&mut self, name: &str) -> Option<&mut f64> {
+        Some(match name {
+            "min_position" => &mut self.min_position,
+            "max_position" => &mut self.max_position,
+            "max_speed" => &mut self.max_speed,
+            "goal_position" => &mut self.goal_position,
+            "goal_velocity" => &mut self.goal_velocity,
+            "force" => &mut self.force,
+            "gravity" => &mut self.gravity,
+            _ => return None,
+        })
+    }
+}
+
 /// Where the car is and how fast it moves, in the f64 in which Gymnasium keeps them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MountainCarState {
@@ -47,6 +65,18 @@ pub struct MountainCarState {
     pub position: f64,
     /// Position units a step.
     pub velocity: f64,
+}
+
+impl From<[f64; 2]> for MountainCarState {
+    fn from([position, velocity]: [f64; 2]) -> Self {
+        Self { position, velocity }
+    }
+}
+
+impl From<MountainCarState> for [f64; 2] {
+    fn from(state: MountainCarState) -> Self {
+        [state.position, state.velocity]
+    }
 }
 
 impl Env for MountainCar {

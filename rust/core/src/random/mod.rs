@@ -1,4 +1,4 @@
-//! NumPy's random streams: the same seed gives the same draws, bit for bit.
+//! `NumPy`'s random streams: the same seed gives the same draws, bit for bit.
 
 mod draw;
 mod mt19937;

@@ -6,4 +6,4 @@ mod recorded;
 
 pub use boxed::Boxed;
 pub use native::{Native, Position};
-pub use recorded::{Recorded, Recording, Start};
+pub use recorded::{Recorded, Recording, Recordings, Start};

@@ -11,7 +11,7 @@ use crate::world::{Next, Transition, World};
 /// A world that can say from where its next episode begins.
 pub trait Start: World {
     /// Enough to begin the same episode again: the state of the stream that the reset and the steps draw from.
-    type Start: Clone;
+    type Start;
 
     /// Where the stream stands now.
     ///
@@ -38,18 +38,21 @@ pub struct Recording<S> {
     pub actions: Vec<u32>,
 }
 
+/// The last finished episodes, oldest first, shared by the world that records and whoever asks later.
+pub type Recordings<S> = Arc<Mutex<VecDeque<Recording<S>>>>;
+
 /// A world that keeps the last finished episodes.
 #[derive(Debug)]
 pub struct Recorded<W: Start> {
     world: W,
     keep: usize,
     underway: Option<Recording<W::Start>>,
-    finished: Arc<Mutex<VecDeque<Recording<W::Start>>>>,
+    finished: Recordings<W::Start>,
 }
 
 impl<W: Start> Recorded<W> {
-    /// Keeps the last `keep` finished episodes of `world`, oldest first; the list is shared with whoever asks later.
-    pub fn new(world: W, keep: usize) -> (Self, Arc<Mutex<VecDeque<Recording<W::Start>>>>) {
+    /// Keeps the last `keep` finished episodes of `world`.
+    pub fn new(world: W, keep: usize) -> (Self, Recordings<W::Start>) {
         let finished = Arc::default();
         (Self { world, keep, underway: None, finished: Arc::clone(&finished) }, finished)
     }

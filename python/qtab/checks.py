@@ -1,0 +1,72 @@
+"""Bad input is refused at the door: each check names the argument, shows the value and says what fits."""
+
+import math
+import operator
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+
+
+def real(name: str, value: Any, low: float, high: float) -> float:
+    """Returns ``value`` as a float in [``low``, ``high``].
+
+    Raises:
+        TypeError: if it is no real number (a boolean is none).
+        ValueError: if it is NaN or lies outside.
+    """
+    if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
+        raise TypeError(f"{name} must be a number in [{low:g}, {high:g}], got {value!r}")
+    number = float(value)
+    if not low <= number <= high:
+        raise ValueError(f"{name} must lie in [{low:g}, {high:g}], got {value!r}")
+    return number
+
+
+def finite(name: str, value: Any) -> float:
+    """Returns ``value`` as a finite float.
+
+    Raises:
+        TypeError: if it is no real number.
+        ValueError: if it is NaN or infinite.
+    """
+    if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
+        raise TypeError(f"{name} must be a finite number, got {value!r}")
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{name} must be finite, got {value!r}")
+    return number
+
+
+def integer(name: str, value: Any, least: int, most: int | None = None) -> int:
+    """Returns ``value`` as a Python integer of at least ``least`` and at most ``most``.
+
+    Raises:
+        TypeError: if it is no integer (a boolean is none, 5.0 neither).
+        ValueError: if it is too small or too large.
+    """
+    fits = f"an integer of at least {least}" if most is None else f"an integer from {least} to {most}"
+    if isinstance(value, bool) or not hasattr(value, "__index__"):
+        raise TypeError(f"{name} must be {fits}, got {value!r}")
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be {fits}, got {value!r}") from None
+    if number < least or (most is not None and number > most):
+        raise ValueError(f"{name} must be {fits}, got {value!r}")
+    return number
+
+
+def choice(name: str, value: Any, choices: Collection[str]) -> str:
+    """Returns ``value``, one of ``choices``.
+
+    Raises:
+        TypeError: if it is no string.
+        ValueError: if it is none of them.
+    """
+    listed = ", ".join(map(repr, choices))
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be one of {listed}, got {value!r}")
+    if value not in choices:
+        raise ValueError(f"{name} must be one of {listed}, got {value!r}")
+    return value

@@ -1,0 +1,6 @@
+"""The ``qtab`` command."""
+
+
+def main() -> int:
+    """Runs the command line."""
+    return 0

@@ -1,0 +1,18 @@
+"""The environments as Gymnasium makes them: physics in Rust, all the rest inherited."""
+
+import gymnasium as gym
+
+from qtab.models import MODELS, PREFIX
+
+
+def register() -> None:
+    """Registers ``qtab/…`` beside each of Gymnasium's environments that Rust knows, with its limit and threshold."""
+    for name, model in MODELS.items():
+        theirs = gym.spec(name)
+        gym.register(
+            id=PREFIX + name,
+            entry_point=model.qtab,
+            max_episode_steps=theirs.max_episode_steps,
+            reward_threshold=theirs.reward_threshold,
+            nondeterministic=theirs.nondeterministic,
+        )

@@ -1,0 +1,54 @@
+"""Which of Gymnasium's environments Rust knows: one line each."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from gymnasium.envs.registration import EnvSpec
+
+PREFIX = "qtab/"
+
+
+@dataclass(frozen=True)
+class Model:
+    """An environment in Rust, and where it stands in Gymnasium."""
+
+    name: str
+    """The model's name in Rust."""
+    gymnasium: str
+    """Gymnasium's entry point."""
+    qtab: str
+    """This package's entry point."""
+    arguments: frozenset[str] = field(default_factory=frozenset)
+    """The constructor's keyword arguments that are constants of the model, of the same name."""
+
+
+MODELS: Mapping[str, Model] = {
+    "MountainCar-v0": Model(
+        name="MountainCar",
+        gymnasium="gymnasium.envs.classic_control.mountain_car:MountainCarEnv",
+        qtab="qtab.envs.mountain_car:MountainCarEnv",
+        arguments=frozenset({"goal_velocity"}),
+    ),
+}
+
+
+def gymnasium_id(env: str) -> str:
+    """Returns the id of Gymnasium's environment that an id of ours equals; any other id as it is."""
+    return env.removeprefix(PREFIX)
+
+
+def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:
+    """Returns the model that computes what ``gymnasium.make(spec, **kwargs)`` would, or None if Rust has none."""
+    model = MODELS.get(gymnasium_id(spec.id))
+    if model is None or spec.additional_wrappers:
+        return None
+    if spec.entry_point not in (model.gymnasium, model.qtab):
+        return None
+    # Who asks for a window gets Gymnasium's environment, stepped in Python.
+    arguments = {
+        name: value for name, value in {**spec.kwargs, **kwargs}.items() if (name, value) != ("render_mode", None)
+    }
+    # A number of another width than Python's would promote differently.
+    plain = all(type(value) in (int, float) for value in arguments.values())
+    return model if plain and arguments.keys() <= model.arguments else None

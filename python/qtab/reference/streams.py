@@ -1,0 +1,47 @@
+"""The agent's random numbers, straight from NumPy."""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class AgentStream(Protocol):
+    """The draws that a learner makes."""
+
+    def random(self) -> float:
+        """Returns a float in [0, 1)."""
+
+    def integers(self, low: int, high: int) -> int:
+        """Returns an integer from ``low`` to ``high`` - 1."""
+
+    def uniform(self, low: float, high: float, size: tuple[int, ...]) -> NDArray[np.float64]:
+        """Returns floats in [``low``, ``high``), in C order."""
+
+
+class LegacyStream:
+    """NumPy's legacy generator: what ``np.random.seed(seed)`` sets, without touching NumPy's global state."""
+
+    def __init__(self, seed: int) -> None:
+        self._state = np.random.RandomState(seed)
+
+    def random(self) -> float:
+        """Returns a float in [0, 1)."""
+        return self._state.random()
+
+    def integers(self, low: int, high: int) -> int:
+        """Returns an integer from ``low`` to ``high`` - 1."""
+        return int(self._state.randint(low, high))
+
+    def uniform(self, low: float, high: float, size: tuple[int, ...]) -> NDArray[np.float64]:
+        """Returns floats in [``low``, ``high``), in C order."""
+        return self._state.uniform(low, high, size)
+
+
+def agent_stream(seed: int, bit_generator: str) -> AgentStream:
+    """Returns the agent's stream of a run."""
+    if bit_generator == "MT19937":
+        return LegacyStream(seed)
+    child = np.random.SeedSequence(seed).spawn(1)[0]
+    generator: AgentStream = np.random.default_rng(child)
+    return generator

@@ -1,0 +1,156 @@
+"""From what a user asked for to what will be run: the environment found, every default filled in."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.envs.registration import EnvSpec
+
+from qtab import plan
+from qtab.config import Config, known_fields
+from qtab.models import Model, model_of
+from qtab.presets import preset
+from qtab.spaces import Grid, grid
+from qtab.wrappers import model_of_object
+
+UNLIMITED_MAX_EPISODE_STEPS = 10_000
+"""The time limit in training of an environment that has none of its own."""
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """A config without gaps, and what it is run on."""
+
+    config: Config
+    grid: Grid
+    model: Model | None
+    """The model in Rust; None steps ``env`` in Python."""
+    env: gym.Env | None
+    """The environment stepped in Python."""
+    made: bool
+    """Whether the environment was made here, and so is closed here."""
+
+    def core_environment(self) -> plan.Model | plan.PythonEnvironment:
+        """Returns the environment as the extension module takes it."""
+        if self.model is not None:
+            parameters = {name: float(value) for name, value in self.config.env_kwargs.items() if value is not None}
+            return {"model": self.model.name, "parameters": parameters}
+        assert self.config.seed is not None  # noqa: S101 - resolved
+        return {"env": self.env, "seed": self.config.seed, "first_action": self.grid.first_action}
+
+    def plan(self, record: int = 0) -> plan.Plan:
+        """Returns the run's description as the extension module takes it."""
+        config = self.config
+        assert config.seed is not None  # noqa: S101 - resolved
+        return {
+            "low": self.grid.low.astype(np.float64).tolist(),
+            "high": self.grid.high.astype(np.float64).tolist(),
+            "single": self.grid.low.dtype == np.float32,
+            "scale": self.grid.scale.tolist(),
+            "actions": self.grid.actions,
+            "max_episode_steps": config.max_episode_steps,
+            "seed": plan.seed_words(config.seed),
+            "bit_generator": config.bit_generator,
+            "initial_q": config.initial_q,
+            "learning_rate": config.learning_rate,
+            "discount": config.discount,
+            "epsilon": config.epsilon,
+            "min_epsilon": config.min_epsilon,
+            "episodes": config.episodes,
+            "terminal_update": config.terminal_update,
+            "record": record,
+        }
+
+
+def merge(env: str, *layers: Mapping[str, Any]) -> Config:
+    """Returns the config of an environment: its preset, then each layer over the one before.
+
+    Raises:
+        TypeError: for an unknown or mistyped setting.
+        ValueError: for a setting out of range, or an unknown preset.
+    """
+    explicit: dict[str, Any] = {}
+    for layer in layers:
+        known_fields(layer)
+        explicit.update(layer)
+    name = explicit.pop("preset", None)
+    if name is not None and not isinstance(name, str):
+        raise TypeError(f"preset must be a name, got {name!r}")
+    name, values = preset(env, name)
+    return Config(**{**values, **explicit, "env": env, "preset": name})
+
+
+def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolved:
+    """Finds the environment and fills in what is left open.
+
+    Raises:
+        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
+        TypeError: for what is no environment.
+        ValueError: if the backend or the spaces do not fit the environment.
+    """
+    if isinstance(env, str | EnvSpec):
+        return _from_spec(env, *layers)
+    if isinstance(env, gym.Env):
+        return _from_object(env, *layers)
+    raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {env!r}")
+
+
+def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
+    spec = env if isinstance(env, EnvSpec) else gym.spec(env)
+    config = merge(spec.id, {"env_kwargs": dict(spec.kwargs)}, *layers)
+    model = model_of(spec, config.env_kwargs)
+    backend = _backend(config, model, f"Rust has no {spec.id} with these keyword arguments or wrappers")
+    limit: dict[str, Any] = {}
+    if config.max_episode_steps is not None:
+        limit["max_episode_steps"] = config.max_episode_steps
+    made = gym.make(spec, **config.env_kwargs, **limit)
+    try:
+        table = grid(made, config.scale)
+        steps = config.max_episode_steps or spec.max_episode_steps
+        config = _complete(config, table, backend, steps)
+    except BaseException:
+        made.close()
+        raise
+    if backend == "rust":
+        made.close()
+        return Resolved(config, table, model, None, made=True)
+    return Resolved(config, table, None, made, made=True)
+
+
+def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
+    name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
+    kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
+    config = merge(name, {"env_kwargs": kwargs}, *layers)
+    if config.backend == "auto":
+        config = config.replace(backend="gymnasium")
+    model = model_of_object(env) if config.backend == "rust" else None
+    table = grid(env, config.scale)
+    steps = config.max_episode_steps or _time_limit(env)
+    return Resolved(_complete(config, table, config.backend, steps), table, model, env, made=False)
+
+
+def _backend(config: Config, model: Model | None, why_not: str) -> Literal["rust", "gymnasium"]:
+    if config.backend == "rust" and model is None:
+        raise ValueError(f"backend must be 'gymnasium' or 'auto' here, got 'rust': {why_not}")
+    if config.backend == "gymnasium" or model is None:
+        return "gymnasium"
+    return "rust"
+
+
+def _time_limit(env: gym.Env) -> int | None:
+    while isinstance(env, gym.Wrapper):
+        if isinstance(env, gym.wrappers.TimeLimit):
+            return env._max_episode_steps
+        env = env.env
+    return None
+
+
+def _complete(config: Config, table: Grid, backend: str, steps: int | None) -> Config:
+    changes: dict[str, Any] = {"backend": backend, "max_episode_steps": steps or UNLIMITED_MAX_EPISODE_STEPS}
+    if config.seed is None:
+        changes["seed"] = int(np.random.SeedSequence().generate_state(1)[0])
+    if isinstance(config.initial_q, np.ndarray) and config.initial_q.shape != table.shape:
+        raise ValueError(f"initial_q must have the table's shape {table.shape}, got {config.initial_q.shape}")
+    return config.replace(**changes)

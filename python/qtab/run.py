@@ -1,0 +1,107 @@
+"""What a training run leaves behind."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qtab import checks
+from qtab.config import Config
+from qtab.spaces import Grid
+
+if TYPE_CHECKING:
+    import os
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A finished or interrupted run: what it was made from, what it brought, what it learned."""
+
+    config: Config
+    """Everything needed to repeat it, defaults and preset resolved."""
+    tables: NDArray[np.float64]
+    """(k, rows, actions): the raw tables; one for Q-learning."""
+    episode_returns: NDArray[np.float64]
+    """(episodes,): the sum of rewards of each finished episode."""
+    episode_lengths: NDArray[np.int64]
+    """(episodes,): the number of steps of each finished episode."""
+    terminated: NDArray[np.bool_]
+    """(episodes,): whether each ended in a terminal state, and not by its time limit alone."""
+    grid: Grid
+    """How observations become rows."""
+    completed: bool
+    """False after an early stop; the table then holds what was learned up to it, an unfinished episode included."""
+    seconds: float
+    """How long the training took, by the wall clock."""
+    versions: Mapping[str, str]
+    """Of qtab, Gymnasium, NumPy and Python, and the platform."""
+    recordings: tuple["Recording", ...] = field(default=(), repr=False)
+    """The last episodes, where they were asked for: what it takes to play them again. Not saved."""
+
+    @property
+    def q_table(self) -> NDArray[np.float64]:
+        """(*cells, actions): what the greedy policy reads."""
+        table: NDArray[np.float64] = self.tables[0].reshape(self.grid.shape)
+        return table
+
+    @property
+    def policy(self) -> NDArray[np.int64]:
+        """(*cells,): the greedy action of each cell, the first of equals."""
+        greedy: NDArray[np.int64] = np.argmax(self.q_table, axis=-1) + self.grid.first_action
+        return greedy
+
+    def q_values(self, observation: ArrayLike) -> NDArray[np.float64]:
+        """Returns the (actions,) values of an observation.
+
+        Raises:
+            ValueError: if the observation lies outside the space.
+        """
+        values: NDArray[np.float64] = self.q_table[self.grid.cell(np.asarray(observation))]
+        return values
+
+    def predict(
+        self,
+        observation: ArrayLike,
+        state: Any = None,  # noqa: ARG002 - Stable-Baselines3's signature
+        episode_start: Any = None,  # noqa: ARG002
+        deterministic: bool = True,  # noqa: ARG002
+    ) -> tuple[int, None]:
+        """Returns the greedy action of an observation, and None, as in Stable-Baselines3."""
+        return int(np.argmax(self.q_values(observation))) + self.grid.first_action, None
+
+    def mean_returns(self, block: int = 100) -> NDArray[np.float64]:
+        """Returns the average return of each whole block of episodes, as the article plots it.
+
+        Raises:
+            TypeError: if ``block`` is no integer.
+            ValueError: if it is less than one.
+        """
+        block = checks.integer("block", block, least=1)
+        whole = len(self.episode_returns) // block * block
+        means: NDArray[np.float64] = self.episode_returns[:whole].reshape(-1, block).mean(axis=1)
+        return means
+
+    def save(self, path: "str | os.PathLike[str]") -> None:
+        """Writes the run to one ``.npz`` file: arrays and a JSON header, never a pickle.
+
+        Raises:
+            OSError: if the file cannot be written; nothing half written is left.
+        """
+        from qtab.storage import save
+
+        save(self, Path(path))
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One episode that can be played again."""
+
+    episode: int
+    """Its number in the run, from 0."""
+    start: Mapping[str, Any]
+    """The state of the environment's bit generator before the episode's reset."""
+    actions: tuple[int, ...]
+    """The environment's own actions, a Discrete space's start included."""

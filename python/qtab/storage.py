@@ -1,0 +1,110 @@
+"""A run in one ``.npz`` file: arrays and a JSON header. Nothing in it is ever unpickled."""
+
+import dataclasses
+import json
+import os
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from qtab.config import Config
+from qtab.files import replacing
+from qtab.run import Run
+from qtab.spaces import Grid
+
+FORMAT = "qtab run"
+FORMAT_VERSION = 1
+
+_ARRAYS = {
+    "tables": (np.dtype(np.float64), 3),
+    "episode_returns": (np.dtype(np.float64), 1),
+    "episode_lengths": (np.dtype(np.int64), 1),
+    "terminated": (np.dtype(np.bool_), 1),
+}
+
+
+def save(run: Run, path: Path) -> None:
+    """Writes a run; see :meth:`qtab.Run.save`."""
+    arrays = {name: getattr(run, name) for name in _ARRAYS}
+    arrays |= {"low": run.grid.low, "high": run.grid.high, "scale": run.grid.scale}
+    config = {field.name: getattr(run.config, field.name) for field in dataclasses.fields(Config)}
+    if isinstance(run.config.initial_q, np.ndarray):
+        arrays["initial_q"] = run.config.initial_q
+        config["initial_q"] = None
+    header = {
+        "format": FORMAT,
+        "version": FORMAT_VERSION,
+        "config": config,
+        "actions": run.grid.actions,
+        "first_action": run.grid.first_action,
+        "completed": run.completed,
+        "seconds": run.seconds,
+        "versions": dict(run.versions),
+    }
+    text = json.dumps(header, allow_nan=False)
+    with replacing(path) as temporary, temporary.open("wb") as file:
+        np.savez(file, header=np.array(text), **arrays)
+
+
+def load(path: "str | os.PathLike[str]") -> Run:
+    """Reads a run that :meth:`qtab.Run.save` wrote.
+
+    Raises:
+        OSError: if the file is missing or cannot be read.
+        ValueError: if it is no run, is damaged, or comes from another version of the format; it says which.
+    """
+    path = Path(path)
+    try:
+        return _load(path)
+    except (ValueError, KeyError, TypeError, EOFError, MemoryError, zipfile.BadZipFile, NotImplementedError) as error:
+        reason = f"it has no {error}" if isinstance(error, KeyError) else str(error)
+        raise ValueError(f"{str(path)!r} is no run that this version of qtab can read: {reason}") from None
+
+
+def _load(path: Path) -> Run:
+    with zipfile.ZipFile(path) as archive:
+        # What is stored as it is cannot be larger than the file: no memory is claimed for what is not there.
+        if any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist()):
+            raise ValueError("it is compressed, which qtab's files are not")
+    with np.load(path, allow_pickle=False) as file:
+        header = json.loads(str(file["header"]))
+        if not isinstance(header, dict) or header.get("format") != FORMAT:
+            raise ValueError("its header is not one of qtab's")
+        if header["version"] != FORMAT_VERSION:
+            raise ValueError(f"its format has version {header['version']!r}, this one reads {FORMAT_VERSION}")
+        arrays = {name: _array(file, name, dtype, ndim) for name, (dtype, ndim) in _ARRAYS.items()}
+        fields = dict(header["config"])
+        if fields["initial_q"] is None:
+            fields["initial_q"] = file["initial_q"]
+        config = Config(**fields)
+        grid = Grid(file["low"], file["high"], file["scale"], int(header["actions"]), int(header["first_action"]))
+    _check_shapes(config, grid, arrays)
+    return Run(
+        config=config,
+        grid=grid,
+        completed=bool(header["completed"]),
+        seconds=float(header["seconds"]),
+        versions={str(key): str(value) for key, value in header["versions"].items()},
+        **arrays,
+    )
+
+
+def _array(file: Any, name: str, dtype: "np.dtype[Any]", ndim: int) -> Any:
+    array = file[name]
+    if array.dtype != dtype or array.ndim != ndim:
+        raise ValueError(f"its {name} has dtype {array.dtype} and {array.ndim} axes, not {dtype} and {ndim}")
+    return array
+
+
+def _check_shapes(config: Config, grid: Grid, arrays: dict[str, Any]) -> None:
+    bounds = (grid.low, grid.high, grid.scale)
+    if any(bound.shape != (len(config.scale),) or bound.dtype.kind != "f" for bound in bounds):
+        raise ValueError("its bounds do not fit its scale")
+    tables = arrays["tables"]
+    if (tables.shape[1] * tables.shape[2], tables.shape[2]) != (int(np.prod(grid.shape)), grid.actions):
+        raise ValueError(f"its tables have shape {tables.shape}, which does not fit the grid {grid.shape}")
+    lengths = {len(arrays[name]) for name in ("episode_returns", "episode_lengths", "terminated")}
+    if len(lengths) != 1 or lengths.pop() > config.episodes:
+        raise ValueError("its episodes do not fit together")

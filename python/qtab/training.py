@@ -1,0 +1,117 @@
+"""``qtab.train``: from an environment and a config to a run."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.envs.registration import EnvSpec
+from numpy.typing import NDArray
+
+from qtab import _core, checks
+from qtab.replay import starts
+from qtab.resolution import Resolved, resolve
+from qtab.run import Recording, Run
+from qtab.versions import versions
+
+CALLBACK_EVERY = 100
+
+
+@dataclass(frozen=True)
+class Progress:
+    """A run underway, as a callback sees it."""
+
+    episodes: int
+    """How many episodes are finished …"""
+    total: int
+    """… of how many."""
+    returns: NDArray[np.float64]
+    """(episodes,): the return of each finished episode."""
+    lengths: NDArray[np.int64]
+    """(episodes,): the steps of each finished episode."""
+
+
+Callback = Callable[[Progress], bool | None]
+
+
+def train(
+    env: str | EnvSpec | gym.Env,
+    *,
+    callback: Callback | None = None,
+    callback_every: int = CALLBACK_EVERY,
+    record: int = 0,
+    **overrides: Any,
+) -> Run:
+    """Trains a tabular agent; the same seed gives the table that Gymnasium and NumPy would have given, bit for bit.
+
+    Args:
+        env: An environment's id, its EnvSpec, or an environment (which is stepped as it stands, and not closed).
+        callback: Called every ``callback_every`` episodes, and after the last; returning False stops the run.
+        callback_every: How many episodes lie between two calls.
+        record: How many of the last episodes to keep for playing again (``run.recordings``).
+        **overrides: The fields of :class:`qtab.Config`. An explicit one wins over the preset, the preset over the
+            default.
+
+    Returns:
+        The run. ``run.completed`` is False where a callback stopped it.
+
+    Raises:
+        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
+        TypeError: for an argument of the wrong type, or an unknown one.
+        ValueError: for an argument out of range, or spaces that do not fit.
+        KeyboardInterrupt: on Ctrl-C. It, and whatever the environment or the callback raises, carries the run so far
+            as ``.run``.
+    """
+    callback_every = checks.integer("callback_every", callback_every, least=1)
+    record = checks.integer("record", record, least=0)
+    resolved = resolve(env, overrides)
+    try:
+        return train_resolved(resolved, callback, callback_every, record)
+    finally:
+        if resolved.made and resolved.env is not None:
+            resolved.env.close()
+
+
+def train_resolved(resolved: Resolved, callback: Callback | None, callback_every: int, record: int = 0) -> Run:
+    """Trains what was resolved before; see :func:`train`."""
+    total = resolved.config.episodes
+    began = time.perf_counter()
+    trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record))
+    done = 0
+    try:
+        while done < total:
+            done = min(done + callback_every, total) if callback is not None else total
+            trainer.advance(done)
+            if callback is not None:
+                returns, lengths, _ = trainer.episodes()
+                if callback(Progress(done, total, returns, lengths)) is False:
+                    break
+    except BaseException as error:
+        error.run = _run(resolved, trainer, began)  # type: ignore[attr-defined]
+        raise
+    return _run(resolved, trainer, began)
+
+
+def _run(resolved: Resolved, trainer: _core.Trainer, began: float) -> Run:
+    returns, lengths, terminated = trainer.episodes()
+    kept: list[tuple[Any, list[int]]] = trainer.recordings()
+    first = len(returns) - len(kept)
+    generators = starts(resolved.config, [start for start, _ in kept])
+    recordings = tuple(
+        Recording(first + index, generator, tuple(resolved.grid.first_action + action for action in actions))
+        for index, (generator, (_, actions)) in enumerate(zip(generators, kept, strict=True))
+    )
+    return Run(
+        config=resolved.config,
+        tables=trainer.tables().reshape(1, -1, resolved.grid.actions),
+        episode_returns=returns,
+        episode_lengths=lengths,
+        terminated=terminated,
+        grid=resolved.grid,
+        completed=len(returns) == resolved.config.episodes,
+        seconds=time.perf_counter() - began,
+        versions=versions(),
+        recordings=recordings,
+    )

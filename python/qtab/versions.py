@@ -1,0 +1,21 @@
+"""What a result was computed with, so that a difference can be explained."""
+
+import platform
+from importlib.metadata import version
+
+import numpy as np
+
+
+def versions() -> dict[str, str]:
+    """Returns the versions of qtab, Gymnasium, NumPy and Python, the platform, its C library and the build profile."""
+    from qtab._core import BUILD_PROFILE
+
+    libc = " ".join(platform.libc_ver()).strip()
+    return {
+        "qtab": version("qtab"),
+        "gymnasium": version("gymnasium"),
+        "numpy": np.__version__,
+        "python": platform.python_version(),
+        "platform": f"{platform.system()} {platform.machine()}" + (f" {libc}" if libc else ""),
+        "build": BUILD_PROFILE,
+    }

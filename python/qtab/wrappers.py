@@ -1,0 +1,39 @@
+"""Which environment objects Rust may stand in for: those that are still what their id says."""
+
+import gymnasium as gym
+from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
+
+from qtab.models import MODELS, Model, gymnasium_id
+
+# What gymnasium.make puts around an environment; none of it changes a number.
+_HARMLESS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
+
+
+def model_of_object(env: gym.Env) -> Model:
+    """Returns the model that computes what an environment object would.
+
+    Raises:
+        ValueError: if there is none; it names the wrapper or the attribute in the way.
+    """
+    refused = "backend must be 'gymnasium' or 'auto' for this environment, got 'rust': "
+    inner = env
+    while isinstance(inner, gym.Wrapper):
+        if type(inner) not in _HARMLESS:
+            raise ValueError(f"{refused}Rust does not know its wrapper {type(inner).__name__}")
+        inner = inner.env
+    entry_point = f"{type(inner).__module__}:{type(inner).__qualname__}"
+    spec = inner.spec
+    model = MODELS.get(gymnasium_id(spec.id)) if spec is not None else None
+    if model is None or entry_point not in (model.gymnasium, model.qtab):
+        raise ValueError(f"{refused}Rust has no {type(inner).__qualname__}")
+    from qtab._core import parameter_names
+
+    untouched = type(inner)(**(spec.kwargs if spec is not None else {}))
+    for name in parameter_names(model.name):
+        now, then = getattr(inner, name), getattr(untouched, name)
+        if type(now) not in (int, float) or now != then:
+            raise ValueError(f"{refused}its attribute {name} was changed from {then!r} to {now!r}")
+    return model
+
+
+__all__ = ["model_of_object"]

@@ -1,0 +1,31 @@
+//! What can end a run early, and its one conversion to a Python exception.
+
+use pyo3::PyErr;
+use pyo3::exceptions::PyValueError;
+use qtab_core::features::Outside;
+
+pub(crate) enum Failure {
+    Outside(Outside),
+    Python(PyErr),
+}
+
+impl From<Outside> for Failure {
+    fn from(outside: Outside) -> Self {
+        Self::Outside(outside)
+    }
+}
+
+impl From<PyErr> for Failure {
+    fn from(error: PyErr) -> Self {
+        Self::Python(error)
+    }
+}
+
+impl From<Failure> for PyErr {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Outside(outside) => PyValueError::new_err(outside.to_string()),
+            Failure::Python(error) => error,
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! `qtab._core`: what Python calls. Convert, dispatch, return; nothing else.
+
+mod dispatch;
+mod door;
+mod failure;
+mod model;
+mod physics;
+mod plan;
+mod python_world;
+mod run;
+mod stream;
+mod trainer;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::model::parameter_names;
+    #[pymodule_export]
+    use super::physics::Physics;
+    #[pymodule_export]
+    use super::stream::Stream;
+    #[pymodule_export]
+    use super::trainer::Trainer;
+
+    /// How the extension was compiled: only "release" says anything about speed.
+    #[pymodule_export]
+    const BUILD_PROFILE: &str = if cfg!(debug_assertions) { "debug" } else { "release" };
+}

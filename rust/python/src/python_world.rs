@@ -1,0 +1,133 @@
+//! A Gymnasium environment, stepped in Python, as the learner meets it.
+
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use qtab_core::features::{Axis, Features, Real, Rounding};
+use qtab_core::world::{Next, Transition, World};
+use qtab_core::worlds::Start;
+
+use crate::failure::Failure;
+
+/// What Python hands over besides the plan.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct PythonEnvironment {
+    env: Py<PyAny>,
+    /// The seed of the first reset, a Python integer.
+    seed: Py<PyAny>,
+    /// The first action of the space, `Discrete.start`.
+    first_action: i64,
+}
+
+pub(crate) struct PythonWorld<T> {
+    environment: PythonEnvironment,
+    seeded: bool,
+    max_episode_steps: u64,
+    grid: Rounding<T>,
+}
+
+impl<T: Real + numpy::Element> PythonWorld<T> {
+    pub(crate) fn new(environment: PythonEnvironment, axes: Vec<Axis<T>>, max_episode_steps: Option<u64>) -> Self {
+        let max_episode_steps = max_episode_steps.unwrap_or(u64::MAX);
+        Self { environment, seeded: false, max_episode_steps, grid: Rounding::new(axes) }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        Features::<[T]>::len(&self.grid)
+    }
+
+    fn rows(&self, observation: &Bound<'_, PyAny>) -> Result<[u32; 1], Failure> {
+        let py = observation.py();
+        let converted;
+        let array = if let Ok(array) = observation.cast::<PyArray1<T>>() {
+            array
+        } else {
+            // Not the space's dtype: read as the space says that it is meant.
+            let arguments = (observation, numpy::dtype::<T>(py));
+            let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), arguments)?;
+            converted = array.cast_into::<PyArray1<T>>().map_err(PyErr::from)?;
+            &converted
+        };
+        if array.len()? != self.grid.dimensions() {
+            let message =
+                format!("an observation has shape ({},), the space ({},)", array.len()?, self.grid.dimensions());
+            return Err(PyValueError::new_err(message).into());
+        }
+        let values = array.readonly();
+        match values.as_slice() {
+            Ok(values) => Ok(self.grid.rows(values)?),
+            Err(_) => Ok(self.grid.rows(&values.as_array().to_vec())?),
+        }
+    }
+}
+
+impl<T: Real + numpy::Element> World for PythonWorld<T> {
+    /// The steps taken since the reset.
+    type State = u64;
+    type Rows = [u32; 1];
+    type Error = Failure;
+
+    fn reset(&mut self) -> Result<(u64, [u32; 1]), Failure> {
+        Python::attach(|py| {
+            let env = self.environment.env.bind(py);
+            let seed = PyDict::new(py);
+            if !self.seeded {
+                seed.set_item(intern!(py, "seed"), &self.environment.seed)?;
+            }
+            let answer = env.call_method(intern!(py, "reset"), (), Some(&seed))?;
+            self.seeded = true;
+            Ok((0, self.rows(&answer.get_item(0)?)?))
+        })
+    }
+
+    fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<[u32; 1]>, Failure> {
+        Python::attach(|py| {
+            let env = self.environment.env.bind(py);
+            let action = self.environment.first_action.saturating_add_unsigned(action as u64);
+            let answer = env.call_method1(intern!(py, "step"), (action,))?;
+            let (observation, reward, terminated, truncated, _info): (
+                Bound<'_, PyAny>,
+                f64,
+                Bound<'_, PyAny>,
+                Bound<'_, PyAny>,
+                Bound<'_, PyAny>,
+            ) = answer.extract()?;
+            if reward.is_nan() {
+                return Err(PyValueError::new_err(
+                    "the environment's reward is nan, which no value can be learned from",
+                )
+                .into());
+            }
+            *elapsed += 1;
+            let rows = self.rows(&observation)?;
+            let next = if terminated.is_truthy()? {
+                Next::Terminal
+            } else if truncated.is_truthy()? || *elapsed >= self.max_episode_steps {
+                Next::TimedOut(rows)
+            } else {
+                Next::Goes(rows)
+            };
+            Ok(Transition { reward, next })
+        })
+    }
+}
+
+/// The state of the environment's own bit generator, a dict.
+impl<T: Real + numpy::Element> Start for PythonWorld<T> {
+    type Start = Py<PyAny>;
+
+    fn start(&self) -> Result<Py<PyAny>, Failure> {
+        Python::attach(|py| {
+            let env = self.environment.env.bind(py);
+            if !self.seeded {
+                // Seeding is the reset's own work.
+                return Ok(self.environment.seed.clone_ref(py));
+            }
+            let generator = env.getattr(intern!(py, "unwrapped"))?.getattr(intern!(py, "np_random"))?;
+            Ok(generator.getattr(intern!(py, "bit_generator"))?.getattr(intern!(py, "state"))?.unbind())
+        })
+    }
+}

@@ -1,0 +1,31 @@
+//! A trainer of any type, as the pyclass holds it.
+
+use qtab_core::random::Draw;
+use qtab_core::{Episodes, Learner, Trainer, Until, World};
+
+use crate::failure::Failure;
+
+pub(crate) trait Run: Send {
+    fn advance(&mut self, until: Until) -> Result<(), Failure>;
+    fn episodes(&self) -> &Episodes;
+    fn tables(&self) -> &[f64];
+}
+
+impl<W, L, D> Run for Trainer<W, L, D>
+where
+    W: World<Error: Into<Failure>, State: Send, Rows: Send> + Send,
+    L: Learner<W::Rows> + Send,
+    D: Draw + Clone + Send,
+{
+    fn advance(&mut self, until: Until) -> Result<(), Failure> {
+        Trainer::advance(self, until).map_err(Into::into)
+    }
+
+    fn episodes(&self) -> &Episodes {
+        Trainer::episodes(self)
+    }
+
+    fn tables(&self) -> &[f64] {
+        self.learner().tables()
+    }
+}
