@@ -1,18 +1,12 @@
 //! The article's discretizer: `round((observation - low) * scale)`, half to even, as `NumPy` computes it.
 
 use std::marker::PhantomData;
-use std::ops::Sub;
 
-use super::{Features, Outside};
+use super::{Features, Outside, Real};
 
 /// Adding this to |x| < 2⁵¹ leaves round-half-even(x) in the low bits of the sum: `rint` without a call, and the integer
 /// for nothing.
 const ROUND_TO_INTEGER: f64 = 6_755_399_441_055_744.0; // 1.5 × 2⁵²
-
-/// The dtypes of Gymnasium's boxes.
-pub trait Real: Copy + Sub<Output = Self> + Into<f64> {}
-impl Real for f32 {}
-impl Real for f64 {}
 
 /// One component of the observation, in the dtype `T` of the space's bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
