@@ -32,9 +32,9 @@ impl<T: Real> Axis<T> {
     #[inline]
     fn cell(&self, value: T) -> Option<u32> {
         let shifted = (value - self.low).into() * self.scale + ROUND_TO_INTEGER;
-        let rounded = shifted - ROUND_TO_INTEGER;
-        // Compared as floats: that is false for NaN, and for what is too large to round so.
-        (rounded >= 0.0 && rounded < f64::from(self.size)).then_some(shifted.to_bits() as u32)
+        let cell = shifted.to_bits().wrapping_sub(ROUND_TO_INTEGER.to_bits());
+        // One comparison: what is negative, NaN or too large to round so lies far beyond any size as an integer.
+        (cell < u64::from(self.size)).then_some(cell as u32)
     }
 }
 
