@@ -1,10 +1,13 @@
 //! `MountainCar-v0`: an underpowered car in a sinusoidal valley (A. W. Moore, 1990; Sutton & Barto, Example 10.1).
 
 use crate::env::{Env, Parameters, Step};
+use crate::hint::seldom;
 use crate::random::Draw;
 
 /// The starting position is uniform over these, unless Gymnasium's reset options say otherwise.
 const START: (f64, f64) = (-0.6, -0.4);
+/// Left, none, right: looked up, because turning the action into a float takes longer, and the next step waits for it.
+const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
 const REWARD: f64 = -1.0;
 
 /// The constants of the dynamics, under Gymnasium's names.
@@ -86,7 +89,7 @@ impl Env for MountainCar {
 
     #[inline]
     fn actions(&self) -> usize {
-        3
+        DIRECTIONS.len()
     }
 
     #[inline]
@@ -97,13 +100,16 @@ impl Env for MountainCar {
     #[inline]
     fn step(&self, state: MountainCarState, action: usize, _draw: &mut impl Draw) -> Step<MountainCarState> {
         let MountainCarState { mut position, mut velocity } = state;
-        let push = (action as f64 - 1.0) * self.force;
+        let push = DIRECTIONS[action] * self.force;
         velocity += push + (3.0 * position).cos() * (-self.gravity);
         velocity = clip(velocity, -self.max_speed, self.max_speed);
         position += velocity;
         position = clip(position, self.min_position, self.max_position);
-        if position == self.min_position && velocity < 0.0 {
-            velocity = 0.0;
+        if position == self.min_position {
+            seldom();
+            if velocity < 0.0 {
+                velocity = 0.0;
+            }
         }
         Step {
             state: MountainCarState { position, velocity },
@@ -118,11 +124,19 @@ impl Env for MountainCar {
     }
 }
 
-/// `np.clip`: NaN stays NaN.
+/// `np.clip`: NaN stays NaN. An episode seldom meets a limit.
 #[inline]
 fn clip(value: f64, low: f64, high: f64) -> f64 {
-    let raised = if value < low { low } else { value };
-    if raised > high { high } else { raised }
+    let mut clipped = value;
+    if clipped < low {
+        seldom();
+        clipped = low;
+    }
+    if clipped > high {
+        seldom();
+        clipped = high;
+    }
+    clipped
 }
 
 #[cfg(test)]
