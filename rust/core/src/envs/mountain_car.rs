@@ -6,7 +6,8 @@ use crate::random::Draw;
 
 /// The starting position is uniform over these, unless Gymnasium's reset options say otherwise.
 const START: (f64, f64) = (-0.6, -0.4);
-/// Left, none, right: looked up, because turning the action into a float takes longer, and the next step waits for it.
+/// Action - 1: left, none, right. Looked up, because turning the action into a float takes longer, and the next step
+/// waits for it.
 const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
 const REWARD: f64 = -1.0;
 
@@ -141,6 +142,8 @@ fn clip(value: f64, low: f64, high: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::random::{Pcg64, SeedSequence};
 
@@ -171,5 +174,43 @@ mod tests {
     #[test]
     fn every_step_costs_one() {
         assert_eq!(step(-0.5, 0.0, 1).reward, -1.0);
+    }
+
+    /// Gymnasium's lines, in their order.
+    fn gymnasium(car: &MountainCar, mut position: f64, mut velocity: f64, action: usize) -> (f64, f64, bool) {
+        let np_clip = |value: f64, low: f64, high: f64| if value.is_nan() { value } else { value.max(low).min(high) };
+        velocity += (action as f64 - 1.0) * car.force + (3.0 * position).cos() * (-car.gravity);
+        velocity = np_clip(velocity, -car.max_speed, car.max_speed);
+        position += velocity;
+        position = np_clip(position, car.min_position, car.max_position);
+        if position == car.min_position && velocity < 0.0 {
+            velocity = 0.0;
+        }
+        (position, velocity, position >= car.goal_position && velocity >= car.goal_velocity)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn every_step_is_gymnasiums(
+            position in prop_oneof![-1.3..0.7, -1.2..-1.13, Just(-1.2), Just(0.6), any::<f64>()],
+            velocity in prop_oneof![-0.08..0.08, Just(0.0), Just(-0.0), any::<f64>()],
+            action in 0_usize..3,
+            force in prop_oneof![Just(0.001), -0.1..0.1],
+            gravity in prop_oneof![Just(0.0025), -0.1..0.1],
+        ) {
+            let car = MountainCar { force, gravity, ..MountainCar::default() };
+            let mut draw = Pcg64::new(&SeedSequence::new(&[0]));
+            let Step { state, terminated, .. } = car.step(MountainCarState { position, velocity }, action, &mut draw);
+            let bits = |(position, velocity, terminated): (f64, f64, bool)| {
+                (position.to_bits(), velocity.to_bits(), terminated)
+            };
+            let expected = gymnasium(&car, position, velocity, action);
+            prop_assert!(
+                bits((state.position, state.velocity, terminated)) == bits(expected)
+                    || expected.0.is_nan() && state.position.is_nan()
+            );
+        }
     }
 }
