@@ -17,9 +17,11 @@ from qtab.envs import register as _register
 if TYPE_CHECKING:
     from qtab.config import Config
     from qtab.evaluation import Evaluation, evaluate
+    from qtab.many import train_many
     from qtab.plotting import plot
     from qtab.presets import presets
     from qtab.run import Recording, Run
+    from qtab.runs import Runs
     from qtab.storage import load
     from qtab.training import Progress, train
     from qtab.verification import Verification, verify
@@ -32,12 +34,14 @@ __all__ = [
     "Progress",
     "Recording",
     "Run",
+    "Runs",
     "Verification",
     "evaluate",
     "load",
     "plot",
     "presets",
     "train",
+    "train_many",
     "verify",
 ]
 
@@ -47,12 +51,14 @@ _HOME = {
     "Progress": "training",
     "Recording": "run",
     "Run": "run",
+    "Runs": "runs",
     "Verification": "verification",
     "evaluate": "evaluation",
     "load": "storage",
     "plot": "plotting",
     "presets": "presets",
     "train": "training",
+    "train_many": "many",
     "verify": "verification",
 }
 
