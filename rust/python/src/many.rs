@@ -1,18 +1,26 @@
-//! Many runs in one call: threads of the call's own, each run by itself, its results straight into `NumPy`'s arrays.
+//! Many runs in one call: threads of the call's own, in batches where that pays, the results straight into `NumPy`'s arrays.
 
+use std::any::Any;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
+use std::vec::IntoIter;
 
 use numpy::{PyReadwriteArray1, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::Until;
+use qtab_core::batch::{self, Article, LANES};
 
 use crate::dispatch::build;
 use crate::door;
+use crate::failure::Failure;
 use crate::plan::Plan;
+use crate::run::Run;
 use crate::trainer::STEPS_BETWEEN_LOOKS;
+
+/// What is worth a batch where there are fewer than `LANES`.
+const HALF: usize = LANES / 2;
 
 /// Where the results go: a row for each run, in the order of the runs.
 #[derive(FromPyObject)]
@@ -37,13 +45,41 @@ struct Row<'a> {
     finished: &'a mut bool,
 }
 
-/// A run that ended early, and why.
+impl Row<'_> {
+    /// Takes in a finished run.
+    fn fill(self, run: &dyn Run) -> PyResult<()> {
+        let episodes = run.episodes();
+        self.returns.copy_from_slice(&episodes.returns);
+        self.lengths.copy_from_slice(&episodes.lengths);
+        self.terminated.copy_from_slice(&episodes.terminated);
+        if !self.table.is_empty() {
+            let tables = run.tables();
+            if tables.len() != self.table.len() {
+                return Err(PyValueError::new_err(format!("the tables must have {} values", tables.len())));
+            }
+            self.table.copy_from_slice(tables.as_ref());
+        }
+        *self.finished = true;
+        Ok(())
+    }
+}
+
+/// A run that failed, and why.
 type Failed = (usize, PyErr);
 
-/// Trains what `describe(index)` describes, a trainer for each row, on so many threads. Returns the runs that failed; unless
-/// `go_on` is set, no run is begun after the first that did.
+/// What the threads of one call share.
+struct Work<'a> {
+    describe: Py<PyAny>,
+    rows: Mutex<IntoIter<Row<'a>>>,
+    failed: Mutex<Vec<Failed>>,
+    go_on: bool,
+    over: AtomicBool,
+}
+
+/// Trains what `describe(index)` returns, an environment of Rust's and a plan for each row, on so many threads. Returns
+/// the runs that failed; unless `go_on` is set, no run is begun after the first that did.
 ///
-/// Trainers are made when a thread comes to them, so that no more of their tables are alive than threads are at work.
+/// It is asked when a thread comes to a run, so that few tables more are alive than threads are at work.
 #[pyfunction]
 pub(crate) fn train_many(
     py: Python<'_>,
@@ -54,58 +90,125 @@ pub(crate) fn train_many(
 ) -> PyResult<Vec<Failed>> {
     let rows = results.rows()?;
     let threads = threads.min(rows.len());
-    let rows = Mutex::new(rows.into_iter());
-    let failed = Mutex::new(Vec::new());
+    // Few runs are shared out evenly first.
+    let lanes = rows.len().div_ceil(threads.max(1)).min(LANES);
+    let (rows, failed, over) = (Mutex::new(rows.into_iter()), Mutex::default(), AtomicBool::new(false));
+    let work = Work { describe, rows, failed, go_on, over };
     door::detached(py, |stop| {
-        let left = AtomicBool::new(false);
-        let work = || {
-            while !stop.load(Ordering::Acquire) && !left.load(Ordering::Acquire) {
-                let Some(row) = rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
-                let index = row.index;
-                if let Err(error) = train_one(&describe, row, stop) {
-                    failed.lock().unwrap_or_else(PoisonError::into_inner).push((index, error));
-                    left.fetch_or(!go_on, Ordering::AcqRel);
-                }
-            }
-        };
         thread::scope(|scope| {
             // This thread is one of them.
             (1..threads).for_each(|_| {
-                scope.spawn(work);
+                scope.spawn(|| work.share(lanes, stop));
             });
-            work();
+            work.share(lanes, stop);
         });
     })?;
-    let mut failed = failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let mut failed = work.failed.into_inner().unwrap_or_else(PoisonError::into_inner);
     failed.sort_by_key(|&(index, _)| index);
     Ok(failed)
 }
 
-fn train_one(describe: &Py<PyAny>, row: Row<'_>, stop: &AtomicBool) -> PyResult<()> {
-    let mut run = Python::attach(|py| {
-        let (environment, plan): (Bound<'_, PyAny>, Plan<'_>) = describe.bind(py).call1((row.index,))?.extract()?;
-        build(&environment, &plan).map(|built| built.run)
-    })?;
-    let until = Until { episodes: row.returns.len(), steps: STEPS_BETWEEN_LOOKS };
-    while run.episodes().returns.len() < until.episodes {
-        if stop.load(Ordering::Acquire) {
-            return Ok(());
+impl<'a> Work<'a> {
+    /// What one thread does: runs of the article's kind in batches, every other one by itself.
+    fn share(&self, lanes: usize, stop: &AtomicBool) {
+        let (mut rows, mut runs) = (Vec::with_capacity(lanes), Vec::with_capacity(lanes));
+        loop {
+            while runs.len() < lanes
+                && let Some((row, run)) = self.next_article(stop)
+            {
+                rows.push(row);
+                runs.push(run);
+            }
+            if runs.is_empty() || self.ends(stop) {
+                return;
+            }
+            let episodes = rows[0].returns.len();
+            if let Err((lane, failure)) = advance(&mut runs, Until { episodes, steps: STEPS_BETWEEN_LOOKS }) {
+                runs.swap_remove(lane);
+                self.fail(rows.swap_remove(lane).index, failure.into());
+            }
+            for lane in (0..runs.len()).rev() {
+                if runs[lane].episodes().returns.len() >= episodes {
+                    self.finish(rows.swap_remove(lane), &runs.swap_remove(lane));
+                }
+            }
         }
-        run.advance(until).map_err(PyErr::from)?;
     }
-    let episodes = run.episodes();
-    row.returns.copy_from_slice(&episodes.returns);
-    row.lengths.copy_from_slice(&episodes.lengths);
-    row.terminated.copy_from_slice(&episodes.terminated);
-    if !row.table.is_empty() {
-        let tables = run.tables();
-        if tables.len() != row.table.len() {
-            return Err(PyValueError::new_err(format!("the tables must have {} values", tables.len())));
+
+    /// The next run of the article's kind; whatever comes before is trained on the way.
+    fn next_article(&self, stop: &AtomicBool) -> Option<(Row<'a>, Article)> {
+        while !self.ends(stop) {
+            let row = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next()?;
+            let mut run = match self.begin(row.index) {
+                Ok(run) => run,
+                Err(error) => {
+                    self.fail(row.index, error);
+                    continue;
+                }
+            };
+            let any: Box<dyn Any> = if (&*run as &dyn Any).is::<Article>() {
+                run
+            } else {
+                match self.train(&mut *run, row.returns.len(), stop) {
+                    Ok(true) => self.finish(row, &*run),
+                    Ok(false) => return None,
+                    Err(failure) => self.fail(row.index, failure.into()),
+                }
+                continue;
+            };
+            return Some((row, *any.downcast().ok()?));
         }
-        row.table.copy_from_slice(tables.as_ref());
+        None
     }
-    *row.finished = true;
-    Ok(())
+
+    fn begin(&self, index: usize) -> PyResult<Box<dyn Run>> {
+        Python::attach(|py| {
+            let answer = self.describe.bind(py).call1((index,))?;
+            let (environment, plan): (Bound<'_, PyAny>, Plan<'_>) = answer.extract()?;
+            build(&environment, &plan).map(|built| built.run)
+        })
+    }
+
+    /// Returns whether it came to its end.
+    fn train(&self, run: &mut dyn Run, episodes: usize, stop: &AtomicBool) -> Result<bool, Failure> {
+        while run.episodes().returns.len() < episodes {
+            if self.ends(stop) {
+                return Ok(false);
+            }
+            run.advance(Until { episodes, steps: STEPS_BETWEEN_LOOKS })?;
+        }
+        Ok(true)
+    }
+
+    fn finish(&self, row: Row<'a>, run: &dyn Run) {
+        let index = row.index;
+        if let Err(error) = row.fill(run) {
+            self.fail(index, error);
+        }
+    }
+
+    fn fail(&self, index: usize, error: PyErr) {
+        self.failed.lock().unwrap_or_else(PoisonError::into_inner).push((index, error));
+        self.over.fetch_or(!self.go_on, Ordering::AcqRel);
+    }
+
+    fn ends(&self, stop: &AtomicBool) -> bool {
+        stop.load(Ordering::Acquire) || self.over.load(Ordering::Acquire)
+    }
+}
+
+/// As many as go together at once; of few, one.
+fn advance(runs: &mut [Article], until: Until) -> Result<(), (usize, Failure)> {
+    let result = if let Some(runs) = runs.first_chunk_mut::<LANES>() {
+        batch::advance(runs, until)
+    } else if let Some(runs) = runs.first_chunk_mut::<HALF>() {
+        batch::advance(runs, until)
+    } else if let Some(run) = runs.first_mut() {
+        return Run::advance(run, until).map_err(|failure| (0, failure));
+    } else {
+        return Ok(());
+    };
+    result.map_err(|(lane, outside)| (lane, outside.into()))
 }
 
 impl Results<'_> {

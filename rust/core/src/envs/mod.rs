@@ -1,5 +1,5 @@
 //! The environments, one a file.
 
-mod mountain_car;
+pub(crate) mod mountain_car;
 
 pub use mountain_car::{MountainCar, MountainCarState};
