@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from qtab.envs import register as _register
 
 if TYPE_CHECKING:
+    from qtab import stats
     from qtab.config import Config
     from qtab.evaluation import Evaluation, evaluate
     from qtab.many import train_many
@@ -40,6 +41,7 @@ __all__ = [
     "load",
     "plot",
     "presets",
+    "stats",
     "train",
     "train_many",
     "verify",
@@ -62,12 +64,16 @@ _HOME = {
     "verify": "verification",
 }
 
+_MODULES = ("stats",)
+
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         from importlib.metadata import version
 
         return version("qtab")
+    if name in _MODULES:
+        return import_module(f"qtab.{name}")
     if name not in _HOME:
         raise AttributeError(f"module 'qtab' has no attribute {name!r}")
     value = globals()[name] = getattr(import_module(f"qtab.{_HOME[name]}"), name)
