@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from qtab.envs import register as _register
 
 if TYPE_CHECKING:
-    from qtab import stats
+    from qtab import designs, stats
     from qtab.config import Config
     from qtab.evaluation import Evaluation, evaluate
     from qtab.many import train_many
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from qtab.run import Recording, Run
     from qtab.runs import Runs
     from qtab.storage import load
+    from qtab.sweeping import StoreError, Sweep, SweepProgress, sweep
     from qtab.training import Progress, train
     from qtab.verification import Verification, verify
 
@@ -36,12 +37,17 @@ __all__ = [
     "Recording",
     "Run",
     "Runs",
+    "StoreError",
+    "Sweep",
+    "SweepProgress",
     "Verification",
+    "designs",
     "evaluate",
     "load",
     "plot",
     "presets",
     "stats",
+    "sweep",
     "train",
     "train_many",
     "verify",
@@ -54,17 +60,21 @@ _HOME = {
     "Recording": "run",
     "Run": "run",
     "Runs": "runs",
+    "StoreError": "sweeping",
+    "Sweep": "sweeping",
+    "SweepProgress": "sweeping",
     "Verification": "verification",
     "evaluate": "evaluation",
     "load": "storage",
     "plot": "plotting",
     "presets": "presets",
+    "sweep": "sweeping",
     "train": "training",
     "train_many": "many",
     "verify": "verification",
 }
 
-_MODULES = ("stats",)
+_MODULES = ("designs", "stats")
 
 
 def __getattr__(name: str) -> Any:

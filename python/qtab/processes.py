@@ -5,9 +5,10 @@ import os
 import pickle
 import signal
 import threading
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from typing import Any
 
 import cloudpickle
@@ -50,6 +51,16 @@ def train_in_processes(
         executor.shutdown(cancel_futures=True)
 
 
+@contextmanager
+def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """A process pool that does not outlive its parent, and leaves Ctrl-C to it."""
+    executor = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _follow_parent)
+    try:
+        yield executor
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
 def _portable_env(env: Any) -> Any:
     """An id as its EnvSpec: a worker has not imported what registered it."""
     import gymnasium as gym
@@ -82,10 +93,14 @@ class _Worker:
     overrides: Mapping[str, Any]
 
 
-def _begin(stop: Any, task: bytes) -> None:
+def _follow_parent() -> None:
     # Ctrl-C reaches the whole group of processes; the parent decides.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_follow, args=(multiprocessing.parent_process(),), daemon=True).start()
+
+
+def _begin(stop: Any, task: bytes) -> None:
+    _follow_parent()
     _Worker.stop = stop
     _Worker.env, _Worker.overrides = pickle.loads(task)  # noqa: S301 - from the parent process
 
@@ -125,4 +140,4 @@ def portable(error: Exception) -> Exception:
     return RuntimeError(f"{type(error).__name__}: {error}")
 
 
-__all__ = ["portable", "train_in_processes"]
+__all__ = ["pool", "train_in_processes"]

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from qtab import checks
 from qtab.config import Config
 from qtab.run import Run
 from qtab.spaces import Grid
-from qtab.summaries import summarize
+from qtab.summaries import block_means, summarize
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,10 +75,7 @@ class Runs:
             ValueError: if it is less than one.
         """
         block = checks.integer("block", block, least=1)
-        runs, episodes = self.episode_returns.shape
-        whole = episodes // block * block
-        means: NDArray[np.float64] = self.episode_returns[:, :whole].reshape(runs, -1, block).mean(axis=2)
-        return means
+        return block_means(self.episode_returns, block)
 
     def final_returns(self, last: int = 100) -> NDArray[np.float64]:
         """Returns (runs,): the average return of the last episodes of each run, of all where there are fewer.
@@ -90,10 +88,7 @@ class Runs:
         means: NDArray[np.float64] = self.episode_returns[:, -last:].mean(axis=1)
         return means
 
-    def summaries(self) -> dict[str, NDArray[np.float64] | NDArray[np.int64]]:
+    def summaries(self) -> dict[str, NDArray[Any]]:
         """Returns columns with a number a run: its seed, and what :func:`qtab.summaries.summarize` says of it."""
-        rows = [
-            summarize(*row) for row in zip(self.episode_returns, self.episode_lengths, self.terminated, strict=True)
-        ]
-        columns: dict[str, NDArray[np.float64] | NDArray[np.int64]] = {"seed": np.array(self.seeds)}
-        return columns | {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else ())}
+        seeds = np.array(self.seeds)
+        return {"seed": seeds, **summarize(self.episode_returns, self.episode_lengths, self.terminated)}
