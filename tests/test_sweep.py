@@ -138,6 +138,22 @@ def test_killed_at_any_moment_it_goes_on(tmp_path, small_pieces, pieces):
     assert_equal(study, qtab.sweep(CAR, GRID, **many))
 
 
+def test_ctrl_c_keeps_the_finished_runs_and_lets_go_of_the_others(tmp_path, small_pieces):
+    path = tmp_path / "study.db"
+
+    def interrupt(progress):
+        if progress.new > 10:
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        qtab.sweep(CAR, GRID, store=path, callback=interrupt, **SMALL)
+    partial = caught.value.run
+    assert 10 < len(partial) < 30
+    whole = qtab.sweep(CAR, GRID, store=path, **SMALL)
+    assert partial.columns["steps"].tolist() == whole.columns["steps"][: len(partial)].tolist()
+    assert_equal(whole, qtab.sweep(CAR, GRID, **SMALL))
+
+
 def test_two_processes_share_a_store(tmp_path, small_pieces):
     path = tmp_path / "study.db"
     both = [start(path, seeds=150) for _ in range(2)]

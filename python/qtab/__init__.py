@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from qtab.envs import register as _register
 
 if TYPE_CHECKING:
-    from qtab import designs, stats
+    from qtab import designs, plots, stats
     from qtab.config import Config
     from qtab.evaluation import Evaluation, evaluate
     from qtab.many import train_many
@@ -45,6 +45,7 @@ __all__ = [
     "evaluate",
     "load",
     "plot",
+    "plots",
     "presets",
     "stats",
     "sweep",
@@ -74,7 +75,7 @@ _HOME = {
     "verify": "verification",
 }
 
-_MODULES = ("designs", "stats")
+_MODULES = ("designs", "plots", "stats")
 
 
 def __getattr__(name: str) -> Any:

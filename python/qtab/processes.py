@@ -24,14 +24,10 @@ def train_in_processes(
     env: Any, overrides: Mapping[str, Any], seeds: tuple[int, ...], results: plan.Results, workers: int
 ) -> list[tuple[int, Exception]]:
     """Trains each seed in a worker process and fills in the results as they come; returns the first failure."""
-    # Never fork: a copy of a process with threads may hang. cloudpickle, as Gymnasium's own vector environments use it,
-    # takes functions of the main script along.
-    context = multiprocessing.get_context("spawn")
-    stop = context.Event()
+    # cloudpickle, as in Gymnasium's own vector environments, takes functions of the main script along.
     task = cloudpickle.dumps((_portable_env(env), dict(overrides)))
-    executor = ProcessPoolExecutor(min(workers, len(seeds)), context, _begin, (stop, task))
-    try:
-        keep = results["tables"].shape[1] > 0
+    keep = results["tables"].shape[1] > 0
+    with pool(min(workers, len(seeds)), task) as executor:
         pending = {executor.submit(_train, seed, keep): index for index, seed in enumerate(seeds)}
         while pending:
             done, _ = wait(pending, timeout=WAIT, return_when="FIRST_COMPLETED")
@@ -40,7 +36,22 @@ def train_in_processes(
                 error = _fill(index, future, results)
                 if error is not None:
                     return [(index, error)]
-        return []
+    return []
+
+
+@contextmanager
+def pool(workers: int, task: bytes | None = None) -> Iterator[ProcessPoolExecutor]:
+    """A process pool that does not outlive its parent, leaves Ctrl-C to it, and stops when it is left.
+
+    Raises:
+        RuntimeError: if a worker ended abruptly.
+    """
+    # Never fork: a copy of a process with threads may hang.
+    context = multiprocessing.get_context("spawn")
+    stop = context.Event()
+    executor = ProcessPoolExecutor(workers, context, _begin, (stop, task))
+    try:
+        yield executor
     except BrokenProcessPool as error:
         raise RuntimeError(
             "a worker process ended abruptly; where this is a script, it must keep its call behind "
@@ -51,14 +62,16 @@ def train_in_processes(
         executor.shutdown(cancel_futures=True)
 
 
-@contextmanager
-def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """A process pool that does not outlive its parent, and leaves Ctrl-C to it."""
-    executor = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _follow_parent)
-    try:
-        yield executor
-    finally:
-        executor.shutdown(cancel_futures=True)
+def train_to_the_end(trainer: _core.Trainer, episodes: int) -> None:
+    """Trains, unless the parent has left.
+
+    Raises:
+        InterruptedError: where it has.
+    """
+    for episode in range(episodes):
+        if _Worker.stop is not None and _Worker.stop.is_set():
+            raise InterruptedError("the other runs were stopped")
+        trainer.advance(episode + 1)
 
 
 def _portable_env(env: Any) -> Any:
@@ -88,21 +101,18 @@ def _fill(index: int, future: "Future[Any]", results: plan.Results) -> Exception
 class _Worker:
     """What a worker process was told when it began."""
 
-    stop: Any
+    stop: Any = None
     env: Any
     overrides: Mapping[str, Any]
 
 
-def _follow_parent() -> None:
+def _begin(stop: Any, task: bytes | None) -> None:
     # Ctrl-C reaches the whole group of processes; the parent decides.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_follow, args=(multiprocessing.parent_process(),), daemon=True).start()
-
-
-def _begin(stop: Any, task: bytes) -> None:
-    _follow_parent()
     _Worker.stop = stop
-    _Worker.env, _Worker.overrides = pickle.loads(task)  # noqa: S301 - from the parent process
+    if task is not None:
+        _Worker.env, _Worker.overrides = pickle.loads(task)  # noqa: S301 - from the parent process
 
 
 def _follow(parent: Any) -> None:
@@ -117,10 +127,7 @@ def _train(seed: int, tables: bool) -> Any:
         resolved = resolve(env, {**_Worker.overrides, "seed": seed})
         try:
             trainer = _core.Trainer(resolved.core_environment(), resolved.plan())
-            for episode in range(resolved.config.episodes):
-                if _Worker.stop.is_set():
-                    raise InterruptedError("the other runs were stopped")
-                trainer.advance(episode + 1)
+            train_to_the_end(trainer, resolved.config.episodes)
             return *trainer.episodes(), trainer.tables() if tables else None
         finally:
             if resolved.env is not None:
@@ -140,4 +147,4 @@ def portable(error: Exception) -> Exception:
     return RuntimeError(f"{type(error).__name__}: {error}")
 
 
-__all__ = ["pool", "train_in_processes"]
+__all__ = ["pool", "train_in_processes", "train_to_the_end"]

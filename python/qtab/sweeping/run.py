@@ -15,6 +15,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import checks
 from qtab.many import MakeEnv, thread_count
+from qtab.processes import pool
 from qtab.sweeping.results import Sweep
 from qtab.sweeping.store import COLUMNS, Store
 from qtab.sweeping.study import Piece, Study, plain, study
@@ -77,6 +78,7 @@ def sweep(
         StoreError: if the store is damaged, of another version, or of another sweep.
         TypeError: for an argument of the wrong type, or an unknown one.
         ValueError: for an argument out of range.
+        KeyboardInterrupt: on Ctrl-C; it carries the table of the finished runs as ``.run``.
     """
     block = checks.integer("block", block, least=1)
     workers = thread_count(threads)
@@ -87,15 +89,17 @@ def sweep(
     planned = study(env, grid, seeds, block, config)
     with closing(Store(store, planned)) as kept:
         report = _Report(planned, kept, callback)
-        if executor is not None:
-            _with_executor(planned, kept, executor, report)
-        elif all(resolved.model is not None for resolved in planned.resolved):
-            _here(planned, kept, workers, report)
-        else:
-            from qtab.processes import pool
-
-            with pool(workers) as own:
-                _with_executor(planned, kept, own, report, in_flight=2 * workers)
+        try:
+            if executor is not None:
+                _with_executor(planned, kept, executor, report)
+            elif all(resolved.model is not None for resolved in planned.resolved):
+                _here(planned, kept, workers, report)
+            else:
+                with pool(workers) as own:
+                    _with_executor(planned, kept, own, report, in_flight=2 * workers)
+        except KeyboardInterrupt as error:
+            error.run = _table(planned, kept)  # type: ignore[attr-defined]
+            raise
         return _table(planned, kept)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from qtab import _core
 from qtab.many import allocate, resolve_one, train_in_threads
+from qtab.processes import train_to_the_end
 from qtab.resolution import Resolved, resolve
 from qtab.summaries import block_means, summarize
 
@@ -56,7 +57,7 @@ def _in_python(env: Any, overrides: dict[str, Any], seed: int, block: int) -> Ro
         resolved = resolve(made, {**overrides, "seed": seed})
         try:
             trainer = _core.Trainer(resolved.core_environment(), resolved.plan())
-            trainer.advance(resolved.config.episodes)
+            train_to_the_end(trainer, resolved.config.episodes)
             returns, lengths, terminated = (column[np.newaxis] for column in trainer.episodes())
             return _rows([seed], block, returns, lengths, terminated)[0]
         finally:
