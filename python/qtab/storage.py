@@ -11,8 +11,10 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.files import replacing
+from qtab.options import tables
 from qtab.run import Run
 from qtab.spaces import Grid
+from qtab.tiling import Tiling
 
 FORMAT = "qtab run"
 FORMAT_VERSION = 1
@@ -28,7 +30,9 @@ _ARRAYS = {
 def save(run: Run, path: Path) -> None:
     """Writes a run; see :meth:`qtab.Run.save`."""
     arrays = {name: getattr(run, name) for name in _ARRAYS}
-    arrays |= {"low": run.grid.low, "high": run.grid.high, "scale": run.grid.scale}
+    arrays |= {"low": run.grid.low, "high": run.grid.high}
+    if isinstance(run.grid, Grid):
+        arrays["scale"] = run.grid.scale
     config = {field.name: getattr(run.config, field.name) for field in dataclasses.fields(Config)}
     if isinstance(run.config.initial_q, np.ndarray):
         arrays["initial_q"] = run.config.initial_q
@@ -79,7 +83,7 @@ def _load(path: Path) -> Run:
         if fields["initial_q"] is None:
             fields["initial_q"] = file["initial_q"]
         config = Config(**fields)
-        grid = Grid(file["low"], file["high"], file["scale"], int(header["actions"]), int(header["first_action"]))
+        grid = _features(config, file, int(header["actions"]), int(header["first_action"]))
     _check_shapes(config, grid, arrays)
     return Run(
         config=config,
@@ -98,13 +102,26 @@ def _array(file: Any, name: str, dtype: "np.dtype[Any]", ndim: int) -> Any:
     return array
 
 
-def _check_shapes(config: Config, grid: Grid, arrays: dict[str, Any]) -> None:
+def _features(config: Config, file: Any, actions: int, first_action: int) -> Grid | Tiling:
+    low, high = file["low"], file["high"]
+    if config.discretizer == "tiles":
+        edges = np.array(config.low), np.array(config.high)
+        if config.tiles is None or config.tilings is None:
+            raise ValueError("its config is not complete")
+        if {bound.shape for bound in (low, high, *edges)} != {(len(config.tiles),)}:
+            raise ValueError("its bounds do not fit its tiles")
+        return Tiling(low, high, edges, config.tiles, config.tilings, actions, first_action)
+    grid = Grid(low, high, file["scale"], actions, first_action)
     bounds = (grid.low, grid.high, grid.scale)
     if any(bound.shape != (len(config.scale),) or bound.dtype.kind != "f" for bound in bounds):
         raise ValueError("its bounds do not fit its scale")
-    tables = arrays["tables"]
-    if (tables.shape[1] * tables.shape[2], tables.shape[2]) != (int(np.prod(grid.shape)), grid.actions):
-        raise ValueError(f"its tables have shape {tables.shape}, which does not fit the grid {grid.shape}")
+    return grid
+
+
+def _check_shapes(config: Config, grid: Grid | Tiling, arrays: dict[str, Any]) -> None:
+    shape = arrays["tables"].shape
+    if shape != (tables(config.algorithm), grid.rows, grid.actions):
+        raise ValueError(f"its tables have shape {shape}, which does not fit the grid {grid.shape}")
     lengths = {len(arrays[name]) for name in ("episode_returns", "episode_lengths", "terminated")}
     if len(lengths) != 1 or lengths.pop() > config.episodes:
         raise ValueError("its episodes do not fit together")

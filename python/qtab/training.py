@@ -105,7 +105,7 @@ def _run(resolved: Resolved, trainer: _core.Trainer, began: float) -> Run:
     )
     return Run(
         config=resolved.config,
-        tables=trainer.tables().reshape(1, -1, resolved.grid.actions),
+        tables=trainer.tables().reshape(-1, resolved.grid.rows, resolved.grid.actions),
         episode_returns=returns,
         episode_lengths=lengths,
         terminated=terminated,

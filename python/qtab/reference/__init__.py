@@ -1,6 +1,21 @@
 """The learners in plain NumPy, on Gymnasium's own environments: slow, readable, and what the fast ones must equal."""
 
-from qtab.reference.q_learning import q_learning
-from qtab.reference.streams import agent_stream
+from collections.abc import Callable, Mapping
 
-__all__ = ["agent_stream", "q_learning"]
+from qtab.reference.expected_sarsa import expected_sarsa
+from qtab.reference.q_learning import q_learning
+from qtab.reference.sarsa import sarsa
+from qtab.reference.streams import agent_stream
+from qtab.reference.task import Result
+
+LEARNERS: Mapping[str, Callable[..., Result]] = {
+    learner.__name__: learner
+    for learner in (
+        q_learning,
+        sarsa,
+        expected_sarsa,
+    )
+}
+"""Each algorithm by its name."""
+
+__all__ = ["LEARNERS", "agent_stream", "expected_sarsa", "q_learning", "sarsa"]

@@ -2,14 +2,15 @@
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use qtab_core::features::Features;
+use qtab_core::features::{Features, Real, Rounding};
+use qtab_core::learners::{Agent, ExpectedSarsa, QLearning, Sarsa, TimeOuts};
 use qtab_core::random::Stream;
 use qtab_core::worlds::{Boxed, Native, Recorded, Recordings, Start};
-use qtab_core::{Trainer, World};
+use qtab_core::{Learner, Trainer, World};
 
 use crate::failure::Failure;
 use crate::model::Model;
-use crate::plan::Plan;
+use crate::plan::{Discretizer, Plan, unknown};
 use crate::python_world::{PythonEnvironment, PythonWorld};
 use crate::run::Run;
 
@@ -31,53 +32,119 @@ pub(crate) struct Built {
 /// A run of a model in Rust, its constants as they are.
 pub(crate) fn native(model: Model, plan: &Plan<'_>) -> PyResult<Built> {
     let Model::MountainCar(env) = model;
-    let grid = plan.plane()?;
-    let rows = Features::<[f32; 2]>::len(&grid);
-    let world = Native::new(env, grid, plan.max_episode_steps, plan.environment_stream());
     let mut draw = plan.stream()?;
-    if let (Stream::Pcg64(draw), 0) = (&mut draw, plan.record) {
-        let learner = plan.q_learning::<3>(rows, draw)?;
-        let run = Box::new(Trainer::new(world, learner, draw.clone()));
-        return Ok(Built { run, kept: Kept::Nothing, attached: false });
+    let (limit, stream) = (plan.max_episode_steps, plan.environment_stream());
+    match &plan.features {
+        Discretizer::Rounding { scale } => {
+            let grid = plan.plane(scale)?;
+            let rows = Features::<[f32; 2]>::len(&grid);
+            let world = Native::new(env, grid, limit, stream);
+            if let (Stream::Pcg64(draw), 0) = (&mut draw, plan.record)
+                && let Some(learner) = plan.article::<3>(rows, draw)?
+            {
+                let run = Box::new(Trainer::new(world, learner, draw.clone()));
+                return Ok(Built { run, kept: Kept::Nothing, attached: false });
+            }
+            boxed(world, rows, 1, draw, plan, Kept::Native, false)
+        }
+        Discretizer::Tiles { low, high, tiles, tilings } => {
+            let tiles = plan.tiles::<f32>(low, high, tiles, *tilings)?;
+            let rows = Features::<[f32; 2]>::len(&tiles);
+            boxed(Native::new(env, tiles, limit, stream), rows, *tilings as usize, draw, plan, Kept::Native, false)
+        }
     }
-    boxed(world, rows, draw, plan, Kept::Native, false)
 }
 
 /// A run that steps a Python environment.
 pub(crate) fn python(environment: PythonEnvironment, plan: &Plan<'_>) -> PyResult<Built> {
-    let draw = plan.stream()?;
     if plan.single {
-        let world = PythonWorld::new(environment, plan.axes(|bound| bound as f32), plan.max_episode_steps);
-        let rows = world.len();
-        boxed(world, rows, draw, plan, Kept::Python, true)
+        python_of(environment, plan, |bound| bound as f32)
     } else {
-        let world = PythonWorld::new(environment, plan.axes(|bound| bound), plan.max_episode_steps);
-        let rows = world.len();
-        boxed(world, rows, draw, plan, Kept::Python, true)
+        python_of(environment, plan, |bound| bound)
+    }
+}
+
+fn python_of<T>(environment: PythonEnvironment, plan: &Plan<'_>, dtype: impl Fn(f64) -> T) -> PyResult<Built>
+where
+    T: Real + numpy::Element + 'static,
+{
+    let draw = plan.stream()?;
+    match &plan.features {
+        Discretizer::Rounding { scale } => {
+            let grid = Rounding::new(plan.axes(scale, dtype));
+            let rows = Features::<[T]>::len(&grid);
+            boxed(PythonWorld::new(environment, grid, plan), rows, 1, draw, plan, Kept::Python, true)
+        }
+        Discretizer::Tiles { low, high, tiles, tilings } => {
+            let tiles = plan.tiles::<T>(low, high, tiles, *tilings)?;
+            let rows = Features::<[T]>::len(&tiles);
+            let world = PythonWorld::new(environment, tiles, plan);
+            boxed(world, rows, *tilings as usize, draw, plan, Kept::Python, true)
+        }
     }
 }
 
 fn boxed<W>(
     world: W,
     rows: usize,
-    mut draw: Stream,
+    lit: usize,
+    draw: Stream,
     plan: &Plan<'_>,
     kept: impl FnOnce(Recordings<W::Start>) -> Kept,
     attached: bool,
 ) -> PyResult<Built>
 where
-    W: Start + World<Rows = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
+    W: Start + World<Rows: Send, State: Send, Error: Into<Failure>> + Send + 'static,
     W::Start: Send,
     Failure: From<W::Error>,
 {
-    let learner = plan.q_learning::<0>(rows, &mut draw)?;
     let (world, kept) = if plan.record == 0 {
-        (Boxed::<_, Failure>::new(world), Kept::Nothing)
+        (Boxed::<W::Rows, Failure>::new(world), Kept::Nothing)
     } else {
         let (world, recordings) = Recorded::new(world, plan.record);
         (Boxed::new(world), kept(recordings))
     };
-    Ok(Built { run: Box::new(Trainer::new(world, learner, draw)), kept, attached })
+    Ok(Built { run: learning(world, rows, lit, draw, plan)?, kept, attached })
+}
+
+/// Any learner in a boxed world, with a stream chosen at run time: compiled once for each kind of rows.
+fn learning<R>(
+    world: Boxed<R, Failure>,
+    rows: usize,
+    lit: usize,
+    mut draw: Stream,
+    plan: &Plan<'_>,
+) -> PyResult<Box<dyn Run>>
+where
+    R: Copy + AsRef<[u32]> + Send + 'static,
+{
+    let algorithm = &plan.algorithm;
+    let mut agent = |tables| plan.agent(tables, rows, lit, &mut draw);
+    Ok(match algorithm.name.as_str() {
+        "q_learning" => {
+            let Agent { table, policy, learning_rate, discount, terminal_update } = agent(1)?;
+            let learner = QLearning { table, policy, learning_rate, discount, terminal_update };
+            start(world, learner, draw, plan)
+        }
+        "sarsa" => {
+            let learner = Sarsa { agent: agent(1)? };
+            start(world, learner, draw, plan)
+        }
+        "expected_sarsa" => {
+            let learner = ExpectedSarsa { agent: agent(1)? };
+            start(world, learner, draw, plan)
+        }
+        other => return Err(unknown("algorithm", other)),
+    })
+}
+
+fn start<R, L>(world: Boxed<R, Failure>, learner: L, draw: Stream, plan: &Plan<'_>) -> Box<dyn Run>
+where
+    R: Copy + AsRef<[u32]> + Send + 'static,
+    L: Learner<R> + Send + 'static,
+{
+    let learner = TimeOuts { learner, terminate: plan.on_truncation == "terminate" };
+    Box::new(Trainer::new(world, learner, draw))
 }
 
 /// What a plan is run on: the name of a model with its constants, or an environment.

@@ -1,6 +1,8 @@
 //! Tile coding with asymmetric offsets (Sutton & Barto, section 9.5.4), densely indexed.
 
-use super::{Features, Outside};
+use std::marker::PhantomData;
+
+use super::{Features, Outside, Real};
 
 /// The most tilings there can be.
 pub const MOST_TILINGS: usize = 32;
@@ -26,18 +28,21 @@ struct Axis {
     tiles_a_unit: f64,
     /// One more than the tiles asked for: the offsets push a tiling's first tile over the lower edge.
     tiles: u32,
+    /// How many parts of a tile each tiling is shifted by.
+    offsets: [u32; MOST_TILINGS],
 }
 
 /// So many tilings of the box, each shifted by its own part of a tile: by 1, 3, 5 … parts along the first, second,
-/// third … component.
+/// third … component. Observations of dtype `T` become f64 first.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tiles {
+pub struct Tiles<T = f64> {
     axes: Vec<Axis>,
     tilings: u32,
     rows_a_tiling: u32,
+    dtype: PhantomData<T>,
 }
 
-impl Tiles {
+impl<T: Real> Tiles<T> {
     /// Tilings over the box from `low` to `high`, with so many `tiles` along each component. Observations are clipped
     /// to the box.
     ///
@@ -49,19 +54,21 @@ impl Tiles {
             .iter()
             .zip(high)
             .zip(tiles)
-            .map(|((&low, &high), &tiles)| Axis {
+            .enumerate()
+            .map(|(index, ((&low, &high), &tiles))| Axis {
                 low,
                 high,
                 tiles_a_unit: f64::from(tiles) / (high - low),
                 tiles: tiles + 1,
+                offsets: std::array::from_fn(|tiling| tiling as u32 * (2 * index as u32 + 1) % tilings),
             })
             .collect();
         let rows_a_tiling = axes.iter().map(|axis| axis.tiles).product();
-        Self { axes, tilings, rows_a_tiling }
+        Self { axes, tilings, rows_a_tiling, dtype: PhantomData }
     }
 }
 
-impl<O: AsRef<[f64]> + ?Sized> Features<O> for Tiles {
+impl<T: Real, O: AsRef<[T]> + ?Sized> Features<O> for Tiles<T> {
     type Rows = Lit;
 
     #[inline]
@@ -69,14 +76,16 @@ impl<O: AsRef<[f64]> + ?Sized> Features<O> for Tiles {
         let tilings = self.tilings;
         let mut rows: [u32; MOST_TILINGS] = std::array::from_fn(|tiling| tiling as u32);
         for (index, (axis, &value)) in self.axes.iter().zip(observation.as_ref()).enumerate() {
+            let value = value.into();
             if value.is_nan() {
                 return Err(Outside { axis: index, value });
             }
             let value = value.clamp(axis.low, axis.high);
-            let part = ((value - axis.low) * axis.tiles_a_unit * f64::from(tilings)).floor() as u32;
-            for (tiling, row) in (0..tilings).zip(&mut rows) {
-                let offset = (tiling * (2 * index as u32 + 1)) % tilings;
-                *row = *row * axis.tiles + (part + offset) / tilings;
+            let parts = ((value - axis.low) * axis.tiles_a_unit * f64::from(tilings)).floor() as u32;
+            // (parts + offset) / tilings, of which only the remainder differs from tiling to tiling.
+            let (tile, rest) = (parts / tilings, parts % tilings);
+            for (row, offset) in rows[..tilings as usize].iter_mut().zip(axis.offsets) {
+                *row = *row * axis.tiles + tile + u32::from(rest + offset >= tilings);
             }
         }
         Ok(Lit { rows, tilings: tilings as usize })
@@ -93,7 +102,7 @@ mod tests {
 
     #[test]
     fn each_tiling_lights_one_row_of_its_own() {
-        let tiles = Tiles::new(&[0.0, 0.0], &[1.0, 1.0], &[4, 4], 8);
+        let tiles = Tiles::<f64>::new(&[0.0, 0.0], &[1.0, 1.0], &[4, 4], 8);
         for observation in [[0.0, 0.0], [1.0, 1.0], [0.3, 0.9]] {
             let Ok(lit) = tiles.rows(&observation) else { unreachable!("it lies in the box") };
             let owners: Vec<u32> = lit.as_ref().iter().map(|row| row / 25).collect();
@@ -104,7 +113,7 @@ mod tests {
 
     #[test]
     fn neighbours_share_tiles_and_strangers_share_none() {
-        let tiles = Tiles::new(&[0.0, 0.0], &[1.0, 1.0], &[8, 8], 8);
+        let tiles = Tiles::<f64>::new(&[0.0, 0.0], &[1.0, 1.0], &[8, 8], 8);
         let shared = |left: [f64; 2], right: [f64; 2]| match (tiles.rows(&left), tiles.rows(&right)) {
             (Ok(left), Ok(right)) => left.as_ref().iter().zip(right.as_ref()).filter(|(l, r)| l == r).count(),
             _ => unreachable!("both lie in the box"),
@@ -116,7 +125,7 @@ mod tests {
 
     #[test]
     fn what_lies_outside_is_clipped_to_the_box() {
-        let tiles = Tiles::new(&[0.0], &[1.0], &[4], 4);
+        let tiles = Tiles::<f64>::new(&[0.0], &[1.0], &[4], 4);
         assert_eq!(tiles.rows(&[-5.0]), tiles.rows(&[0.0]));
         assert_eq!(tiles.rows(&[f64::INFINITY]), tiles.rows(&[1.0]));
     }

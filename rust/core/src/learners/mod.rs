@@ -1,7 +1,24 @@
-//! The learners, one a file.
+//! The learners, one a file; then what they share.
 
-mod epsilon_greedy;
+mod expected_sarsa;
 mod q_learning;
+mod sarsa;
 
+mod agent;
+mod epsilon_greedy;
+#[cfg(test)]
+mod example;
+mod policy;
+mod schedule;
+mod step_size;
+mod time_outs;
+
+pub use agent::Agent;
 pub use epsilon_greedy::EpsilonGreedy;
+pub use expected_sarsa::ExpectedSarsa;
+pub use policy::{Behaviour, Policy, Softmax, Ties};
 pub use q_learning::{QLearning, TerminalUpdate};
+pub use sarsa::Sarsa;
+pub use schedule::{Decay, Schedule};
+pub use step_size::{Rate, StepSize};
+pub use time_outs::TimeOuts;
