@@ -9,6 +9,8 @@ Algorithm: TypeAlias = Literal[
     "q_learning",
     "sarsa",
     "expected_sarsa",
+    "double_q_learning",
+    "n_step_sarsa",
 ]
 LearningRateSchedule: TypeAlias = Literal["constant", "linear", "exponential", "visits"]
 Exploration: TypeAlias = Literal["epsilon_greedy", "softmax"]

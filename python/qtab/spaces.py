@@ -1,6 +1,7 @@
 """What a learner needs to know of an environment's spaces."""
 
 from dataclasses import dataclass
+from typing import cast
 
 import gymnasium as gym
 import numpy as np
@@ -64,8 +65,11 @@ class Grid:
         return tuple(int(index) for index in rounded)
 
 
-def box(env: gym.Env) -> tuple[spaces.Box, spaces.Discrete]:
-    """Returns the spaces of an environment that tables can be learned for.
+Bounds = tuple[NDArray[np.floating], NDArray[np.floating]]
+
+
+def box(env: gym.Env) -> tuple[Bounds, spaces.Discrete]:
+    """Returns the bounds of the observations and the actions of an environment that tables can be learned for.
 
     Raises:
         ValueError: if a space does not fit; it says which, and what fits.
@@ -75,7 +79,7 @@ def box(env: gym.Env) -> tuple[spaces.Box, spaces.Discrete]:
         raise ValueError(f"the action space must be Discrete, got {actions}")
     if not isinstance(observations, spaces.Box) or len(observations.shape) != 1 or observations.dtype not in _FLOATS:
         raise ValueError(f"the observation space must be a Box of one float axis, got {observations}")
-    return observations, actions
+    return cast(Bounds, (observations.low, observations.high)), actions
 
 
 def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
@@ -84,10 +88,9 @@ def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
     Raises:
         ValueError: if a space does not fit, or the table would be too large; it says which, and what fits.
     """
-    observations, actions = box(env)
-    low, high = observations.low, observations.high
+    (low, high), actions = box(env)
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        raise ValueError(f"the observation space must have finite bounds, got {observations}")
+        raise ValueError(f"the observation space must have finite bounds, got {env.observation_space}")
     if len(scale) != len(low):
         raise ValueError(
             f"scale must hold {len(low)} numbers for this observation space, the cells per unit of each component, "

@@ -75,15 +75,17 @@ def tiling(env: gym.Env, config: Config) -> Tiling:
     Raises:
         ValueError: if a space or an option does not fit, or the table would be too large; it says which.
     """
-    observations, actions = box(env)
-    dimensions = observations.shape[0]
+    bounds, actions = box(env)
+    dimensions = len(bounds[0])
     edges = []
-    for name, given, bound in (("low", config.low, observations.low), ("high", config.high, observations.high)):
+    for name, given, bound in (("low", config.low, bounds[0]), ("high", config.high, bounds[1])):
         edge = bound.astype(np.float64) if given is None else np.array(given)
         if edge.shape != bound.shape:
             raise ValueError(f"{name} must hold {dimensions} numbers for this observation space, got {given!r}")
         if not np.isfinite(edge).all():
-            raise ValueError(f"{name} must be given where the observation space has no finite bounds: {observations}")
+            raise ValueError(
+                f"{name} must be given where the observation space has no finite bounds: {env.observation_space}"
+            )
         edges.append(edge)
     low, high = edges
     if not (low < high).all():
@@ -96,6 +98,4 @@ def tiling(env: gym.Env, config: Config) -> Tiling:
     size = config.tilings * float(np.prod([count + 1.0 for count in tiles])) * int(actions.n)
     if not size < LARGEST_TABLE:
         raise ValueError(f"tiles must give a table of fewer than 2**32 values, got {tiles!r}, which needs {size:.3g}")
-    return Tiling(
-        observations.low, observations.high, (low, high), tiles, config.tilings, int(actions.n), int(actions.start)
-    )
+    return Tiling(*bounds, (low, high), tiles, config.tilings, int(actions.n), int(actions.start))

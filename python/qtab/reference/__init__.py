@@ -2,7 +2,9 @@
 
 from collections.abc import Callable, Mapping
 
+from qtab.reference.double_q_learning import double_q_learning
 from qtab.reference.expected_sarsa import expected_sarsa
+from qtab.reference.n_step_sarsa import n_step_sarsa
 from qtab.reference.q_learning import q_learning
 from qtab.reference.sarsa import sarsa
 from qtab.reference.streams import agent_stream
@@ -14,8 +16,18 @@ LEARNERS: Mapping[str, Callable[..., Result]] = {
         q_learning,
         sarsa,
         expected_sarsa,
+        double_q_learning,
+        n_step_sarsa,
     )
 }
 """Each algorithm by its name."""
 
-__all__ = ["LEARNERS", "agent_stream", "expected_sarsa", "q_learning", "sarsa"]
+__all__ = [
+    "LEARNERS",
+    "agent_stream",
+    "double_q_learning",
+    "expected_sarsa",
+    "n_step_sarsa",
+    "q_learning",
+    "sarsa",
+]

@@ -46,7 +46,7 @@ class TileCoding:
         self.low, self.high = np.array(config.low), np.array(config.high)
         self.tiles, self.lit = np.array(config.tiles), config.tilings
         self.tiling_shape = tuple(count + 1 for count in config.tiles)
-        self.shape = (self.lit * int(np.prod(self.tiling_shape)),)
+        self.shape: tuple[int, ...] = (self.lit * int(np.prod(self.tiling_shape)),)
 
     def rows(self, observation: NDArray[np.floating]) -> list[int]:
         """Returns one row of each tiling."""

@@ -8,7 +8,7 @@ from qtab.config import Config
 class Schedule:
     """A rate that falls from episode to episode, once its warm-up is over."""
 
-    def __init__(self, kind: str, value: float, least: float, decay: float, warm_up: int, episodes: int) -> None:
+    def __init__(self, kind: str, value: float, least: float, decay: float | None, warm_up: int, episodes: int) -> None:
         self.value = value
         self.kind, self.least, self.decay, self.warm_up = kind, least, decay, warm_up
         self.reduction = (value - least) / (episodes - warm_up)
@@ -20,7 +20,7 @@ class Schedule:
         elif self.value > self.least:
             if self.kind == "linear":
                 self.value -= self.reduction
-            elif self.kind == "exponential":
+            elif self.decay is not None:
                 self.value = max(self.value * self.decay, self.least)
 
 
@@ -32,7 +32,7 @@ def epsilon_schedule(config: Config) -> Schedule:
         config.epsilon_schedule,
         config.epsilon,
         config.min_epsilon or 0.0,
-        config.epsilon_decay or 1.0,
+        config.epsilon_decay,
         config.epsilon_warm_up or 0,
         config.episodes,
     )
@@ -46,7 +46,7 @@ class LearningRate:
             config.learning_rate_schedule,
             config.learning_rate,
             config.min_learning_rate or 0.0,
-            config.learning_rate_decay or 1.0,
+            config.learning_rate_decay,
             config.learning_rate_warm_up or 0,
             config.episodes,
         )

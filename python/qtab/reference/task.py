@@ -62,7 +62,8 @@ class Task:
             return np.full(shape, self.config.initial_q)
         if isinstance(self.config.initial_q, tuple):
             return self.rng.uniform(*self.config.initial_q, size=shape)
-        return self.config.initial_q.reshape(tables, *shape)[index].copy()
+        given: Table = self.config.initial_q.reshape(tables, *shape)[index].copy()
+        return given
 
     def episodes(self) -> Iterator[int]:
         """Yields the episodes' numbers; between them the rates fall."""
@@ -90,24 +91,26 @@ class Task:
         """Returns an action by the policy."""
         return self.policy.choose(values(Q, state))
 
-    def update(self, Q: Table, state: Rows, action: int, target: float) -> None:
+    def update(self, Q: Table, state: Rows, action: int, target: float, rate: LearningRate | None = None) -> None:
         """Q(S, A) <- Q(S, A) + α [target - Q(S, A)]; the rows that S lights share it."""
-        self.learning_rate.visit(state, action)
+        rate = rate or self.learning_rate
+        rate.visit(state, action)
         error = target - value(Q, state, action)
         for row in state:
-            Q[row, action] += self.learning_rate.step(row, action) * error
+            Q[row, action] += rate.step(row, action) * error
 
-    def end(self, Q: Table, state: Rows, action: int, reward: float) -> None:
+    def end(self, Q: Table, state: Rows, action: int, reward: float, rate: LearningRate | None = None) -> None:
         """Updates before a terminal state: the target is the reward alone. The article assigns it."""
         if self.config.terminal_update == "assign":
             Q[state[0], action] = reward
         else:
-            self.update(Q, state, action, reward)
+            self.update(Q, state, action, reward, rate)
 
-    def result(self, Q: Table) -> Result:
-        """Returns the table in the shape of the grid, the returns and the lengths."""
+    def result(self, *tables: Table) -> Result:
+        """Returns the table in the shape of the grid (two, one after the other), the returns and the lengths."""
         shape = (*self.discretizer.shape, self.n_actions)
-        return Q.reshape(shape), np.array(self.returns), np.array(self.lengths)
+        Q = tables[0].reshape(shape) if len(tables) == 1 else np.stack(tables).reshape(-1, *shape)
+        return Q, np.array(self.returns), np.array(self.lengths)
 
 
 def values(Q: Table, state: Rows) -> NDArray[np.float64]:

@@ -3,14 +3,14 @@
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use qtab_core::features::{Features, Real, Rounding};
-use qtab_core::learners::{Agent, ExpectedSarsa, QLearning, Sarsa, TimeOuts};
+use qtab_core::learners::{Agent, DoubleQLearning, ExpectedSarsa, NStepSarsa, QLearning, Sarsa, TimeOuts};
 use qtab_core::random::Stream;
 use qtab_core::worlds::{Boxed, Native, Recorded, Recordings, Start};
 use qtab_core::{Learner, Trainer, World};
 
 use crate::failure::Failure;
 use crate::model::Model;
-use crate::plan::{Discretizer, Plan, unknown};
+use crate::plan::{Discretizer, Plan, given, unknown};
 use crate::python_world::{PythonEnvironment, PythonWorld};
 use crate::run::Run;
 
@@ -132,6 +132,15 @@ where
         }
         "expected_sarsa" => {
             let learner = ExpectedSarsa { agent: agent(1)? };
+            start(world, learner, draw, plan)
+        }
+        "double_q_learning" => {
+            let agent = agent(2)?;
+            let second = plan.table((1, 2), rows, &mut draw)?;
+            start(world, DoubleQLearning::new(agent, second), draw, plan)
+        }
+        "n_step_sarsa" => {
+            let learner = NStepSarsa::new(agent(1)?, given("n_steps", algorithm.n_steps)?);
             start(world, learner, draw, plan)
         }
         other => return Err(unknown("algorithm", other)),

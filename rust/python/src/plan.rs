@@ -70,11 +70,17 @@ pub(crate) enum Choice {
     Softmax { temperature: f64 },
 }
 
-/// A learner by its name.
+/// A learner by its name, with the options that belong to it; the others are None.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Algorithm {
     pub(crate) name: String,
+    pub(crate) n_steps: Option<usize>,
+}
+
+/// An option that belongs to the algorithm.
+pub(crate) fn given<T>(name: &str, option: Option<T>) -> PyResult<T> {
+    option.ok_or_else(|| PyValueError::new_err(format!("{name} must be given")))
 }
 
 impl Course {

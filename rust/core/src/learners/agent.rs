@@ -32,6 +32,14 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         self.table.value(rows.as_ref(), action)
     }
 
+    /// Counts a visit of a pair.
+    #[inline]
+    pub fn visit(&mut self, rows: impl AsRef<[u32]>, action: usize) {
+        for &row in rows.as_ref() {
+            self.learning_rate.visit(self.table.weight(row, action));
+        }
+    }
+
     /// Q(S, A) ← Q(S, A) + α (target - Q(S, A)).
     #[inline]
     pub fn move_towards(&mut self, rows: impl AsRef<[u32]>, action: usize, target: f64) {

@@ -1,6 +1,8 @@
 //! The learners, one a file; then what they share.
 
+mod double_q_learning;
 mod expected_sarsa;
+mod n_step_sarsa;
 mod q_learning;
 mod sarsa;
 
@@ -14,8 +16,10 @@ mod step_size;
 mod time_outs;
 
 pub use agent::Agent;
+pub use double_q_learning::DoubleQLearning;
 pub use epsilon_greedy::EpsilonGreedy;
 pub use expected_sarsa::ExpectedSarsa;
+pub use n_step_sarsa::NStepSarsa;
 pub use policy::{Behaviour, Policy, Softmax, Ties};
 pub use q_learning::{QLearning, TerminalUpdate};
 pub use sarsa::Sarsa;
