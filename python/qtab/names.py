@@ -11,6 +11,9 @@ Algorithm: TypeAlias = Literal[
     "expected_sarsa",
     "double_q_learning",
     "n_step_sarsa",
+    "sarsa_lambda",
+    "true_online_sarsa_lambda",
+    "watkins_q_lambda",
 ]
 LearningRateSchedule: TypeAlias = Literal["constant", "linear", "exponential", "visits"]
 Exploration: TypeAlias = Literal["epsilon_greedy", "softmax"]

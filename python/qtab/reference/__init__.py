@@ -7,8 +7,11 @@ from qtab.reference.expected_sarsa import expected_sarsa
 from qtab.reference.n_step_sarsa import n_step_sarsa
 from qtab.reference.q_learning import q_learning
 from qtab.reference.sarsa import sarsa
+from qtab.reference.sarsa_lambda import sarsa_lambda
 from qtab.reference.streams import agent_stream
 from qtab.reference.task import Result
+from qtab.reference.true_online_sarsa_lambda import true_online_sarsa_lambda
+from qtab.reference.watkins_q_lambda import watkins_q_lambda
 
 LEARNERS: Mapping[str, Callable[..., Result]] = {
     learner.__name__: learner
@@ -18,6 +21,9 @@ LEARNERS: Mapping[str, Callable[..., Result]] = {
         expected_sarsa,
         double_q_learning,
         n_step_sarsa,
+        sarsa_lambda,
+        true_online_sarsa_lambda,
+        watkins_q_lambda,
     )
 }
 """Each algorithm by its name."""
@@ -30,4 +36,7 @@ __all__ = [
     "n_step_sarsa",
     "q_learning",
     "sarsa",
+    "sarsa_lambda",
+    "true_online_sarsa_lambda",
+    "watkins_q_lambda",
 ]

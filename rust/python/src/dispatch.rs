@@ -3,7 +3,10 @@
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use qtab_core::features::{Features, Real, Rounding};
-use qtab_core::learners::{Agent, DoubleQLearning, ExpectedSarsa, NStepSarsa, QLearning, Sarsa, TimeOuts};
+use qtab_core::learners::{
+    Agent, DoubleQLearning, ExpectedSarsa, NStepSarsa, QLearning, Sarsa, SarsaLambda, TimeOuts, TrueOnlineSarsaLambda,
+    WatkinsQLambda,
+};
 use qtab_core::random::Stream;
 use qtab_core::worlds::{Boxed, Native, Recorded, Recordings, Start};
 use qtab_core::{Learner, Trainer, World};
@@ -142,6 +145,24 @@ where
         "n_step_sarsa" => {
             let learner = NStepSarsa::new(agent(1)?, given("n_steps", algorithm.n_steps)?);
             start(world, learner, draw, plan)
+        }
+        "sarsa_lambda" => {
+            let agent = agent(1)?;
+            let (traces, kind) = (algorithm.no_traces(&agent)?, algorithm.trace()?);
+            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
+            start(world, SarsaLambda { agent, traces, kind, trace_decay }, draw, plan)
+        }
+        "true_online_sarsa_lambda" => {
+            let agent = agent(1)?;
+            let traces = algorithm.no_traces(&agent)?;
+            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
+            start(world, TrueOnlineSarsaLambda::new(agent, traces, trace_decay), draw, plan)
+        }
+        "watkins_q_lambda" => {
+            let agent = agent(1)?;
+            let (traces, kind) = (algorithm.no_traces(&agent)?, algorithm.trace()?);
+            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
+            start(world, WatkinsQLambda { agent, traces, kind, trace_decay }, draw, plan)
         }
         other => return Err(unknown("algorithm", other)),
     })

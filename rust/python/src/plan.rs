@@ -5,7 +5,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::Table;
 use qtab_core::features::{Axis, Real, Rounding, Tiles};
-use qtab_core::learners::{Agent, Behaviour, EpsilonGreedy, QLearning, Rate, Schedule, TerminalUpdate, Ties};
+use qtab_core::learners::{
+    Agent, Behaviour, EpsilonGreedy, QLearning, Rate, Schedule, TerminalUpdate, Ties, Trace, Traces,
+};
 use qtab_core::random::{Draw, Pcg64, Stream};
 
 use crate::stream::{agent_stream, environment_stream};
@@ -75,7 +77,26 @@ pub(crate) enum Choice {
 #[pyo3(from_item_all)]
 pub(crate) struct Algorithm {
     pub(crate) name: String,
+    pub(crate) trace_decay: Option<f64>,
+    pub(crate) traces: Option<String>,
+    pub(crate) trace_cutoff: Option<f64>,
     pub(crate) n_steps: Option<usize>,
+}
+
+impl Algorithm {
+    /// No trace alive yet, of the agent's weights.
+    pub(crate) fn no_traces(&self, agent: &Agent) -> PyResult<Traces> {
+        Ok(Traces::new(agent.table.values().len(), given("trace_cutoff", self.trace_cutoff)?))
+    }
+
+    pub(crate) fn trace(&self) -> PyResult<Trace> {
+        match self.traces.as_deref() {
+            Some("accumulating") => Ok(Trace::Accumulating),
+            Some("replacing") => Ok(Trace::Replacing),
+            Some("clearing") => Ok(Trace::Clearing),
+            other => Err(unknown("traces", other.unwrap_or_default())),
+        }
+    }
 }
 
 /// An option that belongs to the algorithm.
