@@ -14,6 +14,8 @@ Algorithm: TypeAlias = Literal[
     "sarsa_lambda",
     "true_online_sarsa_lambda",
     "watkins_q_lambda",
+    "dyna_q",
+    "dyna_q_plus",
 ]
 LearningRateSchedule: TypeAlias = Literal["constant", "linear", "exponential", "visits"]
 Exploration: TypeAlias = Literal["epsilon_greedy", "softmax"]

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping
 
 from qtab.reference.double_q_learning import double_q_learning
+from qtab.reference.dyna_q import dyna_q
+from qtab.reference.dyna_q_plus import dyna_q_plus
 from qtab.reference.expected_sarsa import expected_sarsa
 from qtab.reference.n_step_sarsa import n_step_sarsa
 from qtab.reference.q_learning import q_learning
@@ -24,6 +26,8 @@ LEARNERS: Mapping[str, Callable[..., Result]] = {
         sarsa_lambda,
         true_online_sarsa_lambda,
         watkins_q_lambda,
+        dyna_q,
+        dyna_q_plus,
     )
 }
 """Each algorithm by its name."""
@@ -32,6 +36,8 @@ __all__ = [
     "LEARNERS",
     "agent_stream",
     "double_q_learning",
+    "dyna_q",
+    "dyna_q_plus",
     "expected_sarsa",
     "n_step_sarsa",
     "q_learning",

@@ -4,8 +4,8 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use qtab_core::features::{Features, Real, Rounding};
 use qtab_core::learners::{
-    Agent, DoubleQLearning, ExpectedSarsa, NStepSarsa, QLearning, Sarsa, SarsaLambda, TimeOuts, TrueOnlineSarsaLambda,
-    WatkinsQLambda,
+    self, Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, NStepSarsa, QLearning, Sarsa, SarsaLambda, TimeOuts,
+    TrueOnlineSarsaLambda, WatkinsQLambda,
 };
 use qtab_core::random::Stream;
 use qtab_core::worlds::{Boxed, Native, Recorded, Recordings, Start};
@@ -163,6 +163,18 @@ where
             let (traces, kind) = (algorithm.no_traces(&agent)?, algorithm.trace()?);
             let trace_decay = given("trace_decay", algorithm.trace_decay)?;
             start(world, WatkinsQLambda { agent, traces, kind, trace_decay }, draw, plan)
+        }
+        // A model of pairs needs a table.
+        "dyna_q" if lit == 1 => {
+            let (agent, model) = (agent(1)?, learners::Model::new(rows, plan.actions));
+            let planning_steps = given("planning_steps", algorithm.planning_steps)?;
+            start(world, DynaQ { agent, model, planning_steps }, draw, plan)
+        }
+        "dyna_q_plus" if lit == 1 => {
+            let (agent, model) = (agent(1)?, learners::Model::new(rows, plan.actions));
+            let planning_steps = given("planning_steps", algorithm.planning_steps)?;
+            let time_weight = given("time_weight", algorithm.time_weight)?;
+            start(world, DynaQPlus::new(agent, model, planning_steps, time_weight), draw, plan)
         }
         other => return Err(unknown("algorithm", other)),
     })

@@ -81,6 +81,8 @@ pub(crate) struct Algorithm {
     pub(crate) traces: Option<String>,
     pub(crate) trace_cutoff: Option<f64>,
     pub(crate) n_steps: Option<usize>,
+    pub(crate) planning_steps: Option<u32>,
+    pub(crate) time_weight: Option<f64>,
 }
 
 impl Algorithm {

@@ -1,6 +1,8 @@
 //! The learners, one a file; then what they share.
 
 mod double_q_learning;
+mod dyna_q;
+mod dyna_q_plus;
 mod expected_sarsa;
 mod n_step_sarsa;
 mod q_learning;
@@ -13,6 +15,7 @@ mod agent;
 mod epsilon_greedy;
 #[cfg(test)]
 mod example;
+mod model;
 mod policy;
 mod schedule;
 mod step_size;
@@ -21,8 +24,11 @@ mod traces;
 
 pub use agent::Agent;
 pub use double_q_learning::DoubleQLearning;
+pub use dyna_q::DynaQ;
+pub use dyna_q_plus::DynaQPlus;
 pub use epsilon_greedy::EpsilonGreedy;
 pub use expected_sarsa::ExpectedSarsa;
+pub use model::{Model, Outcome};
 pub use n_step_sarsa::NStepSarsa;
 pub use policy::{Behaviour, Policy, Softmax, Ties};
 pub use q_learning::{QLearning, TerminalUpdate};
