@@ -4,10 +4,10 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use qtab_core::features::{Features, Real, Rounding};
 use qtab_core::learners::{
-    self, Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, NStepSarsa, QLearning, Sarsa, SarsaLambda, TimeOuts,
-    TrueOnlineSarsaLambda, WatkinsQLambda,
+    self, Agent, DoubleQLearning, DynaQ, DynaQPlus, EpsilonGreedy, ExpectedSarsa, NStepSarsa, QLearning, Sarsa,
+    SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
 };
-use qtab_core::random::Stream;
+use qtab_core::random::{Pcg64, Stream};
 use qtab_core::worlds::{Boxed, Native, Recorded, Recordings, Start};
 use qtab_core::{Learner, Trainer, World};
 
@@ -43,10 +43,13 @@ pub(crate) fn native(model: Model, plan: &Plan<'_>) -> PyResult<Built> {
             let rows = Features::<[f32; 2]>::len(&grid);
             let world = Native::new(env, grid, limit, stream);
             if let (Stream::Pcg64(draw), 0) = (&mut draw, plan.record)
-                && let Some(learner) = plan.article::<3>(rows, draw)?
+                && let Some(agent) = plan.article::<3>(rows, draw)?
             {
-                let run = Box::new(Trainer::new(world, learner, draw.clone()));
-                return Ok(Built { run, kept: Kept::Nothing, attached: false });
+                return Ok(Built {
+                    run: whole(world, agent, draw.clone(), plan),
+                    kept: Kept::Nothing,
+                    attached: false,
+                });
             }
             boxed(world, rows, 1, draw, plan, Kept::Native, false)
         }
@@ -55,6 +58,18 @@ pub(crate) fn native(model: Model, plan: &Plan<'_>) -> PyResult<Built> {
             let rows = Features::<[f32; 2]>::len(&tiles);
             boxed(Native::new(env, tiles, limit, stream), rows, *tilings as usize, draw, plan, Kept::Native, false)
         }
+    }
+}
+
+/// The combinations that are compiled whole: a grid of three actions, learned as in the article, or by its next of kin.
+fn whole<W>(world: W, agent: Agent<3, EpsilonGreedy, f64>, draw: Pcg64, plan: &Plan<'_>) -> Box<dyn Run>
+where
+    W: World<Rows = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
+{
+    match plan.algorithm.name.as_str() {
+        "sarsa" => Box::new(Trainer::new(world, Sarsa { agent }, draw)),
+        "expected_sarsa" => Box::new(Trainer::new(world, ExpectedSarsa { agent }, draw)),
+        _ => Box::new(Trainer::new(world, QLearning::from(agent), draw)),
     }
 }
 
@@ -125,8 +140,7 @@ where
     let mut agent = |tables| plan.agent(tables, rows, lit, &mut draw);
     Ok(match algorithm.name.as_str() {
         "q_learning" => {
-            let Agent { table, policy, learning_rate, discount, terminal_update } = agent(1)?;
-            let learner = QLearning { table, policy, learning_rate, discount, terminal_update };
+            let learner = QLearning::from(agent(1)?);
             start(world, learner, draw, plan)
         }
         "sarsa" => {

@@ -5,9 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::Table;
 use qtab_core::features::{Axis, Real, Rounding, Tiles};
-use qtab_core::learners::{
-    Agent, Behaviour, EpsilonGreedy, QLearning, Rate, Schedule, TerminalUpdate, Ties, Trace, Traces,
-};
+use qtab_core::learners::{Agent, Behaviour, EpsilonGreedy, Rate, Schedule, TerminalUpdate, Ties, Trace, Traces};
 use qtab_core::random::{Draw, Pcg64, Stream};
 
 use crate::stream::{agent_stream, environment_stream};
@@ -139,17 +137,22 @@ impl Plan<'_> {
         bounds.zip(scale).map(|((&low, &high), &scale)| Axis::new(dtype(low), dtype(high), scale)).collect()
     }
 
-    /// The article's learner, if the plan asks for it: constants that fall linearly or not at all.
-    pub(crate) fn article<const N: usize>(&self, rows: usize, draw: &mut Pcg64) -> PyResult<Option<QLearning<N>>> {
+    /// What the article's learner is made of, if the plan asks for that: an exploration rate that falls linearly from the
+    /// first episode on, a constant learning rate.
+    pub(crate) fn article<const N: usize>(
+        &self,
+        rows: usize,
+        draw: &mut Pcg64,
+    ) -> PyResult<Option<Agent<N, EpsilonGreedy, f64>>> {
         let Choice::EpsilonGreedy { epsilon, ties } = &self.policy else { return Ok(None) };
-        let plain = self.algorithm.name == "q_learning"
+        let plain = ["q_learning", "sarsa", "expected_sarsa"].contains(&self.algorithm.name.as_str())
             && (epsilon.schedule.as_str(), epsilon.warm_up, ties.as_str()) == ("linear", 0, "first")
             && self.learning_rate.schedule == "constant"
             && self.on_truncation == "bootstrap";
         if !plain {
             return Ok(None);
         }
-        Ok(Some(QLearning {
+        Ok(Some(Agent {
             table: self.table((0, 1), rows, draw)?,
             policy: EpsilonGreedy::linear(epsilon.value, epsilon.least, self.episodes),
             learning_rate: self.learning_rate.value,

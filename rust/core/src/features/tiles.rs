@@ -81,7 +81,8 @@ impl<T: Real, O: AsRef<[T]> + ?Sized> Features<O> for Tiles<T> {
                 return Err(Outside { axis: index, value });
             }
             let value = value.clamp(axis.low, axis.high);
-            let parts = ((value - axis.low) * axis.tiles_a_unit * f64::from(tilings)).floor() as u32;
+            // It is not negative, so that the conversion is `floor`.
+            let parts = ((value - axis.low) * axis.tiles_a_unit * f64::from(tilings)) as u32;
             // (parts + offset) / tilings, of which only the remainder differs from tiling to tiling.
             let (tile, rest) = (parts / tilings, parts % tilings);
             for (row, offset) in rows[..tilings as usize].iter_mut().zip(axis.offsets) {

@@ -1,6 +1,6 @@
 //! Q-learning: off-policy temporal-difference control (Watkins, 1989; Sutton & Barto, equation 6.8).
 
-use super::{EpsilonGreedy, Policy, StepSize};
+use super::{Agent, EpsilonGreedy, Policy, StepSize};
 use crate::learner::Learner;
 use crate::random::Draw;
 use crate::table::{Table, maximum};
@@ -28,6 +28,13 @@ pub struct QLearning<const N: usize = 0, P = EpsilonGreedy, A = f64> {
     pub discount: f64,
     /// What happens at a terminal state.
     pub terminal_update: TerminalUpdate,
+}
+
+impl<const N: usize, P, A> From<Agent<N, P, A>> for QLearning<N, P, A> {
+    fn from(agent: Agent<N, P, A>) -> Self {
+        let Agent { table, policy, learning_rate, discount, terminal_update } = agent;
+        Self { table, policy, learning_rate, discount, terminal_update }
+    }
 }
 
 impl<const N: usize, R, P, A> Learner<R> for QLearning<N, P, A>

@@ -11,20 +11,30 @@ impl<const N: usize> Table<N> {
         if let &[row] = rows {
             return self.row(row);
         }
-        let actions = self.actions();
-        let sums = &mut self.sums[..actions];
-        sums.fill(0.0);
-        for (index, &row) in rows.iter().enumerate() {
-            let values = &self.values[row as usize * actions..][..actions];
-            if index == 0 {
-                sums.copy_from_slice(values);
-            } else {
-                for (sum, value) in sums.iter_mut().zip(values) {
-                    *sum += value;
+        match self.actions() {
+            2 => self.add_up::<2>(rows),
+            3 => self.add_up::<3>(rows),
+            4 => self.add_up::<4>(rows),
+            actions => {
+                for action in 0..actions {
+                    self.sums[action] = self.value(rows, action);
                 }
             }
         }
-        sums
+        &self.sums
+    }
+
+    /// The sums of `A` actions side by side, in registers.
+    #[inline]
+    fn add_up<const A: usize>(&mut self, rows: &[u32]) {
+        let mut values = rows.iter().filter_map(|&row| self.values[row as usize * A..].first_chunk::<A>());
+        let mut sums = values.next().copied().unwrap_or([0.0; A]);
+        for values in values {
+            for (sum, value) in sums.iter_mut().zip(values) {
+                *sum += value;
+            }
+        }
+        self.sums.copy_from_slice(&sums);
     }
 
     /// One action value of these rows.
