@@ -25,10 +25,13 @@ impl Policy for EpsilonGreedy {
     #[inline]
     fn expected(&mut self, values: &[f64]) -> f64 {
         let any = self.epsilon() / values.len() as f64;
-        let greedy = first_maximum(values);
-        sum(values.iter().enumerate().map(|(action, value)| {
-            let share = if action == greedy { any + (1.0 - self.epsilon()) } else { any };
-            share * value
+        let greedy = any + (1.0 - self.epsilon());
+        // No branch: which action is the greedy one is hard to predict.
+        let (largest, mut earlier) = (maximum(values), false);
+        sum(values.iter().map(|&value| {
+            let first = (value == largest) & !earlier;
+            earlier |= first;
+            std::hint::select_unpredictable(first, greedy, any) * value
         }))
     }
 
