@@ -14,6 +14,9 @@ SECONDS_BETWEEN_UPDATES = 0.1
 DELAY_SECONDS = 1.0
 """A bar that nobody asked for appears after so long."""
 
+_open: list[Any] = []
+"""The tqdm bars in use, which lines are written around."""
+
 
 class Bar:
     """How far a long call is; without a tqdm bar to move, it does nothing."""
@@ -71,7 +74,11 @@ def bar(total: int, unit: str, progress: bool | None, description: str | None = 
         return
     delay = 0.0 if progress else DELAY_SECONDS
     with tqdm(total=total, unit=f" {unit}s", desc=description, delay=delay, leave=False, dynamic_ncols=True) as shown:
-        yield Bar(shown)
+        _open.append(shown)
+        try:
+            yield Bar(shown)
+        finally:
+            _open.remove(shown)
 
 
 def on_terminal(stream: Any) -> bool:
@@ -81,7 +88,9 @@ def on_terminal(stream: Any) -> bool:
 
 def write(line: str) -> None:
     """Prints a line on standard output, above the bar where there is one."""
-    if "tqdm" in sys.modules and on_terminal(sys.stderr):
-        sys.modules["tqdm"].tqdm.write(line, file=sys.stdout)
+    # tqdm.write draws a bar anew even if it still waits to appear, and would leave it there.
+    drawn = [shown for shown in _open if shown.delay == 0 or shown.last_print_t > shown.start_t]
+    if drawn:
+        drawn[-1].write(line, file=sys.stdout)
     else:
         print(line, flush=True)  # noqa: T201 - what it is for
