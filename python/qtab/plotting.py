@@ -51,15 +51,16 @@ def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100) -> "Axes":
         label="one episode",
         rasterized=True,
     )
-    # A mean stands at the end of its block, as the article's does.
-    ax.plot(
-        block * (np.arange(len(means)) + 1),
-        means,
-        color="#0b3c6f",
-        linewidth=2.2,
-        solid_capstyle="round",
-        label=f"mean of {block} episodes",
-    )
+    if len(means) > 0:
+        # A mean stands at the end of its block, as the article's does.
+        ax.plot(
+            block * (np.arange(len(means)) + 1),
+            means,
+            color="#0b3c6f",
+            linewidth=2.2,
+            solid_capstyle="round",
+            label=f"mean of {block} episodes",
+        )
     ax.set_xlabel("Episode")
     ax.set_ylabel("Return")
     ax.set_title(run.config.env, loc="left", fontweight="bold")
@@ -68,7 +69,7 @@ def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100) -> "Axes":
     ax.xaxis.set_major_formatter("{x:,.0f}")
     ax.grid(alpha=0.25)
     ax.spines[["top", "right"]].set_visible(False)
-    legend = ax.legend(loc="best", frameon=False, markerscale=2)
+    legend = ax.legend(loc="upper left", frameon=False, markerscale=2)
     for handle in legend.legend_handles:
         if handle is not None:
             handle.set_alpha(1)

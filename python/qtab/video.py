@@ -1,5 +1,7 @@
 """The last episodes of a run as videos, through Gymnasium's RecordVideo."""
 
+import os
+import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -9,6 +11,7 @@ from qtab.extras import missing
 from qtab.files import check_writable
 from qtab.replay import play_all, stage
 from qtab.run import Run
+from qtab.window import headless
 
 
 class Recorder:
@@ -35,6 +38,8 @@ class Recorder:
                 f"record must be a folder that can be made, got {str(folder)!r}: {error.strerror}"
             ) from None
         check_writable("record", folder / "video.mp4")
+        if headless():
+            os.environ["SDL_VIDEODRIVER"] = "dummy"  # SDL would look for a display all the same, and complain
         env = stage(config, "rgb_array")
         try:
             env.reset()
@@ -42,7 +47,7 @@ class Recorder:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # that the folder is there
                 self._env: RecordVideo[Any, Any, Any] = RecordVideo(
-                    env, str(folder), episode_trigger=lambda _: True, name_prefix=config.env.rpartition("/")[2]
+                    env, str(folder), episode_trigger=lambda _: True, name_prefix=re.split("[/:]", config.env)[-1]
                 )
         except BaseException:
             env.close()

@@ -26,12 +26,17 @@ def window(config: Config) -> gym.Env:
     return stage(config, "human")
 
 
+def headless() -> bool:
+    """Whether nothing says where a window could open."""
+    return sys.platform == "linux" and not any(map(os.environ.get, _SAYS_WHERE))
+
+
 def no_display() -> str | None:
     """Returns why nobody would see a window; None where somebody would.
 
     A driver that draws nowhere (SDL_VIDEODRIVER=dummy or offscreen) counts as no display.
     """
-    if sys.platform == "linux" and not any(map(os.environ.get, _SAYS_WHERE)):
+    if headless():
         return "neither DISPLAY nor WAYLAND_DISPLAY is set"
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:

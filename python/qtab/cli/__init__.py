@@ -11,6 +11,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: What follows the command's name; None takes the process's own.
     """
     try:
+        import tyro  # noqa: F401 - every subcommand needs it
+
         from qtab.cli.command import run
     except ModuleNotFoundError as error:
         if error.name != "tyro":

@@ -8,12 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
-import gymnasium as gym
 import numpy as np
 import tyro
 
 from qtab.config import Config, known_fields
-from qtab.resolution import merge
+from qtab.resolution import find_spec, merge
 from qtab.storage import load
 
 if sys.version_info >= (3, 11):
@@ -115,9 +114,8 @@ def defaults(env: str | None, preset: str | None, config: Path | None) -> Settin
         start = None
     if preset is not None:
         layer["preset"] = preset
-    spec = gym.spec(env)
-    merged = merge(spec.id, {"env_kwargs": dict(spec.kwargs)}, layer)
-    changes = {"env": env} if start is None else {"env": env, "initial_q": Path(start)}
+    merged = merge(env, {"env_kwargs": dict(find_spec(env).kwargs)}, layer)
+    changes = {} if start is None else {"initial_q": Path(start)}
     return Settings(**{**vars(merged), **changes})
 
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import gymnasium as gym
 import tyro
 
 from qtab.cli.outputs import Outputs
@@ -13,7 +12,7 @@ from qtab.cli.parsing import parse
 from qtab.cli.settings import Settings, defaults, last_value
 from qtab.cli.usage import refusing
 from qtab.progress import write
-from qtab.resolution import Resolved, resolve
+from qtab.resolution import Resolved, find_spec, resolve
 from qtab.run import Run
 from qtab.training import Progress, train_resolved
 
@@ -90,12 +89,11 @@ def _header(resolved: Resolved, settings: Settings) -> str:
     parts = [
         f"{config.env} {backend}",
         f"preset {config.preset}" if config.preset is not None else "no preset",
-        f"{config.episodes:,} episodes",
+        _episodes(config.episodes),
         f"seed {config.seed}",
     ]
     header = ", ".join(parts)
-    spec = gym.spec(config.env)
-    if settings.max_episode_steps is None and spec.max_episode_steps is None:
+    if settings.max_episode_steps is None and find_spec(config.env).max_episode_steps is None:
         header += (
             f"\n{config.env} has no time limit of its own: an episode ends after {config.max_episode_steps:,} steps"
         )
@@ -141,4 +139,8 @@ def _summary(run: Run) -> str:
     took = f"{steps:,} steps in {run.seconds:.3g} s{speed}"
     if len(returns) == 0:
         return f"No episode was finished; {took}"
-    return f"Mean return over the last {len(returns)} episodes: {returns.mean():.2f}; {took}"
+    return f"Mean return over the last {_episodes(len(returns))}: {returns.mean():.2f}; {took}"
+
+
+def _episodes(count: int) -> str:
+    return f"{count:,} episode{'' if count == 1 else 's'}"
