@@ -31,19 +31,13 @@ class Recorder:
             raise missing(error, "video") from None
         from gymnasium.wrappers import RecordVideo
 
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise type(error)(
-                f"record must be a folder that can be made, got {str(folder)!r}: {error.strerror}"
-            ) from None
-        check_writable("record", folder / "video.mp4")
         if headless():
             os.environ["SDL_VIDEODRIVER"] = "dummy"  # SDL would look for a display all the same, and complain
         env = stage(config, "rgb_array")
         try:
             env.reset()
             env.render()
+            _make(folder)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # that the folder is there
                 self._env: RecordVideo[Any, Any, Any] = RecordVideo(
@@ -62,3 +56,11 @@ class Recorder:
     def close(self) -> None:
         """Writes what is unwritten and closes the environment."""
         self._env.close()
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise type(error)(f"record must be a folder that can be made, got {str(folder)!r}: {error.strerror}") from None
+    check_writable("record", folder / "video.mp4")

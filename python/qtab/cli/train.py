@@ -135,10 +135,10 @@ def _averages() -> Callable[[Progress], None]:
 
 def _summary(run: Run) -> str:
     returns, steps = run.episode_returns[-BLOCK:], int(run.episode_lengths.sum())
+    if len(returns) == 0:
+        return f"No episode was finished in {run.seconds:.3g} s"
     speed = f" ({steps / run.seconds:,.0f} steps/s)" if run.seconds > 0 else ""
     took = f"{steps:,} steps in {run.seconds:.3g} s{speed}"
-    if len(returns) == 0:
-        return f"No episode was finished; {took}"
     return f"Mean return over the last {_episodes(len(returns))}: {returns.mean():.2f}; {took}"
 
 
