@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any, Literal
 
 import gymnasium as gym
@@ -31,6 +32,11 @@ class Resolved:
     """The environment stepped in Python."""
     made: bool
     """Whether the environment was made here, and so is closed here."""
+
+    def close(self) -> None:
+        """Closes the environment if it was made here."""
+        if self.made and self.env is not None:
+            self.env.close()
 
     def core_environment(self) -> plan.Model | plan.PythonEnvironment:
         """Returns the environment as the extension module takes it."""
@@ -82,6 +88,19 @@ def merge(env: str, *layers: Mapping[str, Any]) -> Config:
     return Config(**{**values, **explicit, "env": env, "preset": name})
 
 
+def find_spec(env: str) -> EnvSpec:
+    """Returns Gymnasium's spec of an id, its module imported first where it names one (``module:Id-v0``).
+
+    Raises:
+        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
+        ModuleNotFoundError: if there is no such module.
+    """
+    module, colon, name = env.rpartition(":")
+    if colon:
+        import_module(module)
+    return gym.spec(name)
+
+
 def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     """Finds the environment and fills in what is left open.
 
@@ -98,8 +117,8 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolve
 
 
 def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
-    spec = env if isinstance(env, EnvSpec) else gym.spec(env)
-    config = merge(spec.id, {"env_kwargs": dict(spec.kwargs)}, *layers)
+    spec = env if isinstance(env, EnvSpec) else find_spec(env)
+    config = merge(env if isinstance(env, str) else spec.id, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = model_of(spec, config.env_kwargs)
     backend = _backend(config, model, f"Rust has no {spec.id} with these keyword arguments or wrappers")
     limit: dict[str, Any] = {}
