@@ -34,10 +34,16 @@ class Grid:
         """Returns the index of an observation's row.
 
         Raises:
-            ValueError: if the observation lies outside the space.
+            TypeError: if it holds no numbers.
+            ValueError: if it has another shape than the space, or lies outside.
         """
-        observation = np.asarray(observation, dtype=self.low.dtype)
-        rounded = np.round((observation - self.low) * self.scale, 0)
+        if observation.dtype.kind not in "fiu":
+            raise TypeError(f"observation must hold numbers, got {observation!r}")
+        if observation.shape != self.low.shape:
+            raise ValueError(f"observation must have shape {self.low.shape}, got {observation.shape}")
+        with np.errstate(over="ignore", invalid="ignore"):
+            observation = observation.astype(self.low.dtype)
+            rounded = np.round((observation - self.low) * self.scale, 0)
         inside = (rounded >= 0) & (rounded < self.shape[:-1])
         if not inside.all():
             axis = int(np.argmin(inside))
