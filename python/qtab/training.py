@@ -11,6 +11,7 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab import _core, checks
+from qtab.config import LARGEST_COUNT
 from qtab.replay import starts
 from qtab.resolution import Resolved, resolve
 from qtab.run import Recording, Run
@@ -65,7 +66,7 @@ def train(
             as ``.run``.
     """
     callback_every = checks.integer("callback_every", callback_every, least=1)
-    record = checks.integer("record", record, least=0)
+    record = checks.integer("record", record, least=0, most=LARGEST_COUNT)
     resolved = resolve(env, overrides)
     try:
         return train_resolved(resolved, callback, callback_every, record)
