@@ -87,7 +87,8 @@ def train_resolved(resolved: Resolved, callback: Callback | None, callback_every
             trainer.advance(done)
             if callback is not None:
                 returns, lengths, _ = trainer.episodes()
-                if callback(Progress(done, total, returns, lengths)) is False:
+                verdict = callback(Progress(done, total, returns, lengths))
+                if verdict is not None and not verdict:  # NumPy's False stops too
                     break
     except BaseException as error:
         error.run = _run(resolved, trainer, began)  # type: ignore[attr-defined]
