@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -91,7 +92,9 @@ def train_resolved(resolved: Resolved, callback: Callback | None, callback_every
                 if verdict is not None and not verdict:  # NumPy's False stops too
                     break
     except BaseException as error:
-        error.run = _run(resolved, trainer, began)  # type: ignore[attr-defined]
+        run = _run(resolved, trainer, began)
+        with suppress(AttributeError):  # a frozen exception takes nothing along, and still comes through
+            error.run = run  # type: ignore[attr-defined]
         raise
     return _run(resolved, trainer, began)
 
