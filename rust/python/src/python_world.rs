@@ -95,11 +95,9 @@ impl<T: Real + numpy::Element> World for PythonWorld<T> {
                 Bound<'_, PyAny>,
                 Bound<'_, PyAny>,
             ) = answer.extract()?;
-            if reward.is_nan() {
-                return Err(PyValueError::new_err(
-                    "the environment's reward is nan, which no value can be learned from",
-                )
-                .into());
+            if !reward.is_finite() {
+                let message = format!("the environment's reward is {reward}, which no value can be learned from");
+                return Err(PyValueError::new_err(message).into());
             }
             *elapsed += 1;
             let rows = self.rows(&observation)?;
