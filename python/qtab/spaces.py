@@ -76,6 +76,12 @@ def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
         count = float(np.prod(cells + 1)) * table.actions
     if not count < LARGEST_TABLE:
         raise ValueError(f"scale must give a table of fewer than 2**32 values, got {scale!r}, which needs {count:.3g}")
+    try:
+        np.empty(table.shape)
+    except MemoryError:
+        raise ValueError(
+            f"scale must give a table that fits into memory, got {scale!r}, a table of {count:.3g}"
+        ) from None
     return table
 
 
