@@ -10,7 +10,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import plan
 from qtab.config import Config, known_fields
-from qtab.models import Model, model_of
+from qtab.models import Model, model_of, spec_of
 from qtab.presets import preset
 from qtab.spaces import Grid, grid
 from qtab.wrappers import model_of_object
@@ -98,8 +98,9 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolve
 
 
 def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
-    spec = env if isinstance(env, EnvSpec) else gym.spec(env)
-    config = merge(spec.id, {"env_kwargs": dict(spec.kwargs)}, *layers)
+    # An id keeps the package that it names, so that the config makes the environment anywhere.
+    name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
+    config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = model_of(spec, config.env_kwargs)
     backend = _backend(config, model, f"Rust has no {spec.id} with these keyword arguments or wrappers")
     limit: dict[str, Any] = {}
