@@ -35,7 +35,7 @@ class Told(gym.Env):
     def _show(self) -> Any:
         observation = self.observations[self.shown % len(self.observations)]
         self.shown += 1
-        return observation
+        return observation.copy() if isinstance(observation, np.ndarray) else observation
 
     def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, dict[str, Any]]:
         super().reset(seed=seed)
@@ -84,6 +84,6 @@ class Calls(gym.Wrapper):
         self.count = 0
 
     def step(self, action: Any) -> Any:
-        self.before(self.count)
         self.count += 1
+        self.before(self.count - 1)
         return self.env.step(action)
