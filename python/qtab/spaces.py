@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 LARGEST_TABLE = 2**32
 """Rows are numbered in 32 bits."""
+FLOATS = (np.dtype(np.float32), np.dtype(np.float64))
+"""The dtypes of the boxes that have a grid."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
     actions, observations = env.action_space, env.observation_space
     if not isinstance(actions, spaces.Discrete):
         raise ValueError(f"the action space must be Discrete, got {actions}")
-    if not isinstance(observations, spaces.Box) or len(observations.shape) != 1 or observations.dtype not in _FLOATS:
+    if not isinstance(observations, spaces.Box) or len(observations.shape) != 1 or observations.dtype not in FLOATS:
         raise ValueError(f"the observation space must be a Box of one float axis, got {observations}")
     low, high = observations.low, observations.high
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
@@ -80,9 +82,6 @@ def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
         np.empty(table.shape)
     except MemoryError:
         raise ValueError(
-            f"scale must give a table that fits into memory, got {scale!r}, a table of {count:.3g}"
+            f"scale must give a table that fits into memory, got {scale!r}, which needs {count:.3g} values"
         ) from None
     return table
-
-
-_FLOATS = (np.dtype(np.float32), np.dtype(np.float64))
