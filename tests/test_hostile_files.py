@@ -73,7 +73,8 @@ def test_flipped_bytes_are_refused_or_change_nothing(saved, tmp_path_factory, da
     try:
         run = qtab.load(path)
     except ValueError as error:
-        assert REFUSED in str(error)
+        if REFUSED not in str(error):
+            raise
     else:
         assert run.tables.tobytes() == qtab.load(saved).tables.tobytes()
 
@@ -208,19 +209,18 @@ def test_a_header_that_does_not_fit_is_refused(members, tmp_path, change, messag
     refused(tmp_path / "run.npz", message)
 
 
-@pytest.mark.parametrize(
-    "header",
-    [
-        np.array("{"),
-        np.array("[1]"),
-        np.array("7"),
-        np.array(b"{}"),
-        np.zeros(3),
-        np.array(["{}", "{}"]),
-        np.array("[" * 9999),
-    ],
-    ids=["half", "list", "number", "bytes", "zeros", "two", "nested"],
-)
+HEADERS = {
+    "half": np.array("{"),
+    "a list": np.array("[1]"),
+    "a number": np.array("7"),
+    "bytes": np.array(b"{}"),
+    "zeros": np.zeros(3),
+    "two": np.array(["{}", "{}"]),
+    "nested without end": np.array("[" * 99_999),
+}
+
+
+@pytest.mark.parametrize("header", HEADERS.values(), ids=HEADERS)
 def test_a_header_that_is_no_json_object_is_refused(members, tmp_path, header):
     np.savez(tmp_path / "run.npz", **members | {"header": header})
     refused(tmp_path / "run.npz")
