@@ -1,6 +1,8 @@
 """``qtab/MountainCarContinuous-v0``."""
 
-from gymnasium.envs.classic_control.continuous_mountain_car import Continuous_MountainCarEnv as GymnasiumContinuousMountainCarEnv
+from gymnasium.envs.classic_control.continuous_mountain_car import (
+    Continuous_MountainCarEnv as GymnasiumContinuousMountainCarEnv,
+)
 
 from qtab.envs.physics import RustPhysics
 

@@ -6,9 +6,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat};
 use qtab_core::env::{Env, Parameters, Step, Switch};
-use qtab_core::envs::{
-    Acrobot, CartPole, ContinuousMountainCar, ContinuousMountainCarState, MountainCar, Pendulum, Scalar,
-};
+use qtab_core::envs::{Acrobot, CartPole, ContinuousMountainCar, MountainCar, Pendulum, Scalar};
 use qtab_core::random::Draw;
 
 use crate::numbers::{Values, double, force, index, numpy_scalar};
@@ -44,6 +42,8 @@ pub(crate) struct Played<'py> {
     pub(crate) observation: Bound<'py, PyAny>,
     pub(crate) reward: Bound<'py, PyAny>,
     pub(crate) terminated: bool,
+    /// Whether no number ran over.
+    finite: bool,
 }
 
 /// The constants of a model, whatever its type.
@@ -153,17 +153,12 @@ impl Model {
                 Ok(Some(played))
             }
             Self::ContinuousMountainCar(env) => {
-                let Some(([position, velocity], action)) = values.scalars().zip(force(action)) else { return Ok(None) };
-                let step = env.step(ContinuousMountainCarState { position, velocity }, action, &mut NoDraw);
-                let numbers = env.observe(&step.state);
-                let observation = PyArray1::from_slice(py, &numbers).into_any();
-                Ok(numbers.iter().all(|number| number.is_finite()).then(|| Played {
-                    // Gymnasium hands out its state itself.
-                    state: State::Python(observation.clone().unbind()),
-                    observation,
-                    reward: PyFloat::new(py, step.reward).into_any(),
-                    terminated: step.terminated,
-                }))
+                let Some((state, action)) = values.scalars().zip(force(action)) else { return Ok(None) };
+                let step = env.step(<[Scalar; 2]>::into(state), action, &mut NoDraw);
+                let mut played = played::<_, 2, 2>(py, env, step);
+                // Gymnasium hands out its state itself.
+                played.state = State::Python(played.observation.clone().unbind());
+                Ok(played.if_finite())
             }
         }
     }
@@ -176,21 +171,20 @@ where
 {
     let mut state = [0.0; 4];
     state[..N].copy_from_slice(&step.state.into());
+    let observation = env.observe(&step.state);
     Played {
         state: State::Rust(state),
-        observation: PyArray1::from_slice(py, &env.observe(&step.state)).into_any(),
+        observation: PyArray1::from_slice(py, &observation).into_any(),
         reward: PyFloat::new(py, step.reward).into_any(),
         terminated: step.terminated,
+        finite: step.reward.is_finite() && observation.iter().all(|number| number.is_finite()),
     }
 }
 
 impl Played<'_> {
     /// Where numbers run over, Python and `NumPy` warn or raise: Gymnasium's code is to do so.
     fn if_finite(self) -> Option<Self> {
-        match &self.state {
-            State::Rust(numbers) if numbers.iter().all(|number| number.is_finite()) => Some(self),
-            _ => None,
-        }
+        self.finite.then_some(self)
     }
 }
 

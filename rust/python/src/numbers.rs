@@ -110,13 +110,11 @@ pub(crate) fn force(action: &Bound<'_, PyAny>) -> Option<Scalar> {
     (f64::from(force).abs() <= LARGEST_FLOAT).then_some(force)
 }
 
-/// A number as `NumPy` wraps it.
+/// A number as `NumPy` wraps it; an array's item comes sooner than a call of the type.
 pub(crate) fn numpy_scalar(py: Python<'_>, number: Scalar) -> PyResult<Bound<'_, PyAny>> {
-    static SINGLE: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    static DOUBLE: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     match number {
-        Scalar::Single(number) => SINGLE.import(py, "numpy", "float32")?.call1((number,)),
-        Scalar::Python(number) | Scalar::Double(number) => DOUBLE.import(py, "numpy", "float64")?.call1((number,)),
+        Scalar::Single(number) => PyArray1::from_slice(py, &[number]).get_item(0),
+        Scalar::Python(number) | Scalar::Double(number) => PyArray1::from_slice(py, &[number]).get_item(0),
     }
 }
 

@@ -82,24 +82,24 @@ impl Physics {
     #[getter]
     fn state<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
-        let mut this = slf.borrow_mut();
-        let state = match &this.state {
-            State::Python(state) => return Ok(state.bind(py).clone()),
-            State::Rust(numbers) => {
-                let Habits { state: count, tuple, .. } = this.model.habits();
-                let array = PyArray1::from_slice(py, &numbers[..count]).into_any();
-                if tuple {
-                    PyTuple::new(py, array.try_iter()?.collect::<PyResult<Vec<_>>>()?)?.into_any()
-                } else {
-                    array
-                }
-            }
-            State::Missing => {
-                let class = slf.get_type();
-                return Err(PyAttributeError::new_err(format!("'{}' object has no attribute 'state'", class.name()?)));
-            }
+        let (numbers, Habits { state: count, tuple, .. }) = {
+            let this = slf.borrow();
+            let numbers = match &this.state {
+                State::Python(state) => return Ok(state.bind(py).clone()),
+                State::Rust(numbers) => Some(*numbers),
+                State::Missing => None,
+            };
+            (numbers, this.model.habits())
         };
-        this.state = State::Python(state.clone().unbind());
+        let Some(numbers) = numbers else {
+            let class = slf.get_type();
+            return Err(PyAttributeError::new_err(format!("'{}' object has no attribute 'state'", class.name()?)));
+        };
+        let mut state = PyArray1::from_slice(py, &numbers[..count]).into_any();
+        if tuple {
+            state = PyTuple::new(py, state.try_iter()?.collect::<PyResult<Vec<_>>>()?)?.into_any();
+        }
+        slf.borrow_mut().state = State::Python(state.clone().unbind());
         Ok(state)
     }
 

@@ -9,9 +9,9 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
-/// Angles from the sizes that the environments meet, ±13; vector code that rounds differently does so in at least one
-/// call in a thousand.
-const POINTS: u32 = 20_000;
+/// Angles of the sizes that the environments meet, ±13. So many find code that rounds one call in ten thousand another
+/// way; vector code does so far more often. It takes a few milliseconds, once.
+const POINTS: u32 = 100_000;
 const WARNING: &str = "NumPy's sin and cos are not the platform's on this machine, so qtab's CartPole, Acrobot and \
                        Pendulum step in Gymnasium's own code: the same numbers, at Gymnasium's speed.";
 
@@ -19,22 +19,21 @@ const WARNING: &str = "NumPy's sin and cos are not the platform's on this machin
 #[pyfunction]
 pub(crate) fn numpy_calls_the_platform(py: Python<'_>) -> PyResult<bool> {
     static ANSWER: PyOnceLock<bool> = PyOnceLock::new();
-    ANSWER
-        .get_or_try_init(py, || {
-            let equal = differences(py)? == 0;
-            if !equal {
-                py.import(intern!(py, "gymnasium.logger"))?.call_method1(intern!(py, "warn"), (WARNING,))?;
-            }
-            Ok(equal)
-        })
-        .copied()
+    if let Some(&equal) = ANSWER.get(py) {
+        return Ok(equal);
+    }
+    let equal = differences(py)? == 0;
+    // Kept before the warning, which a filter may turn into an error.
+    if ANSWER.set(py, equal).is_ok() && !equal {
+        py.import(intern!(py, "gymnasium.logger"))?.call_method1(intern!(py, "warn"), (WARNING,))?;
+    }
+    Ok(equal)
 }
 
 /// At how many of the points either function differs.
 fn differences(py: Python<'_>) -> PyResult<usize> {
     let numpy = py.import(intern!(py, "numpy"))?;
-    let angles: Vec<f64> =
-        (0..POINTS).map(|n| (f64::from(n) * 0.618_033_988_749_895).fract().mul_add(26.0, -13.0)).collect();
+    let angles: Vec<f64> = (0..POINTS).map(|n| (f64::from(n) * 0.618_033_988_749_895).fract() * 26.0 - 13.0).collect();
     let points = PyArray1::from_slice(py, &angles);
     let ask = |name: &str| -> PyResult<Vec<f64>> {
         Ok(numpy.getattr(name)?.call1((&points,))?.cast::<PyArray1<f64>>()?.to_vec()?)

@@ -82,6 +82,18 @@ pub struct ContinuousMountainCarState {
     pub velocity: Scalar,
 }
 
+impl From<[Scalar; 2]> for ContinuousMountainCarState {
+    fn from([position, velocity]: [Scalar; 2]) -> Self {
+        Self { position, velocity }
+    }
+}
+
+impl From<ContinuousMountainCarState> for [f64; 2] {
+    fn from(state: ContinuousMountainCarState) -> Self {
+        [state.position.into(), state.velocity.into()]
+    }
+}
+
 impl Env for ContinuousMountainCar {
     type State = ContinuousMountainCarState;
     /// The force, in the dtype in which it comes: single and double forces give different numbers.
