@@ -6,9 +6,12 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyFloat, PyInt, PyTuple, PyType};
 use qtab_core::envs::Scalar;
 
-/// Python raises where the square of a float would overflow, and computes exactly with integers of any size.
-const LARGEST_FLOAT: f64 = 1e150;
+/// `NumPy` warns where a constant is too large for f32, Python raises where its square is too large for f64.
+const LARGEST_FLOAT: f64 = 1e30;
+/// Python computes exactly with integers of any size.
 const LARGEST_INTEGER: f64 = 1e6;
+/// `math.pow` raises where the square of a force is too large.
+const LARGEST_FORCE: f64 = 1e150;
 
 /// A constant of the physics: a plain Python number, not one of `NumPy`'s, which promotes otherwise.
 pub(crate) fn constant(value: &Bound<'_, PyAny>) -> Option<f64> {
@@ -107,7 +110,7 @@ pub(crate) fn force(action: &Bound<'_, PyAny>) -> Option<Scalar> {
     } else {
         Scalar::Double(action.cast::<PyArray1<f64>>().ok()?.get_owned(0)?)
     };
-    (f64::from(force).abs() <= LARGEST_FLOAT).then_some(force)
+    (f64::from(force).abs() <= LARGEST_FORCE).then_some(force)
 }
 
 /// A number as `NumPy` wraps it; an array's item comes sooner than a call of the type.
