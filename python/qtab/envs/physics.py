@@ -11,7 +11,8 @@ class RustPhysics(_core.Physics):
     """The base of an environment that steps in Rust; Gymnasium's class comes after it.
 
     Spaces, reset, reset options, rendering and attributes are Gymnasium's own. Whatever Gymnasium lets a user assign is
-    honoured from the next step on, in a class from the next reset on.
+    honoured from the next step on, in a class from the next reset on. CartPole, Acrobot and Pendulum call NumPy's sine
+    and cosine: where those are not the platform's, they step in Gymnasium's own code, and its logger says so once.
     """
 
     model: str
