@@ -24,14 +24,35 @@ class Model:
     """This package's entry point."""
     arguments: frozenset[str] = field(default_factory=frozenset)
     """The constructor's keyword arguments that are constants of the model, of the same name."""
+    trains: bool = False
+    """Whether Rust trains on it, too; if not, training steps the environment."""
 
+
+_CLASSIC = "gymnasium.envs.classic_control"
+_CART_POLE = Model("CartPole", f"{_CLASSIC}.cartpole:CartPoleEnv", "qtab.envs.cart_pole:CartPoleEnv")
 
 MODELS: Mapping[str, Model] = {
     "MountainCar-v0": Model(
         name="MountainCar",
-        gymnasium="gymnasium.envs.classic_control.mountain_car:MountainCarEnv",
+        gymnasium=f"{_CLASSIC}.mountain_car:MountainCarEnv",
         qtab="qtab.envs.mountain_car:MountainCarEnv",
         arguments=frozenset({"goal_velocity"}),
+        trains=True,
+    ),
+    "MountainCarContinuous-v0": Model(
+        name="ContinuousMountainCar",
+        gymnasium=f"{_CLASSIC}.continuous_mountain_car:Continuous_MountainCarEnv",
+        qtab="qtab.envs.continuous_mountain_car:ContinuousMountainCarEnv",
+        arguments=frozenset({"goal_velocity"}),
+    ),
+    "CartPole-v0": _CART_POLE,
+    "CartPole-v1": _CART_POLE,
+    "Acrobot-v1": Model("Acrobot", f"{_CLASSIC}.acrobot:AcrobotEnv", "qtab.envs.acrobot:AcrobotEnv"),
+    "Pendulum-v1": Model(
+        name="Pendulum",
+        gymnasium=f"{_CLASSIC}.pendulum:PendulumEnv",
+        qtab="qtab.envs.pendulum:PendulumEnv",
+        arguments=frozenset({"g"}),
     ),
 }
 
@@ -57,7 +78,7 @@ def spec_of(env: str) -> EnvSpec:
 def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:
     """Returns the model that computes what ``gymnasium.make(spec, **kwargs)`` would, or None if Rust has none."""
     model = MODELS.get(gymnasium_id(spec.id))
-    if model is None or spec.additional_wrappers:
+    if model is None or not model.trains or spec.additional_wrappers:
         return None
     if spec.entry_point not in (model.gymnasium, model.qtab):
         return None
