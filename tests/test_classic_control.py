@@ -219,7 +219,7 @@ def test_where_numbers_run_over_python_says_so(name):
             pair.set(state=np.full(len(pair.theirs.state), huge))
             action = pair.theirs.action_space.sample()
             pair.both(lambda env, action=action: env.step(action))
-    for zero in ({"l": 0.0}, {"length": 0.0}, {"total_mass": 0.0}, {"LINK_MOI": 0.0, "LINK_MASS_1": 0}, {"l": 1e200}):
+    for zero in ({"l": 0.0}, {"length": 0.0}, {"total_mass": 0.0}, {"LINK_MOI": 0.0, "LINK_MASS_2": 0.0}, {"l": 1e200}):
         pair = Pair(name)
         pair.reset(seed=0)
         pair.set(**zero)
