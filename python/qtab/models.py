@@ -2,10 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any
 
+import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
+PACKAGE = "qtab"
 PREFIX = "qtab/"
 
 
@@ -35,7 +38,20 @@ MODELS: Mapping[str, Model] = {
 
 def gymnasium_id(env: str) -> str:
     """Returns the id of Gymnasium's environment that an id of ours equals; any other id as it is."""
-    return env.removeprefix(PREFIX)
+    return env.removeprefix(f"{PACKAGE}:").removeprefix(PREFIX)
+
+
+def spec_of(env: str) -> EnvSpec:
+    """Returns the spec of an id, whose package is imported where the id names it ("package:id").
+
+    Raises:
+        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
+        ModuleNotFoundError: for a package that is not installed.
+    """
+    package, _, name = env.rpartition(":")
+    if package:
+        import_module(package)
+    return gym.spec(name)
 
 
 def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:

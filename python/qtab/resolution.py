@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any, Literal
 
 import gymnasium as gym
@@ -11,7 +10,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import plan
 from qtab.config import Config, known_fields
-from qtab.models import Model, model_of
+from qtab.models import Model, model_of, spec_of
 from qtab.presets import preset
 from qtab.spaces import Grid, grid
 from qtab.wrappers import model_of_object
@@ -88,19 +87,6 @@ def merge(env: str, *layers: Mapping[str, Any]) -> Config:
     return Config(**{**values, **explicit, "env": env, "preset": name})
 
 
-def find_spec(env: str) -> EnvSpec:
-    """Returns Gymnasium's spec of an id, its module imported first where it names one (``module:Id-v0``).
-
-    Raises:
-        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
-        ModuleNotFoundError: if there is no such module.
-    """
-    module, colon, name = env.rpartition(":")
-    if colon:
-        import_module(module)
-    return gym.spec(name)
-
-
 def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     """Finds the environment and fills in what is left open.
 
@@ -117,8 +103,9 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolve
 
 
 def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
-    spec = env if isinstance(env, EnvSpec) else find_spec(env)
-    config = merge(env if isinstance(env, str) else spec.id, {"env_kwargs": dict(spec.kwargs)}, *layers)
+    # An id keeps the package that it names, so that the config makes the environment anywhere.
+    name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
+    config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = model_of(spec, config.env_kwargs)
     backend = _backend(config, model, f"Rust has no {spec.id} with these keyword arguments or wrappers")
     limit: dict[str, Any] = {}

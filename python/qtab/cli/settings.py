@@ -12,7 +12,8 @@ import numpy as np
 import tyro
 
 from qtab.config import Config, known_fields
-from qtab.resolution import find_spec, merge
+from qtab.models import spec_of
+from qtab.resolution import merge
 from qtab.storage import load
 
 if sys.version_info >= (3, 11):
@@ -114,7 +115,7 @@ def defaults(env: str | None, preset: str | None, config: Path | None) -> Settin
         start = None
     if preset is not None:
         layer["preset"] = preset
-    merged = merge(env, {"env_kwargs": dict(find_spec(env).kwargs)}, layer)
+    merged = merge(env, {"env_kwargs": dict(spec_of(env).kwargs)}, layer)
     changes = {} if start is None else {"initial_q": Path(start)}
     return Settings(**{**vars(merged), **changes})
 

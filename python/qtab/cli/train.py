@@ -11,8 +11,9 @@ from qtab.cli.outputs import Outputs
 from qtab.cli.parsing import parse
 from qtab.cli.settings import Settings, defaults, last_value
 from qtab.cli.usage import refusing
+from qtab.models import spec_of
 from qtab.progress import write
-from qtab.resolution import Resolved, find_spec, resolve
+from qtab.resolution import Resolved, resolve
 from qtab.run import Run
 from qtab.training import Progress, train_resolved
 
@@ -93,7 +94,7 @@ def _header(resolved: Resolved, settings: Settings) -> str:
         f"seed {config.seed}",
     ]
     header = ", ".join(parts)
-    if settings.max_episode_steps is None and find_spec(config.env).max_episode_steps is None:
+    if settings.max_episode_steps is None and spec_of(config.env).max_episode_steps is None:
         header += (
             f"\n{config.env} has no time limit of its own: an episode ends after {config.max_episode_steps:,} steps"
         )
