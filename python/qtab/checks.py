@@ -15,9 +15,9 @@ def real(name: str, value: Any, low: float, high: float) -> float:
         TypeError: if it is no real number (a boolean is none).
         ValueError: if it is NaN or lies outside.
     """
-    if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
+    number = _number(value)
+    if number is None:
         raise TypeError(f"{name} must be a number in [{low:g}, {high:g}], got {value!r}")
-    number = float(value)
     if not low <= number <= high:
         raise ValueError(f"{name} must lie in [{low:g}, {high:g}], got {value!r}")
     return number
@@ -30,12 +30,22 @@ def finite(name: str, value: Any) -> float:
         TypeError: if it is no real number.
         ValueError: if it is NaN or infinite.
     """
-    if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
+    number = _number(value)
+    if number is None:
         raise TypeError(f"{name} must be a finite number, got {value!r}")
-    number = float(value)
     if not math.isfinite(number):
         raise ValueError(f"{name} must be finite, got {value!r}")
     return number
+
+
+def _number(value: Any) -> float | None:
+    """A real number as a float, infinite where it is too large for one; None for anything else."""
+    if isinstance(value, (bool, np.bool_, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
 
 
 def integer(name: str, value: Any, least: int, most: int | None = None) -> int:

@@ -1,6 +1,7 @@
 """The one place of every default: what a run is made from."""
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias, get_args
@@ -16,6 +17,8 @@ TerminalUpdate: TypeAlias = Literal["target", "assign"]
 InitialQ: TypeAlias = tuple[float, float] | NDArray[np.float64]
 
 LARGEST_MT19937_SEED = 2**32 - 1
+LARGEST_COUNT = 2**63 - 1
+"""Episodes and steps are counted in 64 bits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +67,7 @@ class Config:
             raise TypeError(f"env must be an environment id, got {self.env!r}")
         checked = {
             "env_kwargs": _keywords(self.env_kwargs),
-            "episodes": checks.integer("episodes", self.episodes, least=1),
+            "episodes": checks.integer("episodes", self.episodes, least=1, most=LARGEST_COUNT),
             "learning_rate": checks.real("learning_rate", self.learning_rate, 0, 1),
             "discount": checks.real("discount", self.discount, 0, 1),
             "epsilon": checks.real("epsilon", self.epsilon, 0, 1),
@@ -76,7 +79,8 @@ class Config:
             "backend": checks.choice("backend", self.backend, get_args(Backend)),
         }
         if self.max_episode_steps is not None:
-            checked["max_episode_steps"] = checks.integer("max_episode_steps", self.max_episode_steps, least=1)
+            steps = checks.integer("max_episode_steps", self.max_episode_steps, least=1, most=LARGEST_COUNT)
+            checked["max_episode_steps"] = steps
         if self.seed is not None:
             most = LARGEST_MT19937_SEED if self.bit_generator == "MT19937" else None
             checked["seed"] = checks.integer("seed", self.seed, least=0, most=most)
@@ -129,6 +133,8 @@ def _initial_q(value: Any) -> InitialQ:
         low, high = (checks.finite("initial_q", bound) for bound in value)
         if low > high:
             raise ValueError(f"initial_q must be a range (low, high) with low <= high, got {value!r}")
+        if not math.isfinite(high - low):
+            raise ValueError(f"initial_q must be a range (low, high) with a finite width, got {value!r}")
         return low, high
     if not isinstance(value, np.ndarray | list):
         raise TypeError(f"initial_q must be a range (low, high) or a table, got {value!r}")

@@ -11,7 +11,7 @@ from gymnasium.envs.registration import EnvSpec
 from qtab import plan
 from qtab.config import Config, known_fields
 from qtab.models import Model, model_of, spec_of
-from qtab.presets import preset
+from qtab.preset import preset
 from qtab.spaces import Grid, grid
 from qtab.wrappers import model_of_object
 

@@ -2,17 +2,18 @@
 
 import dataclasses
 import json
+import math
 import os
 import zipfile
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
 from qtab.config import Config
-from qtab.files import replacing
+from qtab.files import check_writable, replacing
 from qtab.run import Run
-from qtab.spaces import Grid
+from qtab.spaces import FLOATS, Grid
 
 FORMAT = "qtab run"
 FORMAT_VERSION = 1
@@ -27,6 +28,7 @@ _ARRAYS = {
 
 def save(run: Run, path: Path) -> None:
     """Writes a run; see :meth:`qtab.Run.save`."""
+    check_writable("path", path)
     arrays = {name: getattr(run, name) for name in _ARRAYS}
     arrays |= {"low": run.grid.low, "high": run.grid.high, "scale": run.grid.scale}
     config = {field.name: getattr(run.config, field.name) for field in dataclasses.fields(Config)}
@@ -43,7 +45,10 @@ def save(run: Run, path: Path) -> None:
         "seconds": run.seconds,
         "versions": dict(run.versions),
     }
-    text = json.dumps(header, allow_nan=False)
+    try:
+        text = json.dumps(header, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"env_kwargs must hold what JSON can, got {config['env_kwargs']!r}: {error}") from None
     with replacing(path) as temporary, temporary.open("wb") as file:
         np.savez(file, header=np.array(text), **arrays)
 
@@ -56,19 +61,21 @@ def load(path: "str | os.PathLike[str]") -> Run:
         ValueError: if it is no run, is damaged, or comes from another version of the format; it says which.
     """
     path = Path(path)
-    try:
-        return _load(path)
-    except (ValueError, KeyError, TypeError, EOFError, MemoryError, zipfile.BadZipFile, NotImplementedError) as error:
-        reason = f"it has no {error}" if isinstance(error, KeyError) else str(error)
-        raise ValueError(f"{str(path)!r} is no run that this version of qtab can read: {reason}") from None
+    with path.open("rb") as file:
+        try:
+            return _load(file)
+        except Exception as error:  # there is no end to the ways in which a file can be damaged
+            reason = f"it has no {error}" if isinstance(error, KeyError) else str(error)
+            raise ValueError(f"{str(path)!r} is no run that this version of qtab can read: {reason}") from None
 
 
-def _load(path: Path) -> Run:
-    with zipfile.ZipFile(path) as archive:
+def _load(opened: BinaryIO) -> Run:
+    with zipfile.ZipFile(opened) as archive:
         # What is stored as it is cannot be larger than the file: no memory is claimed for what is not there.
         if any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist()):
             raise ValueError("it is compressed, which qtab's files are not")
-    with np.load(path, allow_pickle=False) as file:
+    opened.seek(0)
+    with np.load(opened, allow_pickle=False) as file:
         header = json.loads(str(file["header"]))
         if not isinstance(header, dict) or header.get("format") != FORMAT:
             raise ValueError("its header is not one of qtab's")
@@ -80,11 +87,15 @@ def _load(path: Path) -> Run:
             fields["initial_q"] = file["initial_q"]
         config = Config(**fields)
         grid = Grid(file["low"], file["high"], file["scale"], int(header["actions"]), int(header["first_action"]))
-    _check_shapes(config, grid, arrays)
+    with np.errstate(all="raise"):
+        _check_shapes(config, grid, arrays)
+    completed = len(arrays["episode_returns"]) == config.episodes
+    if header["completed"] is not completed:
+        raise ValueError("its episodes are not as many as its header says")
     return Run(
         config=config,
         grid=grid,
-        completed=bool(header["completed"]),
+        completed=completed,
         seconds=float(header["seconds"]),
         versions={str(key): str(value) for key, value in header["versions"].items()},
         **arrays,
@@ -99,12 +110,19 @@ def _array(file: Any, name: str, dtype: "np.dtype[Any]", ndim: int) -> Any:
 
 
 def _check_shapes(config: Config, grid: Grid, arrays: dict[str, Any]) -> None:
+    if config.seed is None or config.max_episode_steps is None:
+        raise ValueError("its config is not that of a run")
     bounds = (grid.low, grid.high, grid.scale)
-    if any(bound.shape != (len(config.scale),) or bound.dtype.kind != "f" for bound in bounds):
+    if any(bound.shape != (len(config.scale),) or not np.isfinite(bound).all() for bound in bounds):
         raise ValueError("its bounds do not fit its scale")
+    if grid.low.dtype not in FLOATS or grid.high.dtype != grid.low.dtype or tuple(grid.scale) != config.scale:
+        raise ValueError("its bounds are not those of a space")
     tables = arrays["tables"]
-    if (tables.shape[1] * tables.shape[2], tables.shape[2]) != (int(np.prod(grid.shape)), grid.actions):
+    rows = math.prod(grid.shape[:-1])
+    if tables.shape[0] < 1 or tables.shape[1:] != (rows, grid.actions) or grid.actions < 1:
         raise ValueError(f"its tables have shape {tables.shape}, which does not fit the grid {grid.shape}")
+    if isinstance(config.initial_q, np.ndarray) and config.initial_q.shape != grid.shape:
+        raise ValueError(f"its initial_q has shape {config.initial_q.shape}, which does not fit the grid {grid.shape}")
     lengths = {len(arrays[name]) for name in ("episode_returns", "episode_lengths", "terminated")}
     if len(lengths) != 1 or lengths.pop() > config.episodes:
         raise ValueError("its episodes do not fit together")

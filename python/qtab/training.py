@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +12,8 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab import _core, checks
-from qtab.progress import bar
+from qtab.config import LARGEST_COUNT
+from qtab.progress import Bar
 from qtab.replay import starts
 from qtab.resolution import Resolved, resolve
 from qtab.run import Recording, Run
@@ -68,7 +70,7 @@ def train(
             as ``.run``.
     """
     callback_every = checks.integer("callback_every", callback_every, least=1)
-    record = checks.integer("record", record, least=0)
+    record = checks.integer("record", record, least=0, most=LARGEST_COUNT)
     resolved = resolve(env, overrides)
     try:
         return train_resolved(resolved, callback, callback_every, record, progress)
@@ -89,7 +91,7 @@ def train_resolved(
     trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record))
     done = 0
     try:
-        with bar(total, "episode", progress) as shown:
+        with Bar(total, "episode", progress) as shown:
             while done < total:
                 target = min(done + callback_every, total) if callback is not None else total
                 for stop in shown.stops(done, target):
@@ -97,10 +99,13 @@ def train_resolved(
                 done = target
                 if callback is not None:
                     returns, lengths, _ = trainer.episodes()
-                    if callback(Progress(done, total, returns, lengths)) is False:
+                    verdict = callback(Progress(done, total, returns, lengths))
+                    if verdict is not None and not verdict:  # NumPy's False stops too
                         break
     except BaseException as error:
-        error.run = _run(resolved, trainer, began)  # type: ignore[attr-defined]
+        run = _run(resolved, trainer, began)
+        with suppress(AttributeError):  # a frozen exception takes nothing along, and still comes through
+            error.run = run  # type: ignore[attr-defined]
         raise
     return _run(resolved, trainer, began)
 

@@ -87,6 +87,8 @@ def verify(
     watched = _Watched(_environment(config, env), count, progress)
     try:
         table, returns, lengths = q_learning(watched, config, stop_after=count)
+        if progress is not None:
+            progress(count, count)
     finally:
         if env is None:
             watched.close()

@@ -2,7 +2,7 @@
 
 import gymnasium as gym
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from qtab.config import Config
 from qtab.reference.streams import agent_stream
@@ -34,13 +34,17 @@ def q_learning(
     else:
         Q = config.initial_q.copy()
 
+    def cell(observation: ArrayLike) -> tuple[int, ...]:
+        # In the dtype of the space, whatever the environment hands out.
+        return tuple(np.round((np.asarray(observation, dtype=low.dtype) - low) * scale, 0).astype(int))
+
     returns, lengths = [], []
     epsilon = config.epsilon
     reduction = (config.epsilon - config.min_epsilon) / config.episodes
 
     for episode in range(stop_after or config.episodes):
         observation, _ = env.reset(seed=seed if episode == 0 else None)
-        state = tuple(np.round((observation - low) * scale, 0).astype(int))
+        state = cell(observation)
         total, length = 0.0, 0
         terminated = truncated = False
 
@@ -52,7 +56,7 @@ def q_learning(
                 action = int(rng.integers(0, n_actions))
 
             observation, reward, terminated, truncated, _ = env.step(first_action + action)
-            next_state = tuple(np.round((observation - low) * scale, 0).astype(int))
+            next_state = cell(observation)
 
             # Q(S, A) <- Q(S, A) + α [R + γ max Q(S', a) - Q(S, A)]; nothing follows a terminal state.
             if terminated and config.terminal_update == "assign":

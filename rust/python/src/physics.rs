@@ -13,14 +13,38 @@ use crate::model::Model;
 /// Holds an environment's state and constants, and steps it.
 ///
 /// A Python class inherits from this and from Gymnasium's class, names its `model`, and gives every constant a
-/// property that reads and writes here. Numbers that f64 cannot stand for with Gymnasium's meaning (a float32 state
+/// property that reads and writes here. Constants that f64 cannot stand for with Gymnasium's meaning (a float32 one
 /// promotes differently) are kept as they are, and such an environment steps in Python, through Gymnasium's own code.
 #[pyclass(subclass, module = "qtab._core")]
 pub(crate) struct Physics {
     model: Model,
-    state: Option<[f64; 2]>,
-    /// What Rust does not compute with, under its attribute's name; None until there is any.
+    state: State,
+    /// The constants that Rust does not compute with, under their names; None until there are any.
     foreign: Option<Py<PyDict>>,
+}
+
+/// Where the environment stands.
+enum State {
+    /// Before the first reset.
+    Nowhere,
+    /// What Python assigned, the array of a reset too: the object itself, whose types and later changes count.
+    Assigned(Py<PyAny>),
+    /// After a step in Rust.
+    Stepped([f64; 2]),
+}
+
+impl State {
+    /// What Rust can step from; None leaves the step to Python.
+    fn doubles(&self, py: Python<'_>) -> PyResult<Option<[f64; 2]>> {
+        let assigned = match self {
+            Self::Nowhere => return Ok(None),
+            Self::Stepped(state) => return Ok(Some(*state)),
+            Self::Assigned(assigned) => assigned.bind(py),
+        };
+        let Ok(numbers) = assigned.try_iter() else { return Ok(None) };
+        let numbers = numbers.map(|number| double(&number?)).collect::<PyResult<Option<Vec<f64>>>>()?;
+        Ok(numbers.and_then(|numbers| numbers.try_into().ok()))
+    }
 }
 
 /// For steps that draw nothing.
@@ -46,7 +70,7 @@ impl Physics {
         _kwargs: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let model = Model::new(class.getattr(intern!(class.py(), "model"))?.extract()?)?;
-        Ok(Self { model, state: None, foreign: None })
+        Ok(Self { model, state: State::Nowhere, foreign: None })
     }
 
     /// One step, with the types that Gymnasium returns.
@@ -54,7 +78,7 @@ impl Physics {
         let py = slf.py();
         let (model, state) = {
             let this = slf.borrow();
-            (this.model, if this.foreign.is_none() { this.state } else { None })
+            (this.model, if this.foreign.is_none() { this.state.doubles(py)? } else { None })
         };
         let Some(state) = state else {
             return slf.call_method1(intern!(py, "step_in_python"), (action,));
@@ -62,7 +86,7 @@ impl Physics {
         let Model::MountainCar(env) = model;
         let action = index(slf, action, env.actions())?;
         let Step { state, reward, terminated } = env.step(state.into(), action, &mut NoDraw);
-        slf.borrow_mut().state = Some(state.into());
+        slf.borrow_mut().state = State::Stepped(state.into());
         let render_mode = slf.getattr(intern!(py, "render_mode"))?;
         if !render_mode.is_none() && render_mode.eq(intern!(py, "human"))? {
             slf.call_method0(intern!(py, "render"))?;
@@ -71,23 +95,19 @@ impl Physics {
         Ok((observation, reward, terminated, false, PyDict::new(py)).into_pyobject(py)?.into_any())
     }
 
-    /// The state as Gymnasium keeps it: None before the first reset.
+    /// The state as Gymnasium keeps it, a tuple of `np.float64` after a step; None before the first reset.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        match (self.foreign_value(py, "state")?, self.state) {
-            (Some(state), _) => Ok(state),
-            (None, Some(state)) => Ok(PyTuple::new(py, state)?.into_any()),
-            (None, None) => Ok(py.None().into_bound(py)),
+        match &self.state {
+            State::Nowhere => Ok(py.None().into_bound(py)),
+            State::Assigned(state) => Ok(state.bind(py).clone()),
+            State::Stepped(state) => py.get_type::<PyTuple>().call1((PyArray1::from_slice(py, state),)),
         }
     }
 
     #[setter]
-    fn set_state(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let numbers = value.try_iter()?.map(|number| double(&number?)).collect::<PyResult<Option<Vec<f64>>>>()?;
-        let state = numbers.and_then(|numbers| <[f64; 2]>::try_from(numbers).ok());
-        self.keep("state", value, state.is_none())?;
-        self.state = state;
-        Ok(())
+    fn set_state(&mut self, value: &Bound<'_, PyAny>) {
+        self.state = if value.is_none() { State::Nowhere } else { State::Assigned(value.clone().unbind()) };
     }
 
     /// One of the model's constants.
@@ -132,10 +152,11 @@ impl Physics {
     }
 }
 
-/// The f64 that Python computes with; None for a number of another width, whose arithmetic rounds differently.
+/// The f64 that Python computes with. None for a number of another width, whose arithmetic rounds differently, and for
+/// one that is not finite, of which Python's functions make errors and `NumPy`'s comparisons something of their own.
 fn double(number: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     if number.is_instance_of::<PyFloat>() || number.is_instance_of::<PyInt>() {
-        return number.extract().map(Some);
+        return Ok(Some(number.extract()?).filter(|number: &f64| number.is_finite()));
     }
     Ok(None)
 }
