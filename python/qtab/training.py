@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from qtab import _core, checks
 from qtab.config import LARGEST_COUNT
-from qtab.progress import bar
+from qtab.progress import Bar
 from qtab.replay import starts
 from qtab.resolution import Resolved, resolve
 from qtab.run import Recording, Run
@@ -91,7 +91,7 @@ def train_resolved(
     trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record))
     done = 0
     try:
-        with bar(total, "episode", progress) as shown:
+        with Bar(total, "episode", progress) as shown:
             while done < total:
                 target = min(done + callback_every, total) if callback is not None else total
                 for stop in shown.stops(done, target):
