@@ -32,6 +32,11 @@ class Resolved:
     made: bool
     """Whether the environment was made here, and so is closed here."""
 
+    def close(self) -> None:
+        """Closes the environment if it was made here."""
+        if self.made and self.env is not None:
+            self.env.close()
+
     def core_environment(self) -> plan.Model | plan.PythonEnvironment:
         """Returns the environment as the extension module takes it."""
         if self.model is not None:

@@ -128,8 +128,7 @@ def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[
         (_, actions) = trainer.recordings()[-1]
         return trainer.tables(), [resolved.grid.first_action + action for action in actions]
     finally:
-        if resolved.made and resolved.env is not None:
-            resolved.env.close()
+        resolved.close()
 
 
 def _fields(config: Config) -> dict[str, Any]:

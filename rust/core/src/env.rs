@@ -29,6 +29,9 @@ pub trait Env {
     fn reset(&self, draw: &mut impl Draw) -> Self::State;
 
     /// One step of the dynamics.
+    ///
+    /// # Panics
+    /// It may, where the action is none of the environment's: whoever takes actions from outside checks them.
     fn step(&self, state: Self::State, action: Self::Action, draw: &mut impl Draw) -> Step<Self::State>;
 
     /// What the agent sees of a state.

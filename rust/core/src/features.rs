@@ -1,11 +1,19 @@
 //! From an observation to the rows of the table that it lights.
 
+mod bins;
+mod identity;
+mod real;
 mod rounding;
+mod tiles;
 
 use std::error::Error;
 use std::fmt;
 
-pub use rounding::{Axis, Real, Rounding};
+pub use bins::{Bins, Edges};
+pub use identity::Identity;
+pub use real::Real;
+pub use rounding::{Axis, Rounding};
+pub use tiles::{Lit, MOST_TILINGS, Tiles};
 
 /// An observation that the features have no row for.
 #[derive(Clone, Copy, Debug, PartialEq)]

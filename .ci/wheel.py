@@ -1,0 +1,27 @@
+"""What the bare wheel must do, in an environment with its required dependencies alone."""
+
+from importlib.metadata import distributions
+
+import gymnasium
+import qtab
+
+extras = {"matplotlib", "tyro", "tqdm", "moviepy", "pygame"} & {found.metadata["Name"] for found in distributions()}
+assert not extras, f"the wheel requires {extras}"
+
+run = qtab.train("MountainCar-v0", seed=0, episodes=200)
+assert qtab.verify(run, episodes=20).equal
+run.save("run.npz")
+verification = qtab.verify(qtab.load("run.npz"))
+print(verification)
+assert verification.equal
+
+env = gymnasium.make("qtab/MountainCar-v0")
+env.reset(seed=0)
+env.step(env.action_space.sample())
+
+try:
+    qtab.plot(run)
+except ModuleNotFoundError as error:
+    assert "pip install 'qtab[plot]'" in str(error)
+else:
+    raise AssertionError("a plot without matplotlib")

@@ -1,0 +1,95 @@
+//! Bins between edges, equal in width or not: `np.digitize`. What lies beyond the limits falls into the outermost bins.
+
+use std::marker::PhantomData;
+
+use super::{Features, Outside, Real};
+
+/// The inner edges of one component's bins, rising.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edges<T>(Vec<T>);
+
+impl<T: Real> Edges<T> {
+    /// Edges as given.
+    ///
+    /// # Panics
+    /// If they do not rise.
+    pub fn new(edges: Vec<T>) -> Self {
+        assert!(edges.is_sorted_by(|left, right| left < right), "edges must rise");
+        Self(edges)
+    }
+
+    /// `np.linspace(low, high, bins + 1)[1:-1]`, computed in the dtype of the bounds: the edges of Gymnasium's
+    /// `DiscretizeObservation`.
+    pub fn equal_width(low: T, high: T, bins: u32) -> Self {
+        let width = (high - low) / T::of(bins);
+        Self::new((1..bins).map(|edge| T::of(edge) * width + low).collect())
+    }
+
+    /// How many bins lie between and beyond the edges.
+    pub fn bins(&self) -> usize {
+        self.0.len() + 1
+    }
+
+    /// `np.digitize(value, edges)`: an edge belongs to the bin above it.
+    #[inline]
+    fn bin(&self, value: T) -> u32 {
+        self.0.iter().map(|&edge| u32::from(edge <= value)).sum()
+    }
+}
+
+/// A grid of bins over the axes `A`, rows in C order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bins<T, A = Vec<Edges<T>>> {
+    axes: A,
+    dtype: PhantomData<T>,
+}
+
+impl<T: Real, A: AsRef<[Edges<T>]>> Bins<T, A> {
+    /// The grid over these axes.
+    pub fn new(axes: A) -> Self {
+        Self { axes, dtype: PhantomData }
+    }
+}
+
+impl<T: Real, A: AsRef<[Edges<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Bins<T, A> {
+    type Rows = [u32; 1];
+
+    #[inline]
+    fn rows(&self, observation: &O) -> Result<[u32; 1], Outside> {
+        let mut row = 0;
+        for (axis, (edges, &value)) in self.axes.as_ref().iter().zip(observation.as_ref()).enumerate() {
+            if value.into().is_nan() {
+                return Err(Outside { axis, value: f64::NAN });
+            }
+            row = row * edges.bins() as u32 + edges.bin(value);
+        }
+        Ok([row])
+    }
+
+    fn len(&self) -> usize {
+        self.axes.as_ref().iter().map(Edges::bins).product()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edge_belongs_to_the_bin_above_it() {
+        let edges = Edges::equal_width(0.0_f64, 4.0, 4);
+        assert_eq!([0.0, 0.99, 1.0, 3.0].map(|value| edges.bin(value)), [0, 0, 1, 3]);
+    }
+
+    #[test]
+    fn what_lies_beyond_the_limits_falls_into_the_outermost_bins() {
+        let grid = Bins::new([Edges::equal_width(-1.0_f32, 1.0, 4)]);
+        assert_eq!(grid.rows(&[-9.0]), Ok([0]));
+        assert_eq!(grid.rows(&[f32::INFINITY]), Ok([3]));
+    }
+
+    #[test]
+    fn nan_has_no_bin() {
+        assert!(Bins::new([Edges::equal_width(-1.0_f32, 1.0, 4)]).rows(&[f32::NAN]).is_err());
+    }
+}

@@ -1,0 +1,31 @@
+//! A discrete observation is its own row.
+
+use super::{Features, Outside};
+
+/// One row for each of so many observations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Identity(pub u32);
+
+impl Features<u32> for Identity {
+    type Rows = [u32; 1];
+
+    #[inline]
+    fn rows(&self, &observation: &u32) -> Result<[u32; 1], Outside> {
+        if observation < self.0 { Ok([observation]) } else { Err(Outside { axis: 0, value: f64::from(observation) }) }
+    }
+
+    fn len(&self) -> usize {
+        self.0 as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_observation_has_a_row_and_the_next_has_none() {
+        assert_eq!(Identity(3).rows(&2), Ok([2]));
+        assert!(Identity(3).rows(&3).is_err());
+    }
+}

@@ -1,0 +1,123 @@
+//! Tile coding with asymmetric offsets (Sutton & Barto, section 9.5.4), densely indexed.
+
+use super::{Features, Outside};
+
+/// The most tilings there can be.
+pub const MOST_TILINGS: usize = 32;
+
+/// The rows that an observation lights, one a tiling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lit {
+    rows: [u32; MOST_TILINGS],
+    tilings: usize,
+}
+
+impl AsRef<[u32]> for Lit {
+    #[inline]
+    fn as_ref(&self) -> &[u32] {
+        &self.rows[..self.tilings]
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Axis {
+    low: f64,
+    high: f64,
+    tiles_a_unit: f64,
+    /// One more than the tiles asked for: the offsets push a tiling's first tile over the lower edge.
+    tiles: u32,
+}
+
+/// So many tilings of the box, each shifted by its own part of a tile: by 1, 3, 5 … parts along the first, second,
+/// third … component.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tiles {
+    axes: Vec<Axis>,
+    tilings: u32,
+    rows_a_tiling: u32,
+}
+
+impl Tiles {
+    /// Tilings over the box from `low` to `high`, with so many `tiles` along each component. Observations are clipped
+    /// to the box.
+    ///
+    /// # Panics
+    /// If there are no tilings, or more than [`MOST_TILINGS`].
+    pub fn new(low: &[f64], high: &[f64], tiles: &[u32], tilings: u32) -> Self {
+        assert!((1..=MOST_TILINGS).contains(&(tilings as usize)), "tilings must lie in 1 to {MOST_TILINGS}");
+        let axes: Vec<Axis> = low
+            .iter()
+            .zip(high)
+            .zip(tiles)
+            .map(|((&low, &high), &tiles)| Axis {
+                low,
+                high,
+                tiles_a_unit: f64::from(tiles) / (high - low),
+                tiles: tiles + 1,
+            })
+            .collect();
+        let rows_a_tiling = axes.iter().map(|axis| axis.tiles).product();
+        Self { axes, tilings, rows_a_tiling }
+    }
+}
+
+impl<O: AsRef<[f64]> + ?Sized> Features<O> for Tiles {
+    type Rows = Lit;
+
+    #[inline]
+    fn rows(&self, observation: &O) -> Result<Lit, Outside> {
+        let tilings = self.tilings;
+        let mut rows: [u32; MOST_TILINGS] = std::array::from_fn(|tiling| tiling as u32);
+        for (index, (axis, &value)) in self.axes.iter().zip(observation.as_ref()).enumerate() {
+            if value.is_nan() {
+                return Err(Outside { axis: index, value });
+            }
+            let value = value.clamp(axis.low, axis.high);
+            let part = ((value - axis.low) * axis.tiles_a_unit * f64::from(tilings)).floor() as u32;
+            for (tiling, row) in (0..tilings).zip(&mut rows) {
+                let offset = (tiling * (2 * index as u32 + 1)) % tilings;
+                *row = *row * axis.tiles + (part + offset) / tilings;
+            }
+        }
+        Ok(Lit { rows, tilings: tilings as usize })
+    }
+
+    fn len(&self) -> usize {
+        self.tilings as usize * self.rows_a_tiling as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_tiling_lights_one_row_of_its_own() {
+        let tiles = Tiles::new(&[0.0, 0.0], &[1.0, 1.0], &[4, 4], 8);
+        for observation in [[0.0, 0.0], [1.0, 1.0], [0.3, 0.9]] {
+            let Ok(lit) = tiles.rows(&observation) else { unreachable!("it lies in the box") };
+            let owners: Vec<u32> = lit.as_ref().iter().map(|row| row / 25).collect();
+            assert_eq!(owners, [0, 1, 2, 3, 4, 5, 6, 7]);
+        }
+        assert_eq!(Features::<[f64; 2]>::len(&tiles), 200);
+    }
+
+    #[test]
+    fn neighbours_share_tiles_and_strangers_share_none() {
+        let tiles = Tiles::new(&[0.0, 0.0], &[1.0, 1.0], &[8, 8], 8);
+        let shared = |left: [f64; 2], right: [f64; 2]| match (tiles.rows(&left), tiles.rows(&right)) {
+            (Ok(left), Ok(right)) => left.as_ref().iter().zip(right.as_ref()).filter(|(l, r)| l == r).count(),
+            _ => unreachable!("both lie in the box"),
+        };
+        assert_eq!(shared([0.5, 0.5], [0.5, 0.5]), 8);
+        assert!((1..8).contains(&shared([0.5, 0.5], [0.53, 0.5])));
+        assert_eq!(shared([0.1, 0.1], [0.9, 0.9]), 0);
+    }
+
+    #[test]
+    fn what_lies_outside_is_clipped_to_the_box() {
+        let tiles = Tiles::new(&[0.0], &[1.0], &[4], 4);
+        assert_eq!(tiles.rows(&[-5.0]), tiles.rows(&[0.0]));
+        assert_eq!(tiles.rows(&[f64::INFINITY]), tiles.rows(&[1.0]));
+    }
+}
