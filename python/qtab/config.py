@@ -17,8 +17,6 @@ TerminalUpdate: TypeAlias = Literal["target", "assign"]
 InitialQ: TypeAlias = tuple[float, float] | NDArray[np.float64]
 
 LARGEST_MT19937_SEED = 2**32 - 1
-LARGEST_COUNT = 2**63 - 1
-"""Episodes and steps are counted in 64 bits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +65,7 @@ class Config:
             raise TypeError(f"env must be an environment id, got {self.env!r}")
         checked = {
             "env_kwargs": _keywords(self.env_kwargs),
-            "episodes": checks.integer("episodes", self.episodes, least=1, most=LARGEST_COUNT),
+            "episodes": checks.count("episodes", self.episodes, least=1),
             "learning_rate": checks.real("learning_rate", self.learning_rate, 0, 1),
             "discount": checks.real("discount", self.discount, 0, 1),
             "epsilon": checks.real("epsilon", self.epsilon, 0, 1),
@@ -79,8 +77,7 @@ class Config:
             "backend": checks.choice("backend", self.backend, get_args(Backend)),
         }
         if self.max_episode_steps is not None:
-            steps = checks.integer("max_episode_steps", self.max_episode_steps, least=1, most=LARGEST_COUNT)
-            checked["max_episode_steps"] = steps
+            checked["max_episode_steps"] = checks.count("max_episode_steps", self.max_episode_steps, least=1)
         if self.seed is not None:
             most = LARGEST_MT19937_SEED if self.bit_generator == "MT19937" else None
             checked["seed"] = checks.integer("seed", self.seed, least=0, most=most)

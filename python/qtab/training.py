@@ -12,7 +12,6 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab import _core, checks
-from qtab.config import LARGEST_COUNT
 from qtab.progress import Bar
 from qtab.replay import starts
 from qtab.resolution import Resolved, resolve
@@ -70,7 +69,7 @@ def train(
             as ``.run``.
     """
     callback_every = checks.integer("callback_every", callback_every, least=1)
-    record = checks.integer("record", record, least=0, most=LARGEST_COUNT)
+    record = checks.count("record", record, least=0)
     resolved = resolve(env, overrides)
     try:
         return train_resolved(resolved, callback, callback_every, record, progress)
@@ -104,7 +103,7 @@ def train_resolved(
                         break
     except BaseException as error:
         run = _run(resolved, trainer, began)
-        with suppress(AttributeError):  # a frozen exception takes nothing along, and still comes through
+        with suppress(AttributeError):  # an exception that takes nothing along still comes through
             error.run = run  # type: ignore[attr-defined]
         raise
     return _run(resolved, trainer, began)
