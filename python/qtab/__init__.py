@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from qtab.config import Config
     from qtab.evaluation import Evaluation, evaluate
     from qtab.plotting import plot
-    from qtab.presets import presets
+    from qtab.preset import presets
     from qtab.run import Recording, Run
     from qtab.storage import load
     from qtab.training import Progress, train
@@ -51,7 +51,7 @@ _HOME = {
     "evaluate": "evaluation",
     "load": "storage",
     "plot": "plotting",
-    "presets": "presets",
+    "presets": "preset",
     "train": "training",
     "verify": "verification",
 }

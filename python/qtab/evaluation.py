@@ -6,6 +6,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.models import spec_of
 from qtab.run import Run
 from qtab.training import train
 
@@ -75,7 +76,7 @@ def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.En
         max_episode_steps=config.max_episode_steps,
         backend=config.backend if env is None else "auto",
     )
-    spec = gym.spec(config.env) if env is None else env.spec
+    spec = spec_of(config.env) if env is None else env.spec
     assert played.config.seed is not None  # noqa: S101 - resolved
     return Evaluation(
         played.episode_returns,

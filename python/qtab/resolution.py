@@ -10,9 +10,9 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import plan
 from qtab.config import Config, known_fields
-from qtab.models import Model, model_of
+from qtab.models import Model, model_of, spec_of
 from qtab.options import defaults, stranger, tables
-from qtab.presets import preset
+from qtab.preset import preset
 from qtab.spaces import Grid, grid
 from qtab.tiling import Tiling, tiling
 from qtab.wrappers import model_of_object
@@ -33,6 +33,11 @@ class Resolved:
     """The environment stepped in Python."""
     made: bool
     """Whether the environment was made here, and so is closed here."""
+
+    def close(self) -> None:
+        """Closes the environment if it was made here."""
+        if self.made and self.env is not None:
+            self.env.close()
 
     def core_environment(self) -> plan.Model | plan.PythonEnvironment:
         """Returns the environment as the extension module takes it."""
@@ -104,8 +109,9 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolve
 
 
 def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
-    spec = env if isinstance(env, EnvSpec) else gym.spec(env)
-    config = merge(spec.id, {"env_kwargs": dict(spec.kwargs)}, *layers)
+    # An id keeps the package that it names, so that the config makes the environment anywhere.
+    name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
+    config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = model_of(spec, config.env_kwargs)
     backend = _backend(config, model, f"Rust has no {spec.id} with these keyword arguments or wrappers")
     limit: dict[str, Any] = {}

@@ -100,6 +100,8 @@ class Run:
 
         Raises:
             OSError: if the file cannot be written; nothing half written is left.
+            TypeError: if the environment's keyword arguments hold what JSON cannot.
+            ValueError: if they hold a number that JSON cannot.
         """
         from qtab.storage import save
 

@@ -12,6 +12,8 @@ from qtab import plan
 
 LARGEST_TABLE = 2**32
 """Rows are numbered in 32 bits."""
+FLOATS = (np.dtype(np.float32), np.dtype(np.float64))
+"""The dtypes of the boxes that have a grid."""
 
 
 @dataclass(frozen=True)
@@ -54,10 +56,16 @@ class Grid:
         """Returns the index of an observation's row.
 
         Raises:
-            ValueError: if the observation lies outside the space.
+            TypeError: if it holds no numbers.
+            ValueError: if it has another shape than the space, or lies outside.
         """
-        observation = np.asarray(observation, dtype=self.low.dtype)
-        rounded = np.round((observation - self.low) * self.scale, 0)
+        if observation.dtype.kind not in "fiu":
+            raise TypeError(f"observation must hold numbers, got {observation!r}")
+        if observation.shape != self.low.shape:
+            raise ValueError(f"observation must have shape {self.low.shape}, got {observation.shape}")
+        with np.errstate(over="ignore", invalid="ignore"):
+            observation = observation.astype(self.low.dtype)
+            rounded = np.round((observation - self.low) * self.scale, 0)
         inside = (rounded >= 0) & (rounded < self.shape[:-1])
         if not inside.all():
             axis = int(np.argmin(inside))
@@ -77,7 +85,7 @@ def box(env: gym.Env) -> tuple[Bounds, spaces.Discrete]:
     actions, observations = env.action_space, env.observation_space
     if not isinstance(actions, spaces.Discrete):
         raise ValueError(f"the action space must be Discrete, got {actions}")
-    if not isinstance(observations, spaces.Box) or len(observations.shape) != 1 or observations.dtype not in _FLOATS:
+    if not isinstance(observations, spaces.Box) or len(observations.shape) != 1 or observations.dtype not in FLOATS:
         raise ValueError(f"the observation space must be a Box of one float axis, got {observations}")
     return cast(Bounds, (observations.low, observations.high)), actions
 
@@ -102,7 +110,10 @@ def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
         count = float(np.prod(cells + 1)) * table.actions
     if not count < LARGEST_TABLE:
         raise ValueError(f"scale must give a table of fewer than 2**32 values, got {scale!r}, which needs {count:.3g}")
+    try:
+        np.empty(table.shape)
+    except MemoryError:
+        raise ValueError(
+            f"scale must give a table that fits into memory, got {scale!r}, which needs {count:.3g} values"
+        ) from None
     return table
-
-
-_FLOATS = (np.dtype(np.float32), np.dtype(np.float64))

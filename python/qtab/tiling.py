@@ -98,4 +98,10 @@ def tiling(env: gym.Env, config: Config) -> Tiling:
     size = config.tilings * float(np.prod([count + 1.0 for count in tiles])) * int(actions.n)
     if not size < LARGEST_TABLE:
         raise ValueError(f"tiles must give a table of fewer than 2**32 values, got {tiles!r}, which needs {size:.3g}")
+    try:
+        np.empty(int(size))
+    except MemoryError:
+        raise ValueError(
+            f"tiles must give a table that fits into memory, got {tiles!r}, which needs {size:.3g} values"
+        ) from None
     return Tiling(*bounds, (low, high), tiles, config.tilings, int(actions.n), int(actions.start))

@@ -1,5 +1,6 @@
 """The checks of the config's fields: bad values are refused, NumPy's numbers become Python's."""
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any, get_args
 
@@ -10,8 +11,6 @@ from qtab import checks, names
 from qtab.options import OPTIONS, refuse_strangers
 
 LARGEST_MT19937_SEED = 2**32 - 1
-LARGEST_INITIAL_Q = 1e300
-"""Beyond it a difference of two values could overflow."""
 MOST_TILINGS = 32
 
 
@@ -79,6 +78,10 @@ def _integer(least: int, most: int | None = None) -> Callable[[str, Any], int]:
     return lambda name, value: checks.integer(name, value, least, most)
 
 
+def _count(name: str, value: Any) -> int:
+    return checks.count(name, value, least=1)
+
+
 def _choice(choices: Any) -> Callable[[str, Any], str]:
     return lambda name, value: checks.choice(name, value, get_args(choices))
 
@@ -114,14 +117,14 @@ def _tiles(name: str, value: Any) -> tuple[int, ...]:
 
 def _initial_q(name: str, value: Any) -> float | tuple[float, float] | NDArray[np.float64]:
     if isinstance(value, tuple | list) and len(value) == 2 and not any(hasattr(part, "__len__") for part in value):
-        low, high = (
-            checks.real(name, checks.finite(name, bound), -LARGEST_INITIAL_Q, LARGEST_INITIAL_Q) for bound in value
-        )
+        low, high = (checks.finite(name, bound) for bound in value)
         if low > high:
             raise ValueError(f"{name} must be a range (low, high) with low <= high, got {value!r}")
+        if not math.isfinite(high - low):
+            raise ValueError(f"{name} must be a range (low, high) with a finite width, got {value!r}")
         return low, high
-    if not isinstance(value, np.ndarray | list | tuple) and hasattr(value, "__float__") and not isinstance(value, bool):
-        return checks.real(name, checks.finite(name, value), -LARGEST_INITIAL_Q, LARGEST_INITIAL_Q)
+    if hasattr(value, "__float__") and not isinstance(value, bool) and np.ndim(value) == 0:
+        return checks.finite(name, value)
     if not isinstance(value, np.ndarray | list):
         raise TypeError(f"{name} must be a range (low, high), a number or a table, got {value!r}")
     try:
@@ -137,20 +140,20 @@ def _initial_q(name: str, value: Any) -> float | tuple[float, float] | NDArray[n
 _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "env": _text,
     "env_kwargs": _keywords,
-    "episodes": _integer(1),
+    "episodes": _count,
     "algorithm": _choice(names.Algorithm),
     "learning_rate": _real(0, 2),
     "discount": _real(0, 1),
     "learning_rate_schedule": _choice(names.LearningRateSchedule),
     "min_learning_rate": _real(0, 2),
     "learning_rate_decay": _real(0, 1),
-    "learning_rate_warm_up": _integer(0),
+    "learning_rate_warm_up": _integer(0, checks.LARGEST_COUNT),
     "exploration": _choice(names.Exploration),
     "epsilon": _real(0, 1),
     "epsilon_schedule": _choice(names.EpsilonSchedule),
     "min_epsilon": _real(0, 1),
     "epsilon_decay": _real(0, 1),
-    "epsilon_warm_up": _integer(0),
+    "epsilon_warm_up": _integer(0, checks.LARGEST_COUNT),
     "ties": _choice(names.Ties),
     "temperature": _above_zero,
     "trace_decay": _real(0, 1),
@@ -168,7 +171,7 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "initial_q": _initial_q,
     "terminal_update": _choice(names.TerminalUpdate),
     "on_truncation": _choice(names.OnTruncation),
-    "max_episode_steps": _integer(1),
+    "max_episode_steps": _count,
     "bit_generator": _choice(names.BitGenerator),
     "backend": _choice(names.Backend),
     "preset": _text,

@@ -87,6 +87,8 @@ def verify(
     watched = _Watched(_environment(config, env), count, progress)
     try:
         table, returns, lengths = LEARNERS[config.algorithm](watched, config, stop_after=count)
+        if progress is not None:
+            progress(count, count)
     finally:
         if env is None:
             watched.close()
@@ -126,8 +128,7 @@ def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[
         (_, actions) = trainer.recordings()[-1]
         return trainer.tables(), [resolved.grid.first_action + action for action in actions]
     finally:
-        if resolved.made and resolved.env is not None:
-            resolved.env.close()
+        resolved.close()
 
 
 def _fields(config: Config) -> dict[str, Any]:

@@ -32,6 +32,7 @@
 pub mod env;
 pub mod envs;
 pub mod features;
+mod hint;
 pub mod learner;
 pub mod learners;
 pub mod random;

@@ -60,10 +60,11 @@ impl<const N: usize> Table<N> {
 /// The first of the largest values: `np.argmax`.
 #[inline]
 pub(crate) fn first_maximum(values: &[f64]) -> usize {
-    let mut best = 0;
-    for action in 1..values.len() {
-        if values[action] > values[best] {
-            best = action;
+    // The largest value is carried along: looked up by index, it would add a load to the chain of comparisons.
+    let (mut best, mut largest) = (0, values[0]);
+    for (action, &value) in values.iter().enumerate().skip(1) {
+        if value > largest {
+            (best, largest) = (action, value);
         }
     }
     best

@@ -1,6 +1,6 @@
 //! Python's choice into a trainer: the hot combination whole, every other one through a boxed world.
 
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use qtab_core::features::{Features, Real, Rounding};
 use qtab_core::learners::{
@@ -34,7 +34,9 @@ pub(crate) struct Built {
 
 /// A run of a model in Rust, its constants as they are.
 pub(crate) fn native(model: Model, plan: &Plan<'_>) -> PyResult<Built> {
-    let Model::MountainCar(env) = model;
+    let Model::MountainCar(env) = model else {
+        return Err(PyValueError::new_err("model must be 'MountainCar' to be trained in Rust"));
+    };
     let mut draw = plan.stream()?;
     let (limit, stream) = (plan.max_episode_steps, plan.environment_stream());
     match &plan.features {
@@ -225,7 +227,8 @@ impl Description {
     fn resolve(self) -> PyResult<Model> {
         let mut model = Model::new(&self.model)?;
         for (name, value) in self.parameters {
-            *model.parameter(&name)? = value;
+            let parameter = model.constants().parameter(&name);
+            *parameter.ok_or_else(|| PyValueError::new_err(format!("the model has no parameter {name:?}")))? = value;
         }
         Ok(model)
     }

@@ -47,6 +47,16 @@ impl<T: Real + numpy::Element, F: Features<[T]>> PythonWorld<T, F> {
         }
     }
 
+    fn misshapen(&self, observation: &Bound<'_, PyAny>) -> PyErr {
+        match observation.getattr(intern!(observation.py(), "shape")) {
+            Ok(shape) => PyValueError::new_err(format!(
+                "an observation must have shape ({},), the space's, got {shape}",
+                self.dimensions
+            )),
+            Err(error) => error,
+        }
+    }
+
     fn rows(&self, observation: &Bound<'_, PyAny>) -> Result<F::Rows, Failure> {
         let py = observation.py();
         let converted;
@@ -56,12 +66,11 @@ impl<T: Real + numpy::Element, F: Features<[T]>> PythonWorld<T, F> {
             // Not the space's dtype: read as the space says that it is meant.
             let arguments = (observation, numpy::dtype::<T>(py));
             let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), arguments)?;
-            converted = array.cast_into::<PyArray1<T>>().map_err(PyErr::from)?;
+            converted = array.cast_into::<PyArray1<T>>().map_err(|error| self.misshapen(&error.into_inner()))?;
             &converted
         };
         if array.len()? != self.dimensions {
-            let message = format!("an observation has shape ({},), the space ({},)", array.len()?, self.dimensions);
-            return Err(PyValueError::new_err(message).into());
+            return Err(self.misshapen(array).into());
         }
         let values = array.readonly();
         match values.as_slice() {
@@ -102,11 +111,9 @@ impl<T: Real + numpy::Element, F: Features<[T]>> World for PythonWorld<T, F> {
                 Bound<'_, PyAny>,
                 Bound<'_, PyAny>,
             ) = answer.extract()?;
-            if reward.is_nan() {
-                return Err(PyValueError::new_err(
-                    "the environment's reward is nan, which no value can be learned from",
-                )
-                .into());
+            if !reward.is_finite() {
+                let message = format!("the environment's reward is {reward}, which no value can be learned from");
+                return Err(PyValueError::new_err(message).into());
             }
             *elapsed += 1;
             let rows = self.rows(&observation)?;

@@ -1,10 +1,14 @@
 //! `MountainCar-v0`: an underpowered car in a sinusoidal valley (A. W. Moore, 1990; Sutton & Barto, Example 10.1).
 
 use crate::env::{Env, Parameters, Step};
+use crate::hint::seldom;
 use crate::random::Draw;
 
 /// The starting position is uniform over these, unless Gymnasium's reset options say otherwise.
 const START: (f64, f64) = (-0.6, -0.4);
+/// Action - 1: left, none, right. Looked up, because turning the action into a float takes longer, and the next step
+/// waits for it.
+const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
 const REWARD: f64 = -1.0;
 
 /// The constants of the dynamics, under Gymnasium's names.
@@ -86,7 +90,7 @@ impl Env for MountainCar {
 
     #[inline]
     fn actions(&self) -> usize {
-        3
+        DIRECTIONS.len()
     }
 
     #[inline]
@@ -97,13 +101,16 @@ impl Env for MountainCar {
     #[inline]
     fn step(&self, state: MountainCarState, action: usize, _draw: &mut impl Draw) -> Step<MountainCarState> {
         let MountainCarState { mut position, mut velocity } = state;
-        let push = (action as f64 - 1.0) * self.force;
+        let push = DIRECTIONS[action] * self.force;
         velocity += push + (3.0 * position).cos() * (-self.gravity);
         velocity = clip(velocity, -self.max_speed, self.max_speed);
         position += velocity;
         position = clip(position, self.min_position, self.max_position);
-        if position == self.min_position && velocity < 0.0 {
-            velocity = 0.0;
+        if position == self.min_position {
+            seldom();
+            if velocity < 0.0 {
+                velocity = 0.0;
+            }
         }
         Step {
             state: MountainCarState { position, velocity },
@@ -118,15 +125,25 @@ impl Env for MountainCar {
     }
 }
 
-/// `np.clip`: NaN stays NaN.
+/// `np.clip`: NaN stays NaN. An episode seldom meets a limit.
 #[inline]
 fn clip(value: f64, low: f64, high: f64) -> f64 {
-    let raised = if value < low { low } else { value };
-    if raised > high { high } else { raised }
+    let mut clipped = value;
+    if clipped < low {
+        seldom();
+        clipped = low;
+    }
+    if clipped > high {
+        seldom();
+        clipped = high;
+    }
+    clipped
 }
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::random::{Pcg64, SeedSequence};
 
@@ -157,5 +174,43 @@ mod tests {
     #[test]
     fn every_step_costs_one() {
         assert_eq!(step(-0.5, 0.0, 1).reward, -1.0);
+    }
+
+    /// Gymnasium's lines, in their order.
+    fn gymnasium(car: &MountainCar, mut position: f64, mut velocity: f64, action: usize) -> (f64, f64, bool) {
+        let np_clip = |value: f64, low: f64, high: f64| if value.is_nan() { value } else { value.max(low).min(high) };
+        velocity += (action as f64 - 1.0) * car.force + (3.0 * position).cos() * (-car.gravity);
+        velocity = np_clip(velocity, -car.max_speed, car.max_speed);
+        position += velocity;
+        position = np_clip(position, car.min_position, car.max_position);
+        if position == car.min_position && velocity < 0.0 {
+            velocity = 0.0;
+        }
+        (position, velocity, position >= car.goal_position && velocity >= car.goal_velocity)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn every_step_is_gymnasiums(
+            position in prop_oneof![-1.3..0.7, -1.2..-1.13, Just(-1.2), Just(0.6), any::<f64>()],
+            velocity in prop_oneof![-0.08..0.08, Just(0.0), Just(-0.0), any::<f64>()],
+            action in 0_usize..3,
+            force in prop_oneof![Just(0.001), -0.1..0.1],
+            gravity in prop_oneof![Just(0.0025), -0.1..0.1],
+        ) {
+            let car = MountainCar { force, gravity, ..MountainCar::default() };
+            let mut draw = Pcg64::new(&SeedSequence::new(&[0]));
+            let Step { state, terminated, .. } = car.step(MountainCarState { position, velocity }, action, &mut draw);
+            let bits = |(position, velocity, terminated): (f64, f64, bool)| {
+                (position.to_bits(), velocity.to_bits(), terminated)
+            };
+            let expected = gymnasium(&car, position, velocity, action);
+            prop_assert!(
+                bits((state.position, state.velocity, terminated)) == bits(expected)
+                    || expected.0.is_nan() && state.position.is_nan()
+            );
+        }
     }
 }

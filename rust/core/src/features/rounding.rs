@@ -32,9 +32,9 @@ impl<T: Real> Axis<T> {
     #[inline]
     fn cell(&self, value: T) -> Option<u32> {
         let shifted = (value - self.low).into() * self.scale + ROUND_TO_INTEGER;
-        let rounded = shifted - ROUND_TO_INTEGER;
-        // Compared as floats: that is false for NaN, and for what is too large to round so.
-        (rounded >= 0.0 && rounded < f64::from(self.size)).then_some(shifted.to_bits() as u32)
+        let cell = shifted.to_bits().wrapping_sub(ROUND_TO_INTEGER.to_bits());
+        // One comparison: what is negative, NaN or too large to round so lies far beyond any size as an integer.
+        (cell < u64::from(self.size)).then_some(cell as u32)
     }
 }
 
@@ -84,6 +84,8 @@ impl<T: Real, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Round
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn article() -> Rounding<f32, [Axis<f32>; 2]> {
@@ -114,6 +116,16 @@ mod tests {
     fn what_lies_outside_is_refused_and_named() {
         for value in [-1.4_f32, 0.8, 1e30, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             assert!(matches!(article().rows(&[value, 0.0]), Err(Outside { axis: 0, .. })));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_cell_is_the_rounded_product_or_none(value in prop_oneof![-2.0..12.0, any::<f64>()], size in 1_u32..12) {
+            let axis = Axis { low: 0.0, scale: 1.0, size };
+            let rounded = f64::round_ties_even(value);
+            let inside = rounded >= 0.0 && rounded < f64::from(size);
+            prop_assert_eq!(axis.cell(value), inside.then_some(rounded as u32));
         }
     }
 }

@@ -29,7 +29,7 @@ impl Policy for EpsilonGreedy {
         // No branch: which action is the greedy one is hard to predict.
         let (largest, mut earlier) = (maximum(values), false);
         sum(values.iter().map(|&value| {
-            let first = (value == largest) & !earlier;
+            let first = value == largest && !earlier;
             earlier |= first;
             std::hint::select_unpredictable(first, greedy, any) * value
         }))

@@ -1,0 +1,162 @@
+//! `MountainCar`'s speed in steps a second: the parts of a step, the article's run, and the floor under it.
+//!
+//! `cargo bench`, or `cargo bench -- run` for the run alone.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, Throughput};
+use qtab_core::envs::{MountainCar, MountainCarState};
+use qtab_core::features::{Axis, Rounding};
+use qtab_core::learners::{EpsilonGreedy, QLearning, TerminalUpdate};
+use qtab_core::random::{Draw, Mt19937, Pcg64, SeedSequence};
+use qtab_core::world::{Next, World};
+use qtab_core::worlds::Native;
+use qtab_core::{Env, Features, Learner, Table, Trainer, Until};
+
+const LIMIT: u64 = 200;
+const EPISODES: usize = 500;
+/// Small enough to stay in the first cache, large enough to train no branch predictor by heart.
+const BATCH: usize = 4096;
+const INSIDE: &str = "the valley lies inside the box";
+
+type Grid = Rounding<f32, [Axis<f32>; 2]>;
+type Valley = Native<MountainCar, Grid>;
+
+fn rounding() -> Grid {
+    Rounding::new([Axis::new(-1.2, 0.6, 10.0), Axis::new(-0.07, 0.07, 100.0)])
+}
+
+fn world() -> Valley {
+    Native::new(MountainCar::default(), rounding(), Some(LIMIT), Pcg64::new(&SeedSequence::new(&[0])))
+}
+
+fn learner(draw: &mut impl Draw) -> QLearning<3> {
+    QLearning {
+        table: Table::uniform(Features::<[f32; 2]>::len(&rounding()), 3, -1.0, 1.0, draw),
+        policy: EpsilonGreedy::linear(0.8, 0.0, EPISODES as u64),
+        learning_rate: 0.2,
+        discount: 0.9,
+        terminal_update: TerminalUpdate::Assign,
+    }
+}
+
+/// The agent's stream of seed 0.
+fn agent() -> Pcg64 {
+    Pcg64::new(&SeedSequence::new(&[0]).child(0))
+}
+
+/// States all over the valley, an action for each.
+fn states(draw: &mut Pcg64) -> Vec<(MountainCarState, usize)> {
+    let state =
+        |draw: &mut Pcg64| MountainCarState { position: draw.uniform(-1.2, 0.6), velocity: draw.uniform(-0.07, 0.07) };
+    (0..BATCH).map(|_| (state(draw), draw.integers(3) as usize)).collect()
+}
+
+/// One step of each of many cars: nothing waits for anything.
+fn physics(criterion: &mut Criterion) {
+    let mut draw = agent();
+    let (car, states) = (MountainCar::default(), states(&mut draw));
+    let mut group = criterion.benchmark_group("physics");
+    group.throughput(Throughput::Elements(BATCH as u64));
+    group.bench_function("step", |bencher| {
+        bencher.iter(|| {
+            for &(state, action) in &states {
+                black_box(car.step(state, action, &mut draw));
+            }
+        });
+    });
+    group.finish();
+}
+
+/// Observations into rows.
+fn discretizer(criterion: &mut Criterion) {
+    let (car, rounding) = (MountainCar::default(), rounding());
+    let observations: Vec<_> = states(&mut agent()).iter().map(|(state, _)| car.observe(state)).collect();
+    let mut group = criterion.benchmark_group("discretizer");
+    group.throughput(Throughput::Elements(BATCH as u64));
+    group.bench_function("rows", |bencher| {
+        bencher.iter(|| {
+            for observation in &observations {
+                let _ = black_box(rounding.rows(observation));
+            }
+        });
+    });
+    group.finish();
+}
+
+/// The update and the choice of the next action, along the rows of a random walk through the valley.
+fn update(criterion: &mut Criterion) {
+    let mut draw = agent();
+    let (mut world, mut learner) = (world(), learner(&mut draw));
+    let (mut state, mut here) = world.reset().expect(INSIDE);
+    let mut walk = Vec::with_capacity(BATCH);
+    while walk.len() < BATCH {
+        let action = draw.integers(3) as usize;
+        let transition = world.step(&mut state, action).expect(INSIDE);
+        walk.push((here, action, transition));
+        if let Next::Goes(there) = transition.next {
+            here = there;
+        } else {
+            (state, here) = world.reset().expect(INSIDE);
+        }
+    }
+    let mut group = criterion.benchmark_group("update");
+    group.throughput(Throughput::Elements(BATCH as u64));
+    group.bench_function("learn", |bencher| {
+        bencher.iter(|| {
+            for &(here, action, transition) in &walk {
+                black_box(learner.learn(here, action, transition.reward, transition.next, &mut draw));
+            }
+        });
+    });
+    group.finish();
+}
+
+fn trainer<D: Draw + Clone>(mut draw: D) -> Trainer<Valley, QLearning<3>, D> {
+    let learner = learner(&mut draw);
+    Trainer::new(world(), learner, draw)
+}
+
+fn train<D: Draw + Clone>(mut trainer: Trainer<Valley, QLearning<3>, D>) -> u64 {
+    trainer.advance(Until { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
+    trainer.episodes().lengths.iter().sum::<i64>() as u64
+}
+
+/// The same physics with the actions known beforehand and nobody learning: what no run can be faster than.
+fn chain(steps: u64, actions: &[usize], draw: &mut Pcg64) -> f64 {
+    let car = black_box(MountainCar::default());
+    let start = MountainCarState { position: -0.5, velocity: 0.0 };
+    let (mut state, mut travelled) = (start, 0.0);
+    for step in 0..steps {
+        state = car.step(state, actions[step as usize % BATCH], draw).state;
+        travelled += state.velocity;
+        if step % LIMIT == LIMIT - 1 {
+            state = start;
+        }
+    }
+    travelled
+}
+
+/// The article's run, and its floor over as many steps.
+fn run(criterion: &mut Criterion) {
+    let steps = train(trainer(agent()));
+    let mut draw = agent();
+    let actions: Vec<_> = (0..BATCH).map(|_| draw.integers(3) as usize).collect();
+    let mut group = criterion.benchmark_group("run");
+    group.throughput(Throughput::Elements(steps));
+    group.bench_function("article, PCG64", |bencher| bencher.iter(|| train(trainer(agent()))));
+    group.bench_function("floor", |bencher| bencher.iter(|| chain(steps, &actions, &mut draw)));
+    let steps = train(trainer(Mt19937::new(0)));
+    group.throughput(Throughput::Elements(steps));
+    group.bench_function("article, MT19937", |bencher| bencher.iter(|| train(trainer(Mt19937::new(0)))));
+    group.finish();
+}
+
+fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    physics(&mut criterion);
+    discretizer(&mut criterion);
+    update(&mut criterion);
+    run(&mut criterion);
+    criterion.final_summary();
+}
