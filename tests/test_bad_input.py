@@ -139,9 +139,7 @@ def test_a_range_of_first_values_that_is_none_is_refused(value):
         qtab.train("MountainCar-v0", initial_q=value)
 
 
-@pytest.mark.parametrize(
-    "value", ["zeros", None, (0.0,), (0.0, "1"), (0, 1, 2), {"low": 0}, [["a"]], (True, False)]
-)
+@pytest.mark.parametrize("value", ["zeros", None, (0.0,), (0.0, "1"), (0, 1, 2), {"low": 0}, [["a"]], (True, False)])
 def test_first_values_of_another_type_are_refused(value):
     with pytest.raises(TypeError, match=r"^initial_q must be"):
         qtab.train("MountainCar-v0", initial_q=value)

@@ -65,6 +65,7 @@ def train(
         gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
         TypeError: for an argument of the wrong type, or an unknown one.
         ValueError: for an argument out of range, or spaces that do not fit.
+        OverflowError: if the values diverge; it names the episode and the likely cause.
         KeyboardInterrupt: on Ctrl-C. It, and whatever the environment or the callback raises, carries the run so far
             as ``.run``.
     """
@@ -101,12 +102,23 @@ def train_resolved(
                     verdict = callback(Progress(done, total, returns, lengths))
                     if verdict is not None and not verdict:  # NumPy's False stops too
                         break
+        _refuse_overflow(trainer)
     except BaseException as error:
         run = _run(resolved, trainer, began)
         with suppress(AttributeError):  # an exception that takes nothing along still comes through
             error.run = run  # type: ignore[attr-defined]
         raise
     return _run(resolved, trainer, began)
+
+
+def _refuse_overflow(trainer: _core.Trainer) -> None:
+    """The learners notice values that they compute with; here those that were never read again."""
+    if not np.isfinite(trainer.tables()).all():
+        episode = len(trainer.episodes()[0]) - 1
+        raise OverflowError(
+            f"the action values overflowed by episode {episode} (counted from 0); most likely the rewards or initial_q "
+            "are too large"
+        )
 
 
 def _run(resolved: Resolved, trainer: _core.Trainer, began: float) -> Run:
