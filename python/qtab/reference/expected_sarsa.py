@@ -22,9 +22,10 @@ def expected_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) 
                 task.end(Q, state, action, step.reward)
             else:
                 next_values = values(Q, step.state)
-                expected = 0.0
-                for probability, next_value in zip(task.policy.probabilities(next_values), next_values, strict=True):
-                    expected += probability * float(next_value)
+                terms = [p * float(q) for p, q in zip(task.policy.probabilities(next_values), next_values, strict=True)]
+                expected = terms[0]
+                for term in terms[1:]:
+                    expected += term
                 task.update(Q, state, action, step.reward + task.discount * expected)
 
             state, over = step.state, step.over

@@ -2,7 +2,7 @@
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use qtab_core::features::{Features, Real, Rounding};
+use qtab_core::features::{Features, MOST_TILINGS, Real, Rounding};
 use qtab_core::learners::{
     self, Agent, DoubleQLearning, DynaQ, DynaQPlus, EpsilonGreedy, ExpectedSarsa, NStepSarsa, QLearning, Sarsa,
     SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
@@ -55,10 +55,16 @@ pub(crate) fn native(model: Model, plan: &Plan<'_>) -> PyResult<Built> {
             }
             boxed(world, rows, 1, draw, plan, Kept::Native, false)
         }
-        Discretizer::Tiles { low, high, tiles, tilings } => {
-            let tiles = plan.tiles::<f32>(low, high, tiles, *tilings)?;
+        // Eight tilings are the usual number.
+        Discretizer::Tiles { tilings: lit @ ..=8, .. } => {
+            let tiles = plan.tiles::<f32, 8>()?;
             let rows = Features::<[f32; 2]>::len(&tiles);
-            boxed(Native::new(env, tiles, limit, stream), rows, *tilings as usize, draw, plan, Kept::Native, false)
+            boxed(Native::new(env, tiles, limit, stream), rows, *lit as usize, draw, plan, Kept::Native, false)
+        }
+        Discretizer::Tiles { tilings: lit, .. } => {
+            let tiles = plan.tiles::<f32, MOST_TILINGS>()?;
+            let rows = Features::<[f32; 2]>::len(&tiles);
+            boxed(Native::new(env, tiles, limit, stream), rows, *lit as usize, draw, plan, Kept::Native, false)
         }
     }
 }
@@ -95,11 +101,11 @@ where
             let rows = Features::<[T]>::len(&grid);
             boxed(PythonWorld::new(environment, grid, plan), rows, 1, draw, plan, Kept::Python, true)
         }
-        Discretizer::Tiles { low, high, tiles, tilings } => {
-            let tiles = plan.tiles::<T>(low, high, tiles, *tilings)?;
+        Discretizer::Tiles { tilings: lit, .. } => {
+            let tiles = plan.tiles::<T, MOST_TILINGS>()?;
             let rows = Features::<[T]>::len(&tiles);
             let world = PythonWorld::new(environment, tiles, plan);
-            boxed(world, rows, *tilings as usize, draw, plan, Kept::Python, true)
+            boxed(world, rows, *lit as usize, draw, plan, Kept::Python, true)
         }
     }
 }

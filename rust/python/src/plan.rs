@@ -225,11 +225,14 @@ impl Plan<'_> {
     }
 
     /// Tile coding.
-    pub(crate) fn tiles<T: Real>(&self, low: &[f64], high: &[f64], tiles: &[u32], tilings: u32) -> PyResult<Tiles<T>> {
+    pub(crate) fn tiles<T: Real, const M: usize>(&self) -> PyResult<Tiles<T, M>> {
+        let Discretizer::Tiles { low, high, tiles, tilings } = &self.features else {
+            return Err(PyValueError::new_err("discretizer must be 'tiles'"));
+        };
         if [low.len(), high.len(), tiles.len()].iter().any(|&length| length != self.low.len()) {
             return Err(PyValueError::new_err(format!("tiles must hold {} numbers", self.low.len())));
         }
-        Ok(Tiles::new(low, high, tiles, tilings))
+        Ok(Tiles::new(low, high, tiles, *tilings))
     }
 }
 

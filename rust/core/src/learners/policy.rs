@@ -26,13 +26,16 @@ impl Policy for EpsilonGreedy {
     fn expected(&mut self, values: &[f64]) -> f64 {
         let any = self.epsilon() / values.len() as f64;
         let greedy = any + (1.0 - self.epsilon());
-        // No branch: which action is the greedy one is hard to predict.
-        let (largest, mut earlier) = (maximum(values), false);
-        sum(values.iter().map(|&value| {
-            let first = value == largest && !earlier;
-            earlier |= first;
-            std::hint::select_unpredictable(first, greedy, any) * value
-        }))
+        let expected = |best| {
+            sum(values
+                .iter()
+                .enumerate()
+                .map(|(action, &value)| if action == best { greedy * value } else { any * value }))
+        };
+        // The answer for each action that might be the greedy one: for a few, sooner than to search first and add then.
+        let best = first_maximum(values);
+        (1..values.len())
+            .fold(expected(0), |found, action| std::hint::select_unpredictable(action == best, expected(action), found))
     }
 
     fn end_episode(&mut self) {
@@ -161,10 +164,11 @@ fn any_maximum(values: &[f64], draw: &mut impl Draw) -> usize {
     equals().nth(chosen).unwrap_or(0)
 }
 
-/// From the left, beginning with zero.
+/// From the left, beginning with the first.
 #[inline]
-fn sum(numbers: impl Iterator<Item = f64>) -> f64 {
-    numbers.fold(0.0, |total, number| total + number)
+fn sum(mut numbers: impl Iterator<Item = f64>) -> f64 {
+    let first = numbers.next().unwrap_or(0.0);
+    numbers.fold(first, |total, number| total + number)
 }
 
 #[cfg(test)]
