@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from qtab.evaluation import Evaluation, evaluate
     from qtab.many import train_many
     from qtab.plotting import plot
-    from qtab.presets import presets
+    from qtab.preset import presets
     from qtab.run import Recording, Run
     from qtab.runs import Runs
     from qtab.storage import load
@@ -68,7 +68,7 @@ _HOME = {
     "evaluate": "evaluation",
     "load": "storage",
     "plot": "plotting",
-    "presets": "presets",
+    "presets": "preset",
     "sweep": "sweeping",
     "train": "training",
     "train_many": "many",

@@ -9,10 +9,19 @@ from typing_extensions import disjoint_base
 
 from qtab.plan import Model, Plan, PythonEnvironment, Results
 
-__all__ = ["BUILD_PROFILE", "Physics", "Stream", "Trainer", "parameter_names", "train_many"]
+__all__ = [
+    "BUILD_PROFILE",
+    "Physics",
+    "Stream",
+    "Trainer",
+    "numpy_calls_the_platform",
+    "parameter_names",
+    "train_many",
+]
 
 BUILD_PROFILE: Literal["debug", "release"]
 
+def numpy_calls_the_platform() -> bool: ...
 def parameter_names(model: str) -> list[str]: ...
 def train_many(
     describe: Callable[[int], tuple[Model, Plan]], results: Results, threads: int, go_on: bool
@@ -22,9 +31,8 @@ def train_many(
 class Physics:
     def __new__(cls, *_args: Any, **_kwargs: Any) -> Physics: ...
     state: Any
-    def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]: ...
-    def parameter(self, name: str) -> Any: ...
-    def set_parameter(self, name: str, value: Any) -> None: ...
+    def step(self, action: Any) -> tuple[NDArray[np.float32], Any, bool, bool, dict[str, Any]]: ...
+    def changed(self) -> None: ...
 
 @final
 class Stream:

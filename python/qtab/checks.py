@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 
+LARGEST_COUNT = 2**63 - 1
+"""Episodes and steps are counted in 64 bits."""
+
 
 def real(name: str, value: Any, low: float, high: float) -> float:
     """Returns ``value`` as a float in [``low``, ``high``].
@@ -15,9 +18,9 @@ def real(name: str, value: Any, low: float, high: float) -> float:
         TypeError: if it is no real number (a boolean is none).
         ValueError: if it is NaN or lies outside.
     """
-    if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
+    number = _number(value)
+    if number is None:
         raise TypeError(f"{name} must be a number in [{low:g}, {high:g}], got {value!r}")
-    number = float(value)
     if not low <= number <= high:
         raise ValueError(f"{name} must lie in [{low:g}, {high:g}], got {value!r}")
     return number
@@ -30,12 +33,22 @@ def finite(name: str, value: Any) -> float:
         TypeError: if it is no real number.
         ValueError: if it is NaN or infinite.
     """
-    if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
+    number = _number(value)
+    if number is None:
         raise TypeError(f"{name} must be a finite number, got {value!r}")
-    number = float(value)
     if not math.isfinite(number):
         raise ValueError(f"{name} must be finite, got {value!r}")
     return number
+
+
+def _number(value: Any) -> float | None:
+    """A real number as a float, infinite where it is too large for one; None for anything else."""
+    if isinstance(value, (bool, np.bool_, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
 
 
 def integer(name: str, value: Any, least: int, most: int | None = None) -> int:
@@ -54,6 +67,19 @@ def integer(name: str, value: Any, least: int, most: int | None = None) -> int:
         raise TypeError(f"{name} must be {fits}, got {value!r}") from None
     if number < least or (most is not None and number > most):
         raise ValueError(f"{name} must be {fits}, got {value!r}")
+    return number
+
+
+def count(name: str, value: Any, least: int) -> int:
+    """Returns ``value`` as a Python integer of at least ``least`` that 64 bits hold.
+
+    Raises:
+        TypeError: if it is no integer (a boolean is none, 5.0 neither).
+        ValueError: if it is too small or too large.
+    """
+    number = integer(name, value, least)
+    if number > LARGEST_COUNT:
+        raise ValueError(f"{name} must be less than 2**63, got {value!r}")
     return number
 
 

@@ -2,10 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any
 
+import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
+PACKAGE = "qtab"
 PREFIX = "qtab/"
 
 
@@ -21,27 +24,61 @@ class Model:
     """This package's entry point."""
     arguments: frozenset[str] = field(default_factory=frozenset)
     """The constructor's keyword arguments that are constants of the model, of the same name."""
+    trains: bool = False
+    """Whether Rust trains on it, too; if not, training steps the environment."""
 
+
+_CLASSIC = "gymnasium.envs.classic_control"
+_CART_POLE = Model("CartPole", f"{_CLASSIC}.cartpole:CartPoleEnv", "qtab.envs.cart_pole:CartPoleEnv")
 
 MODELS: Mapping[str, Model] = {
     "MountainCar-v0": Model(
         name="MountainCar",
-        gymnasium="gymnasium.envs.classic_control.mountain_car:MountainCarEnv",
+        gymnasium=f"{_CLASSIC}.mountain_car:MountainCarEnv",
         qtab="qtab.envs.mountain_car:MountainCarEnv",
         arguments=frozenset({"goal_velocity"}),
+        trains=True,
+    ),
+    "MountainCarContinuous-v0": Model(
+        name="ContinuousMountainCar",
+        gymnasium=f"{_CLASSIC}.continuous_mountain_car:Continuous_MountainCarEnv",
+        qtab="qtab.envs.continuous_mountain_car:ContinuousMountainCarEnv",
+        arguments=frozenset({"goal_velocity"}),
+    ),
+    "CartPole-v0": _CART_POLE,
+    "CartPole-v1": _CART_POLE,
+    "Acrobot-v1": Model("Acrobot", f"{_CLASSIC}.acrobot:AcrobotEnv", "qtab.envs.acrobot:AcrobotEnv"),
+    "Pendulum-v1": Model(
+        name="Pendulum",
+        gymnasium=f"{_CLASSIC}.pendulum:PendulumEnv",
+        qtab="qtab.envs.pendulum:PendulumEnv",
+        arguments=frozenset({"g"}),
     ),
 }
 
 
 def gymnasium_id(env: str) -> str:
     """Returns the id of Gymnasium's environment that an id of ours equals; any other id as it is."""
-    return env.removeprefix(PREFIX)
+    return env.removeprefix(f"{PACKAGE}:").removeprefix(PREFIX)
+
+
+def spec_of(env: str) -> EnvSpec:
+    """Returns the spec of an id, whose package is imported where the id names it ("package:id").
+
+    Raises:
+        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
+        ModuleNotFoundError: for a package that is not installed.
+    """
+    package, _, name = env.rpartition(":")
+    if package:
+        import_module(package)
+    return gym.spec(name)
 
 
 def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:
     """Returns the model that computes what ``gymnasium.make(spec, **kwargs)`` would, or None if Rust has none."""
     model = MODELS.get(gymnasium_id(spec.id))
-    if model is None or spec.additional_wrappers:
+    if model is None or not model.trains or spec.additional_wrappers:
         return None
     if spec.entry_point not in (model.gymnasium, model.qtab):
         return None

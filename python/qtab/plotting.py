@@ -1,14 +1,20 @@
 """The learning curve."""
 
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qtab.extras import missing
+from qtab.files import replacing
 from qtab.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+DOTS_PER_INCH = 150
+LARGEST_CLOUD = 20_000
+"""More single episodes than this are thinned out: more dots would only darken the cloud."""
 
 
 def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100) -> "Axes":
@@ -24,30 +30,88 @@ def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100) -> "Axes":
 
     Raises:
         ModuleNotFoundError: without matplotlib; it names the ``pip install``.
+        TypeError: if ``block`` is no integer.
+        ValueError: if it is less than one.
     """
-    if ax is None:
-        try:
-            from matplotlib.figure import Figure
-        except ModuleNotFoundError as error:
-            raise missing(error, "plot") from None
-        ax = Figure(figsize=(8, 5), layout="constrained").subplots()
     means = run.mean_returns(block)
+    if ax is None:
+        ax = _figure().subplots()
+    episodes = np.arange(len(run.episode_returns))
+    if len(episodes) > LARGEST_CLOUD:
+        episodes = np.linspace(0, len(episodes) - 1, LARGEST_CLOUD).astype(np.int64)
     ax.plot(
-        np.arange(len(run.episode_returns)) + 1,
-        run.episode_returns,
+        episodes + 1,
+        run.episode_returns[episodes],
         linestyle="none",
         marker=".",
-        markersize=2,
+        markersize=5,
+        markeredgewidth=0,
         color="tab:blue",
-        alpha=0.25,
-        label="episode",
+        alpha=0.3,
+        label="one episode",
+        rasterized=True,
     )
-    ax.plot(
-        block * (np.arange(len(means)) + 1), means, color="tab:blue", linewidth=2, label=f"mean of {block} episodes"
-    )
+    if len(means) > 0:
+        # A mean stands at the end of its block, as the article's does.
+        ax.plot(
+            block * (np.arange(len(means)) + 1),
+            means,
+            color="#0b3c6f",
+            linewidth=2.2,
+            solid_capstyle="round",
+            label=f"mean of {block} episodes",
+        )
     ax.set_xlabel("Episode")
     ax.set_ylabel("Return")
-    ax.set_title(f"{run.config.env}, seed {run.config.seed}")
-    ax.grid(alpha=0.3)
-    ax.legend(loc="lower right")
+    ax.set_title(run.config.env, loc="left", fontweight="bold")
+    ax.set_title(_note(run), loc="right", fontsize="small", color="0.35")
+    ax.set_xlim(0, max(len(run.episode_returns), 1))
+    ax.xaxis.set_major_formatter("{x:,.0f}")
+    ax.grid(alpha=0.25)
+    ax.spines[["top", "right"]].set_visible(False)
+    legend = ax.legend(loc="upper left", frameon=False, markerscale=2)
+    for handle in legend.legend_handles:
+        if handle is not None:
+            handle.set_alpha(1)
     return ax
+
+
+def _note(run: Run) -> str:
+    config = run.config
+    return (
+        f"α = {config.learning_rate:g}, γ = {config.discount:g}, ε = {config.epsilon:g} → {config.min_epsilon:g}, "
+        f"seed {config.seed}"
+    )
+
+
+def check_format(name: str, path: Path) -> None:
+    """Refuses a file whose ending is no format that matplotlib writes.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; it names the ``pip install``.
+        ValueError: names the argument, the path and the endings that there are.
+    """
+    formats = sorted(_figure().canvas.get_supported_filetypes())
+    if path.suffix.lower().removeprefix(".") not in formats:
+        raise ValueError(f"{name} must end in one of .{', .'.join(formats)}, got {str(path)!r}")
+
+
+def save_plot(run: Run, path: Path) -> None:
+    """Draws the learning curve to a file, whole or not at all; its ending gives the format.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; it names the ``pip install``.
+        OSError: if the file cannot be written.
+    """
+    figure = _figure()
+    plot(run, figure.subplots())
+    with replacing(path) as temporary:
+        figure.savefig(temporary, dpi=DOTS_PER_INCH)
+
+
+def _figure() -> Any:
+    try:
+        from matplotlib.figure import Figure
+    except ModuleNotFoundError as error:
+        raise missing(error, "plot") from None
+    return Figure(figsize=(8, 4.5), layout="constrained")

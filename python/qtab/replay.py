@@ -1,13 +1,15 @@
 """Playing recorded episodes again, in Gymnasium's own environment: the same starts, the same actions."""
 
 from collections.abc import Sequence
+from contextlib import closing
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.run import Recording
+from qtab.progress import Bar
+from qtab.run import Recording, Run
 
 
 def starts(config: Config, recorded: Sequence[Any]) -> list[dict[str, Any]]:
@@ -31,6 +33,20 @@ def _generator_state(seed: int | None, start: Any) -> dict[str, Any]:
     return dict(generator.state)
 
 
+def stage(config: Config, render_mode: str) -> gym.Env:
+    """Makes the environment of a run once more, to be looked at.
+
+    Raises:
+        ValueError: if it cannot be rendered so.
+    """
+    kwargs = {**config.env_kwargs, "render_mode": render_mode}
+    with closing(gym.make(config.env, **config.env_kwargs)) as env:
+        modes = env.metadata.get("render_modes", [])
+    if render_mode not in modes:
+        raise ValueError(f"{config.env} cannot be rendered as {render_mode!r}; it has {', '.join(modes) or 'no mode'}")
+    return gym.make(config.env, max_episode_steps=config.max_episode_steps, **kwargs)
+
+
 def play(env: gym.Env, recording: Recording) -> float:
     """Plays a recorded episode in ``env`` and returns its return.
 
@@ -42,6 +58,21 @@ def play(env: gym.Env, recording: Recording) -> float:
     env.reset()
     total = 0.0
     for action in recording.actions:
-        _, reward, _, _, _ = env.step(action)
+        _, reward, terminated, truncated, _ = env.step(action)
         total += float(reward)
+        if terminated or truncated:
+            break
     return total
+
+
+def play_all(env: gym.Env, run: Run, progress: bool | None = None) -> int:
+    """Plays all recorded episodes of a run in ``env``, and returns how many had another return than in training.
+
+    An environment that carries more from episode to episode than its ``np_random`` can differ.
+    """
+    different = 0
+    with Bar(len(run.recordings), "episode", progress, "replay") as shown:
+        for index, recording in enumerate(run.recordings):
+            different += play(env, recording) != run.episode_returns[recording.episode]
+            shown.move_to(index + 1)
+    return different

@@ -1,14 +1,19 @@
 """What a learner needs to know of an environment's spaces."""
 
 from dataclasses import dataclass
+from typing import cast
 
 import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from qtab import plan
+
 LARGEST_TABLE = 2**32
 """Rows are numbered in 32 bits."""
+FLOATS = (np.dtype(np.float32), np.dtype(np.float64))
+"""The dtypes of the boxes that have a grid."""
 
 
 @dataclass(frozen=True)
@@ -30,19 +35,59 @@ class Grid:
         cells = np.round((self.high - self.low) * self.scale, 0).astype(int) + 1
         return (*(int(count) for count in cells), self.actions)
 
-    def cell(self, observation: NDArray[np.floating]) -> tuple[int, ...]:
-        """Returns the index of an observation's row.
+    @property
+    def rows(self) -> int:
+        """How many rows the table has."""
+        return int(np.prod(self.shape[:-1]))
+
+    def lit(self, observation: NDArray[np.floating]) -> list[int]:
+        """Returns the rows of an observation: one.
 
         Raises:
             ValueError: if the observation lies outside the space.
         """
-        observation = np.asarray(observation, dtype=self.low.dtype)
-        rounded = np.round((observation - self.low) * self.scale, 0)
+        return [int(np.ravel_multi_index(self.cell(observation), self.shape[:-1]))]
+
+    def plan(self) -> plan.Rounding:
+        """Returns it as the extension module takes it."""
+        return {"scale": self.scale.tolist()}
+
+    def cell(self, observation: NDArray[np.floating]) -> tuple[int, ...]:
+        """Returns the index of an observation's row.
+
+        Raises:
+            TypeError: if it holds no numbers.
+            ValueError: if it has another shape than the space, or lies outside.
+        """
+        if observation.dtype.kind not in "fiu":
+            raise TypeError(f"observation must hold numbers, got {observation!r}")
+        if observation.shape != self.low.shape:
+            raise ValueError(f"observation must have shape {self.low.shape}, got {observation.shape}")
+        with np.errstate(over="ignore", invalid="ignore"):
+            observation = observation.astype(self.low.dtype)
+            rounded = np.round((observation - self.low) * self.scale, 0)
         inside = (rounded >= 0) & (rounded < self.shape[:-1])
         if not inside.all():
             axis = int(np.argmin(inside))
             raise ValueError(f"observation[{axis}] is {observation[axis]}, outside the observation space")
         return tuple(int(index) for index in rounded)
+
+
+Bounds = tuple[NDArray[np.floating], NDArray[np.floating]]
+
+
+def box(env: gym.Env) -> tuple[Bounds, spaces.Discrete]:
+    """Returns the bounds of the observations and the actions of an environment that tables can be learned for.
+
+    Raises:
+        ValueError: if a space does not fit; it says which, and what fits.
+    """
+    actions, observations = env.action_space, env.observation_space
+    if not isinstance(actions, spaces.Discrete):
+        raise ValueError(f"the action space must be Discrete, got {actions}")
+    if not isinstance(observations, spaces.Box) or len(observations.shape) != 1 or observations.dtype not in FLOATS:
+        raise ValueError(f"the observation space must be a Box of one float axis, got {observations}")
+    return cast(Bounds, (observations.low, observations.high)), actions
 
 
 def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
@@ -51,14 +96,9 @@ def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
     Raises:
         ValueError: if a space does not fit, or the table would be too large; it says which, and what fits.
     """
-    actions, observations = env.action_space, env.observation_space
-    if not isinstance(actions, spaces.Discrete):
-        raise ValueError(f"the action space must be Discrete, got {actions}")
-    if not isinstance(observations, spaces.Box) or len(observations.shape) != 1 or observations.dtype not in _FLOATS:
-        raise ValueError(f"the observation space must be a Box of one float axis, got {observations}")
-    low, high = observations.low, observations.high
+    (low, high), actions = box(env)
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        raise ValueError(f"the observation space must have finite bounds, got {observations}")
+        raise ValueError(f"the observation space must have finite bounds, got {env.observation_space}")
     if len(scale) != len(low):
         raise ValueError(
             f"scale must hold {len(low)} numbers for this observation space, the cells per unit of each component, "
@@ -70,7 +110,10 @@ def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
         count = float(np.prod(cells + 1)) * table.actions
     if not count < LARGEST_TABLE:
         raise ValueError(f"scale must give a table of fewer than 2**32 values, got {scale!r}, which needs {count:.3g}")
+    try:
+        np.empty(table.shape)
+    except MemoryError:
+        raise ValueError(
+            f"scale must give a table that fits into memory, got {scale!r}, which needs {count:.3g} values"
+        ) from None
     return table
-
-
-_FLOATS = (np.dtype(np.float32), np.dtype(np.float64))

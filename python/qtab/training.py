@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +12,7 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab import _core, checks
+from qtab.progress import Bar
 from qtab.replay import starts
 from qtab.resolution import Resolved, resolve
 from qtab.run import Recording, Run
@@ -42,6 +44,7 @@ def train(
     callback: Callback | None = None,
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
+    progress: bool | None = None,
     **overrides: Any,
 ) -> Run:
     """Trains a tabular agent; the same seed gives the table that Gymnasium and NumPy would have given, bit for bit.
@@ -51,6 +54,7 @@ def train(
         callback: Called every ``callback_every`` episodes, and after the last; returning False stops the run.
         callback_every: How many episodes lie between two calls.
         record: How many of the last episodes to keep for playing again (``run.recordings``).
+        progress: Whether to show a progress bar; None shows one on a terminal, to runs of more than a second.
         **overrides: The fields of :class:`qtab.Config`. An explicit one wins over the preset, the preset over the
             default.
 
@@ -61,37 +65,60 @@ def train(
         gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
         TypeError: for an argument of the wrong type, or an unknown one.
         ValueError: for an argument out of range, or spaces that do not fit.
+        OverflowError: if the values diverge; it names the episode and the likely cause.
         KeyboardInterrupt: on Ctrl-C. It, and whatever the environment or the callback raises, carries the run so far
             as ``.run``.
     """
     callback_every = checks.integer("callback_every", callback_every, least=1)
-    record = checks.integer("record", record, least=0)
+    record = checks.count("record", record, least=0)
     resolved = resolve(env, overrides)
     try:
-        return train_resolved(resolved, callback, callback_every, record)
+        return train_resolved(resolved, callback, callback_every, record, progress)
     finally:
-        if resolved.made and resolved.env is not None:
-            resolved.env.close()
+        resolved.close()
 
 
-def train_resolved(resolved: Resolved, callback: Callback | None, callback_every: int, record: int = 0) -> Run:
+def train_resolved(
+    resolved: Resolved,
+    callback: Callback | None,
+    callback_every: int,
+    record: int = 0,
+    progress: bool | None = None,
+) -> Run:
     """Trains what was resolved before; see :func:`train`."""
     total = resolved.config.episodes
     began = time.perf_counter()
     trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record))
     done = 0
     try:
-        while done < total:
-            done = min(done + callback_every, total) if callback is not None else total
-            trainer.advance(done)
-            if callback is not None:
-                returns, lengths, _ = trainer.episodes()
-                if callback(Progress(done, total, returns, lengths)) is False:
-                    break
+        with Bar(total, "episode", progress) as shown:
+            while done < total:
+                target = min(done + callback_every, total) if callback is not None else total
+                for stop in shown.stops(done, target):
+                    trainer.advance(stop)
+                done = target
+                if callback is not None:
+                    returns, lengths, _ = trainer.episodes()
+                    verdict = callback(Progress(done, total, returns, lengths))
+                    if verdict is not None and not verdict:  # NumPy's False stops too
+                        break
+        _refuse_overflow(trainer)
     except BaseException as error:
-        error.run = _run(resolved, trainer, began)  # type: ignore[attr-defined]
+        run = _run(resolved, trainer, began)
+        with suppress(AttributeError):  # an exception that takes nothing along still comes through
+            error.run = run  # type: ignore[attr-defined]
         raise
     return _run(resolved, trainer, began)
+
+
+def _refuse_overflow(trainer: _core.Trainer) -> None:
+    """The learners notice values that they compute with; here those that were never read again."""
+    if not np.isfinite(trainer.tables()).all():
+        episode = len(trainer.episodes()[0]) - 1
+        raise OverflowError(
+            f"the action values overflowed by episode {episode} (counted from 0); most likely the rewards or initial_q "
+            "are too large"
+        )
 
 
 def _run(resolved: Resolved, trainer: _core.Trainer, began: float) -> Run:
@@ -105,7 +132,7 @@ def _run(resolved: Resolved, trainer: _core.Trainer, began: float) -> Run:
     )
     return Run(
         config=resolved.config,
-        tables=trainer.tables().reshape(1, -1, resolved.grid.actions),
+        tables=trainer.tables().reshape(-1, resolved.grid.rows, resolved.grid.actions),
         episode_returns=returns,
         episode_lengths=lengths,
         terminated=terminated,

@@ -24,7 +24,7 @@ def model_of_object(env: gym.Env) -> Model:
     entry_point = f"{type(inner).__module__}:{type(inner).__qualname__}"
     spec = inner.spec
     model = MODELS.get(gymnasium_id(spec.id)) if spec is not None else None
-    if model is None or entry_point not in (model.gymnasium, model.qtab):
+    if model is None or not model.trains or entry_point not in (model.gymnasium, model.qtab):
         raise ValueError(f"{refused}Rust has no {type(inner).__qualname__}")
     from qtab._core import parameter_names
 

@@ -8,7 +8,9 @@ from qtab.models import MODELS, PREFIX
 def register() -> None:
     """Registers ``qtab/…`` beside each of Gymnasium's environments that Rust knows, with its limit and threshold."""
     for name, model in MODELS.items():
-        theirs = gym.spec(name)
+        theirs = gym.registry.get(name)
+        if theirs is None:  # an old version that this Gymnasium no longer has
+            continue
         gym.register(
             id=PREFIX + name,
             entry_point=model.qtab,

@@ -22,7 +22,7 @@ pub trait Env {
     /// What the agent sees, in the dtype in which Gymnasium hands it out.
     type Observation;
 
-    /// How many actions there are.
+    /// How many actions there are; 0 where they are continuous.
     fn actions(&self) -> usize;
 
     /// The first state of an episode.
@@ -38,11 +38,27 @@ pub trait Env {
     fn observe(&self, state: &Self::State) -> Self::Observation;
 }
 
+/// A constant that is one thing or the other, under Gymnasium's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Switch {
+    /// The name, as Gymnasium spells the attribute.
+    pub name: &'static str,
+    /// The word that turns it on; None where the attribute is a truth value.
+    pub word: Option<&'static str>,
+}
+
 /// The constants of an environment by Gymnasium's names, for those who know them at run time only.
 pub trait Parameters: Default {
-    /// The names, as Gymnasium spells its attributes.
+    /// The names of the numbers, as Gymnasium spells its attributes.
     const NAMES: &'static [&'static str];
+    /// What is no number.
+    const SWITCHES: &'static [Switch] = &[];
 
-    /// The constant of that name.
+    /// The number of that name.
     fn parameter(&mut self, name: &str) -> Option<&mut f64>;
+
+    /// The switch of that name.
+    fn switch(&mut self, _name: &str) -> Option<&mut bool> {
+        None
+    }
 }

@@ -5,12 +5,14 @@ mod door;
 mod failure;
 mod many;
 mod model;
+mod numbers;
 mod physics;
 mod plan;
 mod python_world;
 mod run;
 mod stream;
 mod trainer;
+mod trigonometry;
 
 use pyo3::prelude::*;
 
@@ -26,6 +28,8 @@ mod _core {
     use super::stream::Stream;
     #[pymodule_export]
     use super::trainer::Trainer;
+    #[pymodule_export]
+    use super::trigonometry::numpy_calls_the_platform;
 
     /// How the extension was compiled: only "release" says anything about speed.
     #[pymodule_export]

@@ -1,38 +1,48 @@
-//! The base of the Gymnasium-facing classes: state and constants in Rust, everything else Gymnasium's.
+//! The base of the Gymnasium-facing classes: the step in Rust, everything else Gymnasium's.
 
 use numpy::PyArray1;
 use pyo3::exceptions::PyAttributeError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyFloat, PyInt, PyTuple, PyType};
-use qtab_core::env::{Env, Step};
-use qtab_core::random::Draw;
+use pyo3::types::{PyDict, PyTuple, PyType};
 
-use crate::model::Model;
+use crate::model::{Habits, Model, Played};
+use crate::numbers::{Values, constant};
+use crate::trigonometry::numpy_calls_the_platform;
 
-/// Holds an environment's state and constants, and steps it.
+/// Holds an environment's state, and steps it.
 ///
-/// A Python class inherits from this and from Gymnasium's class, names its `model`, and gives every constant a
-/// property that reads and writes here. Numbers that f64 cannot stand for with Gymnasium's meaning (a float32 state
-/// promotes differently) are kept as they are, and such an environment steps in Python, through Gymnasium's own code.
+/// A Python class inherits from this and from Gymnasium's class, and names its `model`. The constants stay where
+/// Gymnasium has them, in attributes of the instance or the class; they are read at the first step after a reset and
+/// after any assignment. What Rust does not compute with (a float32 state where Gymnasium keeps float64, a constant
+/// of another width) steps in Python, through Gymnasium's own code, and so does every step that overflows.
 #[pyclass(subclass, module = "qtab._core")]
 pub(crate) struct Physics {
     model: Model,
-    state: Option<[f64; 2]>,
-    /// What Rust does not compute with, under its attribute's name; None until there is any.
-    foreign: Option<Py<PyDict>>,
+    constants: Constants,
+    state: State,
 }
 
-/// For steps that draw nothing.
-struct NoDraw;
+/// What is known of the attributes.
+#[derive(Clone, Copy)]
+enum Constants {
+    Unread,
+    /// The model has them.
+    Read {
+        human: bool,
+    },
+    /// Rust does not stand for all of them.
+    Foreign,
+}
 
-impl Draw for NoDraw {
-    fn random(&mut self) -> f64 {
-        0.0
-    }
-    fn integers(&mut self, _below: u32) -> u32 {
-        0
-    }
+/// The state of an episode.
+pub(crate) enum State {
+    /// Never assigned.
+    Missing,
+    /// As a step in Rust left it, zeros behind: an array of f64 in Gymnasium.
+    Rust([f64; 4]),
+    /// Assigned from Python, or handed out to it. An array can be written to, so it is read anew at each step.
+    Python(Py<PyAny>),
 }
 
 #[pymethods]
@@ -46,109 +56,128 @@ impl Physics {
         _kwargs: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let model = Model::new(class.getattr(intern!(class.py(), "model"))?.extract()?)?;
-        Ok(Self { model, state: None, foreign: None })
+        Ok(Self { model, constants: Constants::Unread, state: State::Missing })
     }
 
     /// One step, with the types that Gymnasium returns.
     fn step<'py>(slf: &Bound<'py, Self>, action: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
-        let (model, state) = {
-            let this = slf.borrow();
-            (this.model, if this.foreign.is_none() { this.state } else { None })
-        };
-        let Some(state) = state else {
+        let Some((played, human)) = Self::step_in_rust(slf, action)? else {
             return slf.call_method1(intern!(py, "step_in_python"), (action,));
         };
-        let Model::MountainCar(env) = model;
-        let action = index(slf, action, env.actions())?;
-        let Step { state, reward, terminated } = env.step(state.into(), action, &mut NoDraw);
-        slf.borrow_mut().state = Some(state.into());
-        let render_mode = slf.getattr(intern!(py, "render_mode"))?;
-        if !render_mode.is_none() && render_mode.eq(intern!(py, "human"))? {
+        slf.borrow_mut().state = played.state;
+        if human {
             slf.call_method0(intern!(py, "render"))?;
         }
-        let observation = PyArray1::from_slice(py, &env.observe(&state));
-        Ok((observation, reward, terminated, false, PyDict::new(py)).into_pyobject(py)?.into_any())
+        let answer = (played.observation, played.reward, played.terminated, false, PyDict::new(py));
+        Ok(answer.into_pyobject(py)?.into_any())
     }
 
-    /// The state as Gymnasium keeps it: None before the first reset.
+    /// To be called after any attribute was assigned.
+    fn changed(&mut self) {
+        self.constants = Constants::Unread;
+    }
+
+    /// The state as Gymnasium keeps it.
     #[getter]
-    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        match (self.foreign_value(py, "state")?, self.state) {
-            (Some(state), _) => Ok(state),
-            (None, Some(state)) => Ok(PyTuple::new(py, state)?.into_any()),
-            (None, None) => Ok(py.None().into_bound(py)),
+    fn state<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let (numbers, Habits { state: count, tuple, .. }) = {
+            let this = slf.borrow();
+            let numbers = match &this.state {
+                State::Python(state) => return Ok(state.bind(py).clone()),
+                State::Rust(numbers) => Some(*numbers),
+                State::Missing => None,
+            };
+            (numbers, this.model.habits())
+        };
+        let Some(numbers) = numbers else {
+            let class = slf.get_type();
+            return Err(PyAttributeError::new_err(format!("'{}' object has no attribute 'state'", class.name()?)));
+        };
+        let mut state = PyArray1::from_slice(py, &numbers[..count]).into_any();
+        if tuple {
+            state = PyTuple::new(py, state.try_iter()?.collect::<PyResult<Vec<_>>>()?)?.into_any();
         }
+        slf.borrow_mut().state = State::Python(state.clone().unbind());
+        Ok(state)
     }
 
     #[setter]
-    fn set_state(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let numbers = value.try_iter()?.map(|number| double(&number?)).collect::<PyResult<Option<Vec<f64>>>>()?;
-        let state = numbers.and_then(|numbers| <[f64; 2]>::try_from(numbers).ok());
-        self.keep("state", value, state.is_none())?;
-        self.state = state;
-        Ok(())
-    }
-
-    /// One of the model's constants.
-    fn parameter<'py>(&mut self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        match self.foreign_value(py, name)? {
-            Some(value) => Ok(value),
-            None => Ok(PyFloat::new(py, *self.model.parameter(name)?).into_any()),
-        }
-    }
-
-    fn set_parameter(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let parameter = self.model.parameter(name)?;
-        let number = double(value)?;
-        if let Some(number) = number {
-            *parameter = number;
-        }
-        self.keep(name, value, number.is_none())
+    fn set_state(&mut self, value: &Bound<'_, PyAny>) {
+        self.state = State::Python(value.clone().unbind());
     }
 }
 
 impl Physics {
-    fn foreign_value<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
-        self.foreign.as_ref().map_or(Ok(None), |foreign| foreign.bind(py).get_item(name))
+    /// The step, and whether a person watches; None where it is Gymnasium's to take.
+    fn step_in_rust<'py>(slf: &Bound<'py, Self>, action: &Bound<'py, PyAny>) -> PyResult<Option<(Played<'py>, bool)>> {
+        let py = slf.py();
+        let constants = slf.borrow().constants;
+        let human = match constants {
+            Constants::Read { human } => human,
+            Constants::Foreign => return Ok(None),
+            Constants::Unread => match Self::read(slf)? {
+                Some(human) => human,
+                None => return Ok(None),
+            },
+        };
+        let (model, values) = {
+            let this = slf.borrow();
+            let values = match &this.state {
+                State::Rust(numbers) => Some(Values::new(*numbers)),
+                State::Python(state) => Values::read(state.bind(py), this.model.habits().state),
+                State::Missing => None,
+            };
+            (this.model, values)
+        };
+        let Some(values) = values else { return Ok(None) };
+        Ok(model.play(slf, &values, action)?.map(|played| (played, human)))
     }
 
-    /// Keeps a foreign value, or forgets the one of that name.
-    fn keep(&mut self, name: &str, value: &Bound<'_, PyAny>, foreign: bool) -> PyResult<()> {
-        let py = value.py();
-        if foreign {
-            return self.foreign.get_or_insert_with(|| PyDict::new(py).unbind()).bind(py).set_item(name, value);
+    /// Reads the attributes into the model; None where Rust does not stand for one of them.
+    fn read(slf: &Bound<'_, Self>) -> PyResult<Option<bool>> {
+        let mut model = slf.borrow().model;
+        let human = Self::read_into(slf, &mut model)?;
+        let mut this = slf.borrow_mut();
+        this.model = model;
+        this.constants = human.map_or(Constants::Foreign, |human| Constants::Read { human });
+        Ok(human)
+    }
+
+    fn read_into(slf: &Bound<'_, Self>, model: &mut Model) -> PyResult<Option<bool>> {
+        let py = slf.py();
+        let habits = model.habits();
+        if habits.trigonometry && !numpy_calls_the_platform(py)? {
+            return Ok(None);
         }
-        if let Some(kept) = &self.foreign {
-            let kept = kept.bind(py);
-            if kept.contains(name)? {
-                kept.del_item(name)?;
-            }
-            if kept.is_empty() {
-                self.foreign = None;
+        if let Some(name) = habits.none
+            && !slf.getattr_opt(name)?.is_some_and(|value| value.is_none())
+        {
+            return Ok(None);
+        }
+        if let Some(actions) = habits.actions {
+            let Some(space) = slf.getattr_opt(intern!(py, "action_space"))? else { return Ok(None) };
+            let [n, start] = [space.getattr_opt(intern!(py, "n"))?, space.getattr_opt(intern!(py, "start"))?];
+            let (Some(n), Some(start)) = (n, start) else { return Ok(None) };
+            if !n.eq(actions)? || !start.eq(0)? {
+                return Ok(None);
             }
         }
-        Ok(())
+        let constants = model.constants();
+        for &name in constants.names() {
+            let Some(value) = slf.getattr_opt(name)? else { return Ok(None) };
+            let (Some(parameter), Some(number)) = (constants.parameter(name), constant(&value)) else {
+                return Ok(None);
+            };
+            *parameter = number;
+        }
+        for switch in constants.switches() {
+            let Some(value) = slf.getattr_opt(switch.name)? else { return Ok(None) };
+            let Some(on) = constants.switch(switch.name) else { return Ok(None) };
+            *on = switch.word.map_or_else(|| value.is_truthy(), |word| value.eq(word))?;
+        }
+        let render_mode = slf.getattr_opt(intern!(py, "render_mode"))?;
+        Ok(Some(render_mode.is_some_and(|mode| mode.eq(intern!(py, "human")).unwrap_or(false))))
     }
-}
-
-/// The f64 that Python computes with; None for a number of another width, whose arithmetic rounds differently.
-fn double(number: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
-    if number.is_instance_of::<PyFloat>() || number.is_instance_of::<PyInt>() {
-        return number.extract().map(Some);
-    }
-    Ok(None)
-}
-
-/// The action as an index; what is no plain integer in range is left to Gymnasium's judgement.
-fn index(slf: &Bound<'_, Physics>, action: &Bound<'_, PyAny>, actions: usize) -> PyResult<usize> {
-    if action.is_instance_of::<PyInt>()
-        && let Ok(index) = action.extract::<usize>()
-        && index < actions
-    {
-        return Ok(index);
-    }
-    slf.call_method1(intern!(slf.py(), "checked_action"), (action,))?
-        .extract()
-        .map_err(|_| PyAttributeError::new_err("action"))
 }

@@ -1,15 +1,18 @@
 //! A Gymnasium environment, stepped in Python, as the learner meets it.
 
+use std::marker::PhantomData;
+
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use qtab_core::features::{Axis, Features, Real, Rounding};
+use qtab_core::features::{Features, Real};
 use qtab_core::world::{Next, Transition, World};
 use qtab_core::worlds::Start;
 
 use crate::failure::Failure;
+use crate::plan::Plan;
 
 /// What Python hands over besides the plan.
 #[derive(FromPyObject)]
@@ -22,24 +25,39 @@ pub(crate) struct PythonEnvironment {
     first_action: i64,
 }
 
-pub(crate) struct PythonWorld<T> {
+/// Observations of dtype `T` light rows by `F`.
+pub(crate) struct PythonWorld<T, F> {
     environment: PythonEnvironment,
     seeded: bool,
     max_episode_steps: u64,
-    grid: Rounding<T>,
+    features: F,
+    dimensions: usize,
+    dtype: PhantomData<T>,
 }
 
-impl<T: Real + numpy::Element> PythonWorld<T> {
-    pub(crate) fn new(environment: PythonEnvironment, axes: Vec<Axis<T>>, max_episode_steps: Option<u64>) -> Self {
-        let max_episode_steps = max_episode_steps.unwrap_or(u64::MAX);
-        Self { environment, seeded: false, max_episode_steps, grid: Rounding::new(axes) }
+impl<T: Real + numpy::Element, F: Features<[T]>> PythonWorld<T, F> {
+    pub(crate) fn new(environment: PythonEnvironment, features: F, plan: &Plan<'_>) -> Self {
+        Self {
+            environment,
+            seeded: false,
+            max_episode_steps: plan.max_episode_steps.unwrap_or(u64::MAX),
+            features,
+            dimensions: plan.low.len(),
+            dtype: PhantomData,
+        }
     }
 
-    pub(crate) fn len(&self) -> usize {
-        Features::<[T]>::len(&self.grid)
+    fn misshapen(&self, observation: &Bound<'_, PyAny>) -> PyErr {
+        match observation.getattr(intern!(observation.py(), "shape")) {
+            Ok(shape) => PyValueError::new_err(format!(
+                "an observation must have shape ({},), the space's, got {shape}",
+                self.dimensions
+            )),
+            Err(error) => error,
+        }
     }
 
-    fn rows(&self, observation: &Bound<'_, PyAny>) -> Result<[u32; 1], Failure> {
+    fn rows(&self, observation: &Bound<'_, PyAny>) -> Result<F::Rows, Failure> {
         let py = observation.py();
         let converted;
         let array = if let Ok(array) = observation.cast::<PyArray1<T>>() {
@@ -48,29 +66,27 @@ impl<T: Real + numpy::Element> PythonWorld<T> {
             // Not the space's dtype: read as the space says that it is meant.
             let arguments = (observation, numpy::dtype::<T>(py));
             let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), arguments)?;
-            converted = array.cast_into::<PyArray1<T>>().map_err(PyErr::from)?;
+            converted = array.cast_into::<PyArray1<T>>().map_err(|error| self.misshapen(&error.into_inner()))?;
             &converted
         };
-        if array.len()? != self.grid.dimensions() {
-            let message =
-                format!("an observation has shape ({},), the space ({},)", array.len()?, self.grid.dimensions());
-            return Err(PyValueError::new_err(message).into());
+        if array.len()? != self.dimensions {
+            return Err(self.misshapen(array).into());
         }
         let values = array.readonly();
         match values.as_slice() {
-            Ok(values) => Ok(self.grid.rows(values)?),
-            Err(_) => Ok(self.grid.rows(&values.as_array().to_vec())?),
+            Ok(values) => Ok(self.features.rows(values)?),
+            Err(_) => Ok(self.features.rows(&values.as_array().to_vec())?),
         }
     }
 }
 
-impl<T: Real + numpy::Element> World for PythonWorld<T> {
+impl<T: Real + numpy::Element, F: Features<[T]>> World for PythonWorld<T, F> {
     /// The steps taken since the reset.
     type State = u64;
-    type Rows = [u32; 1];
+    type Rows = F::Rows;
     type Error = Failure;
 
-    fn reset(&mut self) -> Result<(u64, [u32; 1]), Failure> {
+    fn reset(&mut self) -> Result<(u64, F::Rows), Failure> {
         Python::attach(|py| {
             let env = self.environment.env.bind(py);
             let seed = PyDict::new(py);
@@ -83,7 +99,7 @@ impl<T: Real + numpy::Element> World for PythonWorld<T> {
         })
     }
 
-    fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<[u32; 1]>, Failure> {
+    fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<F::Rows>, Failure> {
         Python::attach(|py| {
             let env = self.environment.env.bind(py);
             let action = self.environment.first_action.saturating_add_unsigned(action as u64);
@@ -95,11 +111,9 @@ impl<T: Real + numpy::Element> World for PythonWorld<T> {
                 Bound<'_, PyAny>,
                 Bound<'_, PyAny>,
             ) = answer.extract()?;
-            if reward.is_nan() {
-                return Err(PyValueError::new_err(
-                    "the environment's reward is nan, which no value can be learned from",
-                )
-                .into());
+            if !reward.is_finite() {
+                let message = format!("the environment's reward is {reward}, which no value can be learned from");
+                return Err(PyValueError::new_err(message).into());
             }
             *elapsed += 1;
             let rows = self.rows(&observation)?;
@@ -116,7 +130,7 @@ impl<T: Real + numpy::Element> World for PythonWorld<T> {
 }
 
 /// The state of the environment's own bit generator, a dict.
-impl<T: Real + numpy::Element> Start for PythonWorld<T> {
+impl<T: Real + numpy::Element, F: Features<[T]>> Start for PythonWorld<T, F> {
     type Start = Py<PyAny>;
 
     fn start(&self) -> Result<Py<PyAny>, Failure> {

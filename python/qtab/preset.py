@@ -10,9 +10,26 @@ from qtab.models import gymnasium_id
 # not repeated: those defaults are the article's.
 _ARTICLE = {"scale": (10.0, 100.0), "terminal_update": "assign"}
 
+# Sarsa(λ) on tile coding, as in Sutton & Barto, Example 10.1 and Figure 12.10: no exploration is needed, since values
+# of zero are optimistic where every step costs one.
+_SOLVED = {
+    "algorithm": "sarsa_lambda",
+    "discretizer": "tiles",
+    "tilings": 8,
+    "tiles": (16,),
+    "learning_rate": 0.5,
+    "learning_rate_schedule": "linear",
+    "discount": 1.0,
+    "epsilon": 0.0,
+    "trace_decay": 0.9,
+    "trace_cutoff": 1e-3,
+    "initial_q": 0.0,
+    "episodes": 2000,
+}
+
 # The first preset of an environment is its own.
 _PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
-    "MountainCar-v0": {"article": _ARTICLE},
+    "MountainCar-v0": {"article": _ARTICLE, "solved": _SOLVED},
 }
 
 

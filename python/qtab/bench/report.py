@@ -1,0 +1,103 @@
+"""The bench and its tables."""
+
+from dataclasses import dataclass
+
+from qtab import checks
+from qtab.bench import subjects
+from qtab.bench.footprint import Footprint, footprint
+from qtab.bench.rounds import Timings, measure
+from qtab.versions import versions
+
+DEFAULT_SECONDS = 25.0
+
+_WIDTH = 46
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a bench found."""
+
+    timings: Timings
+    rounds: int
+    footprint: Footprint
+    versions: dict[str, str]
+
+    def __str__(self) -> str:
+        """Tables for a person."""
+        lines = [*self._warning(), *self._training(), "", *self._stepping(), "", *self._footprint(), ""]
+        lines.append(
+            f"{self.rounds} interleaved rounds; ns/step is a median, × (times as fast) the median of each round's ratio"
+        )
+        lines.append(", ".join(f"{name} {value}" for name, value in self.versions.items()))
+        return "\n".join(lines)
+
+    def _warning(self) -> list[str]:
+        if self.versions["build"] == "release":
+            return []
+        return [f"WARNING: this is a {self.versions['build']} build, many times slower: maturin develop --release", ""]
+
+    def _training(self) -> list[str]:
+        timings = self.timings
+        numba = subjects.NUMBA in timings.nanoseconds
+        lines = [_line("Training on MountainCar-v0, default settings", "ns/step", "× article", *["× numba"] * numba)]
+        for name in (subjects.ARTICLE, subjects.NUMBA, subjects.TRAIN):
+            if name in timings.nanoseconds:
+                ratios = [subjects.ARTICLE, *[subjects.NUMBA] * numba]
+                lines.append(
+                    _line(name, _number(timings.median(name)), *(_number(timings.ratio(base, name)) for base in ratios))
+                )
+        if not numba:
+            lines.append("  (numba is not installed: pip install 'qtab[bench]')")
+        return lines
+
+    def _stepping(self) -> list[str]:
+        lines = [_line("Stepping MountainCar-v0 from Python", "ns/step", "× Gymnasium")]
+        for base, name in (
+            (subjects.GYMNASIUM_STEP, subjects.GYMNASIUM_STEP),
+            (subjects.GYMNASIUM_STEP, subjects.QTAB_STEP),
+            (subjects.GYMNASIUM_MAKE, subjects.GYMNASIUM_MAKE),
+            (subjects.GYMNASIUM_MAKE, subjects.QTAB_MAKE),
+        ):
+            lines.append(_line(name, _number(self.timings.median(name)), _number(self.timings.ratio(base, name))))
+        return lines
+
+    def _footprint(self) -> list[str]:
+        cost = self.footprint
+        lines = [
+            f"import qtab adds {cost.qtab_milliseconds:.1f} ms to the {cost.gymnasium_milliseconds:.0f} ms of "
+            "import gymnasium"
+        ]
+        if cost.megabytes is not None:
+            added = f"{cost.megabytes:.1f} MB" if cost.megabytes >= 0.1 else "less than 0.1 MB"
+            lines.append(f"a default run adds {added} to the peak memory after the imports")
+        return lines
+
+
+def bench(seconds: float = DEFAULT_SECONDS, rounds: int | None = None, progress: bool | None = None) -> Report:
+    """Times training and stepping beside the article's loop and Gymnasium.
+
+    Args:
+        seconds: About how long the rounds take together.
+        rounds: How many rounds to make instead.
+        progress: Whether to show a bar; None shows one on a terminal.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+    seconds = checks.real("seconds", seconds, 0, 86_400)
+    if rounds is not None:
+        rounds = checks.integer("rounds", rounds, least=1)
+    cost = footprint()
+    timings = measure(subjects.training() | subjects.stepping(), seconds=seconds, rounds=rounds, progress=progress)
+    return Report(timings, len(next(iter(timings.nanoseconds.values()))), cost, versions())
+
+
+def _line(name: str, *columns: str) -> str:
+    return f"{name:{_WIDTH}}" + "".join(f"{column:>13}" for column in columns)
+
+
+def _number(value: float) -> str:
+    if value < 1:
+        return f"{value:.2g}"
+    return f"{value:,.1f}" if value < 100 else f"{value:,.0f}"

@@ -1,0 +1,78 @@
+"""What is timed."""
+
+from collections.abc import Callable
+
+import gymnasium as gym
+import numpy as np
+
+from qtab.bench.article_numba import compiled
+from qtab.bench.rounds import Subject
+from qtab.reference import q_learning
+from qtab.resolution import resolve
+from qtab.training import train
+
+ENV = "MountainCar-v0"
+ARTICLE_EPISODES = 10
+"""A round of the slow loop: the whole schedule of the exploration rate in so many episodes."""
+
+STEPS = 20_000
+"""Steps in a round of bare stepping."""
+
+ARTICLE, NUMBA, TRAIN = "the article's loop: NumPy on gymnasium.make", "the same loop under numba", "qtab.train"
+GYMNASIUM_STEP, QTAB_STEP = "Gymnasium's env.unwrapped.step", "qtab's env.unwrapped.step"
+GYMNASIUM_MAKE, QTAB_MAKE = "Gymnasium's env of gymnasium.make", "qtab's env of gymnasium.make"
+
+
+def training() -> dict[str, Subject]:
+    """Returns the loops: the article's, numba's where it is installed, and this package's."""
+    config = resolve(ENV, {"episodes": ARTICLE_EPISODES, "seed": 0}).config
+
+    def article(index: int) -> int:
+        env = gym.make(ENV)
+        _, _, lengths = q_learning(env, config.replace(seed=index))
+        return int(lengths.sum())
+
+    def ours(index: int) -> int:
+        return int(train(ENV, seed=index, progress=False).episode_lengths.sum())
+
+    loop = compiled()
+    return {ARTICLE: article, **({} if loop is None else {NUMBA: loop}), TRAIN: ours}
+
+
+def stepping() -> dict[str, Subject]:
+    """Returns the environments' steps, bare and as ``gymnasium.make`` wraps them (with its resets)."""
+    actions: list[int] = np.random.default_rng(0).integers(0, 3, STEPS).tolist()
+    return {
+        GYMNASIUM_STEP: _bare(ENV, actions),
+        QTAB_STEP: _bare(f"qtab/{ENV}", actions),
+        GYMNASIUM_MAKE: _wrapped(ENV, actions),
+        QTAB_MAKE: _wrapped(f"qtab/{ENV}", actions),
+    }
+
+
+def _bare(name: str, actions: list[int]) -> Callable[[int], int]:
+    env = gym.make(name).unwrapped
+
+    def run(index: int) -> int:
+        env.reset(seed=index)
+        step = env.step
+        for action in actions:
+            step(action)
+        return len(actions)
+
+    return run
+
+
+def _wrapped(name: str, actions: list[int]) -> Callable[[int], int]:
+    env = gym.make(name)
+
+    def run(index: int) -> int:
+        env.reset(seed=index)
+        step = env.step
+        for action in actions:
+            _, _, terminated, truncated, _ = step(action)
+            if terminated or truncated:
+                env.reset()
+        return len(actions)
+
+    return run

@@ -1,0 +1,147 @@
+"""``qtab train``."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from qtab.cli.outputs import Outputs
+from qtab.cli.parsing import parse
+from qtab.cli.settings import Settings, defaults, last_value
+from qtab.cli.usage import refusing
+from qtab.models import spec_of
+from qtab.progress import write
+from qtab.resolution import Resolved, resolve
+from qtab.run import Run
+from qtab.training import Progress, train_resolved
+
+COMMAND = "qtab train"
+BLOCK = 100
+"""Episodes to an average, as in the article."""
+
+LOOKS = 1000
+"""A long run prints its averages several at a time, because each look at it copies its returns."""
+
+
+@dataclass(frozen=True)
+class Arguments:
+    """Train a tabular agent. The defaults shown are those of the environment, the preset and the file given."""
+
+    settings: Annotated[Settings, tyro.conf.arg(name="")]
+    config: Path | None = None
+    """A TOML file of the settings below; flags win over it."""
+    plot: Path | None = None
+    """Draw the learning curve to this file; its ending gives the format."""
+    save: Path | None = None
+    """Save the run to this file, for qtab.load, qtab verify and --initial-q."""
+    watch: int | None = None
+    """Show this many of the last training episodes on the screen."""
+    record: Path | None = None
+    """Write the last training episodes, 20 or as many as --watch says, to videos in this folder."""
+
+
+def run(arguments: list[str]) -> int:
+    """Trains as the arguments say; returns the exit code."""
+    asked = _parse(arguments)
+    with refusing():
+        resolved = resolve(asked.settings.env, asked.settings.overrides())
+    try:
+        with refusing():
+            outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record)
+        with outputs:
+            write(_header(resolved, asked.settings))
+            _train(resolved, outputs)
+    finally:
+        resolved.close()
+    return 0
+
+
+def _parse(arguments: list[str]) -> Arguments:
+    """Reads the arguments twice where need be: the environment that they name decides the defaults."""
+    named = last_value(arguments, "--env")
+    if named is not None:
+        arguments = _without_env(arguments)
+        arguments.insert(0, named)
+    preset, file = last_value(arguments, "--preset"), last_value(arguments, "--config")
+    env = arguments[0] if arguments and not arguments[0].startswith("-") else None
+    while True:
+        with refusing():
+            start = defaults(env, preset, Path(file) if file is not None else None)
+        asked = parse(Arguments, COMMAND, arguments, default=Arguments(start))
+        if asked.settings.env == start.env:
+            return asked
+        env = asked.settings.env
+
+
+def _without_env(arguments: list[str]) -> list[str]:
+    kept, skip = [], False
+    for word in arguments:
+        if not skip and word != "--env" and not word.startswith("--env="):
+            kept.append(word)
+        skip = word == "--env"
+    return kept
+
+
+def _header(resolved: Resolved, settings: Settings) -> str:
+    config = resolved.config
+    backend = "in Rust" if config.backend == "rust" else "stepped by Gymnasium in Python"
+    parts = [
+        f"{config.env} {backend}",
+        f"preset {config.preset}" if config.preset is not None else "no preset",
+        _episodes(config.episodes),
+        f"seed {config.seed}",
+    ]
+    header = ", ".join(parts)
+    if settings.max_episode_steps is None and spec_of(config.env).max_episode_steps is None:
+        header += (
+            f"\n{config.env} has no time limit of its own: an episode ends after {config.max_episode_steps:,} steps"
+        )
+    return header
+
+
+def _train(resolved: Resolved, outputs: Outputs) -> None:
+    blocks_a_look = max(1, resolved.config.episodes // (BLOCK * LOOKS))
+    averages = _averages()
+    try:
+        finished = train_resolved(resolved, averages, BLOCK * blocks_a_look, record=outputs.shown)
+    except BaseException as error:
+        partial = getattr(error, "run", None)
+        if isinstance(partial, Run):
+            done, total = len(partial.episode_returns), partial.config.episodes
+            averages(Progress(done, total, partial.episode_returns, partial.episode_lengths))
+            write(f"Stopped after {done:,} of {total:,} episodes; what was learned so far:")
+            write(_summary(partial))
+            outputs.keep(partial)
+        raise
+    write(_summary(finished))
+    outputs.keep(finished)
+    outputs.show(finished)
+
+
+def _averages() -> Callable[[Progress], None]:
+    """Returns a callback that prints the average return of each block of episodes, as the article does."""
+    printed = 0
+
+    def callback(progress: Progress) -> None:
+        nonlocal printed
+        while printed + BLOCK <= progress.episodes:
+            printed += BLOCK
+            average = float(progress.returns[printed - BLOCK : printed].mean())
+            write(f"Episode {printed} Average Reward: {average}")
+
+    return callback
+
+
+def _summary(run: Run) -> str:
+    returns, steps = run.episode_returns[-BLOCK:], int(run.episode_lengths.sum())
+    if len(returns) == 0:
+        return f"No episode was finished in {run.seconds:.3g} s"
+    speed = f" ({steps / run.seconds:,.0f} steps/s)" if run.seconds > 0 else ""
+    took = f"{steps:,} steps in {run.seconds:.3g} s{speed}"
+    return f"Mean return over the last {_episodes(len(returns))}: {returns.mean():.2f}; {took}"
+
+
+def _episodes(count: int) -> str:
+    return f"{count:,} episode{'' if count == 1 else 's'}"

@@ -1,0 +1,70 @@
+"""The ``qtab`` command in a process of its own, as a user runs it."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+QTAB = [sys.executable, "-m", "qtab"]
+
+TOYS = '''
+import time
+import gymnasium as gym
+import numpy as np
+
+
+class Walk(gym.Env):
+    """Five cells in a row; the right end is terminal."""
+
+    observation_space = gym.spaces.Box(0.0, 4.0, (1,), np.float32)
+    action_space = gym.spaces.Discrete(2)
+
+    def __init__(self, pause=0.0, fail_after=None):
+        self.pause, self.left = pause, fail_after
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.cell = int(self.np_random.integers(0, 2))
+        return np.array([self.cell], dtype=np.float32), {}
+
+    def step(self, action):
+        time.sleep(self.pause)
+        if self.left is not None:
+            self.left -= 1
+            if self.left < 0:
+                raise ValueError("the motor is broken")
+        self.cell = min(max(self.cell + 2 * int(action) - 1, 0), 4)
+        return np.array([self.cell], dtype=np.float32), -1.0, self.cell == 4, False, {}
+
+
+gym.register("Walk-v0", entry_point=Walk)
+'''
+
+
+def environment(folder: Path | None = None, **changes: str | None) -> dict[str, str]:
+    """The process's environment: no display, no surprises; with a folder, ``toys:Walk-v0`` can be found."""
+    variables = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    variables |= {"MPLBACKEND": "Agg", "COLUMNS": "80"}
+    if folder is not None:
+        (folder / "toys.py").write_text(TOYS)
+        variables["PYTHONPATH"] = str(folder)
+    return variables | {name: value for name, value in changes.items() if value is not None}
+
+
+def qtab(*arguments: str, cwd: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*QTAB, *arguments], cwd=cwd, env=environment(cwd, **variables), capture_output=True, text=True, check=False
+    )
+
+
+def refused(*arguments: str, cwd: Path, **variables: str) -> str:
+    """Runs what must be refused: exit code 2, nothing on standard output, no file, one line, which it returns."""
+    before = sorted(cwd.iterdir())
+    done = qtab(*arguments, cwd=cwd, **variables)
+    assert done.returncode == 2, done
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert [path for path in sorted(cwd.iterdir()) if path.suffix not in (".py", "")] == [
+        path for path in before if path.suffix not in (".py", "")
+    ]
+    return done.stderr.strip()

@@ -1,0 +1,70 @@
+"""The bench measures what it says, and prints it; no test looks at how fast anything is."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import qtab as package
+from command import qtab, refused
+from qtab.bench import article_numba, footprint, measure, report, subjects
+from qtab.bench.rounds import Timings
+
+
+def test_the_numba_loop_is_the_articles_loop_to_the_bit() -> None:
+    run = package.train("MountainCar-v0", episodes=300, seed=4, bit_generator="MT19937", backend="rust")
+    starts = np.random.default_rng(4).uniform(-0.6, -0.4, 300)
+    table, returns, steps = article_numba.q_learning(starts, 4, 0.2, 0.9, 0.8, 0.0)
+    assert table.tobytes() == run.q_table.tobytes()
+    assert returns.tobytes() == run.episode_returns.tobytes()
+    assert steps == run.episode_lengths.sum()
+
+
+def test_subjects_take_turns_and_ratios_are_taken_within_a_round() -> None:
+    turns: list[str] = []
+
+    def subject(name: str) -> subjects.Subject:
+        def run(index: int) -> int:
+            turns.append(f"{name}{index}")
+            return 1
+
+        return run
+
+    timings = measure({"a": subject("a"), "b": subject("b")}, seconds=0, rounds=2)
+    assert turns == ["a0", "b0", "a1", "b1", "a2", "b2"]
+    assert {name: len(times) for name, times in timings.nanoseconds.items()} == {"a": 2, "b": 2}
+    drifting = Timings({"slow": np.array([10.0, 200.0, 30.0]), "fast": np.array([1.0, 20.0, 3.0])})
+    assert drifting.ratio("slow", "fast") == 10.0
+    assert drifting.median("slow") == 30.0
+
+
+def test_every_subject_counts_its_steps() -> None:
+    training = subjects.training()
+    assert 1900 <= training[subjects.ARTICLE](0) <= 2000
+    assert training[subjects.TRAIN](0) == package.train("MountainCar-v0", seed=0).episode_lengths.sum()
+    assert all(step(0) == subjects.STEPS for step in subjects.stepping().values())
+
+
+def test_the_bench_prints_its_tables_with_versions_and_build(tmp_path: Path) -> None:
+    done = qtab("bench", "--rounds", "1", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    for name in (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP, subjects.QTAB_MAKE):
+        assert f"\n{name}  " in done.stdout
+    assert "import qtab adds" in done.stdout
+    assert f"numpy {np.__version__}" in done.stdout
+    assert f"build {package.versions.versions()['build']}" in done.stdout
+
+
+def test_without_numba_the_table_says_how_to_get_it_and_a_debug_build_is_warned_of() -> None:
+    names = (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP)
+    names = (*names, subjects.GYMNASIUM_MAKE, subjects.QTAB_MAKE)
+    timings = Timings({name: np.array([1.0]) for name in names})
+    printed = str(report.Report(timings, 1, footprint.Footprint(200.0, 5.0, None), {"build": "debug"}))
+    assert printed.startswith("WARNING: this is a debug build")
+    assert "qtab[bench]" in printed
+    assert "× numba" not in printed
+
+
+@pytest.mark.parametrize("arguments", [["--rounds", "0"], ["--seconds", "-1"], ["--laps", "3"]])
+def test_bad_usage_is_refused(tmp_path: Path, arguments: list[str]) -> None:
+    assert refused("bench", *arguments, cwd=tmp_path).startswith("qtab bench: error: ")
