@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from qtab.run import Recording, Run
     from qtab.runs import Runs
     from qtab.storage import load
-    from qtab.sweeping import StoreError, Sweep, SweepProgress, sweep
+    from qtab.sweeping import StoreError, Sweep, SweepProgress, load_sweep, sweep
     from qtab.training import Progress, train
     from qtab.verification import Verification, verify
 
@@ -44,6 +44,7 @@ __all__ = [
     "designs",
     "evaluate",
     "load",
+    "load_sweep",
     "plot",
     "plots",
     "presets",
@@ -67,6 +68,7 @@ _HOME = {
     "Verification": "verification",
     "evaluate": "evaluation",
     "load": "storage",
+    "load_sweep": "sweeping",
     "plot": "plotting",
     "presets": "preset",
     "sweep": "sweeping",

@@ -12,6 +12,8 @@ SUBCOMMANDS = {
     "train": "train a tabular agent, plot and save what it learned, show its last episodes",
     "verify": "replay a saved run through Gymnasium and NumPy, and compare byte for byte",
     "bench": "time this package against Gymnasium and the article's loop",
+    "sweep": "train many settings over many seeds, as a file says; called again, it goes on",
+    "report": "turn a sweep's store into tables, pictures and one HTML page",
 }
 """Each is a module of this package with ``run(arguments) -> exit code``."""
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 class Sweep:
     """The runs of every setting. Equal sweeps have equal tables, whatever happened on the way."""
 
+    env: str
+    """The environment's id."""
     settings: Sequence[Mapping[str, Any]]
     """What the grid gave to each setting."""
     seeds: tuple[int, ...]

@@ -10,15 +10,15 @@ from typing import Any
 
 import cloudpickle
 import gymnasium as gym
-import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from qtab import checks
 from qtab.many import MakeEnv, thread_count
 from qtab.processes import pool
+from qtab.sweeping.loading import table
 from qtab.sweeping.results import Sweep
-from qtab.sweeping.store import COLUMNS, Store
-from qtab.sweeping.study import Piece, Study, plain, study
+from qtab.sweeping.store import Store
+from qtab.sweeping.study import Piece, Study, study
 from qtab.sweeping.worker import train_piece, train_share
 
 BLOCK = 100
@@ -164,14 +164,5 @@ def _task(planned: Study, piece: Piece) -> bytes:
 
 
 def _table(planned: Study, kept: Store) -> Sweep:
-    rows = kept.rows()
-    count = len(planned.seeds)
-    columns: dict[str, Any] = {"setting": np.array([row[0] // count for row in rows])}
-    for name in planned.settings[0]:
-        cells = [plain(setting[name]) for setting in planned.settings]
-        columns[name] = np.array([cells[row[0] // count] for row in rows])
-    columns["seed"] = np.array([planned.seeds[row[0] % count] for row in rows])
-    for index, name in enumerate(COLUMNS, start=1):
-        columns[name] = np.array([np.nan if row[index] is None else row[index] for row in rows], dtype=np.float64)
-    columns["error"] = np.array([row[-1] for row in rows], dtype=object)
-    return Sweep(planned.settings, planned.seeds, columns, planned.block, [row[-2] for row in rows])
+    env = planned.resolved[0].config.env
+    return table(env, planned.settings, planned.seeds, planned.block, kept.rows())

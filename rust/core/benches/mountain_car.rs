@@ -4,7 +4,8 @@
 
 use std::hint::black_box;
 
-use criterion::{Criterion, Throughput};
+use criterion::{BatchSize, Criterion, Throughput};
+use qtab_core::batch::{self, Article, LANES};
 use qtab_core::envs::{MountainCar, MountainCarState};
 use qtab_core::features::{Axis, Rounding};
 use qtab_core::learners::{EpsilonGreedy, QLearning, TerminalUpdate};
@@ -122,6 +123,20 @@ fn train<D: Draw + Clone>(mut trainer: Trainer<Valley, QLearning<3>, D>) -> u64 
     trainer.episodes().lengths.iter().sum::<i64>() as u64
 }
 
+fn batch_of_runs() -> [Article; LANES] {
+    std::array::from_fn(|seed| {
+        let mut draw = Pcg64::new(&SeedSequence::new(&[seed as u32]).child(0));
+        let learner = learner(&mut draw);
+        Trainer::new(world(), learner, draw)
+    })
+}
+
+/// Until the first of them is finished; returns the steps taken by all.
+fn batch(runs: &mut [Article; LANES]) -> u64 {
+    batch::advance(runs, Until { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
+    runs.iter().flat_map(|run| &run.episodes().lengths).sum::<i64>() as u64
+}
+
 /// The same physics with the actions known beforehand and nobody learning: what no run can be faster than.
 fn chain(steps: u64, actions: &[usize], draw: &mut Pcg64) -> f64 {
     let car = black_box(MountainCar::default());
@@ -146,6 +161,11 @@ fn run(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(steps));
     group.bench_function("article, PCG64", |bencher| bencher.iter(|| train(trainer(agent()))));
     group.bench_function("floor", |bencher| bencher.iter(|| chain(steps, &actions, &mut draw)));
+    let steps = batch(&mut batch_of_runs());
+    group.throughput(Throughput::Elements(steps));
+    group.bench_function("article, a batch of 8 on one core", |bencher| {
+        bencher.iter_batched_ref(batch_of_runs, batch, BatchSize::PerIteration);
+    });
     let steps = train(trainer(Mt19937::new(0)));
     group.throughput(Throughput::Elements(steps));
     group.bench_function("article, MT19937", |bencher| bencher.iter(|| train(trainer(Mt19937::new(0)))));
