@@ -54,7 +54,7 @@ def learning_curves(
     band = f"{confidence:.0%} interval"
     low, high = [point.low for point in points], [point.high for point in points]
     ax.fill_between(x, low, high, color=color(index), alpha=0.35, linewidth=0, zorder=2)
-    name = f"{label or statistic} of {len(runs)} runs, {band}"
+    name = f"{label + ': ' if label else ''}{statistic} of {len(runs)} runs, {band}"
     ax.plot(x, [point.estimate for point in points], color=color(index), linewidth=2.2, label=name, zorder=3)
     ax.xaxis.set_major_formatter("{x:,.0f}")
     return finish(ax, "Episode", f"Return, mean of {block} episodes", title)
