@@ -1,19 +1,31 @@
 """The extension module: what Rust does. Its users are the other modules of this package."""
 
+from collections.abc import Callable
 from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import disjoint_base
 
-from qtab.plan import Model, Plan, PythonEnvironment
+from qtab.plan import Model, Plan, PythonEnvironment, Results
 
-__all__ = ["BUILD_PROFILE", "Physics", "Stream", "Trainer", "numpy_calls_the_platform", "parameter_names"]
+__all__ = [
+    "BUILD_PROFILE",
+    "Physics",
+    "Stream",
+    "Trainer",
+    "numpy_calls_the_platform",
+    "parameter_names",
+    "train_many",
+]
 
 BUILD_PROFILE: Literal["debug", "release"]
 
 def numpy_calls_the_platform() -> bool: ...
 def parameter_names(model: str) -> list[str]: ...
+def train_many(
+    describe: Callable[[int], tuple[Model, Plan]], results: Results, threads: int, go_on: bool
+) -> list[tuple[int, Exception]]: ...
 
 @disjoint_base
 class Physics:

@@ -3,6 +3,7 @@
 mod dispatch;
 mod door;
 mod failure;
+mod many;
 mod model;
 mod numbers;
 mod physics;
@@ -17,6 +18,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use super::many::train_many;
     #[pymodule_export]
     use super::model::parameter_names;
     #[pymodule_export]

@@ -3,7 +3,7 @@
 mod acrobot;
 mod cart_pole;
 mod continuous_mountain_car;
-mod mountain_car;
+pub(crate) mod mountain_car;
 mod numpy;
 mod pendulum;
 
