@@ -61,6 +61,14 @@ def test_each_run_is_the_lone_one_for_any_config(seeds, threads, episodes, confi
     assert_equal_to_lone_runs(runs, episodes=episodes, **config)
 
 
+@pytest.mark.parametrize(
+    "config", [{"algorithm": "double_q_learning"}, {"algorithm": "sarsa", "ties": "random"}, {"preset": "solved"}]
+)
+def test_other_learners_are_the_lone_runs_too(config):
+    runs = qtab.train_many(CAR, seeds=3, tables=True, **SHORT | config)
+    assert_equal_to_lone_runs(runs, **SHORT | config)
+
+
 def test_a_number_of_seeds_counts_from_zero():
     assert qtab.train_many(CAR, 3, **SHORT).seeds == (0, 1, 2)
     assert qtab.train_many(CAR, np.int64(2), **SHORT).seeds == (0, 1)

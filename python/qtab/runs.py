@@ -11,6 +11,7 @@ from qtab import checks
 from qtab.config import Config
 from qtab.run import Run
 from qtab.spaces import Grid
+from qtab.tiling import Tiling
 from qtab.summaries import block_means, summarize
 
 
@@ -30,7 +31,7 @@ class Runs:
     """(runs, episodes): whether each ended in a terminal state, and not by its time limit alone."""
     tables: NDArray[np.float64] | None
     """(runs, k, rows, actions): the raw tables, where they were asked for."""
-    grid: Grid
+    grid: Grid | Tiling
     """How observations become rows."""
     completed: bool
     """False after an interruption; the rows are then those of the runs that were finished."""
