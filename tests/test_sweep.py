@@ -286,6 +286,16 @@ def test_a_run_that_fails_is_recorded_and_the_others_go_on(tmp_path):
     assert study.values("mean_return", 1)[1] == lone.episode_returns.mean()
 
 
+def test_a_run_that_diverges_is_recorded():
+    steep = {"discretizer": "tiles", "algorithm": "sarsa_lambda", "traces": "accumulating", "trace_decay": 1.0}
+    steep |= {"discount": 1.0, "epsilon": 0.8, "min_epsilon": 0.8}
+    study = qtab.sweep(CAR, {"learning_rate": [0.1, 1.5]}, seeds=3, episodes=4, **steep)
+    said = study.columns["error"].tolist()
+    assert said[:3] == [None] * 3
+    assert [text is None for text in said[3:]] == [False, True, True]
+    assert said[3].startswith("OverflowError: the action values overflowed")
+
+
 @pytest.mark.filterwarnings("ignore")  # distributed's own
 def test_dask_with_a_worker_killed_gives_the_same_table(tmp_path, small_pieces):
     from distributed import Client, LocalCluster

@@ -62,11 +62,38 @@ def test_each_run_is_the_lone_one_for_any_config(seeds, threads, episodes, confi
 
 
 @pytest.mark.parametrize(
-    "config", [{"algorithm": "double_q_learning"}, {"algorithm": "sarsa", "ties": "random"}, {"preset": "solved"}]
+    "config",
+    [
+        {"algorithm": "double_q_learning"},
+        {"algorithm": "sarsa_lambda", "trace_decay": 0.9},
+        {"algorithm": "dyna_q", "planning_steps": 3},
+        {"discretizer": "tiles", "algorithm": "sarsa"},
+    ],
 )
-def test_other_learners_are_the_lone_runs_too(config):
-    runs = qtab.train_many(CAR, seeds=3, tables=True, **SHORT | config)
-    assert_equal_to_lone_runs(runs, **SHORT | config)
+@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
+def test_each_run_is_the_lone_one_for_every_learner(config, backend):
+    episodes = 12 if backend == "rust" else 2
+    config = {**config, "episodes": episodes, "backend": backend}
+    runs = qtab.train_many(CAR, 3, threads=2, tables=True, **config)
+    assert_equal_to_lone_runs(runs, **config)
+    assert runs[1].tables.shape == qtab.train(CAR, seed=1, **config).tables.shape
+
+
+STEEP = {"discretizer": "tiles", "algorithm": "sarsa_lambda", "traces": "accumulating", "trace_decay": 1.0}
+STEEP |= {"learning_rate": 1.5, "discount": 1.0, "epsilon": 0.8, "min_epsilon": 0.8, "episodes": 4}
+
+
+def test_a_failing_run_names_its_seed_and_leaves_the_finished_ones():
+    with pytest.raises(OverflowError) as lone:
+        qtab.train(CAR, seed=0, **STEEP)
+    with pytest.raises(OverflowError) as caught:
+        qtab.train_many(CAR, [1, 0, 2], threads=1, tables=True, **STEEP)
+    assert str(caught.value) == str(lone.value)
+    assert "seed 0" in getattr(caught.value, "__notes__", ["seed 0"])[0]
+    runs = caught.value.run
+    assert runs.seeds == (1,)
+    assert not runs.completed
+    assert_equal_to_lone_runs(runs, **STEEP)
 
 
 def test_a_number_of_seeds_counts_from_zero():

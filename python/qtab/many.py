@@ -1,6 +1,5 @@
 """``qtab.train_many``: one config, many seeds, all cores."""
 
-import math
 import os
 import time
 from collections.abc import Callable, Iterable
@@ -142,7 +141,7 @@ def allocate(resolved: Resolved, runs: int, alive: int, tables: bool, limit: int
         MemoryError: if results and tables need more than the limit.
     """
     episodes = resolved.config.episodes
-    values = math.prod(resolved.grid.shape)
+    values = resolved.grid.rows * resolved.grid.actions
     needed = runs * episodes * BYTES_AN_EPISODE + alive * (episodes * BYTES_AN_EPISODE + 8 * values)
     what = f"{runs} runs of {episodes} episodes"
     check_memory(what, needed + (runs * 8 * values if tables else 0), limit)
@@ -175,8 +174,7 @@ def _runs(resolved: Resolved, seeds: tuple[int, ...], results: plan.Results, tab
     finished = results["finished"]
     whole = bool(finished.all())
     rows = slice(None) if whole else finished
-    actions = resolved.grid.actions
-    cells = math.prod(resolved.grid.shape) // actions
+    shape = (-1, resolved.grid.rows, resolved.grid.actions)
     kept = results["tables"][rows]
     return Runs(
         config=resolved.config,
@@ -184,7 +182,7 @@ def _runs(resolved: Resolved, seeds: tuple[int, ...], results: plan.Results, tab
         episode_returns=results["returns"][rows],
         episode_lengths=results["lengths"][rows],
         terminated=results["terminated"][rows],
-        tables=kept.reshape(len(kept), -1, cells, actions) if tables else None,
+        tables=kept.reshape(len(kept), *shape) if tables else None,
         grid=resolved.grid,
         completed=whole,
         seconds=time.perf_counter() - began,

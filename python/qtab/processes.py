@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from operator import itemgetter
 from typing import Any
 
 import cloudpickle
@@ -31,11 +32,10 @@ def train_in_processes(
         pending = {executor.submit(_train, seed, keep): index for index, seed in enumerate(seeds)}
         while pending:
             done, _ = wait(pending, timeout=WAIT, return_when="FIRST_COMPLETED")
-            for future in done:
-                index = pending.pop(future)
-                error = _fill(index, future, results)
-                if error is not None:
-                    return [(index, error)]
+            ended = sorted(((pending.pop(future), future) for future in done), key=itemgetter(0))
+            failed = [(index, error) for index, future in ended if (error := _fill(index, future, results))]
+            if failed:
+                return failed
     return []
 
 

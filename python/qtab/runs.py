@@ -11,8 +11,8 @@ from qtab import checks
 from qtab.config import Config
 from qtab.run import Run
 from qtab.spaces import Grid
-from qtab.tiling import Tiling
 from qtab.summaries import block_means, summarize
+from qtab.tiling import Tiling
 
 
 @dataclass(frozen=True, eq=False)

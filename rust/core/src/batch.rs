@@ -22,6 +22,9 @@ use crate::worlds::Native;
 /// How many runs go together best.
 pub const LANES: usize = 8;
 
+/// A reward of -1 a step never brings a value from here to infinity: nobody need look whether a run diverges.
+const FAR_FROM_OVERFLOW: f64 = 1e300;
+
 /// The article's run: what a batch is made for.
 pub type Article = Trainer<Native<MountainCar, Rounding<f32, [Axis<f32>; 2]>>, QLearning<3>, Pcg64>;
 
@@ -53,6 +56,7 @@ fn alike(one: &Article, other: &Article) -> bool {
         && learner.discount == other.learner.discount
         && learner.terminal_update == other.learner.terminal_update
         && learner.table.values().len() == other.learner.table.values().len()
+        && learner.table.values().iter().all(|value| value.abs() < FAR_FROM_OVERFLOW)
 }
 
 /// Whether no observation can lie outside the grid: it rises with position and velocity, so that the corners tell.

@@ -9,8 +9,8 @@ use std::vec::IntoIter;
 use numpy::{PyReadwriteArray1, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use qtab_core::Until;
 use qtab_core::batch::{self, Article, LANES};
+use qtab_core::{Learner, Until};
 
 use crate::dispatch::build;
 use crate::door;
@@ -208,7 +208,11 @@ fn advance(runs: &mut [Article], until: Until) -> Result<(), (usize, Failure)> {
     } else {
         return Ok(());
     };
-    result.map_err(|(lane, outside)| (lane, outside.into()))
+    result.map_err(|(lane, outside)| (lane, outside.into()))?;
+    match runs.iter().position(|run| Learner::<[u32; 1]>::diverged(run.learner())) {
+        Some(lane) => Err((lane, Failure::Diverged(runs[lane].last_episode()))),
+        None => Ok(()),
+    }
 }
 
 impl Results<'_> {
