@@ -1,0 +1,19 @@
+"""The README's second picture: the article's experiment over 1,000 seeds, and the preset that solves the task."""
+
+import time
+from pathlib import Path
+
+import qtab
+
+began = time.perf_counter()
+article = qtab.train_many("MountainCar-v0", seeds=1000)
+seconds = time.perf_counter() - began
+print(f"{article.episode_lengths.sum():,} steps in {seconds:.1f} s")
+solved = qtab.train_many("MountainCar-v0", seeds=100, preset="solved")
+for name, runs in (("article", article), ("solved", solved)):
+    final = runs.final_returns(100)
+    print(f"{name}: {qtab.stats.mean(final)} over the last 100 episodes of {len(runs)} seeds, best {final.max():.1f}")
+
+ax = qtab.plots.learning_curves(article.episode_returns, label="article: mean")
+qtab.plots.learning_curves(solved.episode_returns, ax, label="solved: mean", index=1, title="MountainCar-v0")
+ax.figure.savefig(Path(__file__).with_suffix(".png"), dpi=110)
