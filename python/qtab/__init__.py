@@ -16,6 +16,7 @@ from qtab.envs import register as _register
 
 if TYPE_CHECKING:
     from qtab.config import Config
+    from qtab.envs.tabular import TabularEnv
     from qtab.evaluation import Evaluation, evaluate
     from qtab.plotting import plot
     from qtab.preset import presets
@@ -32,6 +33,7 @@ __all__ = [
     "Progress",
     "Recording",
     "Run",
+    "TabularEnv",
     "Verification",
     "evaluate",
     "load",
@@ -47,6 +49,7 @@ _HOME = {
     "Progress": "training",
     "Recording": "run",
     "Run": "run",
+    "TabularEnv": "envs.tabular",
     "Verification": "verification",
     "evaluate": "evaluation",
     "load": "storage",

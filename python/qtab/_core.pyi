@@ -1,5 +1,6 @@
 """The extension module: what Rust does. Its users are the other modules of this package."""
 
+from collections.abc import Sequence
 from typing import Any, Literal, final
 
 import numpy as np
@@ -8,12 +9,29 @@ from typing_extensions import disjoint_base
 
 from qtab.plan import Model, Plan, PythonEnvironment
 
-__all__ = ["BUILD_PROFILE", "Physics", "Stream", "Trainer", "numpy_calls_the_platform", "parameter_names"]
+__all__ = [
+    "BUILD_PROFILE",
+    "Blackjack",
+    "Physics",
+    "Stream",
+    "Table",
+    "Taxi",
+    "Trainer",
+    "check_table",
+    "numpy_calls_the_platform",
+    "parameter_names",
+]
 
 BUILD_PROFILE: Literal["debug", "release"]
 
+def check_table(table: Any, start: Sequence[float] | NDArray[np.float64]) -> tuple[int, int]: ...
 def numpy_calls_the_platform() -> bool: ...
 def parameter_names(model: str) -> list[str]: ...
+
+class Blackjack:
+    def __new__(cls, *_args: Any, **_kwargs: Any) -> Blackjack: ...
+    def step(self, action: Any) -> Any: ...
+    def deal(self) -> Any: ...
 
 @disjoint_base
 class Physics:
@@ -28,6 +46,15 @@ class Stream:
     def random(self) -> float: ...
     def integers(self, below: int) -> int: ...
     def uniform(self, low: float, high: float) -> float: ...
+
+class Table:
+    def __new__(cls, *_args: Any, **_kwargs: Any) -> Table: ...
+    def step(self, action: Any) -> Any: ...
+
+class Taxi:
+    def __new__(cls, *_args: Any, **_kwargs: Any) -> Taxi: ...
+    def step(self, action: Any) -> Any: ...
+    def action_mask(self, state: Any) -> Any: ...
 
 @final
 class Trainer:

@@ -29,6 +29,9 @@ class Model:
 
 
 _CLASSIC = "gymnasium.envs.classic_control"
+_TOYS = "gymnasium.envs.toy_text"
+_FROZEN_LAKE = Model("FrozenLake", f"{_TOYS}.frozen_lake:FrozenLakeEnv", "qtab.envs.frozen_lake:FrozenLakeEnv")
+_CLIFF = Model("CliffWalking", f"{_TOYS}.cliffwalking:CliffWalkingEnv", "qtab.envs.cliff_walking:CliffWalkingEnv")
 _CART_POLE = Model("CartPole", f"{_CLASSIC}.cartpole:CartPoleEnv", "qtab.envs.cart_pole:CartPoleEnv")
 
 MODELS: Mapping[str, Model] = {
@@ -54,6 +57,12 @@ MODELS: Mapping[str, Model] = {
         qtab="qtab.envs.pendulum:PendulumEnv",
         arguments=frozenset({"g"}),
     ),
+    "FrozenLake-v1": _FROZEN_LAKE,
+    "FrozenLake8x8-v1": _FROZEN_LAKE,
+    "CliffWalking-v1": _CLIFF,
+    "CliffWalkingSlippery-v1": _CLIFF,
+    "Taxi-v4": Model("Taxi", f"{_TOYS}.taxi:TaxiEnv", "qtab.envs.taxi:TaxiEnv"),
+    "Blackjack-v1": Model("Blackjack", f"{_TOYS}.blackjack:BlackjackEnv", "qtab.envs.blackjack:BlackjackEnv"),
 }
 
 

@@ -1,5 +1,6 @@
 //! `qtab._core`: what Python calls. Convert, dispatch, return; nothing else.
 
+mod blackjack;
 mod dispatch;
 mod door;
 mod failure;
@@ -10,6 +11,9 @@ mod plan;
 mod python_world;
 mod run;
 mod stream;
+mod table;
+mod taxi;
+mod toy_text;
 mod trainer;
 mod trigonometry;
 
@@ -18,11 +22,19 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use super::blackjack::Blackjack;
+    #[pymodule_export]
     use super::model::parameter_names;
     #[pymodule_export]
     use super::physics::Physics;
     #[pymodule_export]
     use super::stream::Stream;
+    #[pymodule_export]
+    use super::table::check_table;
+    #[pymodule_export]
+    use super::taxi::Taxi;
+    #[pymodule_export]
+    use super::toy_text::Table;
     #[pymodule_export]
     use super::trainer::Trainer;
     #[pymodule_export]

@@ -4,12 +4,12 @@ use crate::env::{Env, Step};
 use crate::random::Draw;
 
 /// An endless deck: the ace, the numbers, and ten for each of the faces.
-const DECK: [u32; 13] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 10, 10, 10];
+pub const DECK: [u32; 13] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 10, 10, 10];
 const ACE: u32 = 1;
 const TEN: u32 = 10;
 const MOST: u32 = 21;
 /// The dealer draws below this.
-const DEALER_STICKS: u32 = 17;
+pub const DEALER_STICKS: u32 = 17;
 /// Of the dealer's open card, for its picture.
 const SUITS: u32 = 4;
 const FACES: u32 = 3;

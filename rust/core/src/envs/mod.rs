@@ -11,7 +11,7 @@ mod tabular;
 mod taxi;
 
 pub use acrobot::{Acrobot, AcrobotState};
-pub use blackjack::{Blackjack, BlackjackState, Hand};
+pub use blackjack::{Blackjack, BlackjackState, DEALER_STICKS, DECK, Hand};
 pub use cart_pole::{CartPole, CartPoleState};
 pub use continuous_mountain_car::{ContinuousMountainCar, ContinuousMountainCarState};
 pub use mountain_car::{MountainCar, MountainCarState};
