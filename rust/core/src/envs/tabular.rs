@@ -9,6 +9,8 @@ use std::fmt;
 use crate::env::{Env, Step};
 use crate::random::Draw;
 
+/// So many comparisons take no longer than a search.
+const FEW: usize = 8;
 /// Probabilities may miss one by this much.
 pub const TOLERANCE: f64 = 1e-9;
 
@@ -119,7 +121,12 @@ fn distribution(place: &str, probabilities: impl Iterator<Item = f64>) -> Result
 /// `np.argmax(np.cumsum(probabilities) > random)`: index 0 where no sum is above it.
 #[inline]
 fn chosen(bounds: &[f64], random: f64) -> usize {
-    let index = bounds.partition_point(|&bound| bound <= random);
+    let index = if bounds.len() <= FEW {
+        // Counted without a branch, which would often be mispredicted.
+        bounds.iter().map(|&bound| usize::from(bound <= random)).sum()
+    } else {
+        bounds.partition_point(|&bound| bound <= random)
+    };
     if index < bounds.len() { index } else { 0 }
 }
 
