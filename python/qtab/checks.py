@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 
+LARGEST_COUNT = 2**63 - 1
+"""Episodes and steps are counted in 64 bits."""
+
 
 def real(name: str, value: Any, low: float, high: float) -> float:
     """Returns ``value`` as a float in [``low``, ``high``].
@@ -64,6 +67,19 @@ def integer(name: str, value: Any, least: int, most: int | None = None) -> int:
         raise TypeError(f"{name} must be {fits}, got {value!r}") from None
     if number < least or (most is not None and number > most):
         raise ValueError(f"{name} must be {fits}, got {value!r}")
+    return number
+
+
+def count(name: str, value: Any, least: int) -> int:
+    """Returns ``value`` as a Python integer of at least ``least`` that 64 bits hold.
+
+    Raises:
+        TypeError: if it is no integer (a boolean is none, 5.0 neither).
+        ValueError: if it is too small or too large.
+    """
+    number = integer(name, value, least)
+    if number > LARGEST_COUNT:
+        raise ValueError(f"{name} must be less than 2**63, got {value!r}")
     return number
 
 

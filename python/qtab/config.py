@@ -1,33 +1,37 @@
-"""The one place of every default: what a run is made from."""
+"""What a run is made from: every setting and its default (those of an algorithm's own options are in options.py)."""
 
 import dataclasses
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from qtab import checks
-
-BitGenerator: TypeAlias = Literal["PCG64", "MT19937"]
-Backend: TypeAlias = Literal["auto", "rust", "gymnasium"]
-TerminalUpdate: TypeAlias = Literal["target", "assign"]
-InitialQ: TypeAlias = tuple[float, float] | NDArray[np.float64]
-
-LARGEST_MT19937_SEED = 2**32 - 1
-LARGEST_COUNT = 2**63 - 1
-"""Episodes and steps are counted in 64 bits."""
+from qtab.names import (
+    Algorithm,
+    Backend,
+    BitGenerator,
+    Discretizer,
+    EpsilonSchedule,
+    Exploration,
+    InitialQ,
+    LearningRateSchedule,
+    OnTruncation,
+    TerminalUpdate,
+    Ties,
+    Traces,
+)
+from qtab.validation import validated
 
 
 @dataclass(frozen=True, eq=False)
 class Config:
     """All that it takes to repeat a run.
 
+    None means "not given"; the config of a run has the value that was used in its place, and None where a setting has
+    no meaning (the trace decay of an algorithm without traces). Giving such a setting is an error.
+
     Raises:
         TypeError: for a value of the wrong type.
-        ValueError: for a value that is out of range.
+        ValueError: for a value that is out of range, or has no meaning beside the others.
     """
 
     env: str = "MountainCar-v0"
@@ -36,20 +40,67 @@ class Config:
     """Keyword arguments of the environment's constructor."""
     episodes: int = 5000
     """How many episodes to train."""
+    algorithm: Algorithm = "q_learning"
+    """How values are learned."""
     learning_rate: float = 0.2
-    """α: the share of each error that an update corrects, in [0, 1]."""
+    """α: the share of each error that an update corrects, in [0, 1]; in [0, 2] for the tilings together."""
     discount: float = 0.9
     """γ: what a reward is worth one step later, in [0, 1]."""
-    epsilon: float = 0.8
-    """ε: the exploration rate of the first episode, in [0, 1]."""
-    min_epsilon: float = 0.0
-    """The exploration rate after the last episode, in [0, epsilon]; in between it falls linearly."""
+    learning_rate_schedule: LearningRateSchedule = "constant"
+    """How the learning rate falls: from episode to episode, or with a pair's visits (learning_rate / n at the n-th)."""
+    min_learning_rate: float | None = None
+    """The learning rate falls no further than this (0), in [0, learning_rate]."""
+    learning_rate_decay: float | None = None
+    """The factor of an exponential schedule (0.999), once an episode, in [0, 1]."""
+    learning_rate_warm_up: int | None = None
+    """The learning rate falls only after this many episodes (0)."""
+    exploration: Exploration = "epsilon_greedy"
+    """How actions are chosen."""
+    epsilon: float | None = None
+    """ε: the exploration rate of the first episode (0.8), in [0, 1]."""
+    epsilon_schedule: EpsilonSchedule | None = None
+    """How the exploration rate falls from episode to episode: linearly where nothing is given."""
+    min_epsilon: float | None = None
+    """The exploration rate falls no further than this (0), in [0, epsilon]; linearly it gets there at the end."""
+    epsilon_decay: float | None = None
+    """The factor of an exponential schedule (0.999), once an episode, in [0, 1]."""
+    epsilon_warm_up: int | None = None
+    """The exploration rate falls only after this many episodes (0)."""
+    ties: Ties | None = None
+    """Which of several greedy actions: the first where nothing is given, as np.argmax has it."""
+    temperature: float | None = None
+    """τ: softmax chooses an action by exp(Q / τ) (1), above 0."""
+    trace_decay: float | None = None
+    """λ: how far back an error reaches (0.9), in [0, 1]."""
+    traces: Traces | None = None
+    """What a visit does to a trace: replacing (where nothing is given) sets it to 1, accumulating adds 1, clearing sets
+    it to 1 and those of the other actions to 0."""
+    trace_cutoff: float | None = None
+    """A trace that falls to this or below is forgotten (0: none before it vanishes), in [0, 1]."""
+    n_steps: int | None = None
+    """n: how many rewards a target adds up (4)."""
+    planning_steps: int | None = None
+    """How many updates from the model follow each step (10)."""
+    time_weight: float | None = None
+    """κ: Dyna-Q+ adds κ √τ to the rewards of what was not tried for τ steps (0.001)."""
+    discretizer: Discretizer = "round"
+    """How observations become rows of the table: rounded to a grid, or lit by tile coding."""
     scale: tuple[float, ...] = ()
     """Cells per unit of each component of the observation: (10, 100) rounds to 0.1 and 0.01."""
+    tilings: int | None = None
+    """How many tilings lie over each other (8), at most 32."""
+    tiles: tuple[int, ...] | None = None
+    """Tiles along each component of the observation, or one number for all (8)."""
+    low: tuple[float, ...] | None = None
+    """The lower edges of the tilings; the space's own where nothing is given."""
+    high: tuple[float, ...] | None = None
+    """The upper edges."""
     initial_q: InitialQ = (-1.0, 1.0)
-    """The first Q table: drawn uniformly from a range (low, high), or an array to go on from."""
+    """The first Q table: drawn uniformly from a range (low, high), one number everywhere, or an array to go on from."""
     terminal_update: TerminalUpdate = "target"
     """At a terminal state: move towards the reward (the book's rule), or assign it (the article's)."""
+    on_truncation: OnTruncation = "bootstrap"
+    """At a time-out: learn from what would have followed (right), or as if nothing did (a well-known mistake)."""
     max_episode_steps: int | None = None
     """The time limit; None means the environment's own, and 10,000 where it has none."""
     seed: int | None = None
@@ -63,33 +114,9 @@ class Config:
 
     def __post_init__(self) -> None:
         """Refuses bad values and turns NumPy's numbers into Python's."""
-        if not isinstance(self.env, str):
-            raise TypeError(f"env must be an environment id, got {self.env!r}")
-        checked = {
-            "env_kwargs": _keywords(self.env_kwargs),
-            "episodes": checks.integer("episodes", self.episodes, least=1, most=LARGEST_COUNT),
-            "learning_rate": checks.real("learning_rate", self.learning_rate, 0, 1),
-            "discount": checks.real("discount", self.discount, 0, 1),
-            "epsilon": checks.real("epsilon", self.epsilon, 0, 1),
-            "min_epsilon": checks.real("min_epsilon", self.min_epsilon, 0, 1),
-            "scale": _scale(self.scale),
-            "initial_q": _initial_q(self.initial_q),
-            "terminal_update": checks.choice("terminal_update", self.terminal_update, get_args(TerminalUpdate)),
-            "bit_generator": checks.choice("bit_generator", self.bit_generator, get_args(BitGenerator)),
-            "backend": checks.choice("backend", self.backend, get_args(Backend)),
-        }
-        if self.max_episode_steps is not None:
-            steps = checks.integer("max_episode_steps", self.max_episode_steps, least=1, most=LARGEST_COUNT)
-            checked["max_episode_steps"] = steps
-        if self.seed is not None:
-            most = LARGEST_MT19937_SEED if self.bit_generator == "MT19937" else None
-            checked["seed"] = checks.integer("seed", self.seed, least=0, most=most)
-        if self.preset is not None and not isinstance(self.preset, str):
-            raise TypeError(f"preset must be a name, got {self.preset!r}")
-        for name, value in checked.items():
+        fields = {field.name: getattr(self, field.name) for field in dataclasses.fields(Config)}
+        for name, value in validated(fields).items():
             object.__setattr__(self, name, value)
-        if self.min_epsilon > self.epsilon:
-            raise ValueError(f"min_epsilon must lie in [0, epsilon = {self.epsilon:g}], got {self.min_epsilon!r}")
 
     def replace(self, **changes: Any) -> "Config":
         """Returns a copy with some fields changed.
@@ -111,38 +138,3 @@ def known_fields(names: Mapping[str, Any]) -> None:
     for name in names:
         if name not in fields:
             raise TypeError(f"{name!r} is no setting of a run; there are {', '.join(fields)}")
-
-
-def _keywords(value: Any) -> dict[str, Any]:
-    if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
-        raise TypeError(f"env_kwargs must map names to values, got {value!r}")
-    return dict(value)
-
-
-def _scale(value: Any) -> tuple[float, ...]:
-    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
-        raise TypeError(f"scale must hold a number for each component of the observation, got {value!r}")
-    scale = tuple(checks.finite("scale", number) for number in value)
-    if any(number <= 0 for number in scale):
-        raise ValueError(f"scale must hold positive numbers, got {value!r}")
-    return scale
-
-
-def _initial_q(value: Any) -> InitialQ:
-    if isinstance(value, tuple | list) and len(value) == 2 and not any(hasattr(part, "__len__") for part in value):
-        low, high = (checks.finite("initial_q", bound) for bound in value)
-        if low > high:
-            raise ValueError(f"initial_q must be a range (low, high) with low <= high, got {value!r}")
-        if not math.isfinite(high - low):
-            raise ValueError(f"initial_q must be a range (low, high) with a finite width, got {value!r}")
-        return low, high
-    if not isinstance(value, np.ndarray | list):
-        raise TypeError(f"initial_q must be a range (low, high) or a table, got {value!r}")
-    try:
-        table = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"initial_q must be a range (low, high) or a table of numbers, got {value!r}") from None
-    if not np.isfinite(table).all():
-        raise ValueError("initial_q must hold finite numbers, got a table with nan or infinity")
-    table.flags.writeable = False
-    return table

@@ -69,10 +69,9 @@ def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.En
         seed=seed,
         learning_rate=0.0,
         epsilon=0.0,
-        min_epsilon=0.0,
         terminal_update="target",
-        initial_q=run.q_table,
-        scale=config.scale,
+        initial_q=_greedy_table(run),
+        **{name: getattr(config, name) for name in ("discretizer", "scale", "tilings", "tiles", "low", "high")},
         env_kwargs=config.env_kwargs,
         max_episode_steps=config.max_episode_steps,
         backend=config.backend if env is None else "auto",
@@ -86,3 +85,9 @@ def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.En
         played.config.seed,
         None if spec is None else spec.reward_threshold,
     )
+
+
+def _greedy_table(run: Run) -> NDArray[np.float64]:
+    """What the greedy policy reads, with tile coding too: values add up over the tables as over the rows."""
+    table: NDArray[np.float64] = run.tables[0] if len(run.tables) == 1 else run.tables[0] + run.tables[1]
+    return table[np.newaxis]

@@ -103,7 +103,8 @@ def save_plot(run: Run, path: Path) -> None:
         ModuleNotFoundError: without matplotlib; it names the ``pip install``.
         OSError: if the file cannot be written.
     """
-    figure = plot(run).figure
+    figure = _figure()
+    plot(run, figure.subplots())
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=DOTS_PER_INCH)
 

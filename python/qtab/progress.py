@@ -3,7 +3,6 @@
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 from qtab.extras import missing
@@ -19,36 +18,7 @@ _open: list[Any] = []
 
 
 class Bar:
-    """How far a long call is; without a tqdm bar to move, it does nothing."""
-
-    def __init__(self, bar: Any = None) -> None:
-        self._bar = bar
-        self._stride = 1
-
-    def stops(self, done: int, target: int) -> Iterator[int]:
-        """Yields where to pause on the way to ``target``: nowhere, or about ten times a second to move the bar."""
-        if self._bar is None:
-            yield target
-            return
-        while done < target:
-            began, before = time.perf_counter(), done
-            done = min(done + self._stride, target)
-            yield done
-            self._bar.update(done - before)
-            seconds = time.perf_counter() - began
-            # Twice or half as many at a time: an episode's length changes while a run learns.
-            factor = 2.0 if seconds < SECONDS_BETWEEN_UPDATES / 2 else 0.5 if seconds > SECONDS_BETWEEN_UPDATES else 1.0
-            self._stride = max(1, int(self._stride * factor))
-
-    def move_to(self, done: int) -> None:
-        """Shows that so many are done."""
-        if self._bar is not None:
-            self._bar.update(done - self._bar.n)
-
-
-@contextmanager
-def bar(total: int, unit: str, progress: bool | None, description: str | None = None) -> Iterator[Bar]:
-    """Opens a bar on standard error.
+    """How far a long call is, on standard error. A context; without a bar to show, it does nothing.
 
     Args:
         total: How many there are to do.
@@ -60,25 +30,56 @@ def bar(total: int, unit: str, progress: bool | None, description: str | None = 
         ModuleNotFoundError: if a bar is asked for and tqdm is not installed; it names the ``pip install``.
         TypeError: if ``progress`` is none of the three.
     """
+
+    def __init__(self, total: int, unit: str, progress: bool | None, description: str | None = None) -> None:
+        self._shown = _tqdm(total, unit, progress, description)
+        self._stride = 1
+
+    # Not a generator: contextlib writes to the exceptions that pass through one, and a frozen one refuses.
+    def __enter__(self) -> "Bar":
+        if self._shown is not None:
+            _open.append(self._shown)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._shown is not None:
+            _open.remove(self._shown)
+            self._shown.close()
+
+    def stops(self, done: int, target: int) -> Iterator[int]:
+        """Yields where to pause on the way to ``target``: nowhere, or about ten times a second to move the bar."""
+        if self._shown is None:
+            yield target
+            return
+        while done < target:
+            began, before = time.perf_counter(), done
+            done = min(done + self._stride, target)
+            yield done
+            self._shown.update(done - before)
+            seconds = time.perf_counter() - began
+            # Twice or half as many at a time: an episode's length changes while a run learns.
+            factor = 2.0 if seconds < SECONDS_BETWEEN_UPDATES / 2 else 0.5 if seconds > SECONDS_BETWEEN_UPDATES else 1.0
+            self._stride = max(1, int(self._stride * factor))
+
+    def move_to(self, done: int) -> None:
+        """Shows that so many are done."""
+        if self._shown is not None:
+            self._shown.update(done - self._shown.n)
+
+
+def _tqdm(total: int, unit: str, progress: bool | None, description: str | None) -> Any:
     if not (progress is None or isinstance(progress, bool)):
         raise TypeError(f"progress must be True, False or None, got {progress!r}")
     if progress is False or (progress is None and not on_terminal(sys.stderr)):
-        yield Bar()
-        return
+        return None
     try:
         from tqdm import tqdm
     except ModuleNotFoundError as error:
         if progress:
             raise missing(error, "cli") from None
-        yield Bar()
-        return
+        return None
     delay = 0.0 if progress else DELAY_SECONDS
-    with tqdm(total=total, unit=f" {unit}s", desc=description, delay=delay, leave=False, dynamic_ncols=True) as shown:
-        _open.append(shown)
-        try:
-            yield Bar(shown)
-        finally:
-            _open.remove(shown)
+    return tqdm(total=total, unit=f" {unit}s", desc=description, delay=delay, leave=False, dynamic_ncols=True)
 
 
 def on_terminal(stream: Any) -> bool:

@@ -8,7 +8,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.progress import bar
+from qtab.progress import Bar
 from qtab.run import Recording, Run
 
 
@@ -71,7 +71,7 @@ def play_all(env: gym.Env, run: Run, progress: bool | None = None) -> int:
     An environment that carries more from episode to episode than its ``np_random`` can differ.
     """
     different = 0
-    with bar(len(run.recordings), "episode", progress, "replay") as shown:
+    with Bar(len(run.recordings), "episode", progress, "replay") as shown:
         for index, recording in enumerate(run.recordings):
             different += play(env, recording) != run.episode_returns[recording.episode]
             shown.move_to(index + 1)

@@ -11,8 +11,10 @@ from gymnasium.envs.registration import EnvSpec
 from qtab import plan
 from qtab.config import Config, known_fields
 from qtab.models import Model, model_of, spec_of
+from qtab.options import defaults, stranger, tables
 from qtab.preset import preset
 from qtab.spaces import Grid, grid
+from qtab.tiling import Tiling, tiling
 from qtab.wrappers import model_of_object
 
 UNLIMITED_MAX_EPISODE_STEPS = 10_000
@@ -24,7 +26,7 @@ class Resolved:
     """A config without gaps, and what it is run on."""
 
     config: Config
-    grid: Grid
+    grid: Grid | Tiling
     model: Model | None
     """The model in Rust; None steps ``env`` in Python."""
     env: gym.Env | None
@@ -53,18 +55,19 @@ class Resolved:
             "low": self.grid.low.astype(np.float64).tolist(),
             "high": self.grid.high.astype(np.float64).tolist(),
             "single": self.grid.low.dtype == np.float32,
-            "scale": self.grid.scale.tolist(),
+            "features": self.grid.plan(),
             "actions": self.grid.actions,
             "max_episode_steps": config.max_episode_steps,
             "seed": plan.seed_words(config.seed),
             "bit_generator": config.bit_generator,
             "initial_q": config.initial_q,
-            "learning_rate": config.learning_rate,
+            "learning_rate": plan.learning_rate(config),
             "discount": config.discount,
-            "epsilon": config.epsilon,
-            "min_epsilon": config.min_epsilon,
+            "policy": plan.policy(config),
             "episodes": config.episodes,
             "terminal_update": config.terminal_update,
+            "on_truncation": config.on_truncation,
+            "algorithm": plan.algorithm(config),
             "record": record,
         }
 
@@ -84,6 +87,9 @@ def merge(env: str, *layers: Mapping[str, Any]) -> Config:
     if name is not None and not isinstance(name, str):
         raise TypeError(f"preset must be a name, got {name!r}")
     name, values = preset(env, name)
+    # A preset is a start: of what it says, that falls away which has no meaning beside what was asked for.
+    wanted = {**vars(Config()), **values, **explicit}
+    values = {field: value for field, value in values.items() if not stranger(field, value, wanted)}
     return Config(**{**values, **explicit, "env": env, "preset": name})
 
 
@@ -113,7 +119,7 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
         limit["max_episode_steps"] = config.max_episode_steps
     made = gym.make(spec, **config.env_kwargs, **limit)
     try:
-        table = grid(made, config.scale)
+        table = _features(made, config)
         steps = config.max_episode_steps or spec.max_episode_steps
         config = _complete(config, table, backend, steps)
     except BaseException:
@@ -132,7 +138,7 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     if config.backend == "auto":
         config = config.replace(backend="gymnasium")
     model = model_of_object(env) if config.backend == "rust" else None
-    table = grid(env, config.scale)
+    table = _features(env, config)
     steps = config.max_episode_steps or _time_limit(env)
     return Resolved(_complete(config, table, config.backend, steps), table, model, env, made=False)
 
@@ -153,10 +159,23 @@ def _time_limit(env: gym.Env) -> int | None:
     return None
 
 
-def _complete(config: Config, table: Grid, backend: str, steps: int | None) -> Config:
-    changes: dict[str, Any] = {"backend": backend, "max_episode_steps": steps or UNLIMITED_MAX_EPISODE_STEPS}
+def _features(env: gym.Env, config: Config) -> Grid | Tiling:
+    if config.discretizer == "tiles":
+        return tiling(env, config.replace(**defaults(vars(config))))
+    return grid(env, config.scale)
+
+
+def _complete(config: Config, table: Grid | Tiling, backend: str, steps: int | None) -> Config:
+    changes: dict[str, Any] = defaults(vars(config))
+    changes |= {"backend": backend, "max_episode_steps": steps or UNLIMITED_MAX_EPISODE_STEPS}
     if config.seed is None:
         changes["seed"] = int(np.random.SeedSequence().generate_state(1)[0])
-    if isinstance(config.initial_q, np.ndarray) and config.initial_q.shape != table.shape:
-        raise ValueError(f"initial_q must have the table's shape {table.shape}, got {config.initial_q.shape}")
+    if isinstance(table, Tiling):
+        changes |= {"low": tuple(table.edges[0].tolist()), "high": tuple(table.edges[1].tolist())}
+        changes["tiles"] = table.tiles
+    if isinstance(config.initial_q, np.ndarray):
+        count = tables(config.algorithm)
+        shape = table.shape if count == 1 else (count, *table.shape)
+        if config.initial_q.shape not in (shape, (count, table.rows, table.actions)):
+            raise ValueError(f"initial_q must have the table's shape {shape}, got {config.initial_q.shape}")
     return config.replace(**changes)

@@ -1,6 +1,6 @@
 """What a training run leaves behind."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from qtab import checks
 from qtab.config import Config
 from qtab.spaces import Grid
+from qtab.tiling import Tiling
 
 if TYPE_CHECKING:
     import os
@@ -23,14 +24,14 @@ class Run:
     config: Config
     """Everything needed to repeat it, defaults and preset resolved."""
     tables: NDArray[np.float64]
-    """(k, rows, actions): the raw tables; one for Q-learning."""
+    """(k, rows, actions): the raw tables; two for Double Q-learning, else one."""
     episode_returns: NDArray[np.float64]
     """(episodes,): the sum of rewards of each finished episode."""
     episode_lengths: NDArray[np.int64]
     """(episodes,): the number of steps of each finished episode."""
     terminated: NDArray[np.bool_]
     """(episodes,): whether each ended in a terminal state, and not by its time limit alone."""
-    grid: Grid
+    grid: Grid | Tiling
     """How observations become rows."""
     completed: bool
     """False after an early stop; the table then holds what was learned up to it, an unfinished episode included."""
@@ -43,13 +44,23 @@ class Run:
 
     @property
     def q_table(self) -> NDArray[np.float64]:
-        """(*cells, actions): what the greedy policy reads."""
-        table: NDArray[np.float64] = self.tables[0].reshape(self.grid.shape)
+        """(*cells, actions): what the greedy policy reads; of two tables the sum.
+
+        Raises:
+            ValueError: with tile coding, which has no cells.
+        """
+        if isinstance(self.grid, Tiling):
+            raise ValueError("q_table needs a grid, and this run has tile coding; run.q_values(observation) works")
+        table: NDArray[np.float64] = _sum(self.tables).reshape(self.grid.shape)
         return table
 
     @property
     def policy(self) -> NDArray[np.int64]:
-        """(*cells,): the greedy action of each cell, the first of equals."""
+        """(*cells,): the greedy action of each cell, the first of equals.
+
+        Raises:
+            ValueError: with tile coding, which has no cells; :meth:`predict` works.
+        """
         greedy: NDArray[np.int64] = np.argmax(self.q_table, axis=-1) + self.grid.first_action
         return greedy
 
@@ -59,8 +70,8 @@ class Run:
         Raises:
             ValueError: if the observation lies outside the space.
         """
-        values: NDArray[np.float64] = self.q_table[self.grid.cell(np.asarray(observation))]
-        return values
+        rows = self.grid.lit(np.asarray(observation))
+        return _sum([_sum(table[rows]) for table in self.tables])
 
     def predict(
         self,
@@ -107,3 +118,11 @@ class Recording:
     """The state of the environment's bit generator before the episode's reset."""
     actions: tuple[int, ...]
     """The environment's own actions, a Discrete space's start included."""
+
+
+def _sum(parts: Sequence[NDArray[np.float64]] | NDArray[np.float64]) -> NDArray[np.float64]:
+    """From the left, as the learners add; NumPy's own sum goes by pairs."""
+    total: NDArray[np.float64] = np.array(parts[0])
+    for part in parts[1:]:
+        total += part
+    return total

@@ -1,11 +1,14 @@
 """What a learner needs to know of an environment's spaces."""
 
 from dataclasses import dataclass
+from typing import cast
 
 import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
+
+from qtab import plan
 
 LARGEST_TABLE = 2**32
 """Rows are numbered in 32 bits."""
@@ -32,6 +35,23 @@ class Grid:
         cells = np.round((self.high - self.low) * self.scale, 0).astype(int) + 1
         return (*(int(count) for count in cells), self.actions)
 
+    @property
+    def rows(self) -> int:
+        """How many rows the table has."""
+        return int(np.prod(self.shape[:-1]))
+
+    def lit(self, observation: NDArray[np.floating]) -> list[int]:
+        """Returns the rows of an observation: one.
+
+        Raises:
+            ValueError: if the observation lies outside the space.
+        """
+        return [int(np.ravel_multi_index(self.cell(observation), self.shape[:-1]))]
+
+    def plan(self) -> plan.Rounding:
+        """Returns it as the extension module takes it."""
+        return {"scale": self.scale.tolist()}
+
     def cell(self, observation: NDArray[np.floating]) -> tuple[int, ...]:
         """Returns the index of an observation's row.
 
@@ -53,20 +73,32 @@ class Grid:
         return tuple(int(index) for index in rounded)
 
 
-def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
-    """Returns the grid over an environment's spaces.
+Bounds = tuple[NDArray[np.floating], NDArray[np.floating]]
+
+
+def box(env: gym.Env) -> tuple[Bounds, spaces.Discrete]:
+    """Returns the bounds of the observations and the actions of an environment that tables can be learned for.
 
     Raises:
-        ValueError: if a space does not fit, or the table would be too large; it says which, and what fits.
+        ValueError: if a space does not fit; it says which, and what fits.
     """
     actions, observations = env.action_space, env.observation_space
     if not isinstance(actions, spaces.Discrete):
         raise ValueError(f"the action space must be Discrete, got {actions}")
     if not isinstance(observations, spaces.Box) or len(observations.shape) != 1 or observations.dtype not in FLOATS:
         raise ValueError(f"the observation space must be a Box of one float axis, got {observations}")
-    low, high = observations.low, observations.high
+    return cast(Bounds, (observations.low, observations.high)), actions
+
+
+def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
+    """Returns the grid over an environment's spaces.
+
+    Raises:
+        ValueError: if a space does not fit, or the table would be too large; it says which, and what fits.
+    """
+    (low, high), actions = box(env)
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        raise ValueError(f"the observation space must have finite bounds, got {observations}")
+        raise ValueError(f"the observation space must have finite bounds, got {env.observation_space}")
     if len(scale) != len(low):
         raise ValueError(
             f"scale must hold {len(low)} numbers for this observation space, the cells per unit of each component, "

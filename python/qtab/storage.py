@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import math
 import os
 import zipfile
 from pathlib import Path
@@ -12,8 +11,10 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.files import check_writable, replacing
+from qtab.options import defaults, tables
 from qtab.run import Run
 from qtab.spaces import FLOATS, Grid
+from qtab.tiling import Tiling
 
 FORMAT = "qtab run"
 FORMAT_VERSION = 1
@@ -30,7 +31,9 @@ def save(run: Run, path: Path) -> None:
     """Writes a run; see :meth:`qtab.Run.save`."""
     check_writable("path", path)
     arrays = {name: getattr(run, name) for name in _ARRAYS}
-    arrays |= {"low": run.grid.low, "high": run.grid.high, "scale": run.grid.scale}
+    arrays |= {"low": run.grid.low, "high": run.grid.high}
+    if isinstance(run.grid, Grid):
+        arrays["scale"] = run.grid.scale
     config = {field.name: getattr(run.config, field.name) for field in dataclasses.fields(Config)}
     if isinstance(run.config.initial_q, np.ndarray):
         arrays["initial_q"] = run.config.initial_q
@@ -86,15 +89,15 @@ def _load(opened: BinaryIO) -> Run:
         if fields["initial_q"] is None:
             fields["initial_q"] = file["initial_q"]
         config = Config(**fields)
-        grid = Grid(file["low"], file["high"], file["scale"], int(header["actions"]), int(header["first_action"]))
+        features = _features(config, file, int(header["actions"]), int(header["first_action"]))
     with np.errstate(all="raise"):
-        _check_shapes(config, grid, arrays)
+        _check_shapes(config, features, arrays)
     completed = len(arrays["episode_returns"]) == config.episodes
     if header["completed"] is not completed:
         raise ValueError("its episodes are not as many as its header says")
     return Run(
         config=config,
-        grid=grid,
+        grid=features,
         completed=completed,
         seconds=float(header["seconds"]),
         versions={str(key): str(value) for key, value in header["versions"].items()},
@@ -109,20 +112,39 @@ def _array(file: Any, name: str, dtype: "np.dtype[Any]", ndim: int) -> Any:
     return array
 
 
-def _check_shapes(config: Config, grid: Grid, arrays: dict[str, Any]) -> None:
-    if config.seed is None or config.max_episode_steps is None:
+def _features(config: Config, file: Any, actions: int, first_action: int) -> Grid | Tiling:
+    low, high = file["low"], file["high"]
+    if config.discretizer == "tiles":
+        if config.tiles is None or config.tilings is None or config.low is None or config.high is None:
+            raise ValueError("its config is not that of a run")
+        edges = np.array(config.low), np.array(config.high)
+        return Tiling(low, high, edges, config.tiles, config.tilings, actions, first_action)
+    return Grid(low, high, file["scale"], actions, first_action)
+
+
+def _check_shapes(config: Config, features: Grid | Tiling, arrays: dict[str, Any]) -> None:
+    if config.seed is None or config.max_episode_steps is None or defaults(vars(config)):
         raise ValueError("its config is not that of a run")
-    bounds = (grid.low, grid.high, grid.scale)
-    if any(bound.shape != (len(config.scale),) or not np.isfinite(bound).all() for bound in bounds):
-        raise ValueError("its bounds do not fit its scale")
-    if grid.low.dtype not in FLOATS or grid.high.dtype != grid.low.dtype or tuple(grid.scale) != config.scale:
+    if isinstance(features, Grid):
+        bounds = (features.low, features.high, features.scale)
+        if any(bound.shape != (len(config.scale),) or not np.isfinite(bound).all() for bound in bounds):
+            raise ValueError("its bounds do not fit its scale")
+        if tuple(features.scale) != config.scale:
+            raise ValueError("its bounds are not those of a space")
+    elif {edge.shape for edge in (features.low, features.high, *features.edges)} != {(len(features.tiles),)}:
+        raise ValueError("its bounds do not fit its tiles")
+    if features.low.dtype not in FLOATS or features.high.dtype != features.low.dtype:
         raise ValueError("its bounds are not those of a space")
-    tables = arrays["tables"]
-    rows = math.prod(grid.shape[:-1])
-    if tables.shape[0] < 1 or tables.shape[1:] != (rows, grid.actions) or grid.actions < 1:
-        raise ValueError(f"its tables have shape {tables.shape}, which does not fit the grid {grid.shape}")
-    if isinstance(config.initial_q, np.ndarray) and config.initial_q.shape != grid.shape:
-        raise ValueError(f"its initial_q has shape {config.initial_q.shape}, which does not fit the grid {grid.shape}")
+    shape, expected = arrays["tables"].shape, (tables(config.algorithm), features.rows, features.actions)
+    if shape != expected or features.actions < 1:
+        raise ValueError(f"its tables have shape {shape}, which does not fit the grid {features.shape}")
+    if isinstance(config.initial_q, np.ndarray) and config.initial_q.shape not in (
+        features.shape if expected[0] == 1 else (expected[0], *features.shape),
+        expected,
+    ):
+        raise ValueError(
+            f"its initial_q has shape {config.initial_q.shape}, which does not fit the grid {features.shape}"
+        )
     lengths = {len(arrays[name]) for name in ("episode_returns", "episode_lengths", "terminated")}
     if len(lengths) != 1 or lengths.pop() > config.episodes:
         raise ValueError("its episodes do not fit together")

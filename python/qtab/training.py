@@ -12,8 +12,7 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab import _core, checks
-from qtab.config import LARGEST_COUNT
-from qtab.progress import bar
+from qtab.progress import Bar
 from qtab.replay import starts
 from qtab.resolution import Resolved, resolve
 from qtab.run import Recording, Run
@@ -66,11 +65,12 @@ def train(
         gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
         TypeError: for an argument of the wrong type, or an unknown one.
         ValueError: for an argument out of range, or spaces that do not fit.
+        OverflowError: if the values diverge; it names the episode and the likely cause.
         KeyboardInterrupt: on Ctrl-C. It, and whatever the environment or the callback raises, carries the run so far
             as ``.run``.
     """
     callback_every = checks.integer("callback_every", callback_every, least=1)
-    record = checks.integer("record", record, least=0, most=LARGEST_COUNT)
+    record = checks.count("record", record, least=0)
     resolved = resolve(env, overrides)
     try:
         return train_resolved(resolved, callback, callback_every, record, progress)
@@ -91,7 +91,7 @@ def train_resolved(
     trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record))
     done = 0
     try:
-        with bar(total, "episode", progress) as shown:
+        with Bar(total, "episode", progress) as shown:
             while done < total:
                 target = min(done + callback_every, total) if callback is not None else total
                 for stop in shown.stops(done, target):
@@ -102,12 +102,23 @@ def train_resolved(
                     verdict = callback(Progress(done, total, returns, lengths))
                     if verdict is not None and not verdict:  # NumPy's False stops too
                         break
+        _refuse_overflow(trainer)
     except BaseException as error:
         run = _run(resolved, trainer, began)
-        with suppress(AttributeError):  # a frozen exception takes nothing along, and still comes through
+        with suppress(AttributeError):  # an exception that takes nothing along still comes through
             error.run = run  # type: ignore[attr-defined]
         raise
     return _run(resolved, trainer, began)
+
+
+def _refuse_overflow(trainer: _core.Trainer) -> None:
+    """The learners notice values that they compute with; here those that were never read again."""
+    if not np.isfinite(trainer.tables()).all():
+        episode = len(trainer.episodes()[0]) - 1
+        raise OverflowError(
+            f"the action values overflowed by episode {episode} (counted from 0); most likely the rewards or initial_q "
+            "are too large"
+        )
 
 
 def _run(resolved: Resolved, trainer: _core.Trainer, began: float) -> Run:
@@ -121,7 +132,7 @@ def _run(resolved: Resolved, trainer: _core.Trainer, began: float) -> Run:
     )
     return Run(
         config=resolved.config,
-        tables=trainer.tables().reshape(1, -1, resolved.grid.actions),
+        tables=trainer.tables().reshape(-1, resolved.grid.rows, resolved.grid.actions),
         episode_returns=returns,
         episode_lengths=lengths,
         terminated=terminated,

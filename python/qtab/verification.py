@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from qtab import _core, checks
 from qtab.config import Config
 from qtab.models import MODELS, gymnasium_id
-from qtab.reference import q_learning
+from qtab.reference import LEARNERS
 from qtab.resolution import resolve
 from qtab.run import Run
 from qtab.versions import versions
@@ -86,14 +86,14 @@ def verify(
 
     watched = _Watched(_environment(config, env), count, progress)
     try:
-        table, returns, lengths = q_learning(watched, config, stop_after=count)
+        table, returns, lengths = LEARNERS[config.algorithm](watched, config, stop_after=count)
         if progress is not None:
             progress(count, count)
     finally:
         if env is None:
             watched.close()
 
-    ours = run.q_table if episodes is None else _again(config, env, count)[0].reshape(run.q_table.shape)
+    ours = run.tables if episodes is None else _again(config, env, count)[0]
     episode = _first_difference(returns, lengths, run.episode_returns[:count], run.episode_lengths[:count])
     return Verification(
         env=config.env,
@@ -101,7 +101,7 @@ def verify(
         episodes=count,
         returns_equal=returns.tobytes() == run.episode_returns[:count].tobytes(),
         lengths_equal=lengths.tobytes() == run.episode_lengths[:count].tobytes(),
-        table_equal=table.tobytes() == np.ascontiguousarray(ours).tobytes(),
+        table_equal=table.tobytes() == ours.tobytes(),
         episode=episode,
         step=None if episode is None else _first_step(config, env, run, watched, episode),
         versions=versions(),

@@ -1,6 +1,7 @@
 """What a result was computed with, so that a difference can be explained."""
 
 import platform
+from functools import cache
 from importlib.metadata import version
 
 import numpy as np
@@ -8,6 +9,11 @@ import numpy as np
 
 def versions() -> dict[str, str]:
     """Returns the versions of qtab, Gymnasium, NumPy and Python, the platform, its C library and the build profile."""
+    return dict(_versions())
+
+
+@cache  # reading them takes as long as some runs
+def _versions() -> dict[str, str]:
     from qtab._core import BUILD_PROFILE
 
     libc = " ".join(platform.libc_ver()).strip()

@@ -40,7 +40,7 @@ class Recorder:
             _make(folder)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # that the folder is there
-                self._env: RecordVideo[Any, Any, Any] = RecordVideo(
+                self._env: Any = RecordVideo(
                     env, str(folder), episode_trigger=lambda _: True, name_prefix=re.split("[/:]", config.env)[-1]
                 )
         except BaseException:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +71,7 @@ def compiled() -> Callable[[int], int] | None:
         from numba import njit
     except ModuleNotFoundError:
         return None
-    fast = njit(q_learning)
+    fast: Any = njit(q_learning)
 
     def run(seed: int) -> int:
         starts = np.random.default_rng(seed).uniform(-0.6, -0.4, EPISODES)

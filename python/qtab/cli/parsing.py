@@ -2,7 +2,7 @@
 
 import io
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import redirect_stderr
 from typing import TypeVar
 
@@ -16,7 +16,7 @@ _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 _RULE = re.compile(r"^[─╭╰╮╯]{2,}.*$")
 
 
-def parse(kind: Callable[..., T], command: str, arguments: Sequence[str], default: T | None = None) -> T:
+def parse(kind: type[T], command: str, arguments: Sequence[str], default: T | None = None) -> T:
     """Returns what the arguments make of ``kind``, a dataclass; ``--help`` prints and leaves.
 
     Raises:

@@ -13,7 +13,9 @@ import tyro
 
 from qtab.config import Config, known_fields
 from qtab.models import spec_of
+from qtab.preset import preset
 from qtab.resolution import merge
+from qtab.spaces import Grid
 from qtab.storage import load
 
 if sys.version_info >= (3, 11):
@@ -46,20 +48,23 @@ _PAIRS = tyro.constructors.PrimitiveConstructorSpec[Mapping[str, Any]](
 )
 
 
-def _range_or_path(words: list[str]) -> tuple[float, float] | Path:
+def _first_values(words: list[str]) -> tuple[float, float] | float | Path:
     if len(words) == 1:
-        return Path(words[0])
+        try:
+            return float(words[0])
+        except ValueError:
+            return Path(words[0])
     if len(words) != 2:
-        raise ValueError(f"it takes LOW HIGH or FILE, got {' '.join(words)!r}")
+        raise ValueError(f"it takes LOW HIGH, VALUE or FILE, got {' '.join(words)!r}")
     return float(words[0]), float(words[1])
 
 
-_RANGE_OR_PATH = tyro.constructors.PrimitiveConstructorSpec[tuple[float, float] | Path](
+_FIRST_VALUES = tyro.constructors.PrimitiveConstructorSpec[tuple[float, float] | float | Path](
     nargs="*",
-    metavar="LOW HIGH|FILE",
-    instance_from_str=_range_or_path,
-    is_instance=lambda value: isinstance(value, tuple | Path),
-    str_from_instance=lambda value: [str(value)] if isinstance(value, Path) else [str(bound) for bound in value],
+    metavar="LOW HIGH|VALUE|FILE",
+    instance_from_str=_first_values,
+    is_instance=lambda value: isinstance(value, tuple | float | Path),
+    str_from_instance=lambda value: list(map(str, value)) if isinstance(value, tuple) else [str(value)],
 )
 
 
@@ -71,8 +76,8 @@ class Settings(Config):
     """Gymnasium's id of the environment (--env ID does as well)."""
     env_kwargs: Annotated[Mapping[str, Any], _PAIRS] = field(default_factory=dict)
     """Keyword arguments of the environment's constructor."""
-    initial_q: Annotated[Any, _RANGE_OR_PATH] = Config.initial_q
-    """The first Q table: drawn uniformly from a range, or a saved run to go on from."""
+    initial_q: Annotated[Any, _FIRST_VALUES] = Config.initial_q
+    """The first Q table: drawn uniformly from a range, one value everywhere, or a saved run to go on from."""
 
     def __post_init__(self) -> None:
         """Checks nothing yet: these may be the defaults of another environment."""
@@ -84,9 +89,16 @@ class Settings(Config):
             OSError: if the run to go on from cannot be read.
             ValueError: if it is no run.
         """
-        values = {name: value for name, value in vars(self).items() if name != "env"}
+        # What the preset says is left to it: it yields where it has no meaning beside what was asked for.
+        _, start = preset(self.env, self.preset)
+        values = {
+            name: value
+            for name, value in vars(self).items()
+            if name != "env" and not (name in start and start[name] == value)
+        }
         if isinstance(self.initial_q, Path):
-            values["initial_q"] = load(self.initial_q).q_table
+            run = load(self.initial_q)
+            values["initial_q"] = run.q_table if isinstance(run.grid, Grid) and len(run.tables) == 1 else run.tables
         return values
 
 

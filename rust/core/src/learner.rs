@@ -14,6 +14,9 @@ pub trait Learner<R> {
     /// Called after the last step of every episode.
     fn end_episode(&mut self);
 
-    /// The tables, one after the other, rows first.
-    fn tables(&self) -> &[f64];
+    /// The tables, rows first; the sum of them is what the greedy policy reads.
+    fn tables(&self) -> Vec<&[f64]>;
+
+    /// Whether a value has overflowed: what follows is worth nothing.
+    fn diverged(&self) -> bool;
 }

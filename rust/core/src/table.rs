@@ -1,5 +1,7 @@
 //! The Q table: rows of action values in one block, C order.
 
+mod linear;
+
 use crate::random::Draw;
 
 /// Action values, `N` a row; `N` = 0 leaves their count to run time. Where it is known, the searches are unrolled.
@@ -7,6 +9,10 @@ use crate::random::Draw;
 pub struct Table<const N: usize = 0> {
     values: Vec<f64>,
     actions: usize,
+    /// Where the values of an observation that lights several rows are added up.
+    sums: Vec<f64>,
+    /// Zero while all is well; NaN from the first update on that was infinite.
+    alarm: f64,
 }
 
 impl<const N: usize> Table<N> {
@@ -17,7 +23,7 @@ impl<const N: usize> Table<N> {
     pub fn new(values: Vec<f64>, actions: usize) -> Self {
         assert!(N == 0 || N == actions, "a table of {N} actions a row was given {actions}");
         assert!(values.len().is_multiple_of(actions), "{} values are no rows of {actions}", values.len());
-        Self { values, actions }
+        Self { values, actions, sums: vec![0.0; actions], alarm: 0.0 }
     }
 
     /// `rng.uniform(low, high, (rows, actions))`.

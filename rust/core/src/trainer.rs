@@ -65,7 +65,14 @@ impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
         &self.episodes
     }
 
-    /// Goes on until `until`; called again, it goes on as if it had not stopped.
+    /// The number, from 0, of the episode underway, or else of the last one finished.
+    pub fn last_episode(&self) -> usize {
+        let finished = self.episodes.returns.len();
+        if self.underway.is_some() { finished } else { finished.saturating_sub(1) }
+    }
+
+    /// Goes on until `until`; called again, it goes on as if it had not stopped. A learner that has diverged goes on no
+    /// more: it stops after that episode.
     ///
     /// # Errors
     /// The world's. What was learned before stays; the episode in which it happened is not counted.
@@ -80,7 +87,7 @@ impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
     #[inline]
     fn advance_with(&mut self, draw: &mut D, until: Until) -> Result<(), W::Error> {
         let mut steps = until.steps;
-        while steps > 0 && self.episodes.returns.len() < until.episodes {
+        while steps > 0 && self.episodes.returns.len() < until.episodes && !self.learner.diverged() {
             let mut now = match self.underway.take() {
                 Some(now) => now,
                 None => self.begin(draw)?,

@@ -2,14 +2,18 @@
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use qtab_core::features::Features;
-use qtab_core::random::Stream;
+use qtab_core::features::{Features, MOST_TILINGS, Real, Rounding};
+use qtab_core::learners::{
+    self, Agent, DoubleQLearning, DynaQ, DynaQPlus, EpsilonGreedy, ExpectedSarsa, NStepSarsa, QLearning, Sarsa,
+    SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
+};
+use qtab_core::random::{Pcg64, Stream};
 use qtab_core::worlds::{Boxed, Native, Recorded, Recordings, Start};
-use qtab_core::{Trainer, World};
+use qtab_core::{Learner, Trainer, World};
 
 use crate::failure::Failure;
 use crate::model::Model;
-use crate::plan::Plan;
+use crate::plan::{Discretizer, Plan, given, unknown};
 use crate::python_world::{PythonEnvironment, PythonWorld};
 use crate::run::Run;
 
@@ -33,53 +37,178 @@ pub(crate) fn native(model: Model, plan: &Plan<'_>) -> PyResult<Built> {
     let Model::MountainCar(env) = model else {
         return Err(PyValueError::new_err("model must be 'MountainCar' to be trained in Rust"));
     };
-    let grid = plan.plane()?;
-    let rows = Features::<[f32; 2]>::len(&grid);
-    let world = Native::new(env, grid, plan.max_episode_steps, plan.environment_stream());
     let mut draw = plan.stream()?;
-    if let (Stream::Pcg64(draw), 0) = (&mut draw, plan.record) {
-        let learner = plan.q_learning::<3>(rows, draw)?;
-        let run = Box::new(Trainer::new(world, learner, draw.clone()));
-        return Ok(Built { run, kept: Kept::Nothing, attached: false });
+    let (limit, stream) = (plan.max_episode_steps, plan.environment_stream());
+    match &plan.features {
+        Discretizer::Rounding { scale } => {
+            let grid = plan.plane(scale)?;
+            let rows = Features::<[f32; 2]>::len(&grid);
+            let world = Native::new(env, grid, limit, stream);
+            if let (Stream::Pcg64(draw), 0) = (&mut draw, plan.record)
+                && let Some(agent) = plan.article::<3>(rows, draw)?
+            {
+                return Ok(Built {
+                    run: whole(world, agent, draw.clone(), plan),
+                    kept: Kept::Nothing,
+                    attached: false,
+                });
+            }
+            boxed(world, rows, 1, draw, plan, Kept::Native, false)
+        }
+        // Eight tilings are the usual number.
+        Discretizer::Tiles { tilings: lit @ ..=8, .. } => {
+            let tiles = plan.tiles::<f32, 8>()?;
+            let rows = Features::<[f32; 2]>::len(&tiles);
+            boxed(Native::new(env, tiles, limit, stream), rows, *lit as usize, draw, plan, Kept::Native, false)
+        }
+        Discretizer::Tiles { tilings: lit, .. } => {
+            let tiles = plan.tiles::<f32, MOST_TILINGS>()?;
+            let rows = Features::<[f32; 2]>::len(&tiles);
+            boxed(Native::new(env, tiles, limit, stream), rows, *lit as usize, draw, plan, Kept::Native, false)
+        }
     }
-    boxed(world, rows, draw, plan, Kept::Native, false)
+}
+
+/// The combinations that are compiled whole: a grid of three actions, learned as in the article, or by its next of kin.
+fn whole<W>(world: W, agent: Agent<3, EpsilonGreedy, f64>, draw: Pcg64, plan: &Plan<'_>) -> Box<dyn Run>
+where
+    W: World<Rows = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
+{
+    match plan.algorithm.name.as_str() {
+        "sarsa" => Box::new(Trainer::new(world, Sarsa { agent }, draw)),
+        "expected_sarsa" => Box::new(Trainer::new(world, ExpectedSarsa { agent }, draw)),
+        _ => Box::new(Trainer::new(world, QLearning::from(agent), draw)),
+    }
 }
 
 /// A run that steps a Python environment.
 pub(crate) fn python(environment: PythonEnvironment, plan: &Plan<'_>) -> PyResult<Built> {
-    let draw = plan.stream()?;
     if plan.single {
-        let world = PythonWorld::new(environment, plan.axes(|bound| bound as f32), plan.max_episode_steps);
-        let rows = world.len();
-        boxed(world, rows, draw, plan, Kept::Python, true)
+        python_of(environment, plan, |bound| bound as f32)
     } else {
-        let world = PythonWorld::new(environment, plan.axes(|bound| bound), plan.max_episode_steps);
-        let rows = world.len();
-        boxed(world, rows, draw, plan, Kept::Python, true)
+        python_of(environment, plan, |bound| bound)
+    }
+}
+
+fn python_of<T>(environment: PythonEnvironment, plan: &Plan<'_>, dtype: impl Fn(f64) -> T) -> PyResult<Built>
+where
+    T: Real + numpy::Element + 'static,
+{
+    let draw = plan.stream()?;
+    match &plan.features {
+        Discretizer::Rounding { scale } => {
+            let grid = Rounding::new(plan.axes(scale, dtype));
+            let rows = Features::<[T]>::len(&grid);
+            boxed(PythonWorld::new(environment, grid, plan), rows, 1, draw, plan, Kept::Python, true)
+        }
+        Discretizer::Tiles { tilings: lit, .. } => {
+            let tiles = plan.tiles::<T, MOST_TILINGS>()?;
+            let rows = Features::<[T]>::len(&tiles);
+            let world = PythonWorld::new(environment, tiles, plan);
+            boxed(world, rows, *lit as usize, draw, plan, Kept::Python, true)
+        }
     }
 }
 
 fn boxed<W>(
     world: W,
     rows: usize,
-    mut draw: Stream,
+    lit: usize,
+    draw: Stream,
     plan: &Plan<'_>,
     kept: impl FnOnce(Recordings<W::Start>) -> Kept,
     attached: bool,
 ) -> PyResult<Built>
 where
-    W: Start + World<Rows = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
+    W: Start + World<Rows: Send, State: Send, Error: Into<Failure>> + Send + 'static,
     W::Start: Send,
     Failure: From<W::Error>,
 {
-    let learner = plan.q_learning::<0>(rows, &mut draw)?;
     let (world, kept) = if plan.record == 0 {
-        (Boxed::<_, Failure>::new(world), Kept::Nothing)
+        (Boxed::<W::Rows, Failure>::new(world), Kept::Nothing)
     } else {
         let (world, recordings) = Recorded::new(world, plan.record);
         (Boxed::new(world), kept(recordings))
     };
-    Ok(Built { run: Box::new(Trainer::new(world, learner, draw)), kept, attached })
+    Ok(Built { run: learning(world, rows, lit, draw, plan)?, kept, attached })
+}
+
+/// Any learner in a boxed world, with a stream chosen at run time: compiled once for each kind of rows.
+fn learning<R>(
+    world: Boxed<R, Failure>,
+    rows: usize,
+    lit: usize,
+    mut draw: Stream,
+    plan: &Plan<'_>,
+) -> PyResult<Box<dyn Run>>
+where
+    R: Copy + AsRef<[u32]> + Send + 'static,
+{
+    let algorithm = &plan.algorithm;
+    let mut agent = |tables| plan.agent(tables, rows, lit, &mut draw);
+    Ok(match algorithm.name.as_str() {
+        "q_learning" => {
+            let learner = QLearning::from(agent(1)?);
+            start(world, learner, draw, plan)
+        }
+        "sarsa" => {
+            let learner = Sarsa { agent: agent(1)? };
+            start(world, learner, draw, plan)
+        }
+        "expected_sarsa" => {
+            let learner = ExpectedSarsa { agent: agent(1)? };
+            start(world, learner, draw, plan)
+        }
+        "double_q_learning" => {
+            let agent = agent(2)?;
+            let second = plan.table((1, 2), rows, &mut draw)?;
+            start(world, DoubleQLearning::new(agent, second), draw, plan)
+        }
+        "n_step_sarsa" => {
+            let learner = NStepSarsa::new(agent(1)?, given("n_steps", algorithm.n_steps)?);
+            start(world, learner, draw, plan)
+        }
+        "sarsa_lambda" => {
+            let agent = agent(1)?;
+            let (traces, kind) = (algorithm.no_traces(&agent)?, algorithm.trace()?);
+            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
+            start(world, SarsaLambda { agent, traces, kind, trace_decay }, draw, plan)
+        }
+        "true_online_sarsa_lambda" => {
+            let agent = agent(1)?;
+            let traces = algorithm.no_traces(&agent)?;
+            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
+            start(world, TrueOnlineSarsaLambda::new(agent, traces, trace_decay), draw, plan)
+        }
+        "watkins_q_lambda" => {
+            let agent = agent(1)?;
+            let (traces, kind) = (algorithm.no_traces(&agent)?, algorithm.trace()?);
+            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
+            start(world, WatkinsQLambda { agent, traces, kind, trace_decay }, draw, plan)
+        }
+        // A model of pairs needs a table.
+        "dyna_q" if lit == 1 => {
+            let (agent, model) = (agent(1)?, learners::Model::new(rows, plan.actions));
+            let planning_steps = given("planning_steps", algorithm.planning_steps)?;
+            start(world, DynaQ { agent, model, planning_steps }, draw, plan)
+        }
+        "dyna_q_plus" if lit == 1 => {
+            let (agent, model) = (agent(1)?, learners::Model::new(rows, plan.actions));
+            let planning_steps = given("planning_steps", algorithm.planning_steps)?;
+            let time_weight = given("time_weight", algorithm.time_weight)?;
+            start(world, DynaQPlus::new(agent, model, planning_steps, time_weight), draw, plan)
+        }
+        other => return Err(unknown("algorithm", other)),
+    })
+}
+
+fn start<R, L>(world: Boxed<R, Failure>, learner: L, draw: Stream, plan: &Plan<'_>) -> Box<dyn Run>
+where
+    R: Copy + AsRef<[u32]> + Send + 'static,
+    L: Learner<R> + Send + 'static,
+{
+    let learner = TimeOuts { learner, terminate: plan.on_truncation == "terminate" };
+    Box::new(Trainer::new(world, learner, draw))
 }
 
 /// What a plan is run on: the name of a model with its constants, or an environment.

@@ -1,12 +1,14 @@
 //! What can end a run early, and its one conversion to a Python exception.
 
 use pyo3::PyErr;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyOverflowError, PyValueError};
 use qtab_core::features::Outside;
 
 pub(crate) enum Failure {
     Outside(Outside),
     Python(PyErr),
+    /// The values overflowed in this episode.
+    Diverged(usize),
 }
 
 impl From<Outside> for Failure {
@@ -26,6 +28,10 @@ impl From<Failure> for PyErr {
         match failure {
             Failure::Outside(outside) => PyValueError::new_err(outside.to_string()),
             Failure::Python(error) => error,
+            Failure::Diverged(episode) => PyOverflowError::new_err(format!(
+                "the action values overflowed in episode {episode} (counted from 0): the updates grow instead of \
+                 settling; most likely learning_rate is too large, or trace_decay or discount with these traces"
+            )),
         }
     }
 }

@@ -4,8 +4,8 @@ use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::Table;
-use qtab_core::features::{Axis, Real, Rounding};
-use qtab_core::learners::{EpsilonGreedy, QLearning, TerminalUpdate};
+use qtab_core::features::{Axis, Real, Rounding, Tiles};
+use qtab_core::learners::{Agent, Behaviour, EpsilonGreedy, Rate, Schedule, TerminalUpdate, Ties, Trace, Traces};
 use qtab_core::random::{Draw, Pcg64, Stream};
 
 use crate::stream::{agent_stream, environment_stream};
@@ -17,26 +17,102 @@ pub(crate) struct Plan<'py> {
     pub(crate) high: Vec<f64>,
     /// Whether the bounds are float32.
     pub(crate) single: bool,
-    pub(crate) scale: Vec<f64>,
+    pub(crate) features: Discretizer,
     pub(crate) actions: usize,
     pub(crate) max_episode_steps: Option<u64>,
     pub(crate) seed: Vec<u32>,
     pub(crate) bit_generator: String,
     pub(crate) initial_q: InitialQ<'py>,
-    pub(crate) learning_rate: f64,
+    pub(crate) learning_rate: Course,
     pub(crate) discount: f64,
-    pub(crate) epsilon: f64,
-    pub(crate) min_epsilon: f64,
+    pub(crate) policy: Choice,
     pub(crate) episodes: u64,
     pub(crate) terminal_update: String,
+    pub(crate) on_truncation: String,
+    pub(crate) algorithm: Algorithm,
     /// How many of the last episodes to keep for playing again.
     pub(crate) record: usize,
+}
+
+/// How observations become rows.
+#[derive(FromPyObject)]
+pub(crate) enum Discretizer {
+    #[pyo3(from_item_all)]
+    Rounding { scale: Vec<f64> },
+    #[pyo3(from_item_all)]
+    Tiles { low: Vec<f64>, high: Vec<f64>, tiles: Vec<u32>, tilings: u32 },
 }
 
 #[derive(FromPyObject)]
 pub(crate) enum InitialQ<'py> {
     Table(PyReadonlyArrayDyn<'py, f64>),
     Range((f64, f64)),
+    Constant(f64),
+}
+
+/// A rate from episode to episode.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Course {
+    schedule: String,
+    value: f64,
+    least: f64,
+    decay: f64,
+    warm_up: u64,
+}
+
+/// How actions are chosen.
+#[derive(FromPyObject)]
+pub(crate) enum Choice {
+    #[pyo3(from_item_all)]
+    EpsilonGreedy { epsilon: Course, ties: String },
+    #[pyo3(from_item_all)]
+    Softmax { temperature: f64 },
+}
+
+/// A learner by its name, with the options that belong to it; the others are None.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Algorithm {
+    pub(crate) name: String,
+    pub(crate) trace_decay: Option<f64>,
+    pub(crate) traces: Option<String>,
+    pub(crate) trace_cutoff: Option<f64>,
+    pub(crate) n_steps: Option<usize>,
+    pub(crate) planning_steps: Option<u32>,
+    pub(crate) time_weight: Option<f64>,
+}
+
+impl Algorithm {
+    /// No trace alive yet, of the agent's weights.
+    pub(crate) fn no_traces(&self, agent: &Agent) -> PyResult<Traces> {
+        Ok(Traces::new(agent.table.values().len(), given("trace_cutoff", self.trace_cutoff)?))
+    }
+
+    pub(crate) fn trace(&self) -> PyResult<Trace> {
+        match self.traces.as_deref() {
+            Some("accumulating") => Ok(Trace::Accumulating),
+            Some("replacing") => Ok(Trace::Replacing),
+            Some("clearing") => Ok(Trace::Clearing),
+            other => Err(unknown("traces", other.unwrap_or_default())),
+        }
+    }
+}
+
+/// An option that belongs to the algorithm.
+pub(crate) fn given<T>(name: &str, option: Option<T>) -> PyResult<T> {
+    option.ok_or_else(|| PyValueError::new_err(format!("{name} must be given")))
+}
+
+impl Course {
+    fn schedule(&self, episodes: u64) -> PyResult<Schedule> {
+        match self.schedule.as_str() {
+            "constant" => Ok(Schedule::constant(self.value)),
+            "linear" if self.warm_up < episodes => Ok(Schedule::linear(self.value, self.least, episodes, self.warm_up)),
+            "exponential" => Ok(Schedule::exponential(self.value, self.least, self.decay, self.warm_up)),
+            other => Err(unknown("schedule", other)),
+        }
+    }
 }
 
 impl Plan<'_> {
@@ -49,38 +125,117 @@ impl Plan<'_> {
     }
 
     /// The grid over two float32 components.
-    pub(crate) fn plane(&self) -> PyResult<Rounding<f32, [Axis<f32>; 2]>> {
-        <[Axis<f32>; 2]>::try_from(self.axes(|bound| bound as f32))
+    pub(crate) fn plane(&self, scale: &[f64]) -> PyResult<Rounding<f32, [Axis<f32>; 2]>> {
+        <[Axis<f32>; 2]>::try_from(self.axes(scale, |bound| bound as f32))
             .map(Rounding::new)
             .map_err(|axes| PyValueError::new_err(format!("scale must hold 2 numbers, got {}", axes.len())))
     }
 
-    pub(crate) fn axes<T: Real>(&self, dtype: impl Fn(f64) -> T) -> Vec<Axis<T>> {
+    /// The grid's axes, in the dtype of the bounds.
+    pub(crate) fn axes<T: Real>(&self, scale: &[f64], dtype: impl Fn(f64) -> T) -> Vec<Axis<T>> {
         let bounds = self.low.iter().zip(&self.high);
-        bounds.zip(&self.scale).map(|((&low, &high), &scale)| Axis::new(dtype(low), dtype(high), scale)).collect()
+        bounds.zip(scale).map(|((&low, &high), &scale)| Axis::new(dtype(low), dtype(high), scale)).collect()
     }
 
-    pub(crate) fn q_learning<const N: usize>(&self, rows: usize, draw: &mut impl Draw) -> PyResult<QLearning<N>> {
-        let table = match &self.initial_q {
-            InitialQ::Table(values) => Table::new(values.as_array().iter().copied().collect(), self.actions),
-            InitialQ::Range((low, high)) => Table::uniform(rows, self.actions, *low, *high, draw),
-        };
-        if table.values().len() != rows * self.actions {
-            return Err(PyValueError::new_err(format!("initial_q must hold {rows} rows")));
+    /// What the article's learner is made of, if the plan asks for that: an exploration rate that falls linearly from the
+    /// first episode on, a constant learning rate.
+    pub(crate) fn article<const N: usize>(
+        &self,
+        rows: usize,
+        draw: &mut Pcg64,
+    ) -> PyResult<Option<Agent<N, EpsilonGreedy, f64>>> {
+        let Choice::EpsilonGreedy { epsilon, ties } = &self.policy else { return Ok(None) };
+        let plain = ["q_learning", "sarsa", "expected_sarsa"].contains(&self.algorithm.name.as_str())
+            && (epsilon.schedule.as_str(), epsilon.warm_up, ties.as_str()) == ("linear", 0, "first")
+            && self.learning_rate.schedule == "constant"
+            && self.on_truncation == "bootstrap";
+        if !plain {
+            return Ok(None);
         }
-        Ok(QLearning {
-            table,
-            policy: EpsilonGreedy::linear(self.epsilon, self.min_epsilon, self.episodes),
-            learning_rate: self.learning_rate,
+        Ok(Some(Agent {
+            table: self.table((0, 1), rows, draw)?,
+            policy: EpsilonGreedy::linear(epsilon.value, epsilon.least, self.episodes),
+            learning_rate: self.learning_rate.value,
             discount: self.discount,
-            terminal_update: match self.terminal_update.as_str() {
-                "assign" => TerminalUpdate::Assign,
-                "target" => TerminalUpdate::Target,
-                other => {
-                    let message = format!("terminal_update must be 'assign' or 'target', got {other:?}");
-                    return Err(PyValueError::new_err(message));
-                }
-            },
+            terminal_update: self.terminal_update()?,
+        }))
+    }
+
+    /// What any learner is made of: the first of so many `tables`; an observation lights `lit` rows.
+    pub(crate) fn agent(&self, tables: usize, rows: usize, lit: usize, draw: &mut Stream) -> PyResult<Agent> {
+        Ok(Agent {
+            table: self.table((0, tables), rows, draw)?,
+            policy: self.policy()?,
+            learning_rate: self.rate(rows * self.actions, lit)?,
+            discount: self.discount,
+            terminal_update: self.terminal_update()?,
         })
     }
+
+    /// The table of that index among so many, as it is before the first episode.
+    pub(crate) fn table<const N: usize>(
+        &self,
+        (index, tables): (usize, usize),
+        rows: usize,
+        draw: &mut impl Draw,
+    ) -> PyResult<Table<N>> {
+        let size = rows * self.actions;
+        let values = match &self.initial_q {
+            InitialQ::Table(values) => {
+                let values = values.as_array();
+                if values.len() != tables * size {
+                    return Err(PyValueError::new_err(format!("initial_q must hold {tables} tables of {rows} rows")));
+                }
+                values.iter().skip(index * size).take(size).copied().collect()
+            }
+            InitialQ::Constant(value) => vec![*value; size],
+            InitialQ::Range((low, high)) => (0..size).map(|_| draw.uniform(*low, *high)).collect(),
+        };
+        Ok(Table::new(values, self.actions))
+    }
+
+    fn policy(&self) -> PyResult<Behaviour> {
+        match &self.policy {
+            Choice::EpsilonGreedy { epsilon, ties } => Ok(Behaviour::EpsilonGreedy {
+                epsilon: epsilon.schedule(self.episodes)?,
+                ties: match ties.as_str() {
+                    "first" => Ties::First,
+                    "random" => Ties::Random,
+                    other => return Err(unknown("ties", other)),
+                },
+            }),
+            Choice::Softmax { temperature } => Ok(Behaviour::softmax(*temperature, self.actions)),
+        }
+    }
+
+    fn rate(&self, weights: usize, lit: usize) -> PyResult<Rate> {
+        let course = &self.learning_rate;
+        if course.schedule == "visits" {
+            return Ok(Rate::by_visits(course.value, course.least, weights, lit));
+        }
+        Ok(Rate::scheduled(course.schedule(self.episodes)?, lit))
+    }
+
+    fn terminal_update(&self) -> PyResult<TerminalUpdate> {
+        match (self.terminal_update.as_str(), &self.features) {
+            ("assign", Discretizer::Rounding { .. }) => Ok(TerminalUpdate::Assign),
+            ("target", _) => Ok(TerminalUpdate::Target),
+            (other, _) => Err(unknown("terminal_update", other)),
+        }
+    }
+
+    /// Tile coding.
+    pub(crate) fn tiles<T: Real, const M: usize>(&self) -> PyResult<Tiles<T, M>> {
+        let Discretizer::Tiles { low, high, tiles, tilings } = &self.features else {
+            return Err(PyValueError::new_err("discretizer must be 'tiles'"));
+        };
+        if [low.len(), high.len(), tiles.len()].iter().any(|&length| length != self.low.len()) {
+            return Err(PyValueError::new_err(format!("tiles must hold {} numbers", self.low.len())));
+        }
+        Ok(Tiles::new(low, high, tiles, *tilings))
+    }
+}
+
+pub(crate) fn unknown(name: &str, value: &str) -> PyErr {
+    PyValueError::new_err(format!("{name} must be another here, got {value:?}"))
 }

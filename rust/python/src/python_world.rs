@@ -1,15 +1,18 @@
 //! A Gymnasium environment, stepped in Python, as the learner meets it.
 
+use std::marker::PhantomData;
+
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use qtab_core::features::{Axis, Features, Real, Rounding};
+use qtab_core::features::{Features, Real};
 use qtab_core::world::{Next, Transition, World};
 use qtab_core::worlds::Start;
 
 use crate::failure::Failure;
+use crate::plan::Plan;
 
 /// What Python hands over besides the plan.
 #[derive(FromPyObject)]
@@ -22,34 +25,39 @@ pub(crate) struct PythonEnvironment {
     first_action: i64,
 }
 
-pub(crate) struct PythonWorld<T> {
+/// Observations of dtype `T` light rows by `F`.
+pub(crate) struct PythonWorld<T, F> {
     environment: PythonEnvironment,
     seeded: bool,
     max_episode_steps: u64,
-    grid: Rounding<T>,
+    features: F,
+    dimensions: usize,
+    dtype: PhantomData<T>,
 }
 
-impl<T: Real + numpy::Element> PythonWorld<T> {
-    pub(crate) fn new(environment: PythonEnvironment, axes: Vec<Axis<T>>, max_episode_steps: Option<u64>) -> Self {
-        let max_episode_steps = max_episode_steps.unwrap_or(u64::MAX);
-        Self { environment, seeded: false, max_episode_steps, grid: Rounding::new(axes) }
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        Features::<[T]>::len(&self.grid)
+impl<T: Real + numpy::Element, F: Features<[T]>> PythonWorld<T, F> {
+    pub(crate) fn new(environment: PythonEnvironment, features: F, plan: &Plan<'_>) -> Self {
+        Self {
+            environment,
+            seeded: false,
+            max_episode_steps: plan.max_episode_steps.unwrap_or(u64::MAX),
+            features,
+            dimensions: plan.low.len(),
+            dtype: PhantomData,
+        }
     }
 
     fn misshapen(&self, observation: &Bound<'_, PyAny>) -> PyErr {
         match observation.getattr(intern!(observation.py(), "shape")) {
             Ok(shape) => PyValueError::new_err(format!(
                 "an observation must have shape ({},), the space's, got {shape}",
-                self.grid.dimensions()
+                self.dimensions
             )),
             Err(error) => error,
         }
     }
 
-    fn rows(&self, observation: &Bound<'_, PyAny>) -> Result<[u32; 1], Failure> {
+    fn rows(&self, observation: &Bound<'_, PyAny>) -> Result<F::Rows, Failure> {
         let py = observation.py();
         let converted;
         let array = if let Ok(array) = observation.cast::<PyArray1<T>>() {
@@ -61,24 +69,24 @@ impl<T: Real + numpy::Element> PythonWorld<T> {
             converted = array.cast_into::<PyArray1<T>>().map_err(|error| self.misshapen(&error.into_inner()))?;
             &converted
         };
-        if array.len()? != self.grid.dimensions() {
+        if array.len()? != self.dimensions {
             return Err(self.misshapen(array).into());
         }
         let values = array.readonly();
         match values.as_slice() {
-            Ok(values) => Ok(self.grid.rows(values)?),
-            Err(_) => Ok(self.grid.rows(&values.as_array().to_vec())?),
+            Ok(values) => Ok(self.features.rows(values)?),
+            Err(_) => Ok(self.features.rows(&values.as_array().to_vec())?),
         }
     }
 }
 
-impl<T: Real + numpy::Element> World for PythonWorld<T> {
+impl<T: Real + numpy::Element, F: Features<[T]>> World for PythonWorld<T, F> {
     /// The steps taken since the reset.
     type State = u64;
-    type Rows = [u32; 1];
+    type Rows = F::Rows;
     type Error = Failure;
 
-    fn reset(&mut self) -> Result<(u64, [u32; 1]), Failure> {
+    fn reset(&mut self) -> Result<(u64, F::Rows), Failure> {
         Python::attach(|py| {
             let env = self.environment.env.bind(py);
             let seed = PyDict::new(py);
@@ -91,7 +99,7 @@ impl<T: Real + numpy::Element> World for PythonWorld<T> {
         })
     }
 
-    fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<[u32; 1]>, Failure> {
+    fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<F::Rows>, Failure> {
         Python::attach(|py| {
             let env = self.environment.env.bind(py);
             let action = self.environment.first_action.saturating_add_unsigned(action as u64);
@@ -122,7 +130,7 @@ impl<T: Real + numpy::Element> World for PythonWorld<T> {
 }
 
 /// The state of the environment's own bit generator, a dict.
-impl<T: Real + numpy::Element> Start for PythonWorld<T> {
+impl<T: Real + numpy::Element, F: Features<[T]>> Start for PythonWorld<T, F> {
     type Start = Py<PyAny>;
 
     fn start(&self) -> Result<Py<PyAny>, Failure> {

@@ -8,7 +8,8 @@ use crate::failure::Failure;
 pub(crate) trait Run: Send {
     fn advance(&mut self, until: Until) -> Result<(), Failure>;
     fn episodes(&self) -> &Episodes;
-    fn tables(&self) -> &[f64];
+    /// The tables' values, one table after the other, rows first.
+    fn tables(&self) -> Vec<f64>;
 }
 
 impl<W, L, D> Run for Trainer<W, L, D>
@@ -18,14 +19,18 @@ where
     D: Draw + Clone + Send,
 {
     fn advance(&mut self, until: Until) -> Result<(), Failure> {
-        Trainer::advance(self, until).map_err(Into::into)
+        Trainer::advance(self, until).map_err(Into::into)?;
+        if self.learner().diverged() {
+            return Err(Failure::Diverged(self.last_episode()));
+        }
+        Ok(())
     }
 
     fn episodes(&self) -> &Episodes {
         Trainer::episodes(self)
     }
 
-    fn tables(&self) -> &[f64] {
-        self.learner().tables()
+    fn tables(&self) -> Vec<f64> {
+        self.learner().tables().concat()
     }
 }

@@ -69,7 +69,7 @@ impl Trainer {
 
     /// The tables' values, one after the other, rows first.
     fn tables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(PyArray1::from_slice(py, self.lock()?.run.tables()))
+        Ok(PyArray1::from_vec(py, self.lock()?.run.tables()))
     }
 
     /// The last finished episodes, oldest first: how each began, and its actions.

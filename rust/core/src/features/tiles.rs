@@ -1,18 +1,21 @@
 //! Tile coding with asymmetric offsets (Sutton & Barto, section 9.5.4), densely indexed.
 
-use super::{Features, Outside};
+use std::marker::PhantomData;
+
+use super::{Features, Outside, Real};
 
 /// The most tilings there can be.
 pub const MOST_TILINGS: usize = 32;
 
-/// The rows that an observation lights, one a tiling.
+/// The rows that an observation lights, one a tiling, with room for `M`: rows are handed on at every step, so that room
+/// costs time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lit {
-    rows: [u32; MOST_TILINGS],
+pub struct Lit<const M: usize = MOST_TILINGS> {
+    rows: [u32; M],
     tilings: usize,
 }
 
-impl AsRef<[u32]> for Lit {
+impl<const M: usize> AsRef<[u32]> for Lit<M> {
     #[inline]
     fn as_ref(&self) -> &[u32] {
         &self.rows[..self.tilings]
@@ -20,63 +23,75 @@ impl AsRef<[u32]> for Lit {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Axis {
+struct Axis<const M: usize> {
     low: f64,
     high: f64,
     tiles_a_unit: f64,
     /// One more than the tiles asked for: the offsets push a tiling's first tile over the lower edge.
     tiles: u32,
+    /// How many parts of a tile each tiling is shifted by.
+    offsets: [u32; M],
 }
 
 /// So many tilings of the box, each shifted by its own part of a tile: by 1, 3, 5 … parts along the first, second,
-/// third … component.
+/// third … component. Observations of dtype `T` become f64 first.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tiles {
-    axes: Vec<Axis>,
+pub struct Tiles<T = f64, const M: usize = MOST_TILINGS> {
+    axes: Vec<Axis<M>>,
     tilings: u32,
     rows_a_tiling: u32,
+    dtype: PhantomData<T>,
 }
 
-impl Tiles {
+impl<T: Real, const M: usize> Tiles<T, M> {
     /// Tilings over the box from `low` to `high`, with so many `tiles` along each component. Observations are clipped
     /// to the box.
     ///
     /// # Panics
-    /// If there are no tilings, or more than [`MOST_TILINGS`].
+    /// If there are no tilings, or more than `M`.
     pub fn new(low: &[f64], high: &[f64], tiles: &[u32], tilings: u32) -> Self {
-        assert!((1..=MOST_TILINGS).contains(&(tilings as usize)), "tilings must lie in 1 to {MOST_TILINGS}");
-        let axes: Vec<Axis> = low
+        assert!((1..=M).contains(&(tilings as usize)), "tilings must lie in 1 to {M}");
+        let axes: Vec<Axis<M>> = low
             .iter()
             .zip(high)
             .zip(tiles)
-            .map(|((&low, &high), &tiles)| Axis {
+            .enumerate()
+            .map(|(index, ((&low, &high), &tiles))| Axis {
                 low,
                 high,
                 tiles_a_unit: f64::from(tiles) / (high - low),
                 tiles: tiles + 1,
+                offsets: std::array::from_fn(|tiling| tiling as u32 * (2 * index as u32 + 1) % tilings),
             })
             .collect();
         let rows_a_tiling = axes.iter().map(|axis| axis.tiles).product();
-        Self { axes, tilings, rows_a_tiling }
+        Self { axes, tilings, rows_a_tiling, dtype: PhantomData }
     }
 }
 
-impl<O: AsRef<[f64]> + ?Sized> Features<O> for Tiles {
-    type Rows = Lit;
+impl<T: Real, O: AsRef<[T]> + ?Sized, const M: usize> Features<O> for Tiles<T, M> {
+    type Rows = Lit<M>;
 
     #[inline]
-    fn rows(&self, observation: &O) -> Result<Lit, Outside> {
+    fn rows(&self, observation: &O) -> Result<Lit<M>, Outside> {
         let tilings = self.tilings;
-        let mut rows: [u32; MOST_TILINGS] = std::array::from_fn(|tiling| tiling as u32);
+        let mut rows: [u32; M] = std::array::from_fn(|tiling| tiling as u32);
         for (index, (axis, &value)) in self.axes.iter().zip(observation.as_ref()).enumerate() {
+            let value = value.into();
             if value.is_nan() {
                 return Err(Outside { axis: index, value });
             }
             let value = value.clamp(axis.low, axis.high);
-            let part = ((value - axis.low) * axis.tiles_a_unit * f64::from(tilings)).floor() as u32;
-            for (tiling, row) in (0..tilings).zip(&mut rows) {
-                let offset = (tiling * (2 * index as u32 + 1)) % tilings;
-                *row = *row * axis.tiles + (part + offset) / tilings;
+            // It is not negative, so that the conversion is `floor`.
+            let parts = ((value - axis.low) * axis.tiles_a_unit * f64::from(tilings)) as u32;
+            // (parts + offset) / tilings, of which only the remainder differs from tiling to tiling.
+            let (tile, rest) = if tilings.is_power_of_two() {
+                (parts >> tilings.trailing_zeros(), parts & (tilings - 1))
+            } else {
+                (parts / tilings, parts % tilings)
+            };
+            for (row, offset) in rows[..tilings as usize].iter_mut().zip(axis.offsets) {
+                *row = *row * axis.tiles + tile + u32::from(rest + offset >= tilings);
             }
         }
         Ok(Lit { rows, tilings: tilings as usize })
@@ -93,7 +108,7 @@ mod tests {
 
     #[test]
     fn each_tiling_lights_one_row_of_its_own() {
-        let tiles = Tiles::new(&[0.0, 0.0], &[1.0, 1.0], &[4, 4], 8);
+        let tiles = Tiles::<f64, 8>::new(&[0.0, 0.0], &[1.0, 1.0], &[4, 4], 8);
         for observation in [[0.0, 0.0], [1.0, 1.0], [0.3, 0.9]] {
             let Ok(lit) = tiles.rows(&observation) else { unreachable!("it lies in the box") };
             let owners: Vec<u32> = lit.as_ref().iter().map(|row| row / 25).collect();
@@ -104,7 +119,7 @@ mod tests {
 
     #[test]
     fn neighbours_share_tiles_and_strangers_share_none() {
-        let tiles = Tiles::new(&[0.0, 0.0], &[1.0, 1.0], &[8, 8], 8);
+        let tiles = Tiles::<f64, 8>::new(&[0.0, 0.0], &[1.0, 1.0], &[8, 8], 8);
         let shared = |left: [f64; 2], right: [f64; 2]| match (tiles.rows(&left), tiles.rows(&right)) {
             (Ok(left), Ok(right)) => left.as_ref().iter().zip(right.as_ref()).filter(|(l, r)| l == r).count(),
             _ => unreachable!("both lie in the box"),
@@ -116,7 +131,7 @@ mod tests {
 
     #[test]
     fn what_lies_outside_is_clipped_to_the_box() {
-        let tiles = Tiles::new(&[0.0], &[1.0], &[4], 4);
+        let tiles = Tiles::<f64, 8>::new(&[0.0], &[1.0], &[4], 4);
         assert_eq!(tiles.rows(&[-5.0]), tiles.rows(&[0.0]));
         assert_eq!(tiles.rows(&[f64::INFINITY]), tiles.rows(&[1.0]));
     }

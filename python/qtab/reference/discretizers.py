@@ -1,0 +1,74 @@
+"""From an observation to the rows of the table that it lights."""
+
+from typing import Protocol
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import ArrayLike
+
+from qtab.config import Config
+
+
+class Discretizer(Protocol):
+    """Rows, and how many there are."""
+
+    shape: tuple[int, ...]
+    """Of the table, without its actions."""
+    lit: int
+    """How many rows an observation lights."""
+
+    def rows(self, observation: ArrayLike) -> list[int]:
+        """Returns the rows of an observation."""
+
+
+class Rounding:
+    """The article's grid: the nearest cell."""
+
+    lit = 1
+
+    def __init__(self, space: gym.spaces.Box, config: Config) -> None:
+        self.low, self.scale = space.low, np.array(config.scale)
+        cells = np.round((space.high - space.low) * self.scale, 0).astype(int) + 1
+        self.shape = tuple(int(count) for count in cells)
+
+    def rows(self, observation: ArrayLike) -> list[int]:
+        """Returns one row, the cells counted in C order."""
+        # In the dtype of the space, whatever the environment hands out.
+        cell = np.round((np.asarray(observation, dtype=self.low.dtype) - self.low) * self.scale, 0).astype(int)
+        return [int(np.ravel_multi_index(tuple(cell), self.shape))]
+
+
+class TileCoding:
+    """Tilings shifted by 1, 3, 5, … parts of a tile along the first, second, third … component (section 9.5.4)."""
+
+    def __init__(self, space: gym.spaces.Box, config: Config) -> None:
+        assert config.tilings is not None  # noqa: S101
+        assert config.tiles is not None  # noqa: S101
+        self.dtype = space.dtype
+        self.low, self.high = np.array(config.low), np.array(config.high)
+        self.tiles, self.lit = np.array(config.tiles), config.tilings
+        self.tiling_shape = tuple(count + 1 for count in config.tiles)
+        self.shape: tuple[int, ...] = (self.lit * int(np.prod(self.tiling_shape)),)
+
+    def rows(self, observation: ArrayLike) -> list[int]:
+        """Returns one row of each tiling."""
+        numbers = np.asarray(observation, dtype=self.dtype).astype(np.float64)
+        clipped = np.clip(numbers, self.low, self.high)
+        parts = np.floor((clipped - self.low) * (self.tiles / (self.high - self.low)) * self.lit).astype(int)
+        odd = 2 * np.arange(len(parts)) + 1
+        return [
+            int(
+                np.ravel_multi_index(
+                    (tiling, *((parts + tiling * odd % self.lit) // self.lit)), (self.lit, *self.tiling_shape)
+                )
+            )
+            for tiling in range(self.lit)
+        ]
+
+
+def discretizer(env: gym.Env, config: Config) -> Discretizer:
+    """Returns the discretizer of a resolved config."""
+    assert isinstance(env.observation_space, gym.spaces.Box)  # noqa: S101
+    if config.discretizer == "tiles":
+        return TileCoding(env.observation_space, config)
+    return Rounding(env.observation_space, config)

@@ -1,0 +1,41 @@
+"""Watkins's Q(λ) in plain NumPy (Sutton & Barto, 2nd ed., section 12.10; 1st ed., the box in section 7.6)."""
+
+import gymnasium as gym
+import numpy as np
+
+from qtab.config import Config
+from qtab.reference.task import Result, Task, value, values
+from qtab.reference.traces import correct, decay, mark
+
+
+def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
+    """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
+    task = Task(env, config, stop_after)
+    assert config.trace_decay is not None  # noqa: S101
+    Q = task.table()
+
+    for _ in task.episodes():
+        z = np.zeros_like(Q)
+        state, over = task.reset(), False
+        action = next_action = task.choose(Q, state)
+        while not over:
+            step = task.step(action)
+            task.learning_rate.visit(state, action)
+            mark(z, state, action, config.traces)
+
+            # δ = R + γ max Q(S', a) - Q(S, A); the traces last while A' is greedy.
+            target, greedy = step.reward, False
+            if not step.terminal:
+                next_action = task.choose(Q, step.state)
+                next_values = values(Q, step.state)
+                greedy = bool(next_values[next_action] == np.max(next_values))
+                target = step.reward + task.discount * float(np.max(next_values))
+            correct(Q, z, task.learning_rate, target - value(Q, state, action))
+            if greedy:
+                decay(z, task.discount * config.trace_decay, config.trace_cutoff)
+            else:
+                z[:] = 0.0
+
+            state, action, over = step.state, next_action, step.over
+
+    return task.result(Q)

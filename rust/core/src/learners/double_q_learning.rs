@@ -1,0 +1,103 @@
+//! Double Q-learning (van Hasselt, 2010; Sutton & Barto, equation 6.10).
+
+use super::{Agent, Policy, Rate, StepSize};
+use crate::learner::Learner;
+use crate::random::Draw;
+use crate::table::{Table, first_maximum};
+use crate::world::Next;
+
+/// Q₁(S, A) ← Q₁(S, A) + α [R + γ Q₂(S′, argmaxₐ Q₁(S′, a)) - Q₁(S, A)], or the same with Q₁ and Q₂ exchanged: a coin
+/// decides. Actions are chosen by Q₁ + Q₂. The argmax is the first, whatever the policy does with ties.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DoubleQLearning {
+    /// Q₁, the policy and the constants.
+    pub agent: Agent,
+    /// Q₂.
+    pub second: Table,
+    /// Q₂'s own α: it counts its own visits.
+    pub second_rate: Rate,
+    both: Vec<f64>,
+}
+
+impl DoubleQLearning {
+    /// An agent with a second table.
+    pub fn new(agent: Agent, second: Table) -> Self {
+        let both = vec![0.0; second.actions()];
+        let second_rate = agent.learning_rate.clone();
+        Self { agent, second, second_rate, both }
+    }
+
+    #[inline]
+    fn choose(&mut self, rows: &[u32], draw: &mut impl Draw) -> usize {
+        self.both.copy_from_slice(self.agent.table.read(rows));
+        for (sum, value) in self.both.iter_mut().zip(self.second.read(rows)) {
+            *sum += value;
+        }
+        self.agent.policy.choose(&self.both, draw)
+    }
+}
+
+impl<R: Copy + AsRef<[u32]>> Learner<R> for DoubleQLearning {
+    #[inline]
+    fn begin(&mut self, here: R, draw: &mut impl Draw) -> usize {
+        self.choose(here.as_ref(), draw)
+    }
+
+    #[inline]
+    fn learn(&mut self, here: R, action: usize, reward: f64, next: Next<R>, draw: &mut impl Draw) -> usize {
+        let first = draw.random() < 0.5;
+        let Agent { table, learning_rate, discount, terminal_update, .. } = &mut self.agent;
+        let (own, other, rate) = if first {
+            (table, &self.second, learning_rate)
+        } else {
+            (&mut self.second, &*table, &mut self.second_rate)
+        };
+        match next {
+            Next::Goes(there) | Next::TimedOut(there) => {
+                let greedy = first_maximum(own.read(there.as_ref()));
+                let target = reward + *discount * other.value(there.as_ref(), greedy);
+                own.move_towards(here.as_ref(), action, target, rate);
+            }
+            Next::Terminal => own.end(here.as_ref(), action, reward, *terminal_update, rate),
+        }
+        if let Next::Goes(there) = next { self.choose(there.as_ref(), draw) } else { 0 }
+    }
+
+    fn end_episode(&mut self) {
+        self.agent.end_episode();
+        self.second_rate.end_episode();
+    }
+
+    fn tables(&self) -> Vec<&[f64]> {
+        vec![self.agent.table.values(), self.second.values()]
+    }
+
+    fn diverged(&self) -> bool {
+        self.agent.table.diverged() || self.second.diverged()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learners::example::{agent, draw};
+
+    #[test]
+    fn each_table_is_updated_with_the_others_opinion() {
+        let mut learner = DoubleQLearning::new(agent(&[1.0, 0.0, 2.0, 4.0]), Table::new(vec![3.0, 0.0, 8.0, 6.0], 2));
+        // The stream's first numbers are 0.636… and 0.269…: Q₂ learns first, then Q₁.
+        let mut draw = draw();
+        // Q₂ prefers action 0, which Q₁ holds worth 2: 3 + 0.5 (-1 + 0.5 · 2 - 3)
+        learner.learn([0], 0, -1.0, Next::TimedOut([1]), &mut draw);
+        assert_eq!((learner.agent.table.values()[0], learner.second.values()[0]), (1.0, 1.5));
+        // Q₁ prefers action 1, which Q₂ holds worth 6: 1 + 0.5 (-1 + 0.5 · 6 - 1)
+        learner.learn([0], 0, -1.0, Next::TimedOut([1]), &mut draw);
+        assert_eq!((learner.agent.table.values()[0], learner.second.values()[0]), (1.5, 1.5));
+    }
+
+    #[test]
+    fn actions_follow_the_sum() {
+        let mut learner = DoubleQLearning::new(agent(&[1.0, 0.0]), Table::new(vec![0.0, 2.0], 2));
+        assert_eq!(learner.begin([0], &mut draw()), 1);
+    }
+}

@@ -1,0 +1,176 @@
+//! Eligibility traces, kept only where they are alive: a step costs as many operations as there are traces, however large
+//! the table.
+
+use super::{Rate, StepSize};
+use crate::table::Table;
+
+/// What a visit does to the traces of its rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trace {
+    /// It adds 1 (Sutton & Barto, section 12.7).
+    Accumulating,
+    /// It sets them to 1 (Singh & Sutton, 1996).
+    Replacing,
+    /// It sets them to 1, and those of the actions not taken there to 0 (the same paper).
+    Clearing,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Alive {
+    weight: u32,
+    trace: f64,
+}
+
+/// z, one trace a weight. A trace that falls to the cutoff or below is dropped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traces {
+    alive: Vec<Alive>,
+    /// Where in `alive` a weight's trace is, counted from 1; 0 where it has none.
+    places: Vec<u32>,
+    cutoff: f64,
+}
+
+impl Traces {
+    /// No trace alive, of so many weights.
+    pub fn new(weights: usize, cutoff: f64) -> Self {
+        Self { alive: Vec::new(), places: vec![0; weights], cutoff }
+    }
+
+    /// How many are alive.
+    pub fn len(&self) -> usize {
+        self.alive.len()
+    }
+
+    /// Whether none is alive.
+    pub fn is_empty(&self) -> bool {
+        self.alive.is_empty()
+    }
+
+    /// The trace of a weight.
+    #[inline]
+    pub fn get(&self, weight: usize) -> f64 {
+        match self.places[weight] {
+            0 => 0.0,
+            place => self.alive[place as usize - 1].trace,
+        }
+    }
+
+    /// Changes the trace of a weight, which becomes alive.
+    #[inline]
+    pub fn change(&mut self, weight: usize, change: impl FnOnce(f64) -> f64) {
+        match self.places[weight] {
+            0 => {
+                self.alive.push(Alive { weight: weight as u32, trace: change(0.0) });
+                self.places[weight] = self.alive.len() as u32;
+            }
+            place => {
+                let trace = &mut self.alive[place as usize - 1].trace;
+                *trace = change(*trace);
+            }
+        }
+    }
+
+    /// A visit of a pair: its own traces grow, and others may end.
+    #[inline]
+    pub fn visit<const N: usize>(&mut self, kind: Trace, table: &Table<N>, rows: &[u32], action: usize) {
+        for &row in rows {
+            let weight = table.weight(row, action);
+            match kind {
+                Trace::Accumulating => self.change(weight, |trace| trace + 1.0),
+                Trace::Replacing => self.change(weight, |_| 1.0),
+                Trace::Clearing => {
+                    self.change(weight, |_| 1.0);
+                    for other in (0..table.actions()).filter(|&other| other != action) {
+                        self.end(table.weight(row, other));
+                    }
+                }
+            }
+        }
+    }
+
+    fn end(&mut self, weight: usize) {
+        if let Some(place) = (self.places[weight] as usize).checked_sub(1) {
+            self.remove(place);
+        }
+    }
+
+    #[cold]
+    fn remove(&mut self, place: usize) {
+        self.places[self.alive[place].weight as usize] = 0;
+        self.alive.swap_remove(place);
+        if let Some(moved) = self.alive.get(place) {
+            self.places[moved.weight as usize] = place as u32 + 1;
+        }
+    }
+
+    /// w ← w + α δ z.
+    #[inline]
+    pub fn correct<const N: usize>(&self, table: &mut Table<N>, rate: &Rate, error: f64) {
+        if let Some(step) = rate.shared() {
+            let step = step * error;
+            for &Alive { weight, trace } in &self.alive {
+                *table.weight_mut(weight as usize) += step * trace;
+            }
+        } else {
+            for &Alive { weight, trace } in &self.alive {
+                *table.weight_mut(weight as usize) += rate.at(weight as usize) * error * trace;
+            }
+        }
+    }
+
+    /// z ← γλ z.
+    #[inline]
+    pub fn decay(&mut self, factor: f64) {
+        let mut place = 0;
+        while let Some(alive) = self.alive.get_mut(place) {
+            alive.trace *= factor;
+            if alive.trace.abs() <= self.cutoff {
+                self.remove(place);
+            } else {
+                place += 1;
+            }
+        }
+    }
+
+    /// z ← 0.
+    pub fn clear(&mut self) {
+        for alive in self.alive.drain(..) {
+            self.places[alive.weight as usize] = 0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn visited(kind: Trace, actions: &[usize]) -> [f64; 2] {
+        let table = Table::<2>::new(vec![0.0; 2], 2);
+        let mut traces = Traces::new(2, 0.0);
+        for &action in actions {
+            traces.decay(0.5);
+            traces.visit(kind, &table, &[0], action);
+        }
+        [traces.get(0), traces.get(1)]
+    }
+
+    #[test]
+    fn each_kind_marks_a_visit_in_its_way() {
+        assert_eq!(visited(Trace::Accumulating, &[0, 1, 1]), [0.25, 1.5]);
+        assert_eq!(visited(Trace::Replacing, &[0, 1, 1]), [0.25, 1.0]);
+        assert_eq!(visited(Trace::Clearing, &[0, 1, 1]), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn a_trace_at_the_cutoff_is_dropped_and_the_others_keep_their_places() {
+        let mut traces = Traces::new(4, 0.25);
+        for weight in 0..4 {
+            traces.change(weight, |_| if weight % 2 == 0 { 0.5 } else { 1.0 });
+        }
+        traces.decay(0.5);
+        assert_eq!(traces.len(), 2);
+        assert_eq!([0, 1, 2, 3].map(|weight| traces.get(weight)), [0.0, 0.5, 0.0, 0.5]);
+        traces.clear();
+        assert!(traces.is_empty() && traces.get(1) == 0.0);
+    }
+}

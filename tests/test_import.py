@@ -1,0 +1,107 @@
+"""Importing is light, every name is there, and a missing extra is named with the command that brings it."""
+
+import subprocess
+import sys
+
+import pytest
+
+import qtab
+from qtab import _core
+
+
+def in_a_process(code):
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120).stdout
+
+
+HEAVY = "matplotlib", "tyro", "tqdm", "moviepy", "pygame", "PIL", "tomllib", "numba"
+
+
+def test_importing_loads_no_plotting_video_or_command_line_library():
+    code = f"import sys, qtab; print([name for name in {HEAVY!r} if name in sys.modules])"
+    assert in_a_process(code).strip() == "[]"
+
+
+def test_training_loads_none_either():
+    code = f"""
+import sys, qtab
+qtab.evaluate(qtab.train("MountainCar-v0", seed=0, episodes=3), 2, seed=0)
+print([name for name in {HEAVY!r} if name in sys.modules and name != "tqdm"])
+"""
+    assert in_a_process(code).strip() == "[]"
+
+
+def test_importing_registers_the_environments():
+    code = "import gymnasium as gym, qtab; print([name for name in gym.registry if name.startswith('qtab/')])"
+    assert "qtab/MountainCar-v0" in in_a_process(code)
+
+
+def test_importing_leaves_numpys_global_stream_alone():
+    code = """
+import numpy as np
+np.random.seed(3); expected = np.random.random(); np.random.seed(3)
+import qtab
+for bit_generator in ("PCG64", "MT19937"):
+    qtab.verify(qtab.train("MountainCar-v0", seed=0, episodes=2, bit_generator=bit_generator))
+print(np.random.random() == expected)
+"""
+    assert in_a_process(code).strip() == "True"
+
+
+def test_a_missing_plotting_library_is_named_with_the_command_that_brings_it():
+    code = """
+import sys
+sys.modules["matplotlib"] = None
+sys.modules["matplotlib.figure"] = None
+import qtab
+try:
+    qtab.plot(qtab.train("MountainCar-v0", seed=0, episodes=100))
+except ModuleNotFoundError as error:
+    print(error)
+"""
+    message = in_a_process(code)
+    assert "matplotlib" in message
+    assert "pip install 'qtab[plot]'" in message
+
+
+@pytest.mark.parametrize("name", qtab.__all__)
+def test_every_public_name_resolves_and_is_documented(name):
+    value = getattr(qtab, name)
+    assert value.__doc__
+    assert len(value.__doc__) > 20
+    assert name in dir(qtab)
+
+
+def test_no_module_takes_the_place_of_a_public_name():
+    code = """
+import importlib, pkgutil, types, qtab
+for module in pkgutil.iter_modules(qtab.__path__):
+    if module.name != "__main__":
+        importlib.import_module(f"qtab.{module.name}")
+print([name for name in qtab.__all__ if isinstance(getattr(qtab, name), types.ModuleType)])
+"""
+    assert in_a_process(code).strip() == "[]"
+
+
+def test_every_name_of_the_extension_module_is_in_its_stub():
+    from pathlib import Path
+
+    stub = Path(qtab.__file__).with_name("_core.pyi").read_text()
+    public = [name for name in dir(_core) if not name.startswith("_")]
+    assert public
+    for name in public:
+        assert f'"{name}"' in stub, name
+
+
+def test_an_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="module 'qtab' has no attribute 'trian'"):
+        _ = qtab.trian
+
+
+def test_the_version_is_the_distributions():
+    from importlib.metadata import version
+
+    assert qtab.__version__ == version("qtab")
+
+
+def test_the_extension_says_how_it_was_built():
+    assert _core.BUILD_PROFILE in ("debug", "release")

@@ -1,0 +1,128 @@
+"""How rates fall: seen through the table, which each schedule must leave as the reference does."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import qtab
+from qtab.reference.schedules import Schedule
+
+
+def course(kind: str, value: float, least: float, decay: float | None, warm_up: int, episodes: int) -> list[float]:
+    schedule = Schedule(kind, value, least, decay, warm_up, episodes)
+    values = []
+    for _ in range(episodes):
+        values.append(schedule.value)
+        schedule.end_episode()
+    return values
+
+
+def test_a_constant_rate_stays() -> None:
+    assert course("constant", 0.5, 0.0, None, 0, 3) == [0.5] * 3
+
+
+def test_a_linear_rate_falls_by_the_same_amount() -> None:
+    assert course("linear", 1.0, 0.0, None, 0, 4) == [1.0, 0.75, 0.5, 0.25]
+    assert course("linear", 1.0, 0.5, None, 2, 4) == [1.0, 1.0, 1.0, 0.75]
+
+
+def test_an_exponential_rate_falls_by_a_factor_to_its_least() -> None:
+    assert course("exponential", 1.0, 0.2, 0.5, 0, 5) == [1.0, 0.5, 0.25, 0.2, 0.2]
+    assert course("exponential", 1.0, 0.0, 0.0, 1, 3) == [1.0, 1.0, 0.0]
+
+
+def test_the_learning_rate_follows_its_schedule() -> None:
+    # One action in one cell, and always the target -1: the value after each episode tells its rate.
+    table = np.full((1, 1, 3), -9.0)
+    table[0, 0, 0] = 0.0
+    value, values = 0.0, []
+    for rate in course("exponential", 0.5, 0.1, 0.5, 1, 5):
+        value += rate * (-1.0 - value)
+        values.append(value)
+    seen = []
+    for count in range(1, 6):
+        run = qtab.train(
+            "MountainCar-v0",
+            seed=0,
+            episodes=5,
+            callback=lambda progress, count=count: progress.episodes < count,
+            callback_every=1,
+            scale=(0.1, 0.1),
+            initial_q=table,
+            epsilon=0.0,
+            discount=0.0,
+            max_episode_steps=1,
+            learning_rate=0.5,
+            learning_rate_schedule="exponential",
+            learning_rate_decay=0.5,
+            min_learning_rate=0.1,
+            learning_rate_warm_up=1,
+        )
+        seen.append(float(run.q_table[0, 0, 0]))
+    assert seen == values
+
+
+@pytest.mark.parametrize("algorithm", ["q_learning", "n_step_sarsa", "sarsa_lambda"])
+def test_one_over_the_visits_gives_the_average_of_the_targets(algorithm: str) -> None:
+    run = qtab.train(
+        "MountainCar-v0",
+        algorithm=algorithm,
+        seed=0,
+        episodes=7,
+        scale=(0.1, 0.1),
+        learning_rate=1.0,
+        learning_rate_schedule="visits",
+        discount=0.0,
+        initial_q=5.0,
+    )
+    # Every reward is -1, and the first visit forgets the first value.
+    assert set(run.tables.ravel().tolist()) <= {-1.0, 5.0}
+
+
+def test_exploration_ends_with_its_schedule() -> None:
+    table = np.full((19, 15, 3), -1.0)
+    table[..., 2] = 0.0
+    run = qtab.train(
+        "MountainCar-v0",
+        seed=0,
+        episodes=4,
+        record=4,
+        initial_q=table,
+        learning_rate=0.0,
+        epsilon=1.0,
+        epsilon_schedule="exponential",
+        epsilon_decay=0.0,
+        epsilon_warm_up=1,
+    )
+    assert [len(set(recording.actions)) for recording in run.recordings] == [3, 3, 1, 1]
+
+
+def test_constant_first_values_draw_nothing() -> None:
+    settings: dict[str, Any] = {"seed": 0, "episodes": 1, "learning_rate": 0.0}
+    same = qtab.train("MountainCar-v0", initial_q=2.5, **settings)
+    drawn = qtab.train("MountainCar-v0", initial_q=(2.5, 2.5), **settings)
+    assert (same.tables == 2.5).all()
+    assert same.tables.tobytes() == drawn.tables.tobytes()
+    given = qtab.train("MountainCar-v0", initial_q=np.full((19, 15, 3), 2.5), record=1, **settings)
+    constant = qtab.train("MountainCar-v0", initial_q=2.5, record=1, **settings)
+    assert constant.recordings[0].actions == given.recordings[0].actions
+
+
+def test_random_ties_take_every_greedy_action() -> None:
+    settings: dict[str, Any] = {"seed": 0, "episodes": 1, "initial_q": 0.0, "learning_rate": 0.0, "epsilon": 0.0}
+    first = qtab.train("MountainCar-v0", ties="first", record=1, **settings)
+    anyone = qtab.train("MountainCar-v0", ties="random", record=1, **settings)
+    assert set(first.recordings[0].actions) == {0}
+    assert set(anyone.recordings[0].actions) == {0, 1, 2}
+
+
+def test_a_cold_softmax_is_greedy_and_a_hot_one_takes_anything() -> None:
+    table = np.zeros((19, 15, 3))
+    table[..., 1] = 1.0
+    settings: dict[str, Any] = {"seed": 0, "episodes": 1, "initial_q": table, "learning_rate": 0.0, "record": 1}
+    cold = qtab.train("MountainCar-v0", exploration="softmax", temperature=1e-3, **settings)
+    hot = qtab.train("MountainCar-v0", exploration="softmax", temperature=1e3, **settings)
+    assert set(cold.recordings[0].actions) == {1}
+    counts = np.bincount(hot.recordings[0].actions, minlength=3)
+    assert (counts > 40).all()

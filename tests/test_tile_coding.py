@@ -1,0 +1,144 @@
+"""Tile coding: the rows that an observation lights, by the formula; and what has no meaning with it."""
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import qtab
+from qtab.reference.discretizers import TileCoding
+
+
+class Shown(gym.Env[Any, Any]):
+    """Shows one observation."""
+
+    action_space = gym.spaces.Discrete(1)
+
+    def __init__(self, space: gym.spaces.Box, observation: Any) -> None:
+        self.observation_space = space
+        self.observation = observation
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        super().reset(seed=seed)
+        return self.observation, {}
+
+    def step(self, action: int) -> Any:
+        return self.observation, 1.0, True, False, {}
+
+
+def formula(observation: Any, low: Any, high: Any, tiles: Any, tilings: int) -> list[int]:
+    """Row = the tiling, then the coordinates, in C order."""
+    rows = []
+    for t in range(tilings):
+        row = t
+        for i, x in enumerate(observation):
+            x = min(max(float(x), low[i]), high[i])
+            q = int(np.floor((x - low[i]) * (tiles[i] / (high[i] - low[i])) * tilings))
+            row = row * (tiles[i] + 1) + (q + (t * (2 * i + 1)) % tilings) // tilings
+        rows.append(row)
+    return rows
+
+
+@st.composite
+def observations(draw: st.DrawFn) -> tuple[Any, ...]:
+    dimensions = draw(st.integers(1, 3))
+    low = [draw(st.floats(-100, 100)) for _ in range(dimensions)]
+    high = [edge + draw(st.floats(1e-3, 100)) for edge in low]
+    tiles = tuple(draw(st.integers(1, 12)) for _ in range(dimensions))
+    dtype = draw(st.sampled_from([np.float32, np.float64]))
+    shown = [draw(st.one_of(st.floats(-300, 300), st.sampled_from([low[i], high[i]]))) for i in range(dimensions)]
+    return np.array(shown, dtype=dtype), tuple(low), tuple(high), tiles, draw(st.integers(1, 32))
+
+
+@settings(max_examples=300, deadline=None)
+@given(observations())
+def test_the_rows_lit_are_those_of_the_formula(case: tuple[Any, ...]) -> None:
+    observation, low, high, tiles, tilings = case
+    space = gym.spaces.Box(-np.inf, np.inf, observation.shape, observation.dtype.type)
+    env = Shown(space, observation)
+    run = qtab.train(
+        env, discretizer="tiles", low=low, high=high, tiles=tiles, tilings=tilings, episodes=1, initial_q=0.0, seed=0
+    )
+    expected = formula(observation, low, high, tiles, tilings)
+    assert np.flatnonzero(run.tables[0, :, 0]).tolist() == sorted(expected)
+    assert run.grid.lit(observation) == expected
+    assert TileCoding(space, run.config).rows(observation) == expected
+    assert run.tables.shape == (1, tilings * np.prod(np.array(tiles) + 1), 1)
+    assert qtab.verify(run, env=env).equal
+
+
+def test_each_weight_moves_by_its_share() -> None:
+    env = Shown(gym.spaces.Box(0.0, 1.0, (2,), np.float64), np.array([0.5, 0.5]))
+    run = qtab.train(env, discretizer="tiles", tilings=4, learning_rate=0.5, episodes=1, initial_q=0.0, seed=0)
+    assert run.tables[run.tables != 0.0].tolist() == [0.125] * 4
+    assert run.q_values(np.array([0.5, 0.5])).tolist() == [0.5]
+
+
+def test_one_number_of_tiles_is_for_every_component() -> None:
+    run = qtab.train("MountainCar-v0", episodes=1, discretizer="tiles", tiles=5)
+    assert run.config.tiles == (5, 5)
+
+
+def test_the_limits_must_be_given_where_the_space_has_none() -> None:
+    env = Shown(gym.spaces.Box(-np.inf, np.inf, (1,), np.float32), np.zeros(1, dtype=np.float32))
+    with pytest.raises(ValueError, match=r"^low must be given where the observation space has no finite bounds: "):
+        qtab.train(env, discretizer="tiles")
+
+
+def test_an_observation_of_nan_is_refused() -> None:
+    env = Shown(gym.spaces.Box(0.0, 1.0, (2,), np.float64), np.array([0.5, np.nan]))
+    with pytest.raises(ValueError, match=r"observation\[1\] is NaN"):
+        qtab.train(env, discretizer="tiles")
+
+
+@pytest.fixture(scope="module")
+def run() -> qtab.Run:
+    return qtab.train(
+        "MountainCar-v0",
+        seed=0,
+        episodes=300,
+        algorithm="sarsa_lambda",
+        discretizer="tiles",
+        learning_rate=0.3,
+        discount=1.0,
+        epsilon=0.0,
+        initial_q=0.0,
+    )
+
+
+def test_it_has_no_cells_and_names_what_works(run: qtab.Run) -> None:
+    for name in ("q_table", "policy"):
+        with pytest.raises(ValueError, match=r"run\.q_values\(observation\)"):
+            getattr(run, name)
+
+
+def test_it_predicts(run: qtab.Run) -> None:
+    observation = np.array([-0.5, 0.0], dtype=np.float32)
+    values = run.q_values(observation)
+    assert values.shape == (3,)
+    assert run.predict(observation) == (int(np.argmax(values)), None)
+    with pytest.raises(ValueError, match=r"observation must have shape \(2,\)"):
+        run.q_values([0.0])
+    with pytest.raises(ValueError, match=r"observation\[0\] is nan"):
+        run.q_values([float("nan"), 0.0])
+
+
+def test_it_is_saved_and_loaded(run: qtab.Run, tmp_path: Any) -> None:
+    run.save(tmp_path / "run.npz")
+    loaded = qtab.load(tmp_path / "run.npz")
+    assert loaded.tables.tobytes() == run.tables.tobytes()
+    observation = np.array([-0.5, 0.01], dtype=np.float32)
+    assert loaded.q_values(observation).tobytes() == run.q_values(observation).tobytes()
+    assert vars(loaded.config) == vars(run.config)
+    assert qtab.verify(loaded, episodes=2).equal
+
+
+def test_it_is_evaluated(run: qtab.Run) -> None:
+    assert qtab.evaluate(run, episodes=20, seed=1).mean_return > -150
+
+
+def test_it_gets_out_of_the_valley(run: qtab.Run) -> None:
+    assert run.episode_returns[-100:].mean() > -125
