@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import disjoint_base
 
-from qtab.plan import Model, Plan, PythonEnvironment
+from qtab.plan import Model, Plan, Process, PythonEnvironment, Rules
 
 __all__ = [
     "BUILD_PROFILE",
@@ -17,14 +17,13 @@ __all__ = [
     "Table",
     "Taxi",
     "Trainer",
-    "check_table",
+    "Transitions",
     "numpy_calls_the_platform",
     "parameter_names",
 ]
 
 BUILD_PROFILE: Literal["debug", "release"]
 
-def check_table(table: Any, start: Sequence[float] | NDArray[np.float64]) -> tuple[int, int]: ...
 def numpy_calls_the_platform() -> bool: ...
 def parameter_names(model: str) -> list[str]: ...
 
@@ -58,8 +57,16 @@ class Taxi:
 
 @final
 class Trainer:
-    def __new__(cls, environment: Model | PythonEnvironment, plan: Plan) -> Trainer: ...
+    def __new__(cls, environment: Model | Process | Rules | PythonEnvironment, plan: Plan) -> Trainer: ...
     def advance(self, episodes: int) -> None: ...
     def episodes(self) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]]: ...
     def tables(self) -> NDArray[np.float64]: ...
     def recordings(self) -> list[tuple[Any, list[int]]]: ...
+
+@final
+class Transitions:
+    def __new__(cls, table: Any, start: Sequence[float] | NDArray[np.float64], exact: bool) -> Transitions: ...
+    @property
+    def states(self) -> int: ...
+    @property
+    def actions(self) -> int: ...

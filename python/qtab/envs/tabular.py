@@ -18,7 +18,7 @@ Table: TypeAlias = Mapping[int, Mapping[int, Outcomes]] | Sequence[Sequence[Outc
 """``P[state][action]`` lists the outcomes, as in Gymnasium's toy text."""
 
 
-class TabularEnv(_core.Table, gym.Env[int, int]):
+class TabularEnv(_core.Table, gym.Env[Any, Any]):
     """A finite Markov decision process of one's own: states and actions numbered from 0, everything else in a table.
 
     It draws as Gymnasium's toy text does, one ``random()`` for each reset and each step, so that
@@ -42,7 +42,8 @@ class TabularEnv(_core.Table, gym.Env[int, int]):
             raise TypeError(f"initial_state_distrib must hold numbers, got {initial_state_distrib!r}") from None
         if self.initial_state_distrib.ndim != 1:
             raise ValueError(f"initial_state_distrib must have one axis, got {self.initial_state_distrib.ndim}")
-        states, actions = _core.check_table(P, self.initial_state_distrib)
+        checked = _core.Transitions(P, self.initial_state_distrib, exact=False)
+        states, actions = checked.states, checked.actions
         # The lists are copies, so that this table changes only where it is changed itself.
         self.P: dict[int, dict[int, list[Outcome]]] = {
             state: {action: [_outcome(outcome) for outcome in P[state][action]] for action in range(actions)}
@@ -67,9 +68,10 @@ class TabularEnv(_core.Table, gym.Env[int, int]):
             AssertionError: for an action outside the space, as Gymnasium words it.
         """
         assert self.action_space.contains(action), f"{action!r} ({type(action)}) invalid"  # noqa: S101
-        return FrozenLakeEnv.step(self, action)  # type: ignore[arg-type] # it asks for no more than what is here
+        step: Any = FrozenLakeEnv.step  # it asks for no more than what is here
+        return step(self, action)
 
 
 def _outcome(outcome: Outcome) -> Outcome:
     probability, state, reward, terminated = outcome
-    return probability, state, reward, terminated
+    return float(probability), state, reward, terminated

@@ -4,8 +4,10 @@ mod blackjack;
 mod dispatch;
 mod door;
 mod failure;
+mod finite;
 mod model;
 mod numbers;
+mod observation;
 mod physics;
 mod plan;
 mod python_world;
@@ -30,7 +32,7 @@ mod _core {
     #[pymodule_export]
     use super::stream::Stream;
     #[pymodule_export]
-    use super::table::check_table;
+    use super::table::Transitions;
     #[pymodule_export]
     use super::taxi::Taxi;
     #[pymodule_export]

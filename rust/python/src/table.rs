@@ -5,8 +5,10 @@ use pyo3::prelude::*;
 use qtab_core::Env;
 use qtab_core::envs::{Outcome, Tabular};
 
+use crate::numbers::double;
+
 /// `P[state][action]` lists (probability, state, reward, terminated); `start` is `initial_state_distrib`.
-pub(crate) fn compile(table: &Bound<'_, PyAny>, start: &[f64]) -> PyResult<Tabular> {
+fn compile(table: &Bound<'_, PyAny>, start: &[f64], exact: bool) -> PyResult<Tabular> {
     let shape = |_| PyTypeError::new_err("P must hold for each state and action a list of outcomes");
     let states = table.len().map_err(shape)?;
     if states != start.len() {
@@ -41,14 +43,20 @@ pub(crate) fn compile(table: &Bound<'_, PyAny>, start: &[f64]) -> PyResult<Tabul
             let listed = listed.len().and_then(|_| listed.try_iter());
             let listed = listed.map_err(|_| PyTypeError::new_err(format!("{place} must be a list of outcomes")))?;
             rows.push(
-                listed.enumerate().map(|(index, entry)| outcome(&place, index, &entry?)).collect::<PyResult<_>>()?,
+                listed
+                    .enumerate()
+                    .map(|(index, entry)| outcome(&place, index, &entry?, exact))
+                    .collect::<PyResult<_>>()?,
             );
         }
     }
     Tabular::new(actions, start, &rows).map_err(|bad| PyValueError::new_err(bad.to_string()))
 }
 
-fn outcome(place: &str, index: usize, entry: &Bound<'_, PyAny>) -> PyResult<Outcome> {
+fn outcome(place: &str, index: usize, entry: &Bound<'_, PyAny>, exact: bool) -> PyResult<Outcome> {
+    if exact && entry.get_item(0).is_ok_and(|probability| double(&probability).is_none()) {
+        return Err(PyTypeError::new_err(format!("{place}[{index}] must have a float for a probability")));
+    }
     match entry.extract() {
         Ok((probability, state, reward, terminated)) => Ok(Outcome { probability, state, reward, terminated }),
         Err(_) => Err(PyTypeError::new_err(format!(
@@ -58,9 +66,25 @@ fn outcome(place: &str, index: usize, entry: &Bound<'_, PyAny>) -> PyResult<Outc
     }
 }
 
-/// Checks a table, and returns how many states and actions it has.
-#[pyfunction]
-pub(crate) fn check_table(table: &Bound<'_, PyAny>, start: Vec<f64>) -> PyResult<(usize, usize)> {
-    let table = compile(table, &start)?;
-    Ok((table.states(), table.actions()))
+/// A table in Rust, checked.
+#[pyclass(frozen, module = "qtab._core")]
+pub(crate) struct Transitions(pub(crate) Tabular);
+
+#[pymethods]
+impl Transitions {
+    /// With `exact` it refuses probabilities that `NumPy` would not add as Python's floats.
+    #[new]
+    fn new(table: &Bound<'_, PyAny>, start: Vec<f64>, exact: bool) -> PyResult<Self> {
+        compile(table, &start, exact).map(Self)
+    }
+
+    #[getter]
+    fn states(&self) -> usize {
+        self.0.states()
+    }
+
+    #[getter]
+    fn actions(&self) -> usize {
+        self.0.actions()
+    }
 }
