@@ -76,9 +76,13 @@ pub(crate) struct Integers {
 
 impl Integers {
     fn unfit(&self, observation: &Bound<'_, PyAny>) -> PyErr {
-        let wanted = if self.scalar { "be an integer".into() } else { format!("hold {} integers", self.axes.len()) };
+        let wanted = if self.scalar {
+            "be an integer, as the space's are".into()
+        } else {
+            format!("hold {} integers, as the space's do", self.axes.len())
+        };
         let got = observation.repr().map_or_else(|_| "another".into(), |text| text.to_string());
-        PyValueError::new_err(format!("an observation must {wanted}, as the space's do, got {got}"))
+        PyValueError::new_err(format!("an observation must {wanted}, got {got}"))
     }
 
     /// The row with one more component.
