@@ -189,6 +189,11 @@ def test_without_tyro_the_command_names_the_extra(tmp_path: Path) -> None:
     assert done.stderr == "qtab: error: this needs tyro, which is not installed; run: pip install 'qtab[cli]'\n"
 
 
+def heed_ctrl_c() -> None:
+    """What a shell starts in the background ignores it, and so would its children."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is no signal there")
 def test_ctrl_c_saves_and_plots_what_was_learned_so_far(tmp_path: Path) -> None:
     process = subprocess.Popen(
@@ -198,6 +203,7 @@ def test_ctrl_c_saves_and_plots_what_was_learned_so_far(tmp_path: Path) -> None:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=heed_ctrl_c,
     )
     assert process.stdout is not None
     assert process.stdout.readline().startswith("MountainCar-v0 in Rust")

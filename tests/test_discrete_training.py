@@ -210,3 +210,13 @@ def test_recorded_episodes_can_be_played_again(name):
 
 def test_the_articles_rule_may_be_asked_for():
     same_everywhere("FrozenLake-v1", terminal_update="assign")
+
+
+@pytest.mark.parametrize("name", ["FrozenLake-v1", "Taxi-v4", "Blackjack-v1"])
+def test_many_runs_are_the_lone_ones(name):
+    settings = {**SETTINGS, "episodes": 60}
+    del settings["seed"]
+    runs = qtab.train_many(name, seeds=5, tables=True, **settings)
+    assert runs.config.backend == "rust"
+    for seed, run in zip(runs.seeds, runs, strict=True):
+        assert_same_run(run, qtab.train(name, seed=seed, **settings))

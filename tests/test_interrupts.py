@@ -11,6 +11,7 @@ import json, os, signal, sys, threading, time
 import _thread
 import gymnasium as gym, numpy as np, qtab
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell starts in the background would ignore it
 main = threading.main_thread().ident
 
 def training():

@@ -259,3 +259,13 @@ def test_rewards_too_large_to_compute_with_are_an_overflow_too() -> None:
             terminal_update="target",
         )
     assert not np.isfinite(caught.value.run.tables).all()  # type: ignore[attr-defined]
+
+
+def test_the_command_tells_a_divergence_in_one_line(capfd: pytest.CaptureFixture[str]) -> None:
+    from qtab.cli.command import run
+
+    settings = {**DIVERGING, "env": "MountainCar-v0"}
+    flags = [word for name, value in settings.items() for word in (f"--{name.replace('_', '-')}", str(value))]
+    code = run(["train", *flags])
+    assert code == 1
+    assert capfd.readouterr().err.splitlines()[-1].startswith("qtab train: error: the action values overflowed")

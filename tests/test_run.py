@@ -76,7 +76,7 @@ def test_the_versions_name_what_the_numbers_rest_on(run):
 
 
 def test_presets_are_named_per_environment():
-    assert list(qtab.presets("MountainCar-v0")) == ["article"]
+    assert list(qtab.presets("MountainCar-v0")) == ["article", "solved"]
     assert qtab.presets("qtab/MountainCar-v0") == qtab.presets("MountainCar-v0")
     assert qtab.presets("MountainCar-v0")["article"]["terminal_update"] == "assign"
     assert dict(qtab.presets("CartPole-v1")) == {}

@@ -71,3 +71,12 @@ def test_an_object_of_gymnasiums_trains_in_rust_where_asked():
     env = gym.make("Taxi-v4", fickle_passenger=True)
     rust = qtab.train(env, backend="rust", **SETTINGS)
     assert_same_run(rust, qtab.train(env, **SETTINGS))
+
+
+def test_many_runs_of_it_are_the_lone_ones():
+    settings = {**SETTINGS, "episodes": 40}
+    del settings["seed"]
+    runs = qtab.train_many(lake, seeds=4, tables=True, **settings)
+    assert runs.config.backend == "rust"
+    for seed, run in zip(runs.seeds, runs, strict=True):
+        assert_same_run(run, qtab.train(lake(), seed=seed, **settings))

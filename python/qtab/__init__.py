@@ -15,13 +15,17 @@ from typing import TYPE_CHECKING, Any
 from qtab.envs import register as _register
 
 if TYPE_CHECKING:
+    from qtab import designs, plots, stats
     from qtab.config import Config
     from qtab.envs.tabular import TabularEnv
     from qtab.evaluation import Evaluation, evaluate
+    from qtab.many import train_many
     from qtab.plotting import plot
     from qtab.preset import presets
     from qtab.run import Recording, Run
+    from qtab.runs import Runs
     from qtab.storage import load
+    from qtab.sweeping import StoreError, Sweep, SweepProgress, sweep
     from qtab.training import Progress, train
     from qtab.verification import Verification, verify
 
@@ -33,13 +37,22 @@ __all__ = [
     "Progress",
     "Recording",
     "Run",
+    "Runs",
+    "StoreError",
+    "Sweep",
+    "SweepProgress",
     "TabularEnv",
     "Verification",
+    "designs",
     "evaluate",
     "load",
     "plot",
+    "plots",
     "presets",
+    "stats",
+    "sweep",
     "train",
+    "train_many",
     "verify",
 ]
 
@@ -49,15 +62,23 @@ _HOME = {
     "Progress": "training",
     "Recording": "run",
     "Run": "run",
+    "Runs": "runs",
+    "StoreError": "sweeping",
+    "Sweep": "sweeping",
+    "SweepProgress": "sweeping",
     "TabularEnv": "envs.tabular",
     "Verification": "verification",
     "evaluate": "evaluation",
     "load": "storage",
     "plot": "plotting",
     "presets": "preset",
+    "sweep": "sweeping",
     "train": "training",
+    "train_many": "many",
     "verify": "verification",
 }
+
+_MODULES = ("designs", "plots", "stats")
 
 
 def __getattr__(name: str) -> Any:
@@ -65,6 +86,8 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("qtab")
+    if name in _MODULES:
+        return import_module(f"qtab.{name}")
     if name not in _HOME:
         raise AttributeError(f"module 'qtab' has no attribute {name!r}")
     value = globals()[name] = getattr(import_module(f"qtab.{_HOME[name]}"), name)

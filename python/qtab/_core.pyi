@@ -1,13 +1,13 @@
 """The extension module: what Rust does. Its users are the other modules of this package."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import disjoint_base
 
-from qtab.plan import Model, Plan, Process, PythonEnvironment, Rules
+from qtab.plan import Model, Plan, Process, PythonEnvironment, Results, Rules
 
 __all__ = [
     "BUILD_PROFILE",
@@ -20,12 +20,16 @@ __all__ = [
     "Transitions",
     "numpy_calls_the_platform",
     "parameter_names",
+    "train_many",
 ]
 
 BUILD_PROFILE: Literal["debug", "release"]
 
 def numpy_calls_the_platform() -> bool: ...
 def parameter_names(model: str) -> list[str]: ...
+def train_many(
+    describe: Callable[[int], tuple[Model | Process | Rules, Plan]], results: Results, threads: int, go_on: bool
+) -> list[tuple[int, Exception]]: ...
 
 class Blackjack:
     def __new__(cls, *_args: Any, **_kwargs: Any) -> Blackjack: ...

@@ -119,6 +119,16 @@ class Plan(TypedDict):
     record: int
 
 
+class Results(TypedDict):
+    """Where many runs leave their results: a row for each."""
+
+    returns: NDArray[np.float64]
+    lengths: NDArray[np.int64]
+    terminated: NDArray[np.bool_]
+    tables: NDArray[np.float64]
+    finished: NDArray[np.bool_]
+
+
 def seed_words(seed: int) -> list[int]:
     """Returns a non-negative integer as 32-bit words, least significant first; zero is one word."""
     count = max(1, (seed.bit_length() + 31) // 32)

@@ -10,6 +10,22 @@ from qtab.models import gymnasium_id
 # not repeated: those defaults are the article's.
 _ARTICLE = {"scale": (10.0, 100.0), "terminal_update": "assign"}
 
+# Sarsa(λ) on tile coding, as in Sutton & Barto, Example 10.1 and Figure 12.10: no exploration is needed, since values
+# of zero are optimistic where every step costs one.
+_SOLVED = {
+    "algorithm": "sarsa_lambda",
+    "discretizer": "tiles",
+    "tilings": 8,
+    "tiles": (16,),
+    "learning_rate": 0.5,
+    "learning_rate_schedule": "linear",
+    "discount": 1.0,
+    "epsilon": 0.0,
+    "trace_decay": 0.9,
+    "trace_cutoff": 1e-3,
+    "initial_q": 0.0,
+    "episodes": 2000,
+}
 # Sutton & Barto, 2nd ed., Example 6.6.
 _CLIFF_BOOK = {"learning_rate": 0.5, "discount": 1.0, "epsilon": 0.1, "epsilon_schedule": "constant"}
 _CLIFF_BOOK |= {"initial_q": 0.0, "episodes": 500}
@@ -26,7 +42,7 @@ _BLACKJACK |= {"initial_q": 0.0, "episodes": 500_000}
 
 # The first preset of an environment is its own.
 _PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
-    "MountainCar-v0": {"article": _ARTICLE},
+    "MountainCar-v0": {"article": _ARTICLE, "solved": _SOLVED},
     "FrozenLake-v1": {"tuned": _LAKE},
     "FrozenLake8x8-v1": {"tuned": _LARGE_LAKE},
     "CliffWalking-v1": {"tuned": _CLIFF, "book": _CLIFF_BOOK},

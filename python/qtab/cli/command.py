@@ -42,7 +42,7 @@ def run(arguments: list[str]) -> int:
         # Whoever read the output has gone; Python's own flush at exit must not complain about it.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_ERROR
-    except (ValueError, TypeError, OSError, ModuleNotFoundError, gym.error.Error) as error:
+    except (ValueError, TypeError, OverflowError, OSError, ModuleNotFoundError, gym.error.Error) as error:
         return _fail(name, error, EXIT_ERROR)
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED

@@ -29,6 +29,7 @@
 //! assert_eq!(trainer.episodes().returns.len(), 100);
 //! ```
 
+pub mod batch;
 pub mod env;
 pub mod envs;
 pub mod features;

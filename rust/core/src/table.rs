@@ -36,6 +36,10 @@ impl<const N: usize> Table<N> {
         &self.values
     }
 
+    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
     /// How many values a row has.
     #[inline]
     pub fn actions(&self) -> usize {

@@ -26,22 +26,22 @@ pub struct Episodes {
 
 /// The unfinished episode.
 #[derive(Clone, Copy, Debug)]
-struct Underway<S, R> {
-    state: S,
-    here: R,
-    action: usize,
-    total: f64,
-    length: i64,
+pub(crate) struct Underway<S, R> {
+    pub(crate) state: S,
+    pub(crate) here: R,
+    pub(crate) action: usize,
+    pub(crate) total: f64,
+    pub(crate) length: i64,
 }
 
 /// A world, a learner and the agent's stream.
 #[derive(Clone, Debug)]
 pub struct Trainer<W: World, L, D> {
-    world: W,
-    learner: L,
-    draw: D,
-    episodes: Episodes,
-    underway: Option<Underway<W::State, W::Rows>>,
+    pub(crate) world: W,
+    pub(crate) learner: L,
+    pub(crate) draw: D,
+    pub(crate) episodes: Episodes,
+    pub(crate) underway: Option<Underway<W::State, W::Rows>>,
 }
 
 impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
@@ -118,12 +118,12 @@ impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
         Ok(())
     }
 
-    fn begin(&mut self, draw: &mut D) -> Result<Underway<W::State, W::Rows>, W::Error> {
+    pub(crate) fn begin(&mut self, draw: &mut impl Draw) -> Result<Underway<W::State, W::Rows>, W::Error> {
         let (state, here) = self.world.reset()?;
         Ok(Underway { state, here, action: self.learner.begin(here, draw), total: 0.0, length: 0 })
     }
 
-    fn finish(&mut self, total: f64, length: i64, terminated: bool) {
+    pub(crate) fn finish(&mut self, total: f64, length: i64, terminated: bool) {
         self.learner.end_episode();
         self.episodes.returns.push(total);
         self.episodes.lengths.push(length);

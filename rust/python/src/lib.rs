@@ -5,6 +5,7 @@ mod dispatch;
 mod door;
 mod failure;
 mod finite;
+mod many;
 mod model;
 mod numbers;
 mod observation;
@@ -25,6 +26,8 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use super::blackjack::Blackjack;
+    #[pymodule_export]
+    use super::many::train_many;
     #[pymodule_export]
     use super::model::parameter_names;
     #[pymodule_export]

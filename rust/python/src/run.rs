@@ -1,11 +1,14 @@
 //! A trainer of any type, as the pyclass holds it.
 
+use std::any::Any;
+
 use qtab_core::random::Draw;
 use qtab_core::{Episodes, Learner, Trainer, Until, World};
 
 use crate::failure::Failure;
 
-pub(crate) trait Run: Send {
+/// `Any`, because runs of the article's kind are taken out of their boxes and batched.
+pub(crate) trait Run: Any + Send {
     fn advance(&mut self, until: Until) -> Result<(), Failure>;
     fn episodes(&self) -> &Episodes;
     /// The tables' values, one table after the other, rows first.
@@ -14,9 +17,9 @@ pub(crate) trait Run: Send {
 
 impl<W, L, D> Run for Trainer<W, L, D>
 where
-    W: World<Error: Into<Failure>, State: Send, Rows: Send> + Send,
-    L: Learner<W::Rows> + Send,
-    D: Draw + Clone + Send,
+    W: World<Error: Into<Failure>, State: Send, Rows: Send> + Send + 'static,
+    L: Learner<W::Rows> + Send + 'static,
+    D: Draw + Clone + Send + 'static,
 {
     fn advance(&mut self, until: Until) -> Result<(), Failure> {
         Trainer::advance(self, until).map_err(Into::into)?;

@@ -15,7 +15,7 @@ use crate::door;
 use crate::plan::Plan;
 
 /// Signals are looked for after this many steps of Rust: a fraction of a millisecond.
-const STEPS_BETWEEN_LOOKS: u64 = 8192;
+pub(crate) const STEPS_BETWEEN_LOOKS: u64 = 8192;
 /// The same for steps in Python, which may take a millisecond each.
 const PYTHON_STEPS_BETWEEN_LOOKS: u64 = 64;
 

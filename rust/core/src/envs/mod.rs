@@ -4,7 +4,7 @@ mod acrobot;
 mod blackjack;
 mod cart_pole;
 mod continuous_mountain_car;
-mod mountain_car;
+pub(crate) mod mountain_car;
 mod numpy;
 mod pendulum;
 mod tabular;

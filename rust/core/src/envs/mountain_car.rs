@@ -8,8 +8,8 @@ use crate::random::Draw;
 const START: (f64, f64) = (-0.6, -0.4);
 /// Action - 1: left, none, right. Looked up, because turning the action into a float takes longer, and the next step
 /// waits for it.
-const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
-const REWARD: f64 = -1.0;
+pub(crate) const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
+pub(crate) const REWARD: f64 = -1.0;
 
 /// The constants of the dynamics, under Gymnasium's names.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -31,10 +31,15 @@ impl<T: Real> Axis<T> {
     /// The subtraction is made in `T`, the product in f64: `NumPy`'s promotion of f32 with an array of numbers.
     #[inline]
     fn cell(&self, value: T) -> Option<u32> {
-        let shifted = (value - self.low).into() * self.scale + ROUND_TO_INTEGER;
-        let cell = shifted.to_bits().wrapping_sub(ROUND_TO_INTEGER.to_bits());
+        let cell = self.shifted(value);
         // One comparison: what is negative, NaN or too large to round so lies far beyond any size as an integer.
         (cell < u64::from(self.size)).then_some(cell as u32)
+    }
+
+    #[inline]
+    fn shifted(&self, value: T) -> u64 {
+        let shifted = (value - self.low).into() * self.scale + ROUND_TO_INTEGER;
+        shifted.to_bits().wrapping_sub(ROUND_TO_INTEGER.to_bits())
     }
 }
 
@@ -43,6 +48,15 @@ impl<T: Real> Axis<T> {
 pub struct Rounding<T, A = Vec<Axis<T>>> {
     axes: A,
     dtype: PhantomData<T>,
+}
+
+impl<T: Real> Rounding<T, [Axis<T>; 2]> {
+    /// The row of an observation that lies inside, without looking whether it does.
+    #[inline]
+    pub(crate) fn row_inside(&self, observation: [T; 2]) -> u64 {
+        let [first, second] = &self.axes;
+        first.shifted(observation[0]) * u64::from(second.size) + second.shifted(observation[1])
+    }
 }
 
 impl<T: Real, A: AsRef<[Axis<T>]>> Rounding<T, A> {

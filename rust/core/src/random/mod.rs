@@ -9,5 +9,6 @@ mod stream;
 pub use draw::Draw;
 pub use mt19937::Mt19937;
 pub use pcg64::Pcg64;
+pub(crate) use pcg64::{bounded, unit};
 pub use seed_sequence::SeedSequence;
 pub use stream::Stream;

@@ -31,8 +31,12 @@ impl Pcg64 {
         self.half
     }
 
+    pub(crate) fn set_half(&mut self, half: Option<u32>) {
+        self.half = half;
+    }
+
     #[inline]
-    fn next_u64(&mut self) -> u64 {
+    pub(crate) fn next_u64(&mut self) -> u64 {
         self.drawn += 1;
         self.engine.next_u64()
     }
@@ -51,24 +55,35 @@ impl Pcg64 {
 impl Draw for Pcg64 {
     #[inline]
     fn random(&mut self) -> f64 {
-        (self.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+        unit(self.next_u64())
     }
 
-    /// Lemire's multiply-shift with rejection, as `Generator.integers` does for ranges under 2³².
     #[inline]
     fn integers(&mut self, below: u32) -> u32 {
-        if below <= 1 {
-            return 0;
-        }
-        let mut product = u64::from(self.next_u32()) * u64::from(below);
-        if (product as u32) < below {
-            let threshold = below.wrapping_neg() % below;
-            while (product as u32) < threshold {
-                product = u64::from(self.next_u32()) * u64::from(below);
-            }
-        }
-        (product >> 32) as u32
+        bounded(below, || self.next_u32())
     }
+}
+
+/// A float in [0, 1) from a word's upper 53 bits.
+#[inline]
+pub(crate) fn unit(word: u64) -> f64 {
+    (word >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+}
+
+/// Lemire's multiply-shift with rejection, as `Generator.integers` does for ranges under 2³².
+#[inline]
+pub(crate) fn bounded(below: u32, mut next: impl FnMut() -> u32) -> u32 {
+    if below <= 1 {
+        return 0;
+    }
+    let mut product = u64::from(next()) * u64::from(below);
+    if (product as u32) < below {
+        let threshold = below.wrapping_neg() % below;
+        while (product as u32) < threshold {
+            product = u64::from(next()) * u64::from(below);
+        }
+    }
+    (product >> 32) as u32
 }
 
 #[cfg(test)]

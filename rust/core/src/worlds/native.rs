@@ -8,9 +8,9 @@ use crate::world::{Next, Transition, World};
 /// Gymnasium's `TimeLimit` around an environment, its observations as rows.
 #[derive(Clone, Debug)]
 pub struct Native<E, F> {
-    env: E,
-    features: F,
-    max_episode_steps: u64,
+    pub(crate) env: E,
+    pub(crate) features: F,
+    pub(crate) max_episode_steps: u64,
     draw: Pcg64,
 }
 

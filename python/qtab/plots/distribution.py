@@ -1,0 +1,50 @@
+"""How the final returns of many runs are distributed."""
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from qtab.plots.axes import color, finish, own_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def distribution(
+    returns: ArrayLike | Mapping[str, ArrayLike],
+    ax: "Axes | None" = None,
+    *,
+    bins: int | None = None,
+    threshold: float | None = None,
+    title: str = "",
+) -> "Axes":
+    """Draws a histogram of returns, one a run, with the median of each setting.
+
+    Args:
+        returns: (runs,), such as ``runs.final_returns()``; several by name share their bins.
+        ax: Where to draw; None makes a figure of its own.
+        bins: How many; None means the square root of the largest number of runs, at most 40.
+        threshold: A return to mark, such as the one from which the environment counts as solved.
+        title: The picture's.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; it names the ``pip install``.
+    """
+    named = returns if isinstance(returns, Mapping) else {"": returns}
+    samples = {name: np.asarray(values, dtype=np.float64) for name, values in named.items()}
+    ax = own_axes(ax)
+    count = bins or min(40, math.isqrt(max(map(len, samples.values()))) + 1)
+    edges = np.histogram_bin_edges(np.concatenate(list(samples.values())), count).tolist()
+    for index, (name, values) in enumerate(samples.items()):
+        middle = float(np.median(values))
+        label = f"{name or 'runs'}: {len(values)}, median {middle:.4g}"
+        ax.hist(values, edges, color=color(index), alpha=0.5, label=label)
+        ax.hist(values, edges, color=color(index), histtype="step", linewidth=1.4)
+        ax.axvline(middle, color=color(index), linewidth=2)
+    if threshold is not None:
+        ax.axvline(threshold, color="0.25", linestyle="--", linewidth=1.2, label=f"threshold {threshold:g}")
+    ax.locator_params(axis="y", integer=True)
+    return finish(ax, "Final return", "Runs", title)

@@ -1,0 +1,36 @@
+"""Honest statistics over many runs, by scipy. It takes arrays: ``stats.iqm(runs.final_returns())``.
+
+Needs the extra ``stats``.
+"""
+
+from qtab.extras import missing
+
+try:
+    import scipy  # noqa: F401
+except ModuleNotFoundError as _error:
+    raise missing(_error, "stats") from None
+
+from qtab.stats.aggregates import AGGREGATES, aggregate, optimality_gap, performance_profile
+from qtab.stats.comparisons import Comparison, compare
+from qtab.stats.curves import area_under_curve, curve, episodes_to_threshold
+from qtab.stats.intervals import Interval, iqm, mean, median, tolerance_interval
+from qtab.stats.rates import rate, solved_rate
+
+__all__ = [
+    "AGGREGATES",
+    "Comparison",
+    "Interval",
+    "aggregate",
+    "area_under_curve",
+    "compare",
+    "curve",
+    "episodes_to_threshold",
+    "iqm",
+    "mean",
+    "median",
+    "optimality_gap",
+    "performance_profile",
+    "rate",
+    "solved_rate",
+    "tolerance_interval",
+]

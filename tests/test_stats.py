@@ -1,0 +1,200 @@
+"""Statistics: against closed forms, against scipy's pieces, and against rliable."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import stats as scipy_stats
+
+import qtab
+from qtab import stats
+
+SAMPLE = np.random.default_rng(1).gamma(2.0, 3.0, size=60)
+numbers = st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=30)
+
+
+@pytest.mark.parametrize(
+    ("function", "reference"),
+    [
+        (stats.mean, np.mean),
+        (stats.median, np.median),
+        (stats.iqm, lambda values: scipy_stats.trim_mean(values, 0.25)),
+    ],
+)
+def test_an_estimate_lies_in_its_interval(function, reference):
+    found = function(SAMPLE)
+    assert found.estimate == reference(SAMPLE)
+    assert found.method == "BCa"
+    assert found.low < found.estimate < found.high
+    wider = function(SAMPLE, confidence=0.999)
+    assert wider.low < found.low < found.high < wider.high
+    assert function(SAMPLE) == found
+
+
+def test_the_interval_of_the_mean_is_about_students():
+    values = np.random.default_rng(0).normal(5.0, 2.0, size=400)
+    found = stats.mean(values)
+    low, high = scipy_stats.t.interval(0.95, len(values) - 1, values.mean(), scipy_stats.sem(values))
+    assert found.low == pytest.approx(low, abs=0.03)
+    assert found.high == pytest.approx(high, abs=0.03)
+
+
+@pytest.mark.parametrize("values", [[3.0] * 7, [3.0]])
+def test_a_constant_sample_has_the_interval_of_its_one_value(values):
+    assert stats.iqm(values) == stats.Interval(3.0, 3.0, 3.0, 0.95, "constant")
+
+
+def test_where_bca_is_not_finite_the_percentile_interval_says_so():
+    # Nearly every resample's median is the sample's: there is no bias to estimate from.
+    found = stats.median([0.0] * 99 + [1.0])
+    assert found.method == "percentile"
+    assert (found.low, found.high) == (0.0, 0.0)
+
+
+@settings(max_examples=25, deadline=None)
+@given(values=numbers)
+def test_an_interval_is_finite_and_in_order(values):
+    for function in (stats.mean, stats.median, stats.iqm):
+        found = function(values, resamples=99)
+        assert np.isfinite([found.estimate, found.low, found.high]).all()
+        assert min(values) - 1e-6 <= found.low <= found.high <= max(values) + 1e-6
+
+
+def test_a_tolerance_interval_covers_as_often_as_it_says():
+    rng = np.random.default_rng(3)
+    covered = 0
+    for _ in range(400):
+        found = stats.tolerance_interval(rng.normal(size=60), coverage=0.8, confidence=0.9)
+        covered += scipy_stats.norm.cdf(found.high) - scipy_stats.norm.cdf(found.low) >= 0.8
+    assert covered / 400 >= 0.87
+
+
+def test_wilks_smallest_sample():
+    # 46 values are known to be the fewest whose range covers 90 % with confidence 95 %.
+    found = stats.tolerance_interval(np.arange(46.0))
+    assert (found.low, found.high) == (0.0, 45.0)
+    with pytest.raises(ValueError, match=r"values must hold at least 46 numbers .* got 45"):
+        stats.tolerance_interval(np.arange(45.0))
+
+
+def test_the_solved_rate_has_wilsons_interval():
+    found = stats.solved_rate([-110.0] * 3 + [-90.0, -110.0001] + [-200.0] * 5, threshold=-110)
+    z = scipy_stats.norm.ppf(0.975)
+    share, count = 0.4, 10
+    middle = (share + z**2 / (2 * count)) / (1 + z**2 / count)
+    half = z / (1 + z**2 / count) * np.sqrt(share * (1 - share) / count + z**2 / (4 * count**2))
+    assert found.estimate == share
+    assert found.low == pytest.approx(middle - half)
+    assert found.high == pytest.approx(middle + half)
+    none = stats.rate(0, 20)
+    assert none.low == 0 < none.high < 1
+
+
+def test_the_area_is_the_mean_return():
+    assert stats.area_under_curve([[0.0, 2.0], [4.0, 4.0]]).tolist() == [1.0, 4.0]
+
+
+def test_episodes_to_threshold_looks_at_whole_windows():
+    returns = [[0, 0, 1, 1, 1], [0, 0, 0, 0, 0], [1, 1, 0, 0, 0]]
+    assert stats.episodes_to_threshold(returns, 1.0, window=2).tolist() == [4, np.inf, 2]
+    assert stats.episodes_to_threshold(returns, 0.5, window=2).tolist() == [3, np.inf, 2]
+
+
+def test_a_curve_has_an_interval_a_block():
+    runs = qtab.train_many("MountainCar-v0", 8, episodes=250)
+    curve = stats.curve(runs.episode_returns, block=100, resamples=99)
+    assert [point.estimate for point in curve] == runs.mean_returns(100).mean(axis=0).tolist()
+
+
+def test_a_paired_comparison_finds_what_pairs_show():
+    rng = np.random.default_rng(5)
+    luck = rng.normal(0, 10, size=40)
+    a, b = luck + rng.normal(1, 0.5, size=40), luck
+    found = stats.compare(a, b)
+    assert 0.7 < found.difference.low < found.difference.estimate < found.difference.high < 1.3
+    assert found.effect_size == pytest.approx(np.mean(a - b) / np.std(a - b, ddof=1))
+    assert found.p_value < 0.001
+    assert found.better > 0.9
+    unpaired = scipy_stats.ttest_ind(a, b)
+    assert unpaired.pvalue > 0.05
+    mirrored = stats.compare(b, a)
+    assert mirrored.effect_size == -found.effect_size
+    assert mirrored.p_value == found.p_value
+
+
+def test_few_pairs_are_permuted_exactly():
+    # Of the 2**4 ways of swapping, two give a mean difference as large as all four of one sign.
+    assert stats.compare([1.0, 2.0, 3.0, 4.0], [0.0, 0.0, 0.0, 0.0]).p_value == 2 / 16
+
+
+def test_equal_settings_do_not_differ():
+    found = stats.compare(SAMPLE, SAMPLE)
+    assert (found.difference.estimate, found.effect_size, found.better, found.p_value) == (0, 0, 0.5, 1)
+
+
+def test_a_constant_difference_is_an_infinite_effect():
+    assert stats.compare([1.0, 2.0, 3.0], [2.0, 3.0, 4.0]).effect_size == -np.inf
+
+
+@pytest.mark.filterwarnings("ignore")  # rliable's own imports
+@pytest.mark.parametrize("statistic", ["mean", "median", "iqm"])
+def test_aggregates_are_rliables(statistic):
+    from rliable import library, metrics
+
+    theirs = {
+        "mean": metrics.aggregate_mean,
+        "median": metrics.aggregate_median,
+        "iqm": metrics.aggregate_iqm,
+    }[statistic]
+    scores = np.random.default_rng(2).beta(2, 5, size=(10, 5)) * np.arange(1, 6)
+    found = stats.aggregate(scores, statistic)
+    points, intervals = library.get_interval_estimates(
+        {"x": scores}, lambda table: np.array([theirs(table)]), reps=2000, random_state=np.random.RandomState(1)
+    )
+    assert found.estimate == pytest.approx(points["x"][0], abs=1e-12)
+    width = found.high - found.low
+    assert found.low == pytest.approx(intervals["x"][0, 0], abs=0.1 * width)
+    assert found.high == pytest.approx(intervals["x"][1, 0], abs=0.1 * width)
+    by_name = stats.aggregate({f"task {index}": column for index, column in enumerate(scores.T)}, statistic)
+    assert by_name == found
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_gap_and_profile_are_rliables():
+    from rliable import library, metrics
+
+    scores = np.random.default_rng(2).beta(2, 2, size=(12, 4)) * 1.5
+    assert stats.optimality_gap(scores).estimate == pytest.approx(metrics.aggregate_optimality_gap(scores), abs=1e-12)
+    levels = np.linspace(0, 1.5, 7)
+    theirs, _ = library.create_performance_profile({"x": scores}, levels, reps=10)
+    assert stats.performance_profile(scores, levels) == pytest.approx(theirs["x"], abs=1e-12)
+
+
+def test_environments_may_have_different_numbers_of_runs():
+    found = stats.aggregate({"a": [1.0, 2.0, 3.0], "b": [5.0]}, "mean")
+    assert found.estimate == 3.5
+    assert 3 <= found.low <= found.high <= 4
+    assert stats.aggregate({"a": [1.0], "b": [5.0, 5.0]}, "mean").method == "constant"
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda: stats.mean([]), ValueError, "values must be one row of at least 1"),
+        (lambda: stats.mean([[1.0, 2.0]]), ValueError, "values must be one row"),
+        (lambda: stats.mean([1.0, np.nan]), ValueError, "values must not hold nan"),
+        (lambda: stats.mean("abc"), TypeError, "values must hold numbers"),
+        (lambda: stats.mean([1.0, 2.0], confidence=2), ValueError, "confidence must lie in"),
+        (lambda: stats.mean([1.0, 2.0], resamples=0), ValueError, "resamples must be an integer of at least 1"),
+        (lambda: stats.rate(3, 2), ValueError, "successes must be an integer from 0 to 2"),
+        (lambda: stats.compare([1.0, 2.0], [1.0]), ValueError, "b must be one row of at least 2"),
+        (lambda: stats.compare([1.0, 2.0], [1.0, 2.0, 3.0]), ValueError, "must be pairs, got 2 and 3"),
+        (lambda: stats.aggregate({}), ValueError, "at least one environment"),
+        (lambda: stats.aggregate([1.0, 2.0]), ValueError, "the shape"),
+        (lambda: stats.aggregate([[1.0]], "mode"), ValueError, "statistic must be one of"),
+        (lambda: stats.episodes_to_threshold([1.0, 2.0], 0, window=3), ValueError, "window must be"),
+    ],
+)
+def test_bad_input_is_refused_by_name(call, error, message):
+    with pytest.raises(error, match=message):
+        call()
