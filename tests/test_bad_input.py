@@ -240,10 +240,15 @@ def test_an_unknown_keyword_argument_is_gymnasiums_own_error():
         qtab.train("MountainCar-v0", env_kwargs={"wheels": 4})
 
 
+def mixed():
+    env = Told([])
+    env.observation_space = gym.spaces.Tuple((gym.spaces.Discrete(3), env.observation_space))
+    return env
+
+
 SPACES = {
     "continuous actions": ("Pendulum-v1", "action space must be Discrete, got Box"),
-    "discrete observations": ("FrozenLake-v1", "observation space must be a Box of one float axis, got Discrete"),
-    "observations of three kinds": ("Blackjack-v1", "observation space must be a Box of one float axis, got Tuple"),
+    "observations of two kinds": (mixed(), "observation space must be a Box of one float axis, got Tuple"),
     "unbounded observations": ("CartPole-v1", "observation space must have finite bounds, got Box"),
     "an image": (Told([], dtype=np.uint8, high=255), "observation space must be a Box of one float axis"),
     "half precision": (Told([], dtype=np.float16), "observation space must be a Box of one float axis"),

@@ -131,7 +131,7 @@ def test_plots_are_written_in_the_format_of_their_ending(tmp_path: Path, name: s
         (["--preset", "novel"], "preset must be one that MountainCar-v0 has .* got 'novel'"),
         (["NoSuchCar-v0"], "NoSuchCar"),
         (["MountainCar-v0", "Taxi-v4"], "Taxi-v4"),
-        (["Blackjack-v1"], "the observation space must be"),
+        (["Pendulum-v1"], "the action space must be"),
         (["--env-kwargs", "goal_velocity"], "'goal_velocity' has no value"),
         (["--initial-q", "1", "2", "3"], "LOW HIGH, VALUE or FILE"),
         (["--initial-q", "none.npz"], "none.npz"),

@@ -17,6 +17,7 @@ from qtab.envs import register as _register
 if TYPE_CHECKING:
     from qtab import designs, plots, stats
     from qtab.config import Config
+    from qtab.envs.tabular import TabularEnv
     from qtab.evaluation import Evaluation, evaluate
     from qtab.many import train_many
     from qtab.plotting import plot
@@ -40,6 +41,7 @@ __all__ = [
     "StoreError",
     "Sweep",
     "SweepProgress",
+    "TabularEnv",
     "Verification",
     "designs",
     "evaluate",
@@ -65,6 +67,7 @@ _HOME = {
     "StoreError": "sweeping",
     "Sweep": "sweeping",
     "SweepProgress": "sweeping",
+    "TabularEnv": "envs.tabular",
     "Verification": "verification",
     "evaluate": "evaluation",
     "load": "storage",

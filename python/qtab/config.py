@@ -84,7 +84,8 @@ class Config:
     time_weight: float | None = None
     """κ: Dyna-Q+ adds κ √τ to the rewards of what was not tried for τ steps (0.001)."""
     discretizer: Discretizer = "round"
-    """How observations become rows of the table: rounded to a grid, or lit by tile coding."""
+    """How observations become rows of the table: rounded to a grid, lit by tile coding, or as they are, which is
+    what a discrete space gets where nothing is given."""
     scale: tuple[float, ...] = ()
     """Cells per unit of each component of the observation: (10, 100) rounds to 0.1 and 0.01."""
     tilings: int | None = None

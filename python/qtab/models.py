@@ -26,9 +26,21 @@ class Model:
     """The constructor's keyword arguments that are constants of the model, of the same name."""
     trains: bool = False
     """Whether Rust trains on it, too; if not, training steps the environment."""
+    finite: bool = False
+    """Whether Rust takes its table, or its rules, from Gymnasium's environment, whatever its arguments were."""
 
 
 _CLASSIC = "gymnasium.envs.classic_control"
+_FINITE: Any = {"trains": True, "finite": True}
+_TOYS = "gymnasium.envs.toy_text"
+TABLE = Model("Table", "", "qtab.envs.tabular:TabularEnv", trains=True, finite=True)
+"""A table of one's own, which has no id."""
+_FROZEN_LAKE = Model(
+    "FrozenLake", f"{_TOYS}.frozen_lake:FrozenLakeEnv", "qtab.envs.frozen_lake:FrozenLakeEnv", **_FINITE
+)
+_CLIFF = Model(
+    "CliffWalking", f"{_TOYS}.cliffwalking:CliffWalkingEnv", "qtab.envs.cliff_walking:CliffWalkingEnv", **_FINITE
+)
 _CART_POLE = Model("CartPole", f"{_CLASSIC}.cartpole:CartPoleEnv", "qtab.envs.cart_pole:CartPoleEnv")
 
 MODELS: Mapping[str, Model] = {
@@ -53,6 +65,14 @@ MODELS: Mapping[str, Model] = {
         gymnasium=f"{_CLASSIC}.pendulum:PendulumEnv",
         qtab="qtab.envs.pendulum:PendulumEnv",
         arguments=frozenset({"g"}),
+    ),
+    "FrozenLake-v1": _FROZEN_LAKE,
+    "FrozenLake8x8-v1": _FROZEN_LAKE,
+    "CliffWalking-v1": _CLIFF,
+    "CliffWalkingSlippery-v1": _CLIFF,
+    "Taxi-v4": Model("Taxi", f"{_TOYS}.taxi:TaxiEnv", "qtab.envs.taxi:TaxiEnv", **_FINITE),
+    "Blackjack-v1": Model(
+        "Blackjack", f"{_TOYS}.blackjack:BlackjackEnv", "qtab.envs.blackjack:BlackjackEnv", **_FINITE
     ),
 }
 
@@ -86,6 +106,8 @@ def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:
     arguments = {
         name: value for name, value in {**spec.kwargs, **kwargs}.items() if (name, value) != ("render_mode", None)
     }
+    if model.finite:
+        return None if "render_mode" in arguments else model
     # A number of another width than Python's would promote differently.
     plain = all(type(value) in (int, float) for value in arguments.values())
     return model if plain and arguments.keys() <= model.arguments else None

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from qtab._core import Transitions
     from qtab.config import Config
 
 
@@ -24,6 +25,20 @@ class PythonEnvironment(TypedDict):
     first_action: int
 
 
+class Process(TypedDict):
+    """A table that Rust steps by."""
+
+    table: "Transitions"
+    fickle: float | None
+
+
+class Rules(TypedDict):
+    """Those of blackjack."""
+
+    natural: bool
+    sab: bool
+
+
 class Rounding(TypedDict):
     """The article's grid."""
 
@@ -37,6 +52,14 @@ class Tiles(TypedDict):
     high: list[float]
     tiles: list[int]
     tilings: int
+
+
+class Cells(TypedDict):
+    """Whole numbers, each combination a row."""
+
+    first: list[int]
+    counts: list[int]
+    scalar: bool
 
 
 class Course(TypedDict):
@@ -80,7 +103,7 @@ class Plan(TypedDict):
     low: list[float]
     high: list[float]
     single: bool
-    features: Rounding | Tiles
+    features: Rounding | Tiles | Cells
     actions: int
     max_episode_steps: int | None
     seed: list[int]

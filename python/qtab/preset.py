@@ -26,10 +26,29 @@ _SOLVED = {
     "initial_q": 0.0,
     "episodes": 2000,
 }
+# Sutton & Barto, 2nd ed., Example 6.6.
+_CLIFF_BOOK = {"learning_rate": 0.5, "discount": 1.0, "epsilon": 0.1, "epsilon_schedule": "constant"}
+_CLIFF_BOOK |= {"initial_q": 0.0, "episodes": 500}
+# Ours, tried with a few seeds: the exploration rate falls to nothing, and where chance has a part, so does the learning
+# rate.
+_LAKE = {"learning_rate": 0.05, "discount": 0.99, "epsilon": 1.0, "initial_q": 0.0, "episodes": 20_000}
+_LARGE_LAKE = {"learning_rate": 0.2, "learning_rate_schedule": "linear", "discount": 0.999, "epsilon": 1.0}
+_LARGE_LAKE |= {"initial_q": 1.0, "episodes": 20_000}
+_CLIFF = {"learning_rate": 0.5, "discount": 1.0, "epsilon": 0.1, "initial_q": 0.0, "episodes": 500}
+_SLIPPERY_CLIFF = {**_CLIFF, "learning_rate": 0.2, "learning_rate_schedule": "linear", "episodes": 5_000}
+_TAXI = {"learning_rate": 0.5, "discount": 0.99, "epsilon": 0.1, "initial_q": 0.0, "episodes": 10_000}
+_BLACKJACK = {"learning_rate": 0.02, "learning_rate_schedule": "linear", "discount": 1.0, "epsilon": 1.0}
+_BLACKJACK |= {"initial_q": 0.0, "episodes": 500_000}
 
 # The first preset of an environment is its own.
 _PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "MountainCar-v0": {"article": _ARTICLE, "solved": _SOLVED},
+    "FrozenLake-v1": {"tuned": _LAKE},
+    "FrozenLake8x8-v1": {"tuned": _LARGE_LAKE},
+    "CliffWalking-v1": {"tuned": _CLIFF, "book": _CLIFF_BOOK},
+    "CliffWalkingSlippery-v1": {"tuned": _SLIPPERY_CLIFF},
+    "Taxi-v4": {"tuned": _TAXI},
+    "Blackjack-v1": {"tuned": _BLACKJACK},
 }
 
 

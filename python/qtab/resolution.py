@@ -9,13 +9,15 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from qtab import plan
+from qtab.cells import Cells, cells, components
 from qtab.config import Config, known_fields
+from qtab.finite import describe
 from qtab.models import Model, model_of, spec_of
 from qtab.options import defaults, stranger, tables
 from qtab.preset import preset
 from qtab.spaces import Grid, grid
 from qtab.tiling import Tiling, tiling
-from qtab.wrappers import model_of_object
+from qtab.wrappers import is_own_table, model_of_object
 
 UNLIMITED_MAX_EPISODE_STEPS = 10_000
 """The time limit in training of an environment that has none of its own."""
@@ -26,21 +28,25 @@ class Resolved:
     """A config without gaps, and what it is run on."""
 
     config: Config
-    grid: Grid | Tiling
+    grid: Grid | Tiling | Cells
     model: Model | None
     """The model in Rust; None steps ``env`` in Python."""
     env: gym.Env | None
     """The environment stepped in Python."""
     made: bool
     """Whether the environment was made here, and so is closed here."""
+    process: plan.Process | plan.Rules | None = None
+    """What a finite model steps by."""
 
     def close(self) -> None:
         """Closes the environment if it was made here."""
         if self.made and self.env is not None:
             self.env.close()
 
-    def core_environment(self) -> plan.Model | plan.PythonEnvironment:
+    def core_environment(self) -> plan.Model | plan.Process | plan.Rules | plan.PythonEnvironment:
         """Returns the environment as the extension module takes it."""
+        if self.process is not None:
+            return self.process
         if self.model is not None:
             parameters = {name: float(value) for name, value in self.config.env_kwargs.items() if value is not None}
             return {"model": self.model.name, "parameters": parameters}
@@ -52,8 +58,8 @@ class Resolved:
         config = self.config
         assert config.seed is not None  # noqa: S101 - resolved
         return {
-            "low": self.grid.low.astype(np.float64).tolist(),
-            "high": self.grid.high.astype(np.float64).tolist(),
+            "low": np.ravel(self.grid.low).astype(np.float64).tolist(),
+            "high": np.ravel(self.grid.high).astype(np.float64).tolist(),
             "single": self.grid.low.dtype == np.float32,
             "features": self.grid.plan(),
             "actions": self.grid.actions,
@@ -113,12 +119,14 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
     config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = model_of(spec, config.env_kwargs)
-    backend = _backend(config, model, f"Rust has no {spec.id} with these keyword arguments or wrappers")
     limit: dict[str, Any] = {}
     if config.max_episode_steps is not None:
         limit["max_episode_steps"] = config.max_episode_steps
     made = gym.make(spec, **config.env_kwargs, **limit)
     try:
+        model, process = _finite(model, made, config)
+        backend = _backend(config, model, f"Rust has no {spec.id} with these keyword arguments or wrappers")
+        config = _fitting(made, config)
         table = _features(made, config)
         steps = config.max_episode_steps or spec.max_episode_steps
         config = _complete(config, table, backend, steps)
@@ -127,7 +135,7 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
         raise
     if backend == "rust":
         made.close()
-        return Resolved(config, table, model, None, made=True)
+        return Resolved(config, table, model, None, made=True, process=process)
     return Resolved(config, table, None, made, made=True)
 
 
@@ -136,11 +144,31 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
     config = merge(name, {"env_kwargs": kwargs}, *layers)
     if config.backend == "auto":
-        config = config.replace(backend="gymnasium")
-    model = model_of_object(env) if config.backend == "rust" else None
+        config = config.replace(backend="rust" if is_own_table(env) else "gymnasium")
+    model, process = _finite(model_of_object(env) if config.backend == "rust" else None, env, config)
+    config = _fitting(env, config)
     table = _features(env, config)
     steps = config.max_episode_steps or _time_limit(env)
-    return Resolved(_complete(config, table, config.backend, steps), table, model, env, made=False)
+    return Resolved(_complete(config, table, config.backend, steps), table, model, env, made=False, process=process)
+
+
+def _finite(model: Model | None, env: gym.Env, config: Config) -> tuple[Model | None, plan.Process | plan.Rules | None]:
+    """The model, if Rust can step by what the environment holds, and that."""
+    if model is None or not model.finite or config.backend == "gymnasium":
+        return model, None
+    try:
+        return model, describe(env.unwrapped)
+    except (TypeError, ValueError) as error:
+        if config.backend == "rust":
+            raise ValueError(f"backend must be 'gymnasium' or 'auto' here, got 'rust': {error}") from None
+        return None, None
+
+
+def _fitting(env: gym.Env, config: Config) -> Config:
+    """The config with the discretizer that a discrete space has, where none was asked for."""
+    if config.discretizer == "round" and components(env.observation_space) is not None:
+        return config.replace(discretizer="identity")
+    return config
 
 
 def _backend(config: Config, model: Model | None, why_not: str) -> Literal["rust", "gymnasium"]:
@@ -159,13 +187,15 @@ def _time_limit(env: gym.Env) -> int | None:
     return None
 
 
-def _features(env: gym.Env, config: Config) -> Grid | Tiling:
+def _features(env: gym.Env, config: Config) -> Grid | Tiling | Cells:
+    if config.discretizer == "identity":
+        return cells(env)
     if config.discretizer == "tiles":
         return tiling(env, config.replace(**defaults(vars(config))))
     return grid(env, config.scale)
 
 
-def _complete(config: Config, table: Grid | Tiling, backend: str, steps: int | None) -> Config:
+def _complete(config: Config, table: Grid | Tiling | Cells, backend: str, steps: int | None) -> Config:
     changes: dict[str, Any] = defaults(vars(config))
     changes |= {"backend": backend, "max_episode_steps": steps or UNLIMITED_MAX_EPISODE_STEPS}
     if config.seed is None:

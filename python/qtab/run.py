@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab import checks
+from qtab.cells import Cells
 from qtab.config import Config
 from qtab.spaces import Grid
 from qtab.tiling import Tiling
@@ -31,7 +32,7 @@ class Run:
     """(episodes,): the number of steps of each finished episode."""
     terminated: NDArray[np.bool_]
     """(episodes,): whether each ended in a terminal state, and not by its time limit alone."""
-    grid: Grid | Tiling
+    grid: Grid | Tiling | Cells
     """How observations become rows."""
     completed: bool
     """False after an early stop; the table then holds what was learned up to it, an unfinished episode included."""

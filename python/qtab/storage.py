@@ -9,6 +9,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from qtab.cells import Cells
 from qtab.config import Config
 from qtab.files import check_writable, replacing
 from qtab.options import defaults, tables
@@ -112,17 +113,19 @@ def _array(file: Any, name: str, dtype: "np.dtype[Any]", ndim: int) -> Any:
     return array
 
 
-def _features(config: Config, file: Any, actions: int, first_action: int) -> Grid | Tiling:
+def _features(config: Config, file: Any, actions: int, first_action: int) -> Grid | Tiling | Cells:
     low, high = file["low"], file["high"]
     if config.discretizer == "tiles":
         if config.tiles is None or config.tilings is None or config.low is None or config.high is None:
             raise ValueError("its config is not that of a run")
         edges = np.array(config.low), np.array(config.high)
         return Tiling(low, high, edges, config.tiles, config.tilings, actions, first_action)
+    if config.discretizer == "identity":
+        return Cells(low, high, actions, first_action)
     return Grid(low, high, file["scale"], actions, first_action)
 
 
-def _check_shapes(config: Config, features: Grid | Tiling, arrays: dict[str, Any]) -> None:
+def _check_shapes(config: Config, features: Grid | Tiling | Cells, arrays: dict[str, Any]) -> None:
     if config.seed is None or config.max_episode_steps is None or defaults(vars(config)):
         raise ValueError("its config is not that of a run")
     if isinstance(features, Grid):
@@ -131,9 +134,15 @@ def _check_shapes(config: Config, features: Grid | Tiling, arrays: dict[str, Any
             raise ValueError("its bounds do not fit its scale")
         if tuple(features.scale) != config.scale:
             raise ValueError("its bounds are not those of a space")
+    elif isinstance(features, Cells):
+        if features.low.shape != features.high.shape or features.low.ndim > 1 or (features.low > features.high).any():
+            raise ValueError("its bounds are not those of a discrete space")
     elif {edge.shape for edge in (features.low, features.high, *features.edges)} != {(len(features.tiles),)}:
         raise ValueError("its bounds do not fit its tiles")
-    if features.low.dtype not in FLOATS or features.high.dtype != features.low.dtype:
+    if (
+        features.low.dtype not in ((np.dtype(np.int64),) if isinstance(features, Cells) else FLOATS)
+        or features.high.dtype != features.low.dtype
+    ):
         raise ValueError("its bounds are not those of a space")
     shape, expected = arrays["tables"].shape, (tables(config.algorithm), features.rows, features.actions)
     if shape != expected or features.actions < 1:

@@ -3,7 +3,7 @@
 import gymnasium as gym
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
-from qtab.models import MODELS, Model, gymnasium_id
+from qtab.models import MODELS, TABLE, Model, gymnasium_id
 
 # What gymnasium.make puts around an environment; none of it changes a number.
 _HARMLESS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
@@ -22,10 +22,14 @@ def model_of_object(env: gym.Env) -> Model:
             raise ValueError(f"{refused}Rust does not know its wrapper {type(inner).__name__}")
         inner = inner.env
     entry_point = f"{type(inner).__module__}:{type(inner).__qualname__}"
+    if entry_point == TABLE.qtab:
+        return TABLE
     spec = inner.spec
     model = MODELS.get(gymnasium_id(spec.id)) if spec is not None else None
     if model is None or not model.trains or entry_point not in (model.gymnasium, model.qtab):
         raise ValueError(f"{refused}Rust has no {type(inner).__qualname__}")
+    if model.finite:
+        return model  # whose table is taken as it stands
     from qtab._core import parameter_names
 
     untouched = type(inner)(**(spec.kwargs if spec is not None else {}))
@@ -36,4 +40,12 @@ def model_of_object(env: gym.Env) -> Model:
     return model
 
 
-__all__ = ["model_of_object"]
+def is_own_table(env: gym.Env) -> bool:
+    """Whether this is a :class:`qtab.TabularEnv`, with no more around it than ``gymnasium.make`` puts there."""
+    try:
+        return model_of_object(env) is TABLE
+    except ValueError:
+        return False
+
+
+__all__ = ["is_own_table", "model_of_object"]

@@ -17,4 +17,5 @@ def register() -> None:
             max_episode_steps=theirs.max_episode_steps,
             reward_threshold=theirs.reward_threshold,
             nondeterministic=theirs.nondeterministic,
+            kwargs=dict(theirs.kwargs),
         )

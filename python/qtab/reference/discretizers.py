@@ -1,6 +1,6 @@
 """From an observation to the rows of the table that it lights."""
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import gymnasium as gym
 import numpy as np
@@ -66,8 +66,29 @@ class TileCoding:
         ]
 
 
+class Identity:
+    """A row for each observation of a discrete space, a row of numbers counted in C order."""
+
+    lit = 1
+
+    def __init__(self, space: gym.Space[Any]) -> None:
+        parts: Any = space if isinstance(space, gym.spaces.Tuple) else [space]
+        if isinstance(space, gym.spaces.MultiDiscrete):
+            self.first, counts = space.start.tolist(), space.nvec.tolist()
+        else:
+            self.first, counts = [int(part.start) for part in parts], [int(part.n) for part in parts]
+        self.shape: tuple[int, ...] = tuple(counts)
+
+    def rows(self, observation: ArrayLike) -> list[int]:
+        """Returns one row."""
+        numbers = np.atleast_1d(np.asarray(observation)) - np.array(self.first)
+        return [int(np.ravel_multi_index(tuple(numbers), self.shape))]
+
+
 def discretizer(env: gym.Env, config: Config) -> Discretizer:
     """Returns the discretizer of a resolved config."""
+    if config.discretizer == "identity":
+        return Identity(env.observation_space)
     assert isinstance(env.observation_space, gym.spaces.Box)  # noqa: S101
     if config.discretizer == "tiles":
         return TileCoding(env.observation_space, config)

@@ -10,7 +10,7 @@ use std::error::Error;
 use std::fmt;
 
 pub use bins::{Bins, Edges};
-pub use identity::Identity;
+pub use identity::{Cells, Identity};
 pub use real::Real;
 pub use rounding::{Axis, Rounding};
 pub use tiles::{Lit, MOST_TILINGS, Tiles};

@@ -12,7 +12,9 @@ use qtab_core::worlds::{Boxed, Native, Recorded, Recordings, Start};
 use qtab_core::{Learner, Trainer, World};
 
 use crate::failure::Failure;
+use crate::finite::{Process, Rules};
 use crate::model::Model;
+use crate::observation::{Floats, Integers};
 use crate::plan::{Discretizer, Plan, given, unknown};
 use crate::python_world::{PythonEnvironment, PythonWorld};
 use crate::run::Run;
@@ -66,11 +68,18 @@ pub(crate) fn native(model: Model, plan: &Plan<'_>) -> PyResult<Built> {
             let rows = Features::<[f32; 2]>::len(&tiles);
             boxed(Native::new(env, tiles, limit, stream), rows, *lit as usize, draw, plan, Kept::Native, false)
         }
+        Discretizer::Cells { .. } => Err(unknown("discretizer", "identity")),
     }
 }
 
-/// The combinations that are compiled whole: a grid of three actions, learned as in the article, or by its next of kin.
-fn whole<W>(world: W, agent: Agent<3, EpsilonGreedy, f64>, draw: Pcg64, plan: &Plan<'_>) -> Box<dyn Run>
+/// The combinations that are compiled whole: a table of so many actions, learned as in the article, or by its next of
+/// kin.
+pub(crate) fn whole<W, const N: usize>(
+    world: W,
+    agent: Agent<N, EpsilonGreedy, f64>,
+    draw: Pcg64,
+    plan: &Plan<'_>,
+) -> Box<dyn Run>
 where
     W: World<Rows = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
 {
@@ -83,7 +92,12 @@ where
 
 /// A run that steps a Python environment.
 pub(crate) fn python(environment: PythonEnvironment, plan: &Plan<'_>) -> PyResult<Built> {
-    if plan.single {
+    if let Discretizer::Cells { first, counts, scalar } = &plan.features {
+        let axes: Vec<_> = first.iter().copied().zip(counts.iter().copied()).collect();
+        let (rows, draw) = (axes.iter().map(|&(_, count)| count as usize).product(), plan.stream()?);
+        let world = PythonWorld::new(environment, Integers { axes, scalar: *scalar }, plan);
+        boxed(world, rows, 1, draw, plan, Kept::Python, true)
+    } else if plan.single {
         python_of(environment, plan, |bound| bound as f32)
     } else {
         python_of(environment, plan, |bound| bound)
@@ -99,18 +113,20 @@ where
         Discretizer::Rounding { scale } => {
             let grid = Rounding::new(plan.axes(scale, dtype));
             let rows = Features::<[T]>::len(&grid);
-            boxed(PythonWorld::new(environment, grid, plan), rows, 1, draw, plan, Kept::Python, true)
+            let world = PythonWorld::new(environment, Floats::new(grid, plan.low.len()), plan);
+            boxed(world, rows, 1, draw, plan, Kept::Python, true)
         }
         Discretizer::Tiles { tilings: lit, .. } => {
             let tiles = plan.tiles::<T, MOST_TILINGS>()?;
             let rows = Features::<[T]>::len(&tiles);
-            let world = PythonWorld::new(environment, tiles, plan);
+            let world = PythonWorld::new(environment, Floats::new(tiles, plan.low.len()), plan);
             boxed(world, rows, *lit as usize, draw, plan, Kept::Python, true)
         }
+        Discretizer::Cells { .. } => Err(unknown("discretizer", "identity")),
     }
 }
 
-fn boxed<W>(
+pub(crate) fn boxed<W>(
     world: W,
     rows: usize,
     lit: usize,
@@ -215,6 +231,12 @@ where
 pub(crate) fn build(environment: &Bound<'_, PyAny>, plan: &Plan<'_>) -> PyResult<Built> {
     if let Ok(model) = environment.extract::<Description>() {
         return native(model.resolve()?, plan);
+    }
+    if let Ok(process) = environment.extract::<Process>() {
+        return process.build(environment.py(), plan);
+    }
+    if let Ok(rules) = environment.extract::<Rules>() {
+        return rules.build(plan);
     }
     match environment.extract::<PythonEnvironment>() {
         Ok(environment) => python(environment, plan),

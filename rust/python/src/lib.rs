@@ -1,16 +1,22 @@
 //! `qtab._core`: what Python calls. Convert, dispatch, return; nothing else.
 
+mod blackjack;
 mod dispatch;
 mod door;
 mod failure;
+mod finite;
 mod many;
 mod model;
 mod numbers;
+mod observation;
 mod physics;
 mod plan;
 mod python_world;
 mod run;
 mod stream;
+mod table;
+mod taxi;
+mod toy_text;
 mod trainer;
 mod trigonometry;
 
@@ -19,6 +25,8 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use super::blackjack::Blackjack;
+    #[pymodule_export]
     use super::many::train_many;
     #[pymodule_export]
     use super::model::parameter_names;
@@ -26,6 +34,12 @@ mod _core {
     use super::physics::Physics;
     #[pymodule_export]
     use super::stream::Stream;
+    #[pymodule_export]
+    use super::table::Transitions;
+    #[pymodule_export]
+    use super::taxi::Taxi;
+    #[pymodule_export]
+    use super::toy_text::Table;
     #[pymodule_export]
     use super::trainer::Trainer;
     #[pymodule_export]

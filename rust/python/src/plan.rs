@@ -41,6 +41,8 @@ pub(crate) enum Discretizer {
     Rounding { scale: Vec<f64> },
     #[pyo3(from_item_all)]
     Tiles { low: Vec<f64>, high: Vec<f64>, tiles: Vec<u32>, tilings: u32 },
+    #[pyo3(from_item_all)]
+    Cells { first: Vec<i64>, counts: Vec<u32>, scalar: bool },
 }
 
 #[derive(FromPyObject)]
@@ -218,7 +220,7 @@ impl Plan<'_> {
 
     fn terminal_update(&self) -> PyResult<TerminalUpdate> {
         match (self.terminal_update.as_str(), &self.features) {
-            ("assign", Discretizer::Rounding { .. }) => Ok(TerminalUpdate::Assign),
+            ("assign", Discretizer::Rounding { .. } | Discretizer::Cells { .. }) => Ok(TerminalUpdate::Assign),
             ("target", _) => Ok(TerminalUpdate::Target),
             (other, _) => Err(unknown("terminal_update", other)),
         }

@@ -1,17 +1,14 @@
 //! A Gymnasium environment, stepped in Python, as the learner meets it.
 
-use std::marker::PhantomData;
-
-use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use qtab_core::features::{Features, Real};
 use qtab_core::world::{Next, Transition, World};
 use qtab_core::worlds::Start;
 
 use crate::failure::Failure;
+use crate::observation::Reader;
 use crate::plan::Plan;
 
 /// What Python hands over besides the plan.
@@ -25,68 +22,28 @@ pub(crate) struct PythonEnvironment {
     first_action: i64,
 }
 
-/// Observations of dtype `T` light rows by `F`.
-pub(crate) struct PythonWorld<T, F> {
+/// An environment whose observations light rows by `R`.
+pub(crate) struct PythonWorld<R> {
     environment: PythonEnvironment,
     seeded: bool,
     max_episode_steps: u64,
-    features: F,
-    dimensions: usize,
-    dtype: PhantomData<T>,
+    reader: R,
 }
 
-impl<T: Real + numpy::Element, F: Features<[T]>> PythonWorld<T, F> {
-    pub(crate) fn new(environment: PythonEnvironment, features: F, plan: &Plan<'_>) -> Self {
-        Self {
-            environment,
-            seeded: false,
-            max_episode_steps: plan.max_episode_steps.unwrap_or(u64::MAX),
-            features,
-            dimensions: plan.low.len(),
-            dtype: PhantomData,
-        }
-    }
-
-    fn misshapen(&self, observation: &Bound<'_, PyAny>) -> PyErr {
-        match observation.getattr(intern!(observation.py(), "shape")) {
-            Ok(shape) => PyValueError::new_err(format!(
-                "an observation must have shape ({},), the space's, got {shape}",
-                self.dimensions
-            )),
-            Err(error) => error,
-        }
-    }
-
-    fn rows(&self, observation: &Bound<'_, PyAny>) -> Result<F::Rows, Failure> {
-        let py = observation.py();
-        let converted;
-        let array = if let Ok(array) = observation.cast::<PyArray1<T>>() {
-            array
-        } else {
-            // Not the space's dtype: read as the space says that it is meant.
-            let arguments = (observation, numpy::dtype::<T>(py));
-            let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), arguments)?;
-            converted = array.cast_into::<PyArray1<T>>().map_err(|error| self.misshapen(&error.into_inner()))?;
-            &converted
-        };
-        if array.len()? != self.dimensions {
-            return Err(self.misshapen(array).into());
-        }
-        let values = array.readonly();
-        match values.as_slice() {
-            Ok(values) => Ok(self.features.rows(values)?),
-            Err(_) => Ok(self.features.rows(&values.as_array().to_vec())?),
-        }
+impl<R> PythonWorld<R> {
+    pub(crate) fn new(environment: PythonEnvironment, reader: R, plan: &Plan<'_>) -> Self {
+        let max_episode_steps = plan.max_episode_steps.unwrap_or(u64::MAX);
+        Self { environment, seeded: false, max_episode_steps, reader }
     }
 }
 
-impl<T: Real + numpy::Element, F: Features<[T]>> World for PythonWorld<T, F> {
+impl<R: Reader> World for PythonWorld<R> {
     /// The steps taken since the reset.
     type State = u64;
-    type Rows = F::Rows;
+    type Rows = R::Rows;
     type Error = Failure;
 
-    fn reset(&mut self) -> Result<(u64, F::Rows), Failure> {
+    fn reset(&mut self) -> Result<(u64, R::Rows), Failure> {
         Python::attach(|py| {
             let env = self.environment.env.bind(py);
             let seed = PyDict::new(py);
@@ -95,11 +52,11 @@ impl<T: Real + numpy::Element, F: Features<[T]>> World for PythonWorld<T, F> {
             }
             let answer = env.call_method(intern!(py, "reset"), (), Some(&seed))?;
             self.seeded = true;
-            Ok((0, self.rows(&answer.get_item(0)?)?))
+            Ok((0, self.reader.rows(&answer.get_item(0)?)?))
         })
     }
 
-    fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<F::Rows>, Failure> {
+    fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<R::Rows>, Failure> {
         Python::attach(|py| {
             let env = self.environment.env.bind(py);
             let action = self.environment.first_action.saturating_add_unsigned(action as u64);
@@ -116,7 +73,7 @@ impl<T: Real + numpy::Element, F: Features<[T]>> World for PythonWorld<T, F> {
                 return Err(PyValueError::new_err(message).into());
             }
             *elapsed += 1;
-            let rows = self.rows(&observation)?;
+            let rows = self.reader.rows(&observation)?;
             let next = if terminated.is_truthy()? {
                 Next::Terminal
             } else if truncated.is_truthy()? || *elapsed >= self.max_episode_steps {
@@ -130,7 +87,7 @@ impl<T: Real + numpy::Element, F: Features<[T]>> World for PythonWorld<T, F> {
 }
 
 /// The state of the environment's own bit generator, a dict.
-impl<T: Real + numpy::Element, F: Features<[T]>> Start for PythonWorld<T, F> {
+impl<R: Reader> Start for PythonWorld<R> {
     type Start = Py<PyAny>;
 
     fn start(&self) -> Result<Py<PyAny>, Failure> {

@@ -1,15 +1,21 @@
 //! The environments, one a file.
 
 mod acrobot;
+mod blackjack;
 mod cart_pole;
 mod continuous_mountain_car;
 pub(crate) mod mountain_car;
 mod numpy;
 mod pendulum;
+mod tabular;
+mod taxi;
 
 pub use acrobot::{Acrobot, AcrobotState};
+pub use blackjack::{Blackjack, BlackjackState, DEALER_STICKS, DECK, Hand};
 pub use cart_pole::{CartPole, CartPoleState};
 pub use continuous_mountain_car::{ContinuousMountainCar, ContinuousMountainCarState};
 pub use mountain_car::{MountainCar, MountainCarState};
 pub use numpy::Scalar;
 pub use pendulum::{Pendulum, PendulumState};
+pub use tabular::{BadTable, Outcome, TOLERANCE, Tabular};
+pub use taxi::{Taxi, TaxiState};

@@ -1,0 +1,20 @@
+"""What Rust trains on by a table or by blackjack's rules: taken from Gymnasium's environment as it stands."""
+
+from typing import Any
+
+from gymnasium.envs.toy_text.blackjack import BlackjackEnv
+
+from qtab import _core, plan
+
+
+def describe(env: Any) -> plan.Process | plan.Rules:
+    """Returns an environment of Gymnasium's toy text, or a table of one's own, as the extension module takes it.
+
+    Raises:
+        TypeError: for a table that Rust would not add up as NumPy does.
+        ValueError: for one that is no table.
+    """
+    if isinstance(env, BlackjackEnv):
+        return {"natural": bool(env.natural), "sab": bool(env.sab)}
+    fickle = float(env.fickle_probability) if getattr(env, "fickle_passenger", False) else None
+    return {"table": _core.Transitions(env.P, env.initial_state_distrib, exact=True), "fickle": fickle}

@@ -1,0 +1,117 @@
+//! `Taxi`: fetch the passenger, bring them where they want (T. Dietterich, 2000, section 3.1; the fickle one: 7.1).
+
+use super::Tabular;
+use crate::env::{Env, Step};
+use crate::random::Draw;
+
+/// A state is ((row * 5 + column) * 5 + passenger) * 4 + destination.
+const DESTINATIONS: u32 = 4;
+const PLACES: u32 = 5;
+/// The passenger's place once they are in the taxi.
+const ABOARD: u32 = 4;
+
+/// Gymnasium's table, dry or rainy, and what the table does not say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Taxi {
+    /// `P`.
+    pub table: Tabular,
+    /// How likely it is that an episode's passenger changes their mind; None where passengers do not.
+    pub fickle: Option<f64>,
+}
+
+/// The table's state, and what is to come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TaxiState {
+    /// The state in the table.
+    pub cell: u32,
+    /// Whether the passenger wants to go elsewhere once the taxi has moved with them.
+    pub fickle: bool,
+}
+
+impl Env for Taxi {
+    type State = TaxiState;
+    type Action = usize;
+    type Observation = u32;
+
+    #[inline]
+    fn actions(&self) -> usize {
+        self.table.actions()
+    }
+
+    #[inline]
+    fn reset(&self, draw: &mut impl Draw) -> TaxiState {
+        let cell = self.table.reset(draw);
+        TaxiState { cell, fickle: self.fickle.is_some_and(|probability| draw.random() < probability) }
+    }
+
+    #[inline]
+    fn step(&self, state: TaxiState, action: usize, draw: &mut impl Draw) -> Step<TaxiState> {
+        let Step { state: mut cell, reward, terminated } = self.table.step(state.cell, action, draw);
+        let mut fickle = state.fickle;
+        let aboard = state.cell / DESTINATIONS % PLACES == ABOARD;
+        let square = DESTINATIONS * PLACES;
+        if fickle && aboard && cell / square != state.cell / square {
+            fickle = false;
+            // One of the three others, `np_random.choice` of them.
+            let other = draw.integers(DESTINATIONS - 1);
+            let old = state.cell % DESTINATIONS;
+            cell = cell - cell % DESTINATIONS + other + u32::from(other >= old);
+        }
+        Step { state: TaxiState { cell, fickle }, reward, terminated }
+    }
+
+    #[inline]
+    fn observe(&self, state: &TaxiState) -> u32 {
+        state.cell
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::envs::Outcome;
+    use crate::random::{Pcg64, SeedSequence};
+
+    /// A taxi whose action 0 stays and whose action 1 goes a square on, round and round.
+    fn taxi(fickle: Option<f64>) -> Taxi {
+        let to = |state: i64| vec![Outcome { probability: 1.0, state, reward: -1.0, terminated: false }];
+        let rows: Vec<_> = (0..500).flat_map(|state| [to(state), to((state + 20) % 500)]).collect();
+        let table = Tabular::new(2, &[1.0 / 500.0; 500], &rows).expect("a table");
+        Taxi { table, fickle }
+    }
+
+    fn stream() -> Pcg64 {
+        Pcg64::new(&SeedSequence::new(&[0]))
+    }
+
+    #[test]
+    fn a_steady_passenger_draws_nothing_more() {
+        let mut draw = stream();
+        assert!(!taxi(None).reset(&mut draw).fickle);
+        assert_eq!(draw.drawn(), 1);
+        assert!(taxi(Some(1.0)).reset(&mut draw).fickle);
+        assert_eq!(draw.drawn(), 3);
+    }
+
+    #[test]
+    fn a_fickle_passenger_changes_their_mind_once_on_the_way() {
+        let taxi = taxi(Some(1.0));
+        for wish in 0..4 {
+            let mut draw = stream();
+            let aboard = TaxiState { cell: 16 + wish, fickle: true };
+            let stays = taxi.step(aboard, 0, &mut draw).state;
+            assert_eq!(stays, aboard);
+            let moved = taxi.step(stays, 1, &mut draw).state;
+            assert_eq!(moved.cell / 4, (16 + 20) / 4);
+            assert_ne!(moved.cell % 4, wish);
+            assert!(!moved.fickle);
+            assert_eq!(taxi.step(moved, 1, &mut draw).state.cell, moved.cell + 20);
+        }
+    }
+
+    #[test]
+    fn who_waits_at_the_kerb_keeps_their_wish() {
+        let waiting = TaxiState { cell: 1, fickle: true };
+        assert_eq!(taxi(Some(1.0)).step(waiting, 1, &mut stream()).state, TaxiState { cell: 21, fickle: true });
+    }
+}

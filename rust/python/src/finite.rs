@@ -1,0 +1,71 @@
+//! Training on what has a row for each of its states: tables, and blackjack.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use qtab_core::Env;
+use qtab_core::envs::{Blackjack, Taxi};
+use qtab_core::features::{Cells, Features, Identity};
+use qtab_core::random::Stream;
+use qtab_core::worlds::Native;
+
+use crate::dispatch::{Built, Kept, boxed, whole};
+use crate::plan::Plan;
+use crate::table::Transitions;
+
+/// A sum, an open card, a usable ace: Gymnasium's spaces of blackjack.
+const BLACKJACK: [u32; 3] = [32, 11, 2];
+
+/// A table, and how likely a taxi's passenger changes their mind.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Process {
+    table: Py<Transitions>,
+    fickle: Option<f64>,
+}
+
+/// Those of blackjack.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Rules {
+    natural: bool,
+    sab: bool,
+}
+
+impl Process {
+    pub(crate) fn build(self, py: Python<'_>, plan: &Plan<'_>) -> PyResult<Built> {
+        let table = self.table.bind(py).get().0.clone();
+        let states = u32::try_from(table.states()).map_err(|_| PyValueError::new_err("P must have fewer states"))?;
+        match self.fickle {
+            None if table.actions() == 4 => build::<_, _, 4>(table, Identity(states), plan),
+            None => build::<_, _, 6>(table, Identity(states), plan),
+            fickle => build::<_, _, 0>(Taxi { table, fickle }, Identity(states), plan),
+        }
+    }
+}
+
+impl Rules {
+    pub(crate) fn build(self, plan: &Plan<'_>) -> PyResult<Built> {
+        let Self { natural, sab } = self;
+        build::<_, _, 2>(Blackjack { natural, sab }, Cells(BLACKJACK), plan)
+    }
+}
+
+/// The article's learner of `N` actions is compiled whole.
+fn build<E, F, const N: usize>(env: E, features: F, plan: &Plan<'_>) -> PyResult<Built>
+where
+    E: Env<Action = usize, State: Send> + Send + 'static,
+    F: Features<E::Observation, Rows = [u32; 1]> + Send + 'static,
+{
+    if plan.actions != env.actions() {
+        return Err(PyValueError::new_err(format!("the environment has {} actions", env.actions())));
+    }
+    let (rows, mut draw) = (features.len(), plan.stream()?);
+    let world = Native::new(env, features, plan.max_episode_steps, plan.environment_stream());
+    if let (true, Stream::Pcg64(draw), 0) = (plan.actions == N, &mut draw, plan.record)
+        && let Some(agent) = plan.article::<N>(rows, draw)?
+    {
+        let run = whole(world, agent, draw.clone(), plan);
+        return Ok(Built { run, kept: Kept::Nothing, attached: false });
+    }
+    boxed(world, rows, 1, draw, plan, Kept::Native, false)
+}
