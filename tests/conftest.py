@@ -2,6 +2,8 @@
 
 import os
 
+import pytest
+
 os.environ["SDL_VIDEODRIVER"] = "dummy"
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 
@@ -10,3 +12,12 @@ from hypothesis import settings
 settings.register_profile("local", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True)
 settings.load_profile("ci" if os.environ.get("CI") else "local")
+
+
+@pytest.fixture
+def small_pieces(monkeypatch):
+    """Some three runs a piece."""
+    from qtab.sweeping import study as studies
+
+    monkeypatch.setattr(studies, "PIECE_STEPS", 2 * 40 * 200 + 1)
+    monkeypatch.setattr(studies, "PYTHON_PIECE_STEPS", 1)

@@ -194,7 +194,7 @@ def _connect(path: Path | None) -> sqlite3.Connection:
         connection = sqlite3.connect(path or ":memory:", timeout=EXPIRY, isolation_level=None, check_same_thread=False)
         if path is not None:
             # Killed at any moment, it holds what was committed; only a power cut may take the last pieces back.
-            connection.execute("PRAGMA journal_mode = WAL")
+            _write_ahead(connection)
             connection.execute("PRAGMA synchronous = NORMAL")
     except sqlite3.OperationalError as error:
         raise OSError(f"store {str(path)!r}: {error}") from error
@@ -213,3 +213,16 @@ def _alive(pid: int) -> bool:
     except PermissionError:
         pass
     return True
+
+
+def _write_ahead(connection: sqlite3.Connection) -> None:
+    """Switches a file to the write-ahead log: where two do so at once, SQLite gives up on one without waiting."""
+    deadline = time.monotonic() + EXPIRY
+    while True:
+        try:
+            connection.execute("PRAGMA journal_mode = WAL")
+            return
+        except sqlite3.OperationalError as error:
+            if "locked" not in str(error) or time.monotonic() > deadline:
+                raise
+        time.sleep(0.01)
