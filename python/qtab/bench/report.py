@@ -40,7 +40,7 @@ class Report:
         timings = self.timings
         numba = subjects.NUMBA in timings.nanoseconds
         lines = [_line("Training on MountainCar-v0, default settings", "ns/step", "× article", *["× numba"] * numba)]
-        for name in (subjects.ARTICLE, subjects.NUMBA, subjects.TRAIN):
+        for name in (subjects.ARTICLE, subjects.NUMBA, subjects.TRAIN, subjects.MANY, subjects.MANY_ON_TWO):
             if name in timings.nanoseconds:
                 ratios = [subjects.ARTICLE, *[subjects.NUMBA] * numba]
                 lines.append(

@@ -7,6 +7,7 @@ import numpy as np
 
 from qtab.bench.article_numba import compiled
 from qtab.bench.rounds import Subject
+from qtab.many import train_many
 from qtab.reference import q_learning
 from qtab.resolution import resolve
 from qtab.training import train
@@ -19,6 +20,7 @@ STEPS = 20_000
 """Steps in a round of bare stepping."""
 
 ARTICLE, NUMBA, TRAIN = "the article's loop: NumPy on gymnasium.make", "the same loop under numba", "qtab.train"
+MANY, MANY_ON_TWO = "qtab.train_many, 16 seeds, one thread", "qtab.train_many, 32 seeds, two threads"
 GYMNASIUM_STEP, QTAB_STEP = "Gymnasium's env.unwrapped.step", "qtab's env.unwrapped.step"
 GYMNASIUM_MAKE, QTAB_MAKE = "Gymnasium's env of gymnasium.make", "qtab's env of gymnasium.make"
 
@@ -35,8 +37,17 @@ def training() -> dict[str, Subject]:
     def ours(index: int) -> int:
         return int(train(ENV, seed=index, progress=False).episode_lengths.sum())
 
+    def many(seeds: int, threads: int) -> Subject:
+        return lambda _: int(train_many(ENV, seeds, threads=threads).episode_lengths.sum())
+
     loop = compiled()
-    return {ARTICLE: article, **({} if loop is None else {NUMBA: loop}), TRAIN: ours}
+    return {
+        ARTICLE: article,
+        **({} if loop is None else {NUMBA: loop}),
+        TRAIN: ours,
+        MANY: many(16, 1),
+        MANY_ON_TWO: many(32, 2),
+    }
 
 
 def stepping() -> dict[str, Subject]:

@@ -1,0 +1,30 @@
+"""Optuna chooses settings, qtab trains them over many seeds: ask for a batch, sweep it, tell the results."""
+
+import optuna
+
+import qtab
+
+SEEDS = 20
+
+
+def search(batches: int = 10, size: int = 4, episodes: int = 300) -> optuna.Study:
+    """Returns a study of Sarsa(λ) on MountainCar-v0 that maximises the mean return of the last 100 episodes."""
+    study = optuna.create_study(direction="maximize", sampler=optuna.samplers.TPESampler(seed=0))
+    for _ in range(batches):
+        trials = [study.ask() for _ in range(size)]
+        settings = [
+            {
+                "learning_rate": trial.suggest_float("learning_rate", 0.05, 1.5, log=True),
+                "trace_decay": trial.suggest_float("trace_decay", 0.0, 1.0),
+            }
+            for trial in trials
+        ]
+        results = qtab.sweep("MountainCar-v0", settings, seeds=SEEDS, preset="solved", episodes=episodes)
+        for index, trial in enumerate(trials):
+            study.tell(trial, float(results.values("final_return", index).mean()))
+    return study
+
+
+if __name__ == "__main__":
+    best = search().best_trial
+    print(f"{best.value:.1f} with {best.params}")
