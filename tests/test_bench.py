@@ -2,12 +2,13 @@
 
 from pathlib import Path
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
 import qtab as package
 from command import qtab, refused
-from qtab.bench import article_numba, footprint, measure, report, subjects
+from qtab.bench import article, article_numba, footprint, measure, report, subjects
 from qtab.bench.rounds import Timings
 
 
@@ -17,6 +18,13 @@ def test_the_numba_loop_is_the_articles_loop_to_the_bit() -> None:
     table, returns, steps = article_numba.q_learning(starts, 4, 0.2, 0.9, 0.8, 0.0)
     assert table.tobytes() == run.q_table.tobytes()
     assert returns.tobytes() == run.episode_returns.tobytes()
+    assert steps == run.episode_lengths.sum()
+
+
+def test_the_plain_loop_is_the_articles_loop_to_the_bit() -> None:
+    run = package.train("MountainCar-v0", episodes=30, seed=4)
+    table, steps = article.q_learning(gym.make("MountainCar-v0"), 0.2, 0.9, 0.8, 0.0, 30, 4)
+    assert table.tobytes() == run.q_table.tobytes()
     assert steps == run.episode_lengths.sum()
 
 

@@ -5,11 +5,10 @@ from collections.abc import Callable
 import gymnasium as gym
 import numpy as np
 
+from qtab.bench.article import q_learning
 from qtab.bench.article_numba import compiled
 from qtab.bench.rounds import Subject
 from qtab.many import train_many
-from qtab.reference import q_learning
-from qtab.resolution import resolve
 from qtab.training import train
 
 ENV = "MountainCar-v0"
@@ -27,12 +26,10 @@ GYMNASIUM_MAKE, QTAB_MAKE = "Gymnasium's env of gymnasium.make", "qtab's env of 
 
 def training() -> dict[str, Subject]:
     """Returns the loops: the article's, numba's where it is installed, and this package's."""
-    config = resolve(ENV, {"episodes": ARTICLE_EPISODES, "seed": 0}).config
 
     def article(index: int) -> int:
-        env = gym.make(ENV)
-        _, _, lengths = q_learning(env, config.replace(seed=index))
-        return int(lengths.sum())
+        _, steps = q_learning(gym.make(ENV), 0.2, 0.9, 0.8, 0.0, ARTICLE_EPISODES, index)
+        return steps
 
     def ours(index: int) -> int:
         return int(train(ENV, seed=index, progress=False).episode_lengths.sum())
