@@ -160,6 +160,9 @@ def test_dask_with_a_worker_killed_gives_the_same_table(tmp_path, small_pieces):
         ({"threads": -1}, ValueError, "threads must be"),
         ({"executor": 3}, TypeError, "executor must have the method submit"),
         ({"block": 0}, ValueError, "block must be"),
+        ({"episodes": 10**11}, MemoryError, "runs of 100000000000 episodes need 3.09 TiB, more than memory_limit"),
+        ({"memory_limit": 1000}, MemoryError, "more than memory_limit=1000"),
+        ({"memory_limit": "much"}, TypeError, "memory_limit must be"),
         ({"env": gym.make(CAR)}, TypeError, "env must be an id"),
     ],
 )

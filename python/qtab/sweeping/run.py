@@ -12,7 +12,7 @@ import cloudpickle
 import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
-from qtab import checks
+from qtab import checks, memory
 from qtab.many import MakeEnv, thread_count
 from qtab.processes import pool
 from qtab.sweeping.loading import table
@@ -50,6 +50,7 @@ def sweep(
     store: "str | os.PathLike[str] | None" = None,
     executor: Executor | None = None,
     threads: int | None = None,
+    memory_limit: int | None = None,
     block: int = BLOCK,
     callback: Callable[[SweepProgress], None] | None = None,
     **config: Any,
@@ -65,6 +66,7 @@ def sweep(
         executor: Where to train: any of :mod:`concurrent.futures`, Dask's ``client.get_executor()``. None trains here,
             in threads, and what is stepped in Python in processes.
         threads: How many threads or processes, without an executor; None means one a core.
+        memory_limit: The bytes that a run underway may take; None means half of the machine's memory.
         block: Learning curves are kept as the mean returns of so many episodes.
         callback: Called after every piece of work, of about a second.
         **config: The fields of :class:`qtab.Config` that all settings share.
@@ -74,6 +76,7 @@ def sweep(
 
     Raises:
         gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
+        MemoryError: if a run would take more than ``memory_limit``, before anything begins.
         OSError: if the store cannot be written.
         StoreError: if the store is damaged, of another version, or of another sweep.
         TypeError: for an argument of the wrong type, or an unknown one.
@@ -87,6 +90,7 @@ def sweep(
     if isinstance(env, str):
         env = gym.spec(env)  # a worker may not have imported what registered it
     planned = study(env, grid, seeds, block, config)
+    planned.check_memory(memory.memory_limit(memory_limit))
     with closing(Store(store, planned)) as kept:
         report = _Report(planned, kept, callback)
         try:

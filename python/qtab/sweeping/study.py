@@ -13,6 +13,7 @@ import numpy as np
 from qtab import designs
 from qtab.config import known_fields
 from qtab.many import resolve_one, seed_numbers
+from qtab.memory import BYTES_AN_EPISODE, check_memory
 from qtab.resolution import Resolved
 
 PIECE_STEPS = 2**26
@@ -63,6 +64,18 @@ class Study:
                 start, load = run, 0.0
             load += _load(self.resolved[run // len(self.seeds)])
         return [*found, Piece(len(found), start, self.runs)]
+
+    def check_memory(self, limit: int) -> None:
+        """Refuses a setting of which a single run needs more than the limit.
+
+        Raises:
+            MemoryError: says how much it needs.
+        """
+        for resolved in self.resolved:
+            episodes = resolved.config.episodes
+            # The trainer's own lists, and the arrays that they are copied to.
+            needed = 2 * episodes * BYTES_AN_EPISODE + 8 * math.prod(resolved.grid.shape)
+            check_memory(f"runs of {episodes} episodes", needed, limit)
 
     @cached_property
     def identity(self) -> str:
