@@ -41,5 +41,5 @@ def finish(ax: "Axes", x: str, y: str, title: str = "") -> "Axes":
     ax.spines[["top", "right"]].set_visible(False)
     handles, _ = ax.get_legend_handles_labels()
     if handles:
-        ax.legend(frameon=False)
+        ax.legend(framealpha=0.85, edgecolor="none")
     return ax
