@@ -1,7 +1,7 @@
 """The extension module: what Rust does. Its users are the other modules of this package."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, final
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,15 +13,20 @@ __all__ = [
     "BUILD_PROFILE",
     "Blackjack",
     "Physics",
+    "Planner",
     "Stream",
     "Table",
     "Taxi",
     "Trainer",
     "Transitions",
+    "Valley",
     "numpy_calls_the_platform",
     "parameter_names",
     "train_many",
 ]
+
+Solved: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]
+Changes: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
 
 BUILD_PROFILE: Literal["debug", "release"]
 
@@ -42,6 +47,16 @@ class Physics:
     state: Any
     def step(self, action: Any) -> tuple[NDArray[np.float32], Any, bool, bool, dict[str, Any]]: ...
     def changed(self) -> None: ...
+
+@final
+class Planner:
+    def __new__(cls, process: Process | Rules) -> Planner: ...
+    @property
+    def rows(self) -> NDArray[np.int64]: ...
+    def value_iteration(self, discount: float) -> Solved: ...
+    def policy_iteration(self, discount: float) -> Solved: ...
+    def finite_horizon(self, discount: float, steps: int) -> tuple[Solved, Changes, float]: ...
+    def policy_return(self, policy: NDArray[np.int64], steps: int) -> float: ...
 
 @final
 class Stream:
@@ -74,3 +89,12 @@ class Transitions:
     def states(self) -> int: ...
     @property
     def actions(self) -> int: ...
+
+@final
+class Valley:
+    def __new__(cls, parameters: Sequence[tuple[str, float]], limit: int) -> Valley: ...
+    def axes(self) -> list[NDArray[np.float64]]: ...
+    def steps(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def action(self, position: float, velocity: float) -> int: ...
+    def routes(self) -> tuple[NDArray[np.float64], list[NDArray[np.uint8] | None]]: ...
+    def followed(self) -> NDArray[np.int64]: ...

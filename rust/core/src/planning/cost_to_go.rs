@@ -11,8 +11,10 @@ use crate::envs::{MountainCar, MountainCarState};
 
 /// Points along the positions and along the velocities; with half as many, the routes are a tenth of a step longer.
 const POINTS: [usize; 2] = [1441, 561];
+/// The coarsest grid has only every 16th point; each finer one begins with the steps of the one before.
+const COARSEST: usize = 16;
 /// A sweep that changes no point by more, in steps, is the last.
-const SETTLED: f64 = 1e-3;
+const SETTLED: f64 = 1e-2;
 /// No sweep looks further ahead than this, and none less far: short limits are no reason to see less.
 const HORIZONS: (f64, f64) = (200.0, 1000.0);
 const ACTIONS: usize = 3;
@@ -21,6 +23,7 @@ const ACTIONS: usize = 3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostToGo {
     car: MountainCar,
+    points: [usize; 2],
     /// For each position and each velocity: steps, at most the horizon.
     steps: Vec<f64>,
     horizon: f64,
@@ -45,24 +48,42 @@ impl CostToGo {
     /// `Stopped` after `stop` was set.
     pub fn new(car: MountainCar, limit: u64, stop: &AtomicBool) -> Result<Self, Unsolved> {
         let horizon = (limit as f64).clamp(HORIZONS.0, HORIZONS.1);
-        let mut this = Self { car, steps: vec![0.0; POINTS[0] * POINTS[1]], horizon };
-        let next: Vec<[Place; ACTIONS]> = (0..this.steps.len())
+        let mut coarser = Self { car, points: [2, 2], steps: vec![0.0; 4], horizon };
+        let mut every = COARSEST;
+        loop {
+            let points = POINTS.map(|points| (points - 1) / every + 1);
+            let mut finer = Self { car, points, steps: vec![0.0; points[0] * points[1]], horizon };
+            finer.steps = (0..finer.steps.len()).map(|point| coarser.steps(finer.state(point))).collect();
+            finer.settle(stop)?;
+            if every == 1 {
+                return Ok(finer);
+            }
+            (coarser, every) = (finer, every / 2);
+        }
+    }
+
+    /// Value iteration, in place.
+    fn settle(&mut self, stop: &AtomicBool) -> Result<(), Unsolved> {
+        let next: Vec<[Place; ACTIONS]> = (0..self.steps.len())
             .map(|point| {
                 std::array::from_fn(|action| {
-                    let step = car.drive(this.state(point), action);
-                    if step.terminated { GOAL } else { this.place(step.state) }
+                    let step = self.car.drive(self.state(point), action);
+                    if step.terminated { GOAL } else { self.place(step.state) }
                 })
             })
             .collect();
+        let last = next.len() - 1;
         loop {
             let mut change = 0.0_f64;
-            for (point, next) in next.iter().enumerate() {
-                let fewest = next.iter().map(|&place| 1.0 + this.between(place)).fold(horizon, f64::min);
-                change = change.max((fewest - this.steps[point]).abs());
-                this.steps[point] = fewest;
+            // There and back: what is known spreads both ways.
+            for point in (0..=last).chain((0..=last).rev()) {
+                let steps = next[point].iter().map(|&place| 1.0 + self.between(place));
+                let fewest = steps.fold(self.horizon, f64::min);
+                change = change.max((fewest - self.steps[point]).abs());
+                self.steps[point] = fewest;
             }
             if change < SETTLED {
-                return Ok(this);
+                return Ok(());
             }
             if stop.load(Ordering::Acquire) {
                 return Err(Unsolved::Stopped);
@@ -100,7 +121,7 @@ impl CostToGo {
 
     /// The positions and the velocities of the grid.
     pub fn axes(&self) -> [Vec<f64>; 2] {
-        let points = |axis: usize| (0..POINTS[axis]).map(|index| self.coordinate(axis, index)).collect();
+        let points = |axis: usize| (0..self.points[axis]).map(|index| self.coordinate(axis, index)).collect();
         [points(0), points(1)]
     }
 
@@ -121,20 +142,20 @@ impl CostToGo {
 
     fn coordinate(&self, axis: usize, index: usize) -> f64 {
         let (low, high) = self.bounds(axis);
-        low + (high - low) * (index as f64 / (POINTS[axis] - 1) as f64)
+        low + (high - low) * (index as f64 / (self.points[axis] - 1) as f64)
     }
 
     fn state(&self, point: usize) -> MountainCarState {
         MountainCarState {
-            position: self.coordinate(0, point / POINTS[1]),
-            velocity: self.coordinate(1, point % POINTS[1]),
+            position: self.coordinate(0, point / self.points[1]),
+            velocity: self.coordinate(1, point % self.points[1]),
         }
     }
 
     fn place(&self, state: MountainCarState) -> Place {
         let along = |axis: usize, value: f64| {
             let (low, high) = self.bounds(axis);
-            let last = (POINTS[axis] - 1) as f64;
+            let last = (self.points[axis] - 1) as f64;
             let index = ((value - low) / (high - low) * last).clamp(0.0, last);
             let lowest = index.floor().min(last - 1.0);
             (lowest as usize, index - lowest)
@@ -142,7 +163,7 @@ impl CostToGo {
         let ((position, position_share), (velocity, velocity_share)) =
             (along(0, state.position), along(1, state.velocity));
         let shares = [position_share as f32, velocity_share as f32];
-        Place { point: (position * POINTS[1] + velocity) as u32, shares }
+        Place { point: (position * self.points[1] + velocity) as u32, shares }
     }
 
     fn between(&self, Place { point, shares }: Place) -> f64 {
@@ -151,7 +172,7 @@ impl CostToGo {
         }
         let (point, [position, velocity]) = (point as usize, shares.map(f64::from));
         let row = |from: usize| self.steps[from] + (self.steps[from + 1] - self.steps[from]) * velocity;
-        let (here, next) = (row(point), row(point + POINTS[1]));
+        let (here, next) = (row(point), row(point + self.points[1]));
         here + (next - here) * position
     }
 }

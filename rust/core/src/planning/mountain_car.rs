@@ -72,18 +72,25 @@ pub fn route(
 
 /// How many steps the car takes when at each it does what the guide says of the observation; the limit where it does
 /// not arrive.
-pub fn follow(guide: &CostToGo, position: f64, limit: u64) -> u64 {
+///
+/// # Errors
+/// `Stopped` after `stop` was set.
+pub fn follow(guide: &CostToGo, position: f64, limit: u64, stop: &AtomicBool) -> Result<u64, Unsolved> {
     let car = guide.car();
     let mut state = MountainCarState { position, velocity: 0.0 };
-    for taken in 1..=limit {
+    let steps = if guide.reachable(state) { limit } else { 0 };
+    for taken in 1..=steps {
+        if stop.load(Ordering::Acquire) {
+            return Err(Unsolved::Stopped);
+        }
         let [position, velocity] = car.observe(&state).map(f64::from);
         let step = car.drive(state, guide.best_action(MountainCarState { position, velocity }));
         if step.terminated {
-            return taken;
+            return Ok(taken);
         }
         state = step.state;
     }
-    limit
+    Ok(limit)
 }
 
 /// The place of the state before in its layer, and the action.
@@ -158,7 +165,7 @@ mod tests {
         for position in starts(50) {
             let route = route(&guide, position, 200, BEAM, &GO).expect("no stop").expect("a way");
             let steps = driven(&car, position, &route).expect("the goal");
-            assert!(steps as u64 <= follow(&guide, position, 200));
+            assert!(steps as u64 <= follow(&guide, position, 200, &GO).expect("no stop"));
             sum += steps;
         }
         // Seen: 4,883. The book's agents, and any that is published, take more.
@@ -180,14 +187,14 @@ mod tests {
     fn an_unreachable_goal_has_no_route() {
         let guide = guide(MountainCar { goal_velocity: 1.0, ..MountainCar::default() });
         assert_eq!(route(&guide, -0.5, 200, BEAM, &GO), Ok(None));
-        assert_eq!(follow(&guide, -0.5, 200), 200);
+        assert_eq!(follow(&guide, -0.5, 200, &GO), Ok(200));
     }
 
     #[test]
     fn a_limit_ends_the_search() {
         let guide = guide(MountainCar::default());
         assert_eq!(route(&guide, -0.5, 50, BEAM, &GO), Ok(None));
-        assert_eq!(follow(&guide, -0.5, 50), 50);
+        assert_eq!(follow(&guide, -0.5, 50, &GO), Ok(50));
     }
 
     #[test]

@@ -36,6 +36,9 @@ pub fn policy_iteration(table: &Tabular, discount: f64, stop: &AtomicBool) -> Re
             }
         }
         if stable {
+            if discount == 1.0 {
+                policy = ending::soonest(table, &values, &q_values, stop)?;
+            }
             return Ok(Solution { values, q_values, policy, sweeps });
         }
         if discount == 1.0 {

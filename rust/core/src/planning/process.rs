@@ -1,7 +1,7 @@
 //! What is planned on: a table, and what an agent sees of its states.
 
 use crate::env::Env;
-use crate::envs::{Blackjack, Hand, Outcome, Tabular, Taxi};
+use crate::envs::{BadTable, Blackjack, Hand, Outcome, Tabular, Taxi};
 
 /// A table whose states an agent may not tell apart by what they show; one who remembers can.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,9 +21,11 @@ impl From<Tabular> for Process {
 
 /// The table twice: before the passenger had the occasion to change their mind, and after. Who remembers whether the
 /// taxi has moved with them knows which.
-impl From<&Taxi> for Process {
-    fn from(taxi: &Taxi) -> Self {
-        let Some(fickle) = taxi.fickle else { return taxi.table.clone().into() };
+impl TryFrom<&Taxi> for Process {
+    type Error = BadTable;
+
+    fn try_from(taxi: &Taxi) -> Result<Self, BadTable> {
+        let Some(fickle) = taxi.fickle else { return Ok(taxi.table.clone().into()) };
         let (states, actions) = (taxi.table.states(), taxi.table.actions());
         let listed = |probability: f64, state: usize, reward: f64, terminated: bool| Outcome {
             probability,
@@ -54,14 +56,17 @@ impl From<&Taxi> for Process {
         }
         let mut start = taxi.table.initial().to_vec();
         start.resize(2 * states, 0.0);
-        Self { table: table(actions, &start, &rows), rows: (0..2 * states).map(|state| state % states).collect() }
+        let table = Tabular::new(actions, &start, &rows)?;
+        Ok(Self { table, rows: (0..2 * states).map(|state| state % states).collect() })
     }
 }
 
 /// Gymnasium's cells, (sum, open card, usable ace), and after them the naturals, by the open card: they show what three
 /// cards may show, too, and are paid otherwise.
-impl From<&Blackjack> for Process {
-    fn from(rules: &Blackjack) -> Self {
+impl TryFrom<&Blackjack> for Process {
+    type Error = BadTable;
+
+    fn try_from(rules: &Blackjack) -> Result<Self, BadTable> {
         let [sums, cards, aces] = Blackjack::CELLS;
         let cells = sums * cards * aces;
         let cell = |hand: &Hand, shown: usize| {
@@ -105,13 +110,8 @@ impl From<&Blackjack> for Process {
         }
         let shows = |state: usize| if state < cells { state } else { ((21 * cards) + state - cells) * aces + 1 };
         let seen = (0..cells + cards).map(shows).collect();
-        Self { table: table(rules.actions(), &start, &rows), rows: seen }
+        Ok(Self { table: Tabular::new(rules.actions(), &start, &rows)?, rows: seen })
     }
-}
-
-#[expect(clippy::missing_panics_doc, reason = "the tables above are whole")]
-fn table(actions: usize, start: &[f64], rows: &[Vec<Outcome>]) -> Tabular {
-    Tabular::new(actions, start, rows).expect("a whole table")
 }
 
 #[cfg(test)]
@@ -153,7 +153,7 @@ mod tests {
             Blackjack { natural: true, sab: false },
             Blackjack::default(),
         ] {
-            let process = Process::from(&rules);
+            let process = Process::try_from(&rules).expect("a table");
             let best = finite_horizon(&process.table, 1.0, 50, &GO).expect("it ends");
             let row = |state: &<Blackjack as Env>::State| {
                 let [sum, shown, ace] = rules.observe(state).map(|number| number as usize);
@@ -173,13 +173,13 @@ mod tests {
             .collect();
         let table = Tabular::new(2, &[1.0 / 500.0; 500], &rows).expect("a table");
         let taxi = Taxi { table, fickle: Some(0.7) };
-        let process = Process::from(&taxi);
+        let process = Process::try_from(&taxi).expect("a table");
         let policy: Vec<usize> = (0..500).map(|cell| usize::from(cell / 20 % 2 == 0)).collect();
         let everywhere: Vec<usize> = process.rows.iter().map(|&row| policy[row]).collect();
         let expected = policy_return(&process.table, &everywhere, 50, &GO).expect("it ends");
         let (mean, error) = played(&taxi, |state: &TaxiState| state.cell as usize, &policy);
         assert!((mean - expected).abs() < 4.0 * error, "{mean} ± {error}, {expected}");
         let steady = Taxi { fickle: None, ..taxi };
-        assert_eq!(Process::from(&steady).table, steady.table);
+        assert_eq!(Process::try_from(&steady).map(|process| process.table), Ok(steady.table));
     }
 }
