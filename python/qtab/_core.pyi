@@ -1,13 +1,13 @@
 """The extension module: what Rust does. Its users are the other modules of this package."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import disjoint_base
 
-from qtab.plan import Model, Plan, Process, PythonEnvironment, Results, Rules
+from qtab.plan import Changes, Model, Plan, Process, PythonEnvironment, Results, Rules, Solved
 
 __all__ = [
     "BUILD_PROFILE",
@@ -24,9 +24,6 @@ __all__ = [
     "parameter_names",
     "train_many",
 ]
-
-Solved: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]
-Changes: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
 
 BUILD_PROFILE: Literal["debug", "release"]
 

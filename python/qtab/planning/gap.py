@@ -22,6 +22,8 @@ class Gap(Generic[Number]):
     """The expected return of its greedy policy under the time limit; NaN where the tables were not kept."""
     standard_error: Number
     """Of ``greedy_return``: 0 where it was computed exactly, from a table."""
+    label: str = "optimum"
+    """Whether the optimum is one, or the best that is known."""
 
     @property
     def final(self) -> Number:
@@ -36,4 +38,4 @@ class Gap(Generic[Number]):
     def __str__(self) -> str:
         greedy, error, gap = (float(np.mean(part)) for part in (self.greedy_return, self.standard_error, self.greedy))
         exact = f" ± {error:.2g}" if error > 0 else ""
-        return f"greedy policy {greedy:.4g}{exact}, optimum {self.optimum:.4g}, gap {gap:.2g}"
+        return f"greedy policy {greedy:.4g}{exact}, {self.label} {self.optimum:.4g}, gap {gap:.2g}"

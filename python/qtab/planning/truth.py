@@ -109,10 +109,10 @@ class Optimum:
         if isinstance(run, Run):
             last = run.episode_returns[-FINAL_EPISODES:]
             final = float(last.mean()) if len(last) else float("nan")
-            return Gap(self.expected_return, final, *self.truth.greedy_return(run))
+            return Gap(self.expected_return, final, *self.truth.greedy_return(run), label=self.label)
         judged = [(float("nan"),) * 2] * len(run) if run.tables is None else map(self.truth.greedy_return, run)
         greedy, error = np.array(list(judged), dtype=np.float64).reshape(len(run), 2).T
-        return Gap(self.expected_return, run.final_returns(FINAL_EPISODES), greedy, error)
+        return Gap(self.expected_return, run.final_returns(FINAL_EPISODES), greedy, error, label=self.label)
 
     def _check(self, run: Run | Runs) -> None:
         config = run.config

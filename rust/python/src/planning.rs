@@ -19,6 +19,8 @@ use crate::finite;
 type Array<'py, T> = Bound<'py, PyArray1<T>>;
 /// Values, values of the actions, the policy.
 type Solved<'py> = (Array<'py, f64>, Array<'py, f64>, Array<'py, i64>);
+/// Starts, and the actions from each to the goal.
+type Routes<'py> = (Array<'py, f64>, Vec<Option<Array<'py, u8>>>);
 /// From how many steps left on, where, which action is best.
 type Changes<'py> = (Array<'py, i64>, Array<'py, i64>, Array<'py, i64>);
 
@@ -70,9 +72,9 @@ impl Planner {
         let FiniteHorizon { values, q_values, policy, changes, expected_return, .. } =
             horizon.map_err(|unsolved| refused(unsolved, discount))?;
         let changes = (
-            PyArray1::from_iter(py, changes.iter().map(|change| change.left as i64)),
-            PyArray1::from_iter(py, changes.iter().map(|change| change.state as i64)),
-            PyArray1::from_iter(py, changes.iter().map(|change| change.action as i64)),
+            PyArray1::from_iter(py, changes.iter().map(|change| change.left.cast_signed())),
+            numbers(py, changes.iter().map(|change| &change.state)),
+            numbers(py, changes.iter().map(|change| &change.action)),
         );
         Ok((solved(py, values, q_values, &policy), changes, expected_return))
     }
@@ -82,7 +84,8 @@ impl Planner {
         let policy = policy.as_slice()?;
         let by_state = policy.len() == self.0.rows.len();
         let action = |(state, &row): (usize, &usize)| {
-            let action = policy.get(if by_state { state } else { row }).and_then(|&action| usize::try_from(action).ok());
+            let action =
+                policy.get(if by_state { state } else { row }).and_then(|&action| usize::try_from(action).ok());
             action.filter(|&action| action < self.0.table.actions())
         };
         let policy: Option<Vec<usize>> = self.0.rows.iter().enumerate().map(action).collect();
@@ -141,7 +144,7 @@ impl Valley {
     }
 
     /// The starting positions, and from each the actions that lead to the goal; None where no way was found.
-    fn routes<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py, f64>, Vec<Option<Array<'py, u8>>>)> {
+    fn routes<'py>(&self, py: Python<'py>) -> PyResult<Routes<'py>> {
         let starts = planning::starts(STARTS);
         let routes = door::detached(py, |stop| {
             let route = |&position: &f64| planning::route(&self.guide, position, self.limit, BEAM, stop);
@@ -156,7 +159,8 @@ impl Valley {
     fn followed<'py>(&self, py: Python<'py>) -> PyResult<Array<'py, i64>> {
         let lengths = door::detached(py, |stop| {
             let starts = planning::starts(STARTS);
-            let follow = |&start: &f64| planning::follow(&self.guide, start, self.limit, stop).map(|steps| steps as i64);
+            let follow =
+                |&start: &f64| planning::follow(&self.guide, start, self.limit, stop).map(u64::cast_signed);
             starts.iter().map(follow).collect::<Result<Vec<_>, _>>()
         })?;
         Ok(PyArray1::from_vec(py, lengths.map_err(|unsolved| refused(unsolved, 1.0))?))
@@ -167,8 +171,8 @@ fn solved<'py>(py: Python<'py>, values: Vec<f64>, q_values: Vec<f64>, policy: &[
     (PyArray1::from_vec(py, values), PyArray1::from_vec(py, q_values), numbers(py, policy))
 }
 
-fn numbers<'py>(py: Python<'py>, numbers: &[usize]) -> Array<'py, i64> {
-    PyArray1::from_iter(py, numbers.iter().map(|&number| number as i64))
+fn numbers<'a, 'py>(py: Python<'py>, numbers: impl IntoIterator<Item = &'a usize>) -> Array<'py, i64> {
+    PyArray1::from_vec(py, numbers.into_iter().map(|&number| (number as u64).cast_signed()).collect())
 }
 
 fn refused(unsolved: Unsolved, discount: f64) -> PyErr {

@@ -112,7 +112,8 @@ impl Blackjack {
                 open.extend(Self::cards().map(|(share, card)| (probability * share, hand.with(card))));
                 continue;
             }
-            let same = |(_, other): &&mut (f64, Hand)| (other.score(), other.natural()) == (hand.score(), hand.natural());
+            let same =
+                |(_, other): &&mut (f64, Hand)| (other.score(), other.natural()) == (hand.score(), hand.natural());
             match hands.iter_mut().find(same) {
                 Some((sum, _)) => *sum += probability,
                 None => hands.push((probability, hand)),

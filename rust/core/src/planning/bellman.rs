@@ -36,9 +36,7 @@ pub(crate) fn best_value(table: &Tabular, state: usize, discount: f64, values: &
 /// The values of all actions of all states.
 pub(crate) fn action_values(table: &Tabular, discount: f64, values: &[f64]) -> Vec<f64> {
     (0..table.states())
-        .flat_map(|state| {
-            (0..table.actions()).map(move |action| action_value(table, state, action, discount, values))
-        })
+        .flat_map(|state| (0..table.actions()).map(move |action| action_value(table, state, action, discount, values)))
         .collect()
 }
 

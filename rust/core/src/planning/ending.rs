@@ -29,9 +29,7 @@ pub(crate) fn soonest(
         table.outcomes(state, action).fold(0.0, |sum, (probability, step)| sum + end(probability, &step))
     };
     let mut ends = vec![0.0; table.states()];
-    settle(&mut ends, stop, |state, ends| {
-        (0..actions).map(|action| worth(state, action, ends)).fold(0.0, f64::max)
-    })?;
+    settle(&mut ends, stop, |state, ends| (0..actions).map(|action| worth(state, action, ends)).fold(0.0, f64::max))?;
     let best = |state: usize| {
         let worth: Vec<f64> = (0..actions).map(|action| worth(state, action, &ends)).collect();
         first_maximum(&worth)

@@ -50,12 +50,12 @@ pub fn route(
         next.clear();
         for (parent, reached) in layer.iter().enumerate() {
             for action in 0..car.actions() {
-                let step = car.drive(reached.state, action);
+                let after = car.drive(reached.state, action);
                 let way = (parent as u32, action as u8);
-                if step.terminated {
+                if after.terminated {
                     return Ok(Some(back(&ways, way)));
                 }
-                let (state, left) = (step.state, guide.steps(step.state));
+                let (state, left) = (after.state, guide.steps(after.state));
                 next.push(Reached { state, left, cell: cell(car, state), way });
             }
         }
@@ -84,11 +84,11 @@ pub fn follow(guide: &CostToGo, position: f64, limit: u64, stop: &AtomicBool) ->
             return Err(Unsolved::Stopped);
         }
         let [position, velocity] = car.observe(&state).map(f64::from);
-        let step = car.drive(state, guide.best_action(MountainCarState { position, velocity }));
-        if step.terminated {
+        let after = car.drive(state, guide.best_action(MountainCarState { position, velocity }));
+        if after.terminated {
             return Ok(taken);
         }
-        state = step.state;
+        state = after.state;
     }
     Ok(limit)
 }
@@ -128,7 +128,7 @@ fn back(ways: &[Vec<Way>], (mut place, last): Way) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    const GO: AtomicBool = AtomicBool::new(false);
+    static GO: AtomicBool = AtomicBool::new(false);
 
     fn guide(car: MountainCar) -> CostToGo {
         CostToGo::new(car, 200, &GO).expect("it settles")

@@ -27,12 +27,6 @@ impl TryFrom<&Taxi> for Process {
     fn try_from(taxi: &Taxi) -> Result<Self, BadTable> {
         let Some(fickle) = taxi.fickle else { return Ok(taxi.table.clone().into()) };
         let (states, actions) = (taxi.table.states(), taxi.table.actions());
-        let listed = |probability: f64, state: usize, reward: f64, terminated: bool| Outcome {
-            probability,
-            state: state as i64,
-            reward,
-            terminated,
-        };
         let mut rows = Vec::with_capacity(2 * states * actions);
         for settled in [false, true] {
             for (state, action) in (0..states).flat_map(|state| (0..actions).map(move |action| (state, action))) {
@@ -40,7 +34,7 @@ impl TryFrom<&Taxi> for Process {
                 for (probability, step) in taxi.table.outcomes(state, action) {
                     let next = step.state as usize;
                     let place = |next: usize, probability: f64, settled: bool| {
-                        listed(probability, next + states * usize::from(settled), step.reward, step.terminated)
+                        outcome(probability, next + states * usize::from(settled), step.reward, step.terminated)
                     };
                     if settled || !Taxi::carries(state as u32, step.state) {
                         outcomes.push(place(next, probability, settled));
@@ -86,17 +80,20 @@ impl TryFrom<&Blackjack> for Process {
             };
             let Some(hand) = hand.filter(|hand| shown > 0 && !hand.bust()) else {
                 // No hand shows this.
-                rows.extend([0, 1].map(|_| {
-                    vec![Outcome { probability: 1.0, state: state as i64, reward: 0.0, terminated: true }]
-                }));
+                rows.extend([0, 1].map(|_| vec![outcome(1.0, state, 0.0, true)]));
                 continue;
             };
-            let end = |(probability, reward)| Outcome { probability, state: state as i64, reward, terminated: true };
-            let stick = dealt[shown].iter().map(|(probability, dealer)| (*probability, rules.settle(&hand, dealer)));
-            rows.push(stick.map(end).collect());
+            let stick = |(probability, dealer): &(f64, Hand)| {
+                outcome(*probability, state, rules.settle(&hand, dealer), true)
+            };
+            rows.push(dealt[shown].iter().map(stick).collect());
             let hit = Blackjack::cards().map(|(probability, card)| {
                 let hand = hand.with(card);
-                if hand.bust() { end((probability, -1.0)) } else { Outcome { probability, state: cell(&hand, shown) as i64, reward: 0.0, terminated: false } }
+                if hand.bust() {
+                    outcome(probability, state, -1.0, true)
+                } else {
+                    outcome(probability, cell(&hand, shown), 0.0, false)
+                }
             });
             rows.push(hit.collect());
         }
@@ -114,6 +111,10 @@ impl TryFrom<&Blackjack> for Process {
     }
 }
 
+fn outcome(probability: f64, state: usize, reward: f64, terminated: bool) -> Outcome {
+    Outcome { probability, state: (state as u64).cast_signed(), reward, terminated }
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::atomic::AtomicBool;
@@ -123,7 +124,7 @@ mod tests {
     use crate::planning::{finite_horizon, policy_return};
     use crate::random::{Pcg64, SeedSequence};
 
-    const GO: AtomicBool = AtomicBool::new(false);
+    static GO: AtomicBool = AtomicBool::new(false);
 
     /// The mean return of an environment under a policy over its rows, and its standard error.
     fn played<E: Env<Action = usize>>(env: &E, row: impl Fn(&E::State) -> usize, policy: &[usize]) -> (f64, f64) {
@@ -148,11 +149,9 @@ mod tests {
 
     #[test]
     fn blackjacks_table_is_its_rules() {
-        for rules in [
-            Blackjack { natural: false, sab: true },
-            Blackjack { natural: true, sab: false },
-            Blackjack::default(),
-        ] {
+        for rules in
+            [Blackjack { natural: false, sab: true }, Blackjack { natural: true, sab: false }, Blackjack::default()]
+        {
             let process = Process::try_from(&rules).expect("a table");
             let best = finite_horizon(&process.table, 1.0, 50, &GO).expect("it ends");
             let row = |state: &<Blackjack as Env>::State| {
@@ -167,7 +166,8 @@ mod tests {
     #[test]
     fn a_fickle_passengers_table_is_the_taxis() {
         // Drives about in circles with the passenger, and lets them out at every second square.
-        let to = |state: i64, reward: f64, terminated: bool| vec![Outcome { probability: 1.0, state, reward, terminated }];
+        let to =
+            |state: i64, reward: f64, terminated: bool| vec![Outcome { probability: 1.0, state, reward, terminated }];
         let rows: Vec<_> = (0..500_i64)
             .flat_map(|state| [to((state + 20) % 500, -1.0, false), to(state, f64::from((state % 4) as i32), true)])
             .collect();

@@ -8,7 +8,7 @@ use super::*;
 use crate::env::Env;
 use crate::envs::{Outcome, Tabular};
 
-const GO: AtomicBool = AtomicBool::new(false);
+static GO: AtomicBool = AtomicBool::new(false);
 
 fn sure(state: i64, reward: f64, terminated: bool) -> Vec<Outcome> {
     vec![Outcome { probability: 1.0, state, reward, terminated }]
