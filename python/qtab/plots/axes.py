@@ -37,8 +37,9 @@ def mark_optimum(ax: "Axes", optimum: "Optimum | float | None") -> None:
     """Draws a dashed line at the optimum, or at a return of one's own, with its number in the legend."""
     if optimum is None:
         return
-    value = getattr(optimum, "expected_return", optimum)
-    label = getattr(optimum, "label", "optimum")
+    value, label = (
+        (float(optimum), "optimum") if isinstance(optimum, int | float) else (optimum.expected_return, optimum.label)
+    )
     ax.axhline(value, color="#a3262f", linestyle=(0, (5, 3)), linewidth=1.5, label=f"{label} {value:.4g}", zorder=4)
 
 

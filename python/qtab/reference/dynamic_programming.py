@@ -23,7 +23,7 @@ def action_value(P: Any, V: Sequence[float] | NDArray[np.float64], s: int, a: in
 
 
 def value_iteration(P: Any, discount: float) -> NDArray[np.float64]:
-    """V(s) ← max_a Σ p (r + γ V(s')), in place, until the changes are in the last bits and shrink no more (eq. 4.10)."""
+    """V(s) ← max_a Σ p (r + γ V(s')), in place, until changes are in the last bits and shrink no more (eq. 4.10)."""
     V = np.zeros(len(P)).tolist()
     before = float("inf")
     while True:

@@ -159,8 +159,7 @@ impl Valley {
     fn followed<'py>(&self, py: Python<'py>) -> PyResult<Array<'py, i64>> {
         let lengths = door::detached(py, |stop| {
             let starts = planning::starts(STARTS);
-            let follow =
-                |&start: &f64| planning::follow(&self.guide, start, self.limit, stop).map(u64::cast_signed);
+            let follow = |&start: &f64| planning::follow(&self.guide, start, self.limit, stop).map(u64::cast_signed);
             starts.iter().map(follow).collect::<Result<Vec<_>, _>>()
         })?;
         Ok(PyArray1::from_vec(py, lengths.map_err(|unsolved| refused(unsolved, 1.0))?))

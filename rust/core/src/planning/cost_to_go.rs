@@ -67,8 +67,8 @@ impl CostToGo {
         let next: Vec<[Place; ACTIONS]> = (0..self.steps.len())
             .map(|point| {
                 std::array::from_fn(|action| {
-                    let step = self.car.drive(self.state(point), action);
-                    if step.terminated { GOAL } else { self.place(step.state) }
+                    let after = self.car.drive(self.state(point), action);
+                    if after.terminated { GOAL } else { self.place(after.state) }
                 })
             })
             .collect();
@@ -141,8 +141,8 @@ impl CostToGo {
     }
 
     fn coordinate(&self, axis: usize, index: usize) -> f64 {
-        let (low, high) = self.bounds(axis);
-        low + (high - low) * (index as f64 / (self.points[axis] - 1) as f64)
+        let ((low, high), last) = (self.bounds(axis), self.points[axis] - 1);
+        if index == last { high } else { low + (high - low) * (index as f64 / last as f64) }
     }
 
     fn state(&self, point: usize) -> MountainCarState {

@@ -83,9 +83,8 @@ impl TryFrom<&Blackjack> for Process {
                 rows.extend([0, 1].map(|_| vec![outcome(1.0, state, 0.0, true)]));
                 continue;
             };
-            let stick = |(probability, dealer): &(f64, Hand)| {
-                outcome(*probability, state, rules.settle(&hand, dealer), true)
-            };
+            let stick =
+                |(probability, dealer): &(f64, Hand)| outcome(*probability, state, rules.settle(&hand, dealer), true);
             rows.push(dealt[shown].iter().map(stick).collect());
             let hit = Blackjack::cards().map(|(probability, card)| {
                 let hand = hand.with(card);
