@@ -275,6 +275,14 @@ def test_a_gap_wants_a_run_of_its_environment_and_limit():
         qtab.optimum(own, env_kwargs={})
 
 
+def test_keyword_arguments_count_whether_they_are_said_or_not():
+    said = {"is_slippery": True, "map_name": "4x4"}
+    run = qtab.train("qtab/FrozenLake-v1", episodes=2, seed=0, env_kwargs=said)
+    assert qtab.optimum("FrozenLake-v1", env_kwargs={"is_slippery": True}).gap(run).optimum > 0.7
+    dry = qtab.train("FrozenLake-v1", episodes=2, seed=0, env_kwargs={"is_slippery": False})
+    assert qtab.optimum(dry).gap(dry).optimum == 1.0
+
+
 def test_observations_outside_the_space_are_refused():
     found = qtab.optimum("FrozenLake-v1")
     with pytest.raises(ValueError, match="outside the observation space"):

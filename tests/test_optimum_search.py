@@ -195,6 +195,8 @@ def test_training_says_how_far_it_is_from_the_optimum(tmp_path: Path):
     done = command("train", "CliffWalking-v1", "--seed", "0", "--plot", "curve.png", cwd=tmp_path)
     assert "Greedy policy -13, optimum -13, gap 0" in done.stdout.splitlines()
     assert (tmp_path / "curve.png").exists()
+    done = command("train", "FrozenLake-v1", "--seed", "0", "--env-kwargs", "is_slippery", "false", cwd=tmp_path)
+    assert "Greedy policy 1, optimum 1, gap 0" in done.stdout.splitlines()
     done = command("train", "--seed", "0", "--episodes", "200", "--optimum", cwd=tmp_path)
     assert ", best known -97." in done.stdout
     done = command("train", "--seed", "0", "--episodes", "200", cwd=tmp_path)

@@ -1,14 +1,16 @@
 """``qtab.Optimum``: what the best policy is worth."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Protocol, overload
 
+import gymnasium as gym
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab import checks
-from qtab.models import gymnasium_id
+from qtab.models import gymnasium_id, spec_of
 from qtab.planning.gap import Gap
 from qtab.planning.valley import Search
 from qtab.run import Run
@@ -116,8 +118,8 @@ class Optimum:
 
     def _check(self, run: Run | Runs) -> None:
         config = run.config
-        ours = gymnasium_id(self.env), dict(self.env_kwargs), self.max_episode_steps
-        theirs = gymnasium_id(config.env), dict(config.env_kwargs), config.max_episode_steps
+        ours = gymnasium_id(self.env), _whole(self.env, self.env_kwargs), self.max_episode_steps
+        theirs = gymnasium_id(config.env), _whole(config.env, config.env_kwargs), config.max_episode_steps
         for name, our, their in zip(("env", "env_kwargs", "max_episode_steps"), ours, theirs, strict=True):
             if repr(our) != repr(their):
                 raise ValueError(f"run must have {name} {our!r} as this optimum has, got {their!r}")
@@ -136,3 +138,10 @@ class Optimum:
             lines["by the values"] = f"{self.search.followed_return:.6g}"
         lines["time"] = f"{self.seconds:.3g} s"
         return "\n".join([self.env, *(f"  {name:17}{text}" for name, text in lines.items())])
+
+
+def _whole(env: str, kwargs: Mapping[str, Any]) -> dict[str, Any]:
+    """The keyword arguments in one order, those of the id's spec included."""
+    with suppress(gym.error.Error):  # the class of an environment that has no id
+        kwargs = {**spec_of(env).kwargs, **kwargs}
+    return {name: kwargs[name] for name in sorted(kwargs) if kwargs[name] is not None or name != "render_mode"}
