@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.reference import dynamic_programming as plain
-from toys import IDS, TABLES
+from toys import IDS
 
 METHODS = ["value_iteration", "policy_iteration", "finite_horizon"]
 
@@ -46,8 +46,7 @@ def test_values_are_those_of_plain_numpy_to_the_last_bit(name, kwargs):
 @pytest.mark.parametrize(("name", "kwargs"), VARIANTS)
 def test_policy_iteration_finds_value_iterations_values(name, kwargs):
     for discount in (0.9, 1.0):
-        ours = qtab.optimum(name, env_kwargs=kwargs, method="value_iteration", discount=discount)
-        theirs = qtab.optimum(name, env_kwargs=kwargs, method="policy_iteration", discount=discount)
+        ours, theirs = (qtab.optimum(name, env_kwargs=kwargs, method=each, discount=discount) for each in METHODS[:2])
         np.testing.assert_allclose(theirs.values, ours.values, rtol=1e-9, atol=1e-12)
         env = table_of(name, **kwargs)
         exactly = plain.policy_return(env.P, env.initial_state_distrib, ours.policy, ours.max_episode_steps)
@@ -159,7 +158,7 @@ def test_a_fickle_passenger_is_modelled_exactly():
     assert found.expected_return != steady.expected_return
     # Who carries a passenger does not see whether they have changed their mind yet.
     env: Any = table_of("Taxi-v4")
-    aboard = [env.encode(row, column, 4, wish) for row in range(5) for column in range(5) for wish in range(4)]
+    aboard = [env.encode(row, column, 4, wish) for row, column, wish in np.ndindex(5, 5, 4)]
     refused = 0
     for state in aboard:
         try:
@@ -185,8 +184,7 @@ def test_runs_are_compared_too():
     gap = found.gap(runs)
     assert gap.greedy_return.tolist() == [found.gap(run).greedy_return for run in runs]
     assert gap.final.tolist() == (found.expected_return - runs.final_returns(100)).tolist()
-    without = qtab.train_many("FrozenLake-v1", seeds=4, episodes=200)
-    assert np.isnan(found.gap(without).greedy).all()
+    assert np.isnan(found.gap(qtab.train_many("FrozenLake-v1", seeds=4, episodes=200)).greedy).all()
 
 
 def test_every_way_of_naming_an_environment_comes_to_the_same():
@@ -195,7 +193,7 @@ def test_every_way_of_naming_an_environment_comes_to_the_same():
     ways.append(qtab.train("FrozenLake-v1", episodes=10, seed=0))
     limits = [qtab.optimum(way, max_episode_steps=100).values.tobytes() for way in ways]
     assert len(set(limits)) == 1
-    table: Any = env.unwrapped
+    table = table_of("FrozenLake-v1")
     own = qtab.optimum(qtab.TabularEnv(table.P, table.initial_state_distrib))
     assert own.max_episode_steps == 10_000
     assert qtab.optimum(qtab.train("FrozenLake-v1", episodes=5, max_episode_steps=7)).max_episode_steps == 7
@@ -292,15 +290,13 @@ def test_observations_outside_the_space_are_refused():
 
 
 def test_an_environment_that_was_handed_in_stays_open_and_unstepped():
-    env = gym.make("FrozenLake-v1")
+    env: Any = gym.make("FrozenLake-v1")
     observation, _ = env.reset(seed=0)
     qtab.optimum(env)
-    assert env.unwrapped.s == observation  # type: ignore[attr-defined]
-    env.step(0)
+    assert env.unwrapped.s == observation
 
 
-@pytest.mark.parametrize("name", TABLES)
-def test_it_says_what_it_is(name):
-    text = str(qtab.optimum(name))
-    assert text.startswith(f"{name}\n  expected return")
+def test_it_says_what_it_is():
+    text = str(qtab.optimum("Taxi-v4"))
+    assert text.startswith("Taxi-v4\n  expected return  7.93 within 200 steps\n  threshold        8\n")
     assert "finite_horizon, discount 1: exact" in text

@@ -37,28 +37,28 @@ pub(crate) fn soonest(
     Ok((0..table.states()).map(best).collect())
 }
 
-/// For each state the first of the `allowed` actions that may end the episode, or lead to a state that is nearer to an
-/// end; None where no allowed action ever does. Whoever follows it ends with probability 1.
+/// For each state one of the `allowed` actions that may end the episode, or lead to a state that has one; None where no
+/// allowed action ever does. Whoever follows it ends with probability 1, or comes to where nothing ends.
 pub(crate) fn towards(table: &Tabular, allowed: impl Fn(usize, usize) -> bool) -> Vec<Option<usize>> {
     let mut chosen: Vec<Option<usize>> = vec![None; table.states()];
+    let last = table.states() - 1;
     loop {
-        let nearer: Vec<(usize, usize)> = (0..table.states())
-            .filter(|&state| chosen[state].is_none())
-            .filter_map(|state| {
-                let leads = |&action: &usize| {
-                    allowed(state, action)
-                        && table.outcomes(state, action).any(|(probability, step)| {
-                            probability > 0.0 && (step.terminated || chosen[step.state as usize].is_some())
-                        })
-                };
-                (0..table.actions()).find(leads).map(|action| (state, action))
-            })
-            .collect();
-        if nearer.is_empty() {
-            return chosen;
+        let mut more = false;
+        // There and back, so that a corridor takes no longer one way than the other.
+        for state in (0..=last).chain((0..=last).rev()) {
+            let leads = |&action: &usize| {
+                allowed(state, action)
+                    && table.outcomes(state, action).any(|(probability, step)| {
+                        probability > 0.0 && (step.terminated || chosen[step.state as usize].is_some())
+                    })
+            };
+            if chosen[state].is_none() {
+                chosen[state] = (0..table.actions()).find(leads);
+                more |= chosen[state].is_some();
+            }
         }
-        for (state, action) in nearer {
-            chosen[state] = Some(action);
+        if !more {
+            return chosen;
         }
     }
 }

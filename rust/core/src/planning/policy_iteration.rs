@@ -18,8 +18,11 @@ use crate::envs::Tabular;
 /// `NeverEnds` and `Endless` without a discount; `Unsettled`, `Stopped`.
 pub fn policy_iteration(table: &Tabular, discount: f64, stop: &AtomicBool) -> Result<Solution, Unsolved> {
     let actions = table.actions();
-    let mut policy = if discount == 1.0 { one_that_ends(table)? } else { vec![0; table.states()] };
-    let walled: Vec<bool> = ending::towards(table, |_, _| true).iter().map(Option::is_none).collect();
+    let towards = ending::towards(table, |_, _| true);
+    if let (true, Some(state)) = (discount == 1.0, lost(table, &towards)) {
+        return Err(Unsolved::NeverEnds(state));
+    }
+    let mut policy: Vec<usize> = towards.iter().map(|action| action.unwrap_or(0)).collect();
     let mut values = vec![0.0; table.states()];
     let mut sweeps = 0;
     loop {
@@ -43,23 +46,18 @@ pub fn policy_iteration(table: &Tabular, discount: f64, stop: &AtomicBool) -> Re
         }
         if discount == 1.0 {
             let ends = ending::towards(table, |state, action| policy[state] == action);
-            if let Some(state) = (0..table.states()).find(|&state| !walled[state] && ends[state].is_none()) {
+            if let Some(state) = (0..table.states()).find(|&state| towards[state].is_some() && ends[state].is_none()) {
                 return Err(Unsolved::Endless(state));
             }
         }
     }
 }
 
-/// A policy that ends wherever one does.
-fn one_that_ends(table: &Tabular) -> Result<Vec<usize>, Unsolved> {
-    let towards = ending::towards(table, |_, _| true);
-    let lost = |state: usize| {
-        towards[state].is_none()
-            && (0..table.actions())
-                .any(|action| table.outcomes(state, action).any(|(probability, step)| probability * step.reward != 0.0))
+/// A state from which nothing ends and not every reward is zero.
+fn lost(table: &Tabular, towards: &[Option<usize>]) -> Option<usize> {
+    let counts = |state: usize, action: usize| {
+        table.outcomes(state, action).any(|(probability, step)| probability * step.reward != 0.0)
     };
-    match (0..table.states()).find(|&state| lost(state)) {
-        Some(state) => Err(Unsolved::NeverEnds(state)),
-        None => Ok(towards.into_iter().map(|action| action.unwrap_or(0)).collect()),
-    }
+    (0..table.states())
+        .find(|&state| towards[state].is_none() && (0..table.actions()).any(|action| counts(state, action)))
 }
