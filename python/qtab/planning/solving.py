@@ -109,7 +109,8 @@ def _solve(name: str, env: gym.Env, limit: int | None, discount: float | None, m
         raise ValueError(f"env must have no wrapper that may change it, got {wrapper}")
     discount = 1.0 if discount is None else checks.real("discount", discount, 0.0, 1.0)
     car = type(inner) in (MountainCarEnv, RustMountainCarEnv)
-    if not car and not isinstance(inner, BlackjackEnv) and not hasattr(inner, "P"):
+    table = isinstance(inner, BlackjackEnv) or (hasattr(inner, "P") and hasattr(inner, "initial_state_distrib"))
+    if not car and not table:
         raise ValueError(
             "env must have a transition table P and an initial_state_distrib, or be Blackjack or MountainCar-v0: the "
             f"optimum of {name} is not known"
