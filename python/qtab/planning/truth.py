@@ -134,8 +134,8 @@ class Optimum:
         }
         if self.search is not None:
             found = self.search.steps
-            lines["from the starts"] = f"{found.min()} to {found.max()} steps, {len(found):,} starts"
-            lines["by the values"] = f"{self.search.followed_return:.6g}"
+            lines["routes"] = f"{found.min()} to {found.max()} steps from {len(found):,} starts"
+            lines["predict"] = f"returns {self.search.followed_return:.6g} from them"
         lines["time"] = f"{self.seconds:.3g} s"
         return "\n".join([self.env, *(f"  {name:17}{text}" for name, text in lines.items())])
 
