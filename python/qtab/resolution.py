@@ -12,7 +12,7 @@ from qtab import plan
 from qtab.cells import Cells, cells, components
 from qtab.config import Config, known_fields
 from qtab.finite import describe
-from qtab.models import Model, model_of, spec_of
+from qtab.models import Model, model_of, spec_of, versioned
 from qtab.options import defaults, stranger, tables
 from qtab.preset import preset
 from qtab.spaces import Grid, grid
@@ -37,6 +37,8 @@ class Resolved:
     """Whether the environment was made here, and so is closed here."""
     process: plan.Process | plan.Rules | None = None
     """What a finite model steps by."""
+    limited: bool = False
+    """Whether the time limit is ours, the environment having none."""
 
     def close(self) -> None:
         """Closes the environment if it was made here."""
@@ -116,6 +118,8 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolve
 
 def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
     # An id keeps the package that it names, so that the config makes the environment anywhere.
+    if isinstance(env, str):
+        env = versioned(env)
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
     config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = model_of(spec, config.env_kwargs)
@@ -135,8 +139,8 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
         raise
     if backend == "rust":
         made.close()
-        return Resolved(config, table, model, None, made=True, process=process)
-    return Resolved(config, table, None, made, made=True)
+        return Resolved(config, table, model, None, made=True, process=process, limited=steps is None)
+    return Resolved(config, table, None, made, made=True, limited=steps is None)
 
 
 def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
@@ -149,7 +153,8 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     config = _fitting(env, config)
     table = _features(env, config)
     steps = config.max_episode_steps or _time_limit(env)
-    return Resolved(_complete(config, table, config.backend, steps), table, model, env, made=False, process=process)
+    config = _complete(config, table, config.backend, steps)
+    return Resolved(config, table, model, env, made=False, process=process, limited=steps is None)
 
 
 def _finite(model: Model | None, env: gym.Env, config: Config) -> tuple[Model | None, plan.Process | plan.Rules | None]:
