@@ -130,7 +130,7 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
     try:
         model, process = _finite(model, made, config)
         backend = _backend(config, model, f"Rust has no {spec.id} with these keyword arguments or wrappers")
-        config = _fitting(made, config)
+        config = _fitting(made, config, *layers)
         table = _features(made, config)
         steps = config.max_episode_steps or spec.max_episode_steps
         config = _complete(config, table, backend, steps)
@@ -150,7 +150,7 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     if config.backend == "auto":
         config = config.replace(backend="rust" if is_own_table(env) else "gymnasium")
     model, process = _finite(model_of_object(env) if config.backend == "rust" else None, env, config)
-    config = _fitting(env, config)
+    config = _fitting(env, config, *layers)
     table = _features(env, config)
     steps = config.max_episode_steps or _time_limit(env)
     config = _complete(config, table, config.backend, steps)
@@ -169,10 +169,12 @@ def _finite(model: Model | None, env: gym.Env, config: Config) -> tuple[Model | 
         return None, None
 
 
-def _fitting(env: gym.Env, config: Config) -> Config:
+def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config:
     """The config with the discretizer that a discrete space has, where none was asked for."""
     if config.discretizer == "round" and components(env.observation_space) is not None:
-        return config.replace(discretizer="identity")
+        # A wrapper may have made a box discrete, for which the preset's scale means nothing; one asked for is refused.
+        asked = any("scale" in layer for layer in layers)
+        return config.replace(discretizer="identity", scale=config.scale if asked else ())
     return config
 
 
