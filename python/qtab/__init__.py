@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from qtab.runs import Runs
     from qtab.storage import load
     from qtab.sweeping import StoreError, Sweep, SweepProgress, load_sweep, sweep
-    from qtab.training import Progress, train
+    from qtab.training import train
     from qtab.verification import Verification, verify
 
     __version__: str
@@ -66,7 +66,7 @@ _HOME = {
     "Evaluation": "evaluation",
     "Gap": "planning",
     "Optimum": "planning",
-    "Progress": "training",
+    "Progress": "callbacks",
     "Recording": "run",
     "Run": "run",
     "Runs": "runs",

@@ -14,7 +14,7 @@ from qtab import _core, checks
 from qtab.cells import cells
 from qtab.envs.mountain_car import MountainCarEnv as RustMountainCarEnv
 from qtab.finite import describe
-from qtab.models import spec_of
+from qtab.models import spec_of, versioned
 from qtab.planning.tables import METHODS, TableTruth, solve
 from qtab.planning.truth import Optimum
 from qtab.planning.valley import ValleyTruth, search
@@ -68,7 +68,8 @@ def optimum(
         return _solve(name, env, max_episode_steps, discount, method)
     if not isinstance(env, str | EnvSpec):
         raise TypeError(f"env must be an environment id, an EnvSpec, an environment or a run, got {env!r}")
-    name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
+    name = env.id if isinstance(env, EnvSpec) else versioned(env)
+    spec = env if isinstance(env, EnvSpec) else spec_of(name)
     made = gym.make(spec, **(env_kwargs or {}))
     try:
         return _solve(name, made, max_episode_steps, discount, method)
