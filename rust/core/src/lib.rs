@@ -30,6 +30,7 @@
 //! ```
 
 pub mod batch;
+mod cosine;
 pub mod env;
 pub mod envs;
 pub mod features;
@@ -39,6 +40,7 @@ pub mod learners;
 pub mod random;
 mod table;
 mod trainer;
+pub mod vector;
 pub mod world;
 pub mod worlds;
 
@@ -47,4 +49,5 @@ pub use features::Features;
 pub use learner::Learner;
 pub use table::Table;
 pub use trainer::{Episodes, Trainer, Until};
+pub use vector::Vector;
 pub use world::World;

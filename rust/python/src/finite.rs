@@ -19,16 +19,16 @@ const BLACKJACK: [u32; 3] = [32, 11, 2];
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Process {
-    table: Py<Transitions>,
-    fickle: Option<f64>,
+    pub(crate) table: Py<Transitions>,
+    pub(crate) fickle: Option<f64>,
 }
 
 /// Those of blackjack.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Rules {
-    natural: bool,
-    sab: bool,
+    pub(crate) natural: bool,
+    pub(crate) sab: bool,
 }
 
 impl Process {

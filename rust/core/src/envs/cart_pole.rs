@@ -4,8 +4,8 @@
 use crate::env::{Env, Parameters, Step, Switch};
 use crate::random::Draw;
 
-/// Each component of the first state is uniform over these, unless Gymnasium's reset options say otherwise.
-const START: (f64, f64) = (-0.05, 0.05);
+/// Each component of the first state is uniform over these.
+const START: [(&str, f64); 2] = [("low", -0.05), ("high", 0.05)];
 
 /// The constants of the dynamics, under Gymnasium's names. Those that Gymnasium derives from others when it makes the
 /// environment (`total_mass`, `polemass_length`) are constants of their own afterwards, there as here.
@@ -129,9 +129,16 @@ impl Env for CartPole {
         2
     }
 
+    const START: Option<[(&'static str, f64); 2]> = Some(START);
+
     #[inline]
     fn reset(&self, draw: &mut impl Draw) -> CartPoleState {
-        [(); 4].map(|()| draw.uniform(START.0, START.1)).into()
+        self.reset_between(START.map(|(_, number)| number), draw)
+    }
+
+    #[inline]
+    fn reset_between(&self, [low, high]: [f64; 2], draw: &mut impl Draw) -> CartPoleState {
+        [(); 4].map(|()| draw.uniform(low, high)).into()
     }
 
     /// The reward is that of an episode under way: what Gymnasium gives for stepping on after the fall is not here.

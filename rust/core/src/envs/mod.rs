@@ -9,6 +9,7 @@ mod numpy;
 mod pendulum;
 mod tabular;
 mod taxi;
+mod telling;
 
 pub use acrobot::{Acrobot, AcrobotState};
 pub use blackjack::{Blackjack, BlackjackState, DEALER_STICKS, DECK, Hand};
@@ -19,3 +20,4 @@ pub use numpy::Scalar;
 pub use pendulum::{Pendulum, PendulumState};
 pub use tabular::{BadTable, Outcome, TOLERANCE, Tabular};
 pub use taxi::{Taxi, TaxiState};
+pub use telling::{Tells, Telling, Told};

@@ -6,6 +6,7 @@
 use std::error::Error;
 use std::fmt;
 
+use super::Tells;
 use crate::env::{Env, Step};
 use crate::random::Draw;
 
@@ -49,6 +50,8 @@ pub struct Tabular {
     /// For each outcome the largest cumulative sum so far: the first that is above a number is the first sum above it,
     /// and they never fall, which sums of any floats might.
     bounds: Vec<f64>,
+    /// How likely each outcome is.
+    probabilities: Vec<f64>,
     steps: Vec<Step<u32>>,
 }
 
@@ -66,7 +69,14 @@ impl Tabular {
             return bad(format!("P must have rows for {states} states of {actions} actions, got {}", rows.len()));
         }
         distribution("initial_state_distrib", start.iter().copied())?;
-        let mut table = Self { actions, start: cumulative(start), first: vec![0], bounds: vec![], steps: vec![] };
+        let mut table = Self {
+            actions,
+            start: cumulative(start),
+            first: vec![0],
+            bounds: vec![],
+            probabilities: vec![],
+            steps: vec![],
+        };
         for (row, outcomes) in rows.iter().enumerate() {
             let place = format!("P[{}][{}]", row / actions, row % actions);
             distribution(&place, outcomes.iter().map(|outcome| outcome.probability))?;
@@ -81,6 +91,7 @@ impl Tabular {
             }
             let probabilities: Vec<f64> = outcomes.iter().map(|outcome| outcome.probability).collect();
             table.bounds.extend(cumulative(&probabilities));
+            table.probabilities.extend(probabilities);
             table.first.push(table.steps.len());
         }
         Ok(table)
@@ -89,6 +100,15 @@ impl Tabular {
     /// How many states there are.
     pub fn states(&self) -> usize {
         self.start.len()
+    }
+
+    /// Draws what happens.
+    #[inline]
+    fn outcome(&self, state: u32, action: usize, draw: &mut impl Draw) -> usize {
+        assert!(action < self.actions, "action {action} is none of {}", self.actions);
+        let row = state as usize * self.actions + action;
+        let (from, to) = (self.first[row], self.first[row + 1]);
+        from + chosen(&self.bounds[from..to], draw.random())
     }
 }
 
@@ -147,15 +167,20 @@ impl Env for Tabular {
 
     #[inline]
     fn step(&self, state: u32, action: usize, draw: &mut impl Draw) -> Step<u32> {
-        assert!(action < self.actions, "action {action} is none of {}", self.actions);
-        let row = state as usize * self.actions + action;
-        let (from, to) = (self.first[row], self.first[row + 1]);
-        self.steps[from + chosen(&self.bounds[from..to], draw.random())]
+        self.steps[self.outcome(state, action, draw)]
     }
 
     #[inline]
     fn observe(&self, &state: &u32) -> u32 {
         state
+    }
+}
+
+impl Tells for Tabular {
+    #[inline]
+    fn tell(&self, state: u32, action: usize, draw: &mut impl Draw) -> (Step<u32>, f64) {
+        let outcome = self.outcome(state, action, draw);
+        (self.steps[outcome], self.probabilities[outcome])
     }
 }
 
