@@ -8,6 +8,9 @@ use qtab_core::envs::Scalar;
 
 use crate::numbers::{LARGEST_FORCE, double, index, numpy_scalar};
 
+/// So few are sooner asked for one by one than borrowed.
+const FEW: usize = 8;
+
 /// An action as a type of the core's.
 pub(super) trait Acts: Copy + Send + Sync + 'static {
     /// For whom no action is needed.
@@ -43,25 +46,19 @@ impl Acts for usize {
         idle: &dyn Fn(usize) -> bool,
         into: &mut [Self],
     ) -> PyResult<()> {
+        if let Ok(array) = actions.cast::<PyArray1<i64>>()
+            && whole(array, count, into)?
+        {
+            return Ok(());
+        }
         if let Ok(array) = actions.cast::<PyUntypedArray>() {
             if array.shape() != [into.len()] {
                 return Err(wrong_shape(array, &format!("({},)", into.len())));
             }
-            if matches!(array.dtype().kind(), b'i' | b'u') {
-                let wide = match actions.cast::<PyArray1<i64>>() {
-                    Ok(wide) => wide.clone(),
-                    Err(_) => actions.call_method1("astype", ("int64",))?.cast_into()?,
-                };
-                let mut fit = true;
-                let view = wide.try_readonly()?;
-                for (place, &action) in into.iter_mut().zip(view.as_array()) {
-                    // Negative ones become the largest.
-                    *place = action as usize;
-                    fit &= *place < count;
-                }
-                if fit {
-                    return Ok(());
-                }
+            if matches!(array.dtype().kind(), b'i' | b'u')
+                && whole(actions.call_method1("astype", ("int64",))?.cast()?, count, into)?
+            {
+                return Ok(());
             }
         }
         sized(actions, &format!("({},)", into.len()), into.len())?;
@@ -79,6 +76,28 @@ impl Acts for usize {
     fn remembered<'py>(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(self.into_pyobject(py)?.into_any())
     }
+}
+
+/// Whether there are as many as places, and all of them are actions; if so, they are read.
+fn whole(actions: &Bound<'_, PyArray1<i64>>, count: usize, into: &mut [usize]) -> PyResult<bool> {
+    if actions.len() != into.len() {
+        return Ok(false);
+    }
+    // Negative ones become the largest.
+    let mut fit = true;
+    let mut put = |place: &mut usize, action: i64| {
+        *place = action as usize;
+        fit &= *place < count;
+    };
+    if into.len() <= FEW {
+        for (lane, place) in into.iter_mut().enumerate() {
+            put(place, actions.get_owned(lane).unwrap_or(-1));
+        }
+    } else {
+        let view = actions.try_readonly()?;
+        into.iter_mut().zip(view.as_array()).for_each(|(place, &action)| put(place, action));
+    }
+    Ok(fit)
 }
 
 /// Gymnasium's own words, and whose action it is.

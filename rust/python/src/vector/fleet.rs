@@ -72,8 +72,8 @@ where
             cores.min(size / nature.crew)
         });
         let vector = Vector::new(env, size, max_episode_steps, autoreset, threads);
-        let observations = vector.states().map(|state| vector.env().observe(state)).collect();
-        let places = if copy { None } else { Some(E::Observation::places(py, size)?.unbind()) };
+        let observations: Vec<_> = vector.states().map(|state| vector.env().observe(state)).collect();
+        let places = if copy { None } else { Some(E::Observation::batched(py, &observations)?.unbind()) };
         Ok(Self {
             vector,
             nature,
@@ -88,10 +88,8 @@ where
     }
 
     fn observed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let places = match &self.places {
-            Some(places) => places.bind(py).clone(),
-            None => E::Observation::places(py, self.observations.len())?,
-        };
+        let Some(places) = &self.places else { return E::Observation::batched(py, &self.observations) };
+        let places = places.bind(py).clone();
         E::Observation::put(&self.observations, &places)?;
         Ok(places)
     }

@@ -1,15 +1,16 @@
 //! Observations of all sub-environments, as Gymnasium batches them.
 
+use numpy::ndarray::aview2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 /// An observation as a type of the core's.
 pub(super) trait Shows: Copy + Send + 'static {
-    /// New arrays of zeros with a place for each of so many.
-    fn places(py: Python<'_>, count: usize) -> PyResult<Bound<'_, PyAny>>;
+    /// In new arrays.
+    fn batched<'py>(py: Python<'py>, all: &[Self]) -> PyResult<Bound<'py, PyAny>>;
 
-    /// Puts them into such arrays.
+    /// Puts them into arrays that were new once.
     fn put(all: &[Self], places: &Bound<'_, PyAny>) -> PyResult<()>;
 
     /// One, as a lone environment returns it.
@@ -18,8 +19,8 @@ pub(super) trait Shows: Copy + Send + 'static {
 
 /// (count, N) float32
 impl<const N: usize> Shows for [f32; N] {
-    fn places(py: Python<'_>, count: usize) -> PyResult<Bound<'_, PyAny>> {
-        Ok(PyArray2::<f32>::zeros(py, [count, N], false).into_any())
+    fn batched<'py>(py: Python<'py>, all: &[Self]) -> PyResult<Bound<'py, PyAny>> {
+        Ok(PyArray2::from_array(py, &aview2(all)).into_any())
     }
 
     fn put(all: &[Self], places: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -34,8 +35,8 @@ impl<const N: usize> Shows for [f32; N] {
 
 /// (count,) int64
 impl Shows for u32 {
-    fn places(py: Python<'_>, count: usize) -> PyResult<Bound<'_, PyAny>> {
-        Ok(PyArray1::<i64>::zeros(py, count, false).into_any())
+    fn batched<'py>(py: Python<'py>, all: &[Self]) -> PyResult<Bound<'py, PyAny>> {
+        Ok(PyArray1::from_iter(py, all.iter().map(|&number| i64::from(number))).into_any())
     }
 
     fn put(all: &[Self], places: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -49,9 +50,9 @@ impl Shows for u32 {
 
 /// `N` of (count,) int64
 impl<const N: usize> Shows for [u32; N] {
-    fn places(py: Python<'_>, count: usize) -> PyResult<Bound<'_, PyAny>> {
-        let columns = [(); N].map(|()| PyArray1::<i64>::zeros(py, count, false));
-        Ok(PyTuple::new(py, columns)?.into_any())
+    fn batched<'py>(py: Python<'py>, all: &[Self]) -> PyResult<Bound<'py, PyAny>> {
+        let column = |index: usize| PyArray1::from_iter(py, all.iter().map(|numbers| i64::from(numbers[index])));
+        Ok(PyTuple::new(py, (0..N).map(column).collect::<Vec<_>>())?.into_any())
     }
 
     fn put(all: &[Self], places: &Bound<'_, PyAny>) -> PyResult<()> {
