@@ -19,8 +19,16 @@ NUMPY_POLES = "Gymnasium's CartPoleVectorEnv × 4,096"
 QTAB_POLES = "qtab's make_vec, CartPole × 4,096"
 QTAB_ONE = "qtab's make_vec, MountainCar × 1"
 
-ROWS = ((SYNC, SYNC), (SYNC, ENVPOOL), (SYNC, QTAB_CARS), (ENVPOOL, QTAB_CARS), (NUMPY_POLES, NUMPY_POLES))
-ROWS = (*ROWS, (NUMPY_POLES, QTAB_POLES), (QTAB_MAKE, QTAB_MAKE), (QTAB_MAKE, QTAB_ONE))
+ROWS = [
+    (SYNC, SYNC),
+    (SYNC, ENVPOOL),
+    (SYNC, QTAB_CARS),
+    (ENVPOOL, QTAB_CARS),
+    (NUMPY_POLES, NUMPY_POLES),
+    (NUMPY_POLES, QTAB_POLES),
+    (QTAB_MAKE, QTAB_MAKE),
+    (QTAB_MAKE, QTAB_ONE),
+]
 """What each row compares: a base, and what may be faster."""
 
 
@@ -53,7 +61,9 @@ def _steps(env: Any, count: int) -> Subject:
     """Returns what takes so many steps of all sub-environments, random actions drawn before."""
     env.reset()
     size = getattr(env, "num_envs", NUM_ENVS)
-    actions = np.random.default_rng(0).integers(0, env.action_space.nvec[0] if hasattr(env.action_space, "nvec") else env.action_space.n, (64, size))
+    actions = np.random.default_rng(0).integers(
+        0, env.action_space.nvec[0] if hasattr(env.action_space, "nvec") else env.action_space.n, (64, size)
+    )
 
     def run(index: int) -> int:
         step = env.step

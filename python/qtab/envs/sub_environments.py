@@ -5,14 +5,50 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.vector import SyncVectorEnv
+from gymnasium.spaces import Discrete
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+from gymnasium.vector.utils import iterate
+from numpy.typing import NDArray
 
 Portrait = tuple[dict[str, Any], int, bool, Any]
 """An environment's attributes, how many steps its episode has had, whether it is over, what it shows."""
 
 
 class SubEnvironments(SyncVectorEnv[Any, Any]):
-    """Gymnasium's ``SyncVectorEnv``, without a fault of its: what is a float stays one."""
+    """Gymnasium's ``SyncVectorEnv``, but what is a float stays one, and bad actions move nobody."""
+
+    def step(
+        self, actions: Any
+    ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        """Steps each, once all actions were looked at.
+
+        Raises:
+            AssertionError: for an action outside a discrete space, or an episode that is over and was not reset.
+            ValueError: for a wrong number of actions, or one that is no finite number.
+        """
+        self._look_at(actions)
+        observations, rewards, terminations, truncations, infos = super().step(actions)
+        if "prob" in infos:
+            infos["prob"] = infos["prob"].astype(np.float64)
+        return observations, rewards, terminations, truncations, infos
+
+    def _look_at(self, actions: Any) -> None:
+        waiting = self._autoreset_envs
+        if self.autoreset_mode is AutoresetMode.DISABLED and waiting.any():
+            lane = int(np.argmax(waiting))
+            raise AssertionError(
+                f"the episode of sub-environment {lane} is over: reset it first, with options={{'reset_mask': ...}}"
+            )
+        if len(actions) != self.num_envs:
+            raise ValueError(f"actions must have shape {self.action_space.shape}, got {len(actions)} of them")
+        for lane, action in enumerate(iterate(self.action_space, actions)):
+            if self.autoreset_mode is AutoresetMode.NEXT_STEP and waiting[lane]:
+                continue
+            if not isinstance(self.single_action_space, Discrete):
+                if np.shape(action) != (1,) or not np.isfinite(action).all():
+                    raise ValueError(f"actions[{lane}] must be a finite number, got {action}")
+            elif not self.single_action_space.contains(action):
+                raise AssertionError(f"sub-environment {lane}: {action!r} ({type(action)}) invalid")
 
     def go_on(
         self,

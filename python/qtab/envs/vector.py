@@ -171,7 +171,7 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         return low, high
 
     @property
-    def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
+    def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override,misc]
         """The generators that the sub-environments draw from."""
         if self._python is not None:
             return self._python.np_random
@@ -191,7 +191,7 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
             drawn, half = source
             bits = np.random.PCG64(np.random.SeedSequence(self.seed_of(lane)))
             bits.advance(drawn)
-            bits.state = {**bits.state, "has_uint32": int(half is not None), "uinteger": half or 0}  # type: ignore[assignment]
+            bits.state = {**bits.state, "has_uint32": int(half is not None), "uinteger": half or 0}
             source = np.random.Generator(bits)
             self.draw_from(lane, source)
         return source

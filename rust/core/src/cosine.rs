@@ -6,6 +6,8 @@
 //! where `f` gives the same bits for both and for `near`, it gives them for the platform's cosine too. Elsewhere (one
 //! step in twenty) the platform is asked.
 
+#![expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+
 /// Cells of 1/64, from 0 to 4.
 const CELLS: usize = 256;
 const PER_UNIT: i128 = 64;

@@ -138,15 +138,16 @@ impl<E: Env> Vector<E> {
         let batches = batch.chunks(length);
         let lanes = self.blocks.iter_mut().zip(actions.chunks(length)).zip(draws.chunks_mut(length)).zip(batches);
         thread::scope(|scope| {
-            let mut lanes = lanes.map(|(((block, actions), draws), batch)| {
-                move || block.step(env, rules, actions, draws, batch)
-            });
+            let mut lanes =
+                lanes.map(|(((block, actions), draws), batch)| move || block.step(env, rules, actions, draws, batch));
             let own = lanes.next();
-            lanes.for_each(|work| {
+            for work in lanes {
                 scope.spawn(work);
-            });
+            }
             // One of them is the caller's.
-            own.into_iter().for_each(|work| work());
+            if let Some(work) = own {
+                work();
+            }
         });
     }
 }
@@ -242,7 +243,7 @@ mod tests {
             seed in any::<u32>(),
             (force, goal_position) in prop_oneof![Just((0.001, 0.5)), (0.0..0.02, -1.2..0.5)],
         ) {
-            let car = MountainCar { force, goal_position, ..MountainCar::default() };
+            let car = MountainCar { goal_position, force, ..MountainCar::default() };
             check(&car, size, threads, limit, autoreset, seed);
             check(&CartPole::default(), size, threads, limit, autoreset, seed);
             check(&Acrobot { torque_noise_max: 1.0, ..Acrobot::default() }, size, threads, limit, autoreset, seed);

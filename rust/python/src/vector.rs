@@ -12,7 +12,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple, PyType};
 use qtab_core::env::Env;
-use qtab_core::envs::{Acrobot, Blackjack, Taxi, TaxiState, Telling, Told};
+use qtab_core::envs::{Acrobot, Blackjack, Dealing, Taxi, TaxiState, Telling, Told};
 use qtab_core::vector::Autoreset;
 
 use crate::finite::{Process, Rules};
@@ -132,7 +132,9 @@ impl Vector {
         }
         fleet.reset(&lanes, start, &mut self.sources);
         if !self.missing.is_empty() {
-            lanes.iter().for_each(|&lane| self.missing[lane] = false);
+            for &lane in &lanes {
+                self.missing[lane] = false;
+            }
             if !self.missing.contains(&true) {
                 self.missing.clear();
             }
@@ -196,9 +198,12 @@ fn classics(py: Python<'_>, model: Model, terms: Terms) -> PyResult<Box<dyn Step
         Model::MountainCar(env) => {
             boxed(py, env, Nature { crew: 16_384, says: None, portray: portraits::car, fell: None }, terms)
         }
-        Model::CartPole(env) => {
-            boxed(py, env, Nature { crew: 4096, says: None, portray: portraits::plain::<_, 4>, fell: Some("steps_beyond_terminated") }, terms)
-        }
+        Model::CartPole(env) => boxed(
+            py,
+            env,
+            Nature { crew: 4096, says: None, portray: portraits::plain::<_, 4>, fell: Some("steps_beyond_terminated") },
+            terms,
+        ),
         Model::Acrobot(env) => {
             let env = Acrobot { single: numpys_cosine_and_sine, ..env };
             boxed(py, env, Nature { crew: 512, says: None, portray: portraits::acrobot, fell: None }, terms)
@@ -217,15 +222,20 @@ fn toys(py: Python<'_>, kind: Kind, masks: Option<Vec<[i8; 6]>>, terms: Terms) -
     let crew = 16_384;
     match kind {
         Kind::Rules(Rules { natural, sab }) => {
-            let nature = Nature { crew, says: None, portray: |_, _, _, _| Ok(()), fell: None };
-            boxed(py, Blackjack { natural, sab }, nature, terms)
+            let nature = Nature { crew, says: None, portray: portraits::blackjack, fell: None };
+            boxed(py, Dealing(Blackjack { natural, sab }), nature, terms)
         }
         Kind::Process(Process { table, fickle }) => {
             let table = table.get().0.clone();
             match masks {
                 None => {
                     let says = Says { probability: |told: &Told<_>| told.probability, whole: true, masks: None };
-                    boxed(py, Telling(table), Nature { crew, says: Some(says), portray: portraits::table, fell: None }, terms)
+                    boxed(
+                        py,
+                        Telling(table),
+                        Nature { crew, says: Some(says), portray: portraits::table, fell: None },
+                        terms,
+                    )
                 }
                 Some(masks) => {
                     let masks = Some(Masks { table: masks, cell: |told: &Told<TaxiState>| told.state.cell as usize });

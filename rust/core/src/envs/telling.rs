@@ -6,12 +6,7 @@ use crate::random::Draw;
 /// An environment whose steps have probabilities.
 pub trait Tells: Env {
     /// One step, and how likely it was.
-    fn tell(
-        &self,
-        state: Self::State,
-        action: Self::Action,
-        draw: &mut impl Draw,
-    ) -> (Step<Self::State>, f64);
+    fn tell(&self, state: Self::State, action: Self::Action, draw: &mut impl Draw) -> (Step<Self::State>, f64);
 }
 
 /// The same environment, whose state remembers how likely it was.

@@ -108,7 +108,7 @@ impl<S: Copy> Block<S> {
         for ((elapsed, over), (&terminated, truncated)) in clocks.zip(terminated.iter().zip(truncated)) {
             *elapsed += 1;
             *truncated = *elapsed >= limit;
-            *over = terminated | *truncated;
+            *over = terminated || *truncated;
             any |= *over;
         }
         any

@@ -17,15 +17,10 @@ pub(super) trait Acts: Copy + Send + Sync + 'static {
     const NONE: Self;
 
     /// Reads an action for each place; the `idle` ones may be anything.
-    fn read(
-        actions: &Bound<'_, PyAny>,
-        count: usize,
-        idle: &dyn Fn(usize) -> bool,
-        into: &mut [Self],
-    ) -> PyResult<()>;
+    fn read(actions: &Bound<'_, PyAny>, count: usize, idle: &dyn Fn(usize) -> bool, into: &mut [Self]) -> PyResult<()>;
 
     /// As a sub-environment of Gymnasium's remembers it.
-    fn remembered<'py>(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
+    fn remembered(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>>;
 }
 
 /// For what is no array.
@@ -33,19 +28,16 @@ fn sized(actions: &Bound<'_, PyAny>, shape: &str, places: usize) -> PyResult<()>
     match actions.len() {
         Ok(length) if length == places => Ok(()),
         Ok(length) => Err(PyValueError::new_err(format!("actions must have shape {shape}, got {length} of them"))),
-        Err(_) => Err(PyTypeError::new_err(format!("actions must be an array of shape {shape}, got {}", actions.repr()?))),
+        Err(_) => {
+            Err(PyTypeError::new_err(format!("actions must be an array of shape {shape}, got {}", actions.repr()?)))
+        }
     }
 }
 
 impl Acts for usize {
     const NONE: Self = 0;
 
-    fn read(
-        actions: &Bound<'_, PyAny>,
-        count: usize,
-        idle: &dyn Fn(usize) -> bool,
-        into: &mut [Self],
-    ) -> PyResult<()> {
+    fn read(actions: &Bound<'_, PyAny>, count: usize, idle: &dyn Fn(usize) -> bool, into: &mut [Self]) -> PyResult<()> {
         if let Ok(array) = actions.cast::<PyArray1<i64>>()
             && whole(array, count, into)?
         {
@@ -64,17 +56,14 @@ impl Acts for usize {
         sized(actions, &format!("({},)", into.len()), into.len())?;
         for (lane, place) in into.iter_mut().enumerate() {
             let action = actions.get_item(lane)?;
-            *place = if idle(lane) {
-                Self::NONE
-            } else {
-                index(&action, count).ok_or_else(|| invalid(lane, &action))?
-            };
+            *place =
+                if idle(lane) { Self::NONE } else { index(&action, count).ok_or_else(|| invalid(lane, &action))? };
         }
         Ok(())
     }
 
-    fn remembered<'py>(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(self.into_pyobject(py)?.into_any())
+    fn remembered(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        PyArray1::from_slice(py, &[self.cast_signed() as i64]).get_item(0)
     }
 }
 
@@ -133,7 +122,9 @@ impl Acts for Scalar {
                 let kind = array.dtype().kind();
                 if kind != b'i' && kind != b'u' && actions.cast::<PyArray2<f64>>().is_err() {
                     let found = array.dtype();
-                    return Err(PyTypeError::new_err(format!("actions must have dtype float32 or float64, got {found}")));
+                    return Err(PyTypeError::new_err(format!(
+                        "actions must have dtype float32 or float64, got {found}"
+                    )));
                 }
                 // Integers meet floats alone, so they compute as doubles.
                 let double = actions.call_method1("astype", ("float64",))?.cast_into::<PyArray2<f64>>()?;
@@ -145,17 +136,17 @@ impl Acts for Scalar {
             for (lane, place) in into.iter_mut().enumerate().filter(|(lane, _)| !idle(*lane)) {
                 let row = actions.get_item(lane)?;
                 let force = row.get_item(0).ok().filter(|_| row.len().is_ok_and(|length| length == 1));
-                let force = force.as_ref().and_then(double).ok_or_else(|| {
-                    PyTypeError::new_err(format!("actions[{lane}] must hold one number, got {row}"))
-                })?;
+                let force = force
+                    .as_ref()
+                    .and_then(double)
+                    .ok_or_else(|| PyTypeError::new_err(format!("actions[{lane}] must hold one number, got {row}")))?;
                 *place = Self::Python(force);
             }
         }
         for (lane, place) in into.iter_mut().enumerate() {
-            // NaN fails, too.
-            if !(f64::from(*place).abs() <= LARGEST_FORCE) {
+            let force = f64::from(*place);
+            if force.is_nan() || force.abs() > LARGEST_FORCE {
                 if !idle(lane) {
-                    let force = f64::from(*place);
                     return Err(PyValueError::new_err(format!("actions[{lane}] must be a finite number, got {force}")));
                 }
                 *place = Self::NONE;
@@ -164,7 +155,7 @@ impl Acts for Scalar {
         Ok(())
     }
 
-    fn remembered<'py>(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn remembered(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         numpy_scalar(py, self)
     }
 }

@@ -25,7 +25,8 @@ pub(super) struct Terms {
 }
 
 /// Observations, rewards, terminations, truncations, infos.
-pub(super) type Stepped<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyDict>);
+pub(super) type Stepped<'py> =
+    (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyDict>);
 
 pub(super) type Portrait<'py> = (Bound<'py, PyDict>, u64, bool, Bound<'py, PyAny>);
 

@@ -22,12 +22,7 @@ pub(super) struct Nature<E: Env> {
     pub(super) fell: Option<&'static str>,
 }
 
-pub(super) type Portray<E> = fn(
-    &Bound<'_, PyDict>,
-    &E,
-    &<E as Env>::State,
-    Option<<E as Env>::Action>,
-) -> PyResult<()>;
+pub(super) type Portray<E> = fn(&Bound<'_, PyDict>, &E, &<E as Env>::State, Option<<E as Env>::Action>) -> PyResult<()>;
 
 /// A table's info.
 pub(super) struct Says<S> {

@@ -6,11 +6,12 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use qtab_core::env::Env;
 use qtab_core::envs::{
-    Acrobot, AcrobotState, ContinuousMountainCar, ContinuousMountainCarState, Pendulum, PendulumState, Scalar,
-    TaxiState, Told,
+    Acrobot, AcrobotState, ContinuousMountainCar, ContinuousMountainCarState, DECK, Dealt, Pendulum, PendulumState,
+    Scalar, TaxiState, Told,
 };
 
 use super::actions::Acts;
+use crate::blackjack::{FACES, SUITS, numpy_string};
 use crate::numbers::numpy_scalar;
 
 type Attributes<'a, 'py> = &'a Bound<'py, PyDict>;
@@ -103,6 +104,30 @@ pub(super) fn taxi<E: Env<State = Told<TaxiState>, Action = usize>>(
 ) -> PyResult<()> {
     into.set_item(intern!(into.py(), "fickle_step"), state.state.fickle)?;
     cell(into, state.state.cell, last)
+}
+
+/// With its cards, and the picture of the open one.
+pub(super) fn blackjack<E: Env<State = Dealt>>(
+    into: Attributes<'_, '_>,
+    _env: &E,
+    state: &Dealt,
+    _last: Option<E::Action>,
+) -> PyResult<()> {
+    let py = into.py();
+    let drawn: Vec<usize> = state.drawn().collect();
+    let [first, second, third, fourth, suit, ref taken @ ..] = drawn[..] else { return Ok(()) };
+    let card = |&place: &usize| DECK[place];
+    let (face, taken) = match taken {
+        [face, taken @ ..] if state.hands.shown == 10 => (numpy_string(py, FACES[*face])?, taken),
+        _ if state.hands.shown == 1 => ("A".into_pyobject(py)?.into_any(), taken),
+        _ => (state.hands.shown.to_string().into_pyobject(py)?.into_any(), taken),
+    };
+    let (player, dealer) = taken.split_at(state.hands.player.cards as usize - 2);
+    let hand = |own: [usize; 2], taken: &[usize]| own.iter().chain(taken).map(card).collect::<Vec<_>>();
+    into.set_item(intern!(py, "dealer"), hand([first, second], dealer))?;
+    into.set_item(intern!(py, "player"), hand([third, fourth], player))?;
+    into.set_item(intern!(py, "dealer_top_card_suit"), numpy_string(py, SUITS[suit])?)?;
+    into.set_item(intern!(py, "dealer_top_card_value_str"), face)
 }
 
 fn cell(into: Attributes<'_, '_>, cell: u32, last: Option<usize>) -> PyResult<()> {

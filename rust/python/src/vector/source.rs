@@ -58,6 +58,7 @@ pub(super) fn words(seed: &Bound<'_, PyAny>) -> PyResult<Vec<u32>> {
         return Ok(if high == 0 { vec![low] } else { vec![low, high] });
     }
     let bits: usize = seed.call_method0(intern!(seed.py(), "bit_length"))?.extract()?;
-    let bytes: Vec<u8> = seed.call_method1(intern!(seed.py(), "to_bytes"), (bits.div_ceil(32) * 4, "little"))?.extract()?;
+    let bytes: Vec<u8> =
+        seed.call_method1(intern!(seed.py(), "to_bytes"), (bits.div_ceil(32) * 4, "little"))?.extract()?;
     Ok(bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect())
 }

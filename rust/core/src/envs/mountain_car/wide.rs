@@ -34,7 +34,12 @@ pub(crate) fn drive<const K: usize>(
 }
 
 /// One step of any number of cars.
-pub(super) fn step_lanes(car: &MountainCar, states: &mut [MountainCarState], actions: &[usize], terminated: &mut [bool]) {
+pub(super) fn step_lanes(
+    car: &MountainCar,
+    states: &mut [MountainCarState],
+    actions: &[usize],
+    terminated: &mut [bool],
+) {
     // Infinite accelerations may cancel to NaN.
     if !cosine::TRUSTED || !car.force.is_finite() || !car.gravity.is_finite() {
         return one_by_one(car, states, actions, terminated);
