@@ -170,8 +170,8 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
             self._leave_rust()
         return low, high
 
-    @property
-    def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override,misc]
+    @property  # type: ignore[misc]
+    def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
         """The generators that the sub-environments draw from."""
         if self._python is not None:
             return self._python.np_random

@@ -42,8 +42,9 @@ pub trait Env {
     /// It may, where the action is none of the environment's: whoever takes actions from outside checks them.
     fn step(&self, state: Self::State, action: Self::Action, draw: &mut impl Draw) -> Step<Self::State>;
 
-    /// One step in each of several lanes: its state moves on, its reward and its end are put in their places. It may be
-    /// computed in another way where wide registers pay, never with other results than `step`'s.
+    /// One step in each of several lanes: its state moves on, its reward and its end are put in their places. Those that
+    /// are `idle` keep their states, whatever their actions are. It may be computed in another way where wide registers
+    /// pay, never with other results than `step`'s.
     #[inline]
     fn step_lanes(
         &self,
@@ -52,11 +53,15 @@ pub trait Env {
         draws: &mut [impl Draw],
         rewards: &mut [f64],
         terminated: &mut [bool],
+        idle: &[bool],
     ) {
-        let places = rewards.iter_mut().zip(terminated);
-        for (((state, &action), draw), (reward, end)) in states.iter_mut().zip(actions).zip(draws).zip(places) {
-            let step = self.step(*state, action, draw);
-            (*state, *reward, *end) = (step.state, step.reward, step.terminated);
+        let places = rewards.iter_mut().zip(terminated).zip(idle);
+        for (((state, &action), draw), ((reward, end), &idle)) in states.iter_mut().zip(actions).zip(draws).zip(places)
+        {
+            if !idle {
+                let step = self.step(*state, action, draw);
+                (*state, *reward, *end) = (step.state, step.reward, step.terminated);
+            }
         }
     }
 

@@ -16,7 +16,7 @@ pub enum Autoreset {
     NextStep,
     /// It is reset at once; what it showed last is among the [`Vector::finals`].
     SameStep,
-    /// Nothing: whoever steps it resets it first.
+    /// Nothing: it must be reset before it is stepped again.
     Disabled,
 }
 
@@ -122,7 +122,7 @@ impl<E: Env> Vector<E> {
     /// One step of all of them. Nothing is allocated, but for threads where there is more than one.
     ///
     /// # Panics
-    /// It may, where an action is none of the environment's.
+    /// With [`Autoreset::Disabled`], where an episode is over; and it may where an action is none of the environment's.
     pub fn step<D>(&mut self, actions: &[E::Action], draws: &mut [D], batch: Batch<'_, E::Observation>)
     where
         D: Draw + Send,
@@ -228,6 +228,13 @@ mod tests {
             assert!(vector.over().eq(over.iter().copied()));
             assert!(vector.finals().map(|(lane, state)| (lane, *state)).eq(finals));
             assert_eq!(draws, own);
+            for lane in (0..size).filter(|_| autoreset == Autoreset::Disabled) {
+                if !over[lane] {
+                    continue;
+                }
+                vector.reset(lane, None, &mut draws[lane]);
+                (states[lane], elapsed[lane], over[lane]) = (env.reset(&mut own[lane]), 0, false);
+            }
         }
     }
 

@@ -137,8 +137,9 @@ impl Env for MountainCar {
         _draws: &mut [impl Draw],
         rewards: &mut [f64],
         terminated: &mut [bool],
+        idle: &[bool],
     ) {
-        wide::step_lanes(self, states, actions, terminated);
+        wide::step_lanes(self, states, actions, terminated, idle);
         rewards.fill(REWARD);
     }
 

@@ -1,7 +1,5 @@
 //! The sub-environments that one thread steps.
 
-use std::ops::Range;
-
 use super::{Autoreset, Batch, Rules};
 use crate::env::Env;
 use crate::random::Draw;
@@ -66,51 +64,25 @@ impl<S: Copy> Block<S> {
     ) {
         let Batch { observations, rewards, terminated, truncated } = batch;
         self.finals.clear();
-        let mut lane = 0;
-        while lane < self.states.len() {
-            if self.over[lane] && rules.autoreset == Autoreset::NextStep {
-                self.begin(lane, env.reset(&mut draws[lane]));
+        let waits = rules.autoreset == Autoreset::NextStep;
+        assert!(waits || !self.over.contains(&true), "an episode that is over cannot go on");
+        env.step_lanes(&mut self.states, actions, draws, rewards, terminated, &self.over);
+        for (lane, draw) in draws.iter_mut().enumerate() {
+            if self.over[lane] {
+                self.begin(lane, env.reset(draw));
                 (rewards[lane], terminated[lane], truncated[lane]) = (0.0, false, false);
-                lane += 1;
                 continue;
             }
-            // All those before the next that is over, side by side.
-            let waiting = self.over[lane + 1..].iter().position(|&over| over && rules.autoreset == Autoreset::NextStep);
-            let end = waiting.map_or(self.states.len(), |waiting| lane + 1 + waiting);
-            let side = lane..end;
-            env.step_lanes(
-                &mut self.states[side.clone()],
-                &actions[side.clone()],
-                &mut draws[side.clone()],
-                &mut rewards[side.clone()],
-                &mut terminated[side.clone()],
-            );
-            let any = self.tick(side.clone(), rules.limit, &terminated[side.clone()], &mut truncated[side.clone()]);
-            if any && rules.autoreset == Autoreset::SameStep {
-                for lane in side {
-                    if self.over[lane] {
-                        self.finals.push((lane, self.states[lane]));
-                        self.begin(lane, env.reset(&mut draws[lane]));
-                    }
-                }
+            self.elapsed[lane] += 1;
+            truncated[lane] = self.elapsed[lane] >= rules.limit;
+            self.over[lane] = terminated[lane] || truncated[lane];
+            if self.over[lane] && rules.autoreset == Autoreset::SameStep {
+                self.finals.push((lane, self.states[lane]));
+                self.begin(lane, env.reset(draw));
             }
-            lane = end;
         }
         for (observation, state) in observations.iter_mut().zip(&self.states) {
             *observation = env.observe(state);
         }
-    }
-
-    /// Moves clocks on; whether any episode is over.
-    fn tick(&mut self, side: Range<usize>, limit: u64, terminated: &[bool], truncated: &mut [bool]) -> bool {
-        let mut any = false;
-        let clocks = self.elapsed[side.clone()].iter_mut().zip(&mut self.over[side]);
-        for ((elapsed, over), (&terminated, truncated)) in clocks.zip(terminated.iter().zip(truncated)) {
-            *elapsed += 1;
-            *truncated = *elapsed >= limit;
-            *over = terminated || *truncated;
-            any |= *over;
-        }
-        any
     }
 }

@@ -33,30 +33,26 @@ pub(crate) fn drive<const K: usize>(
     }
 }
 
-/// One step of any number of cars.
+/// One step of any number of cars, of which the idle ones stay where they are.
 pub(super) fn step_lanes(
     car: &MountainCar,
     states: &mut [MountainCarState],
     actions: &[usize],
     terminated: &mut [bool],
+    idle: &[bool],
 ) {
     // Infinite accelerations may cancel to NaN.
-    if !cosine::TRUSTED || !car.force.is_finite() || !car.gravity.is_finite() {
-        return one_by_one(car, states, actions, terminated);
+    let wide = cosine::TRUSTED && car.force.is_finite() && car.gravity.is_finite();
+    let chunked = if wide { states.len() / CARS * CARS } else { 0 };
+    let (wide, rest) = states.split_at_mut(chunked);
+    if chunked > 0 {
+        let (states, actions) = (wide.as_chunks_mut().0, actions.as_chunks().0);
+        let (terminated, idle) = (terminated.as_chunks_mut().0, idle.as_chunks().0);
+        pulp::Arch::new().dispatch(Wide { car: *car, states, actions, terminated, idle });
     }
-    let (states, rest) = states.as_chunks_mut::<CARS>();
-    let (actions, last) = actions.as_chunks::<CARS>();
-    let (terminated, ends) = terminated.as_chunks_mut::<CARS>();
-    if !states.is_empty() {
-        pulp::Arch::new().dispatch(Wide { car: *car, states, actions, terminated });
-    }
-    one_by_one(car, rest, last, ends);
-}
-
-fn one_by_one(car: &MountainCar, states: &mut [MountainCarState], actions: &[usize], terminated: &mut [bool]) {
-    for ((state, &action), end) in states.iter_mut().zip(actions).zip(terminated) {
-        let step: Step<_> = car.step(*state, action, &mut NoDraw);
-        (*state, *end) = (step.state, step.terminated);
+    for (lane, state) in (chunked..).zip(rest).filter(|(lane, _)| !idle[*lane]) {
+        let step: Step<_> = car.step(*state, actions[lane], &mut NoDraw);
+        (*state, terminated[lane]) = (step.state, step.terminated);
     }
 }
 
@@ -66,6 +62,7 @@ struct Wide<'a> {
     states: &'a mut [[MountainCarState; CARS]],
     actions: &'a [[usize; CARS]],
     terminated: &'a mut [[bool; CARS]],
+    idle: &'a [[bool; CARS]],
 }
 
 impl pulp::NullaryFnOnce for Wide<'_> {
@@ -74,12 +71,15 @@ impl pulp::NullaryFnOnce for Wide<'_> {
     #[inline(always)]
     fn call(self) {
         let car = self.car;
-        for ((states, actions), terminated) in self.states.iter_mut().zip(self.actions).zip(self.terminated) {
+        let places = self.states.iter_mut().zip(self.terminated);
+        for ((states, terminated), (actions, idle)) in places.zip(self.actions.iter().zip(self.idle)) {
+            let actions = std::array::from_fn(|lane| if idle[lane] { 0 } else { actions[lane] });
             let mut position: [f64; CARS] = std::array::from_fn(|lane| states[lane].position);
             let mut velocity: [f64; CARS] = std::array::from_fn(|lane| states[lane].velocity);
-            drive(&car, &mut position, &mut velocity, actions);
+            drive(&car, &mut position, &mut velocity, &actions);
             for lane in 0..CARS {
-                states[lane] = MountainCarState { position: position[lane], velocity: velocity[lane] };
+                let state = MountainCarState { position: position[lane], velocity: velocity[lane] };
+                states[lane] = if idle[lane] { states[lane] } else { state };
                 terminated[lane] = (position[lane] >= car.goal_position) & (velocity[lane] >= car.goal_velocity);
             }
         }
