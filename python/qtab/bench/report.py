@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from qtab import checks
-from qtab.bench import subjects
+from qtab.bench import subjects, vectors
 from qtab.bench.footprint import Footprint, footprint
 from qtab.bench.rounds import Timings, measure
 from qtab.versions import versions
@@ -24,7 +24,16 @@ class Report:
 
     def __str__(self) -> str:
         """Tables for a person."""
-        lines = [*self._warning(), *self._training(), "", *self._stepping(), "", *self._footprint(), ""]
+        lines = [
+            *self._warning(),
+            *self._training(),
+            "",
+            *self._stepping(),
+            "",
+            *self._vectors(),
+            *self._footprint(),
+            "",
+        ]
         lines.append(
             f"{self.rounds} interleaved rounds; ns/step is a median, × (times as fast) the median of each round's ratio"
         )
@@ -61,6 +70,18 @@ class Report:
             lines.append(_line(name, _number(self.timings.median(name)), _number(self.timings.ratio(base, name))))
         return lines
 
+    def _vectors(self) -> list[str]:
+        rows = vectors.compared(self.timings)
+        if not rows:
+            return []
+        lines = [_line("Stepping many sub-environments", "ns/step", *(short for short, _ in vectors.BASES))]
+        for name, ratios in rows:
+            columns = ("" if ratio is None else _number(ratio) for ratio in ratios)
+            lines.append(_line(name, _number(self.timings.median(name)), *columns))
+        if vectors.ENVPOOL not in self.timings.nanoseconds:
+            lines.append("  (EnvPool is not installed: pip install envpool)")
+        return [*lines, ""]
+
     def _footprint(self) -> list[str]:
         cost = self.footprint
         lines = [
@@ -89,7 +110,8 @@ def bench(seconds: float = DEFAULT_SECONDS, rounds: int | None = None, progress:
     if rounds is not None:
         rounds = checks.integer("rounds", rounds, least=1)
     cost = footprint()
-    timings = measure(subjects.training() | subjects.stepping(), seconds=seconds, rounds=rounds, progress=progress)
+    timed = subjects.training() | subjects.stepping() | vectors.stepping()
+    timings = measure(timed, seconds=seconds, rounds=rounds, progress=progress)
     return Report(timings, len(next(iter(timings.nanoseconds.values()))), cost, versions())
 
 
