@@ -55,7 +55,7 @@ def test_every_subject_counts_its_steps() -> None:
 
 def test_vector_environments_count_the_steps_of_all_and_are_compared_with_their_own_kind() -> None:
     steps = vectors.stepping()
-    assert steps[vectors.QTAB_POLES](0) == 60 * 4096
+    assert steps[vectors.QTAB_POLES](0) == 200 * 4096
     assert steps[vectors.QTAB_ONE](0) == 10_000
     nanoseconds = {vectors.SYNC: 900.0, vectors.QTAB_CARS: 3.0, vectors.NUMPY_POLES: 8.0, vectors.QTAB_POLES: 2.0}
     rows = dict(vectors.compared(Timings({name: np.array([number]) for name, number in nanoseconds.items()})))

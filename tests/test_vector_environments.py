@@ -265,6 +265,40 @@ def test_what_is_assigned_counts():
     assert data_equivalence(mine, gymnasiums, exact=True)
 
 
+def test_sub_environments_that_were_asked_for_before_the_first_reset_are_reset_like_others():
+    vectors = Vectors("CartPole-v1", 3, AutoresetMode.SAME_STEP)
+    for env in (vectors.ours, vectors.theirs):
+        env.set_attr("force_mag", 5.0)
+    with pytest.raises(gym.error.ResetNeeded, match="leave out sub-environment 2"):
+        vectors.ours.reset(options={"reset_mask": np.array([True, True, False])})
+    vectors.reset(seed=1)
+    vectors.reset(options={"reset_mask": np.array([True, True, False])})
+    vectors.run(40)
+
+
+def test_a_vector_environment_can_be_made_again_from_its_spec():
+    env = ours("Pendulum-v1", 3, g=9.81, autoreset_mode="SameStep", max_episode_steps=7)
+    again = gym.make_vec(gym.envs.registration.EnvSpec.from_json(gym.spec("qtab/Pendulum-v1").to_json()), num_envs=3)
+    assert again.unwrapped.launched
+    same = gym.make_vec(env.spec)
+    assert same.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
+    assert_equal(env.reset(seed=3), same.reset(seed=3))
+    for _ in range(9):
+        assert_equal(env.step(np.ones((3, 1), np.float32)), same.step(np.ones((3, 1), np.float32)))
+
+
+@pytest.mark.filterwarnings("ignore:.*:UserWarning")
+def test_a_table_that_rust_refuses_is_stepped_in_python():
+    for name, kwargs in (
+        ("FrozenLake-v1", {"reward_schedule": (float("inf"), 0, 0)}),
+        ("Taxi-v4", {"is_rainy": True, "rainy_probability": 1.5}),
+    ):
+        vectors = Vectors(name, 2, **kwargs)
+        assert not vectors.ours.launched
+        vectors.reset(seed=0)
+        vectors.run(30)
+
+
 def test_a_constant_that_rust_does_not_know_is_stepped_in_python():
     for name, kwargs in (
         ("MountainCar-v0", {"goal_velocity": np.float32(0.01)}),

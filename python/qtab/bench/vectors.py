@@ -39,7 +39,7 @@ def stepping() -> dict[str, Subject]:
         **_envpool(),
         QTAB_CARS: _steps(gym.make_vec(f"qtab/{CAR}", NUM_ENVS), 3, 200),
         NUMPY_POLES: _steps(poles, 2, 60),
-        QTAB_POLES: _steps(gym.make_vec(f"qtab/{POLE}", NUM_ENVS), 2, 60),
+        QTAB_POLES: _steps(gym.make_vec(f"qtab/{POLE}", NUM_ENVS), 2, 200),
         QTAB_ONE: _steps(gym.make_vec(f"qtab/{CAR}", 1), 3, 10_000),
     }
 

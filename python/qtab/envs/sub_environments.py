@@ -32,6 +32,10 @@ class SubEnvironments(SyncVectorEnv[Any, Any]):
             infos["prob"] = infos["prob"].astype(np.float64)
         return observations, rewards, terminations, truncations, infos
 
+    def unbegun(self) -> list[int]:
+        """Returns which were never reset."""
+        return [lane for lane, observation in enumerate(self._env_obs) if observation is None]
+
     def _look_at(self, actions: Any) -> None:
         waiting = self._autoreset_envs
         if self.autoreset_mode is AutoresetMode.DISABLED and waiting.any():

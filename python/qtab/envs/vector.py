@@ -83,10 +83,14 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         painted = self.render_mode in ("rgb_array", "ansi") and not isinstance(env, TaxiEnv | BlackjackEnv)
         if not painted and self.render_mode is not None:
             return False
+        try:
+            kind = None if isinstance(env, _core.Physics) else describe(env)
+        except (TypeError, ValueError):  # a table that Gymnasium may take, but Rust does not
+            return False
         limited = self._example.has_wrapper_attr("_max_episode_steps")
         return self.launch(
             env,
-            None if isinstance(env, _core.Physics) else describe(env),
+            kind,
             [env.action_mask(state).tolist() for state in range(500)] if isinstance(env, TaxiEnv) else None,
             self.num_envs,
             self._example.get_wrapper_attr("_max_episode_steps") if limited else None,
@@ -154,7 +158,8 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
             raise TypeError(f"{place} have `dtype=np.bool_`, got {mask.dtype}")
         if not mask.any():
             raise ValueError(f"{place} contain a boolean array with at least one True value, got reset_mask={mask}")
-        missing = [lane for lane in self.unbegun() if not mask[lane]]
+        unbegun = self.unbegun() if self._python is None else self._python.unbegun()
+        missing = [lane for lane in unbegun if not mask[lane]]
         if missing:
             raise ResetNeeded(f"{place} not leave out sub-environment {missing[0]}, which was never reset")
         return mask

@@ -209,7 +209,7 @@ fn classics(py: Python<'_>, model: Model, terms: Terms) -> PyResult<Box<dyn Step
             boxed(py, env, Nature { crew: 512, says: None, portray: portraits::acrobot, fell: None }, terms)
         }
         Model::Pendulum(env) => {
-            boxed(py, env, Nature { crew: 4096, says: None, portray: portraits::pendulum, fell: None }, terms)
+            boxed(py, env, Nature { crew: 2048, says: None, portray: portraits::pendulum, fell: None }, terms)
         }
         Model::ContinuousMountainCar(env) => {
             boxed(py, env, Nature { crew: 4096, says: None, portray: portraits::continuous_car, fell: None }, terms)
@@ -222,7 +222,7 @@ fn toys(py: Python<'_>, kind: Kind, masks: Option<Vec<[i8; 6]>>, terms: Terms) -
     let crew = 16_384;
     match kind {
         Kind::Rules(Rules { natural, sab }) => {
-            let nature = Nature { crew, says: None, portray: portraits::blackjack, fell: None };
+            let nature = Nature { crew: 4096, says: None, portray: portraits::blackjack, fell: None };
             boxed(py, Dealing(Blackjack { natural, sab }), nature, terms)
         }
         Kind::Process(Process { table, fickle }) => {
