@@ -3,7 +3,6 @@
 import copy
 import multiprocessing
 import pickle
-from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -184,148 +183,6 @@ def test_a_finished_one_must_be_reset_where_autoreset_is_disabled():
     assert lockstep.frozen(before[0][3]) == lockstep.frozen(vectors.ours.portraits()[0][3])
 
 
-TEXTS = ["FrozenLake-v1", "CliffWalking-v1", "Taxi-v4"]
-FRAMES = [(name, mode) for name in [*lockstep.IDS, *TEXTS, "Blackjack-v1"] for mode in ("rgb_array", "rgb_array_list")]
-
-
-@pytest.mark.parametrize(("name", "mode"), [*FRAMES, *((name, "ansi") for name in TEXTS)])
-def test_frames_are_gymnasiums(name, mode):
-    vectors = Vectors(name, 2, render_mode=mode, max_episode_steps=4)
-    assert vectors.ours.render_mode == mode
-    assert vectors.ours.launched == (mode != "rgb_array_list" and name not in ("Taxi-v4", "Blackjack-v1"))
-    if mode != "rgb_array_list":
-        with pytest.raises(gym.error.ResetNeeded):
-            vectors.ours.render()
-    vectors.reset(seed=1)
-    for _ in range(6):
-        frames, expected = vectors.ours.render(), vectors.theirs.render()
-        assert isinstance(frames, tuple)
-        assert data_equivalence(frames, expected, exact=True)
-        vectors.run(1)
-    vectors.ours.close()
-
-
-@pytest.mark.filterwarnings("ignore:.*human.*")
-def test_a_window_is_gymnasiums_too():
-    vectors = Vectors("FrozenLake-v1", 1, render_mode="human")
-    assert not vectors.ours.launched
-    vectors.reset(seed=0)
-    vectors.run(2)
-    assert vectors.ours.render() == vectors.theirs.render() == (None,)
-    vectors.ours.close()
-    vectors.theirs.close()
-
-
-@pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize("name", IDS)
-def test_sub_environments_go_on_where_they_stood(name, mode):
-    vectors = Vectors(name, 5, mode, max_episode_steps=6)
-    vectors.reset(seed=2)
-    vectors.run(8)
-    kept = ["state", "s", "lastaction", "last_u", "fickle_step", "steps_beyond_terminated", "player", "dealer"]
-    kept += ["dealer_top_card_suit", "dealer_top_card_value_str", "_elapsed_steps", "spec"]
-    assert vectors.ours.launched
-    for attribute in (attribute for attribute in kept if hasattr(vectors.theirs.envs[0].unwrapped, attribute)):
-        mine, gymnasiums = vectors.ours.get_attr(attribute), vectors.theirs.get_attr(attribute)
-        if attribute == "state":  # at the left wall Gymnasium's MountainCar has a velocity of integer 0
-            assert list(map(type, mine)) == list(map(type, gymnasiums))
-            mine, gymnasiums = (tuple(np.asarray(state) for state in states) for states in (mine, gymnasiums))
-        if attribute == "s":  # now an integer of Python's, now one of NumPy's
-            mine, gymnasiums = (list(map(int, states)) for states in (mine, gymnasiums))
-        if attribute != "spec":
-            assert data_equivalence(mine, gymnasiums, exact=True), attribute
-    assert not vectors.ours.launched
-    vectors.run(20)
-    vectors.same_streams()
-    if vectors.ours.metadata["autoreset_mode"] is not AutoresetMode.DISABLED:
-        mask = np.array([True, False, False, True, False])
-        vectors.reset(seed=4, options={"reset_mask": mask})
-        vectors.run(9)
-
-
-def test_what_is_assigned_counts():
-    vectors = Vectors("MountainCar-v0", 3)
-    vectors.reset(seed=0)
-    for env in (vectors.ours, vectors.theirs):
-        env.set_attr("gravity", 0.001)
-        env.set_attr("force", [0.001, 0.002, 0.003])
-        assert env.get_attr("force") == (0.001, 0.002, 0.003)
-        with pytest.raises(ValueError, match="length equal to the number of environments"):
-            env.set_attr("force", [0.1])
-    vectors.run(30)
-    vectors = Vectors("CartPole-v1", 2)
-    for env in (vectors.ours, vectors.theirs):  # before the first reset, too
-        env.set_attr("gravity", 20.0)
-    vectors.reset(seed=0)
-    vectors.run(30)
-    assert [type(env.unwrapped).__module__ for env in vectors.ours.envs] == ["qtab.envs.cart_pole"] * 2
-    taxis = Vectors("Taxi-v4", 2)
-    taxis.reset(seed=3)
-    mine, gymnasiums = (env.call("action_mask", 7) for env in (taxis.ours, taxis.theirs))
-    assert data_equivalence(mine, gymnasiums, exact=True)
-
-
-def test_sub_environments_that_were_asked_for_before_the_first_reset_are_reset_like_others():
-    vectors = Vectors("CartPole-v1", 3, AutoresetMode.SAME_STEP)
-    for env in (vectors.ours, vectors.theirs):
-        env.set_attr("force_mag", 5.0)
-    with pytest.raises(gym.error.ResetNeeded, match="leave out sub-environment 2"):
-        vectors.ours.reset(options={"reset_mask": np.array([True, True, False])})
-    vectors.reset(seed=1)
-    vectors.reset(options={"reset_mask": np.array([True, True, False])})
-    vectors.run(40)
-
-
-def test_a_vector_environment_can_be_made_again_from_its_spec():
-    env = ours("Pendulum-v1", 3, g=9.81, autoreset_mode="SameStep", max_episode_steps=7)
-    again = gym.make_vec(gym.envs.registration.EnvSpec.from_json(gym.spec("qtab/Pendulum-v1").to_json()), num_envs=3)
-    assert again.unwrapped.launched
-    same = gym.make_vec(env.spec)
-    assert same.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
-    assert_equal(env.reset(seed=3), same.reset(seed=3))
-    for _ in range(9):
-        assert_equal(env.step(np.ones((3, 1), np.float32)), same.step(np.ones((3, 1), np.float32)))
-
-
-@pytest.mark.filterwarnings("ignore:.*:UserWarning")
-def test_a_table_that_rust_refuses_is_stepped_in_python():
-    for name, kwargs in (
-        ("FrozenLake-v1", {"reward_schedule": (float("inf"), 0, 0)}),
-        ("Taxi-v4", {"is_rainy": True, "rainy_probability": 1.5}),
-    ):
-        vectors = Vectors(name, 2, **kwargs)
-        assert not vectors.ours.launched
-        vectors.reset(seed=0)
-        vectors.run(30)
-
-
-def test_a_constant_that_rust_does_not_know_is_stepped_in_python():
-    for name, kwargs in (
-        ("MountainCar-v0", {"goal_velocity": np.float32(0.01)}),
-        ("Pendulum-v1", {"g": np.float32(9)}),
-    ):
-        vectors = Vectors(name, 3, **kwargs)
-        assert not vectors.ours.launched
-        vectors.reset(seed=1)
-        vectors.run(20)
-        assert vectors.ours.np_random_seed == (1, 2, 3)
-    with pytest.raises(TypeError, match="gravity"):
-        ours("Pendulum-v1", 2, gravity=3.0)
-    with pytest.raises(TypeError, match="copy"):
-        theirs("Pendulum-v1", 2, copy=3.0)
-
-
-@pytest.mark.parametrize(
-    ("options", "name"), [({"low": -3e7, "high": 3e7}, "MountainCar-v0"), ({"high": 9e6}, "CartPole-v1")]
-)
-@pytest.mark.filterwarnings("ignore:.*:UserWarning")
-def test_far_out_is_gymnasiums_to_compute(options, name):
-    vectors = Vectors(name, 2)
-    vectors.reset(seed=0, options=options)
-    assert not vectors.ours.launched
-    vectors.run(10)
-
-
 def _steps_of_a_child(env, queue):
     queue.put(env.step(np.zeros(40, np.int64))[0].tobytes())
 
@@ -350,46 +207,12 @@ def test_it_says_that_it_cannot_be_copied():
             attempt(env)
 
 
-def wrapped(env: Any) -> list[Any]:
-    wrappers = gym.wrappers.vector
-    return [
-        wrappers.RecordEpisodeStatistics(env),
-        wrappers.NormalizeObservation(env),
-        wrappers.NormalizeReward(env),
-        wrappers.ClipReward(env, -0.5, 0.5),
-        wrappers.DictInfoToList(env),
-        wrappers.FlattenObservation(env),
-        wrappers.DtypeObservation(env, np.float64),
-    ]
-
-
-@pytest.mark.parametrize("index", range(7))
-def test_gymnasiums_vector_wrappers_work(index):
-    one, other = (
-        wrapped(make("CartPole-v1", 4, max_episode_steps=20))[index]
-        for make in (ours, lambda *args, **kwargs: theirs(args[0], args[1], **kwargs))
-    )
-    rng = np.random.default_rng(0)
-    resets = [env.reset(seed=0) for env in (one, other)]
-    assert data_equivalence(*resets, exact=True)
-    for _ in range(60):
-        actions = rng.integers(0, 2, 4)
-        steps = [env.step(actions) for env in (one, other)]
-        for step in steps:
-            if isinstance(step[4], dict) and "episode" in step[4]:
-                step[4]["episode"].pop("t")  # seconds
-        assert data_equivalence(*steps, exact=True)
-
-
-def test_videos_are_recorded(tmp_path):
-    env = gym.wrappers.vector.RecordVideo(
-        ours("MountainCar-v0", 2, render_mode="rgb_array", max_episode_steps=5),
-        str(tmp_path / "videos"),
-        episode_trigger=lambda episode: episode == 0,
-        disable_logger=True,
-    )
-    env.reset(seed=0)
-    for _ in range(8):
-        env.step(np.zeros(2, np.int64))
-    env.close()
-    assert [path.suffix for path in (tmp_path / "videos").iterdir()] == [".mp4"]
+def test_a_vector_environment_can_be_made_again_from_its_spec():
+    env = ours("Pendulum-v1", 3, g=9.81, autoreset_mode="SameStep", max_episode_steps=7)
+    again = gym.make_vec(gym.envs.registration.EnvSpec.from_json(gym.spec("qtab/Pendulum-v1").to_json()), num_envs=3)
+    assert again.unwrapped.launched
+    same = gym.make_vec(env.spec)
+    assert same.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
+    assert_equal(env.reset(seed=3), same.reset(seed=3))
+    for _ in range(9):
+        assert_equal(env.step(np.ones((3, 1), np.float32)), same.step(np.ones((3, 1), np.float32)))

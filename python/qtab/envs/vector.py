@@ -6,7 +6,6 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 from gymnasium.envs.toy_text.taxi import TaxiEnv
 from gymnasium.error import Error, ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
@@ -31,8 +30,8 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
 
     Whoever asks for the sub-environments themselves (``envs``, ``call``, ``get_attr``, ``set_attr``) gets them, as
     they stand, and from then on they are stepped in Python, one by one. So they are from the beginning with a window
-    (``render_mode="human"``), a list of frames, a constant that Rust does not compute with, and, for CartPole, Acrobot
-    and Pendulum, on a machine on which NumPy's sine and cosine are not the platform's.
+    (``render_mode="human"``), a list of frames, Taxi's frames, a constant that Rust does not compute with, and, for
+    CartPole, Acrobot and Pendulum, on a machine on which NumPy's sine and cosine are not the platform's.
 
     Args:
         name: Gymnasium's id of the environment.
@@ -80,8 +79,9 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
     def _launched(self, threads: int | None) -> bool:
         """Makes the sub-environments in Rust, if it stands for them."""
         env = self._example.unwrapped
-        painted = self.render_mode in ("rgb_array", "ansi") and not isinstance(env, TaxiEnv | BlackjackEnv)
-        if not painted and self.render_mode is not None:
+        # A taxi's picture depends on the pictures before it.
+        painted = self.render_mode in ("rgb_array", "ansi") and not isinstance(env, TaxiEnv)
+        if self.render_mode is not None and not painted:
             return False
         try:
             kind = None if isinstance(env, _core.Physics) else describe(env)
