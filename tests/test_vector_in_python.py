@@ -1,5 +1,8 @@
 """The sub-environments themselves: as they stand, and stepped in Python from then on."""
 
+import subprocess
+import sys
+
 import gymnasium as gym
 import numpy as np
 import pytest
