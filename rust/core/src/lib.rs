@@ -37,6 +37,7 @@ pub mod features;
 mod hint;
 pub mod learner;
 pub mod learners;
+pub mod planning;
 pub mod random;
 mod table;
 mod trainer;

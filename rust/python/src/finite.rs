@@ -12,9 +12,6 @@ use crate::dispatch::{Built, Kept, boxed, whole};
 use crate::plan::Plan;
 use crate::table::Transitions;
 
-/// A sum, an open card, a usable ace: Gymnasium's spaces of blackjack.
-const BLACKJACK: [u32; 3] = [32, 11, 2];
-
 /// A table, and how likely a taxi's passenger changes their mind.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
@@ -46,7 +43,7 @@ impl Process {
 impl Rules {
     pub(crate) fn build(self, plan: &Plan<'_>) -> PyResult<Built> {
         let Self { natural, sab } = self;
-        build::<_, _, 2>(Blackjack { natural, sab }, Cells(BLACKJACK), plan)
+        build::<_, _, 2>(Blackjack { natural, sab }, Cells(Blackjack::CELLS.map(|count| count as u32)), plan)
     }
 }
 

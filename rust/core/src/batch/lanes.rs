@@ -5,7 +5,7 @@ use std::hint::select_unpredictable;
 use super::Article;
 use super::words::Words;
 use crate::envs::MountainCarState;
-use crate::envs::mountain_car::{DIRECTIONS, REWARD, drive};
+use crate::envs::mountain_car::{DIRECTIONS, REWARD, drive_all};
 use crate::features::Outside;
 use crate::hint::seldom;
 use crate::learners::{Agent, TerminalUpdate};
@@ -51,7 +51,7 @@ fn turns<const K: usize>(
     let mut steps = until.steps;
     while on && steps > 0 {
         steps -= 1;
-        drive(&car, &mut lanes.position, &mut lanes.velocity, &lanes.action);
+        drive_all(&car, &mut lanes.position, &mut lanes.velocity, &lanes.action);
         let mut places = [0; K];
         let mut terminal = [false; K];
         let mut over = [false; K];

@@ -5,10 +5,10 @@ mod wide;
 use crate::env::{Env, Parameters, Step};
 use crate::hint::seldom;
 use crate::random::Draw;
-pub(crate) use wide::drive;
+pub(crate) use wide::drive_all;
 
 /// The starting position is uniform over these.
-const START: [(&str, f64); 2] = [("low", -0.6), ("high", -0.4)];
+pub(crate) const START: [(&str, f64); 2] = [("low", -0.6), ("high", -0.4)];
 /// Action - 1: left, none, right. Looked up, because turning the action into a float takes longer, and the next step
 /// waits for it.
 pub(crate) const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
@@ -110,23 +110,7 @@ impl Env for MountainCar {
 
     #[inline]
     fn step(&self, state: MountainCarState, action: usize, _draw: &mut impl Draw) -> Step<MountainCarState> {
-        let MountainCarState { mut position, mut velocity } = state;
-        let push = DIRECTIONS[action] * self.force;
-        velocity += push + (3.0 * position).cos() * (-self.gravity);
-        velocity = clip(velocity, -self.max_speed, self.max_speed);
-        position += velocity;
-        position = clip(position, self.min_position, self.max_position);
-        if position == self.min_position {
-            seldom();
-            if velocity < 0.0 {
-                velocity = 0.0;
-            }
-        }
-        Step {
-            state: MountainCarState { position, velocity },
-            reward: REWARD,
-            terminated: position >= self.goal_position && velocity >= self.goal_velocity,
-        }
+        self.drive(state, action)
     }
 
     #[inline]
@@ -146,6 +130,30 @@ impl Env for MountainCar {
     #[inline]
     fn observe(&self, state: &MountainCarState) -> [f32; 2] {
         [state.position as f32, state.velocity as f32]
+    }
+}
+
+impl MountainCar {
+    /// One step: nothing in it is left to chance.
+    #[inline]
+    pub fn drive(&self, state: MountainCarState, action: usize) -> Step<MountainCarState> {
+        let MountainCarState { mut position, mut velocity } = state;
+        let push = DIRECTIONS[action] * self.force;
+        velocity += push + (3.0 * position).cos() * (-self.gravity);
+        velocity = clip(velocity, -self.max_speed, self.max_speed);
+        position += velocity;
+        position = clip(position, self.min_position, self.max_position);
+        if position == self.min_position {
+            seldom();
+            if velocity < 0.0 {
+                velocity = 0.0;
+            }
+        }
+        Step {
+            state: MountainCarState { position, velocity },
+            reward: REWARD,
+            terminated: position >= self.goal_position && velocity >= self.goal_velocity,
+        }
     }
 }
 

@@ -44,15 +44,16 @@ impl Error for BadTable {}
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tabular {
     actions: usize,
+    initial: Vec<f64>,
     start: Vec<f64>,
     /// Where the outcomes of a state and an action begin; those of the next end them.
     first: Vec<usize>,
     /// For each outcome the largest cumulative sum so far: the first that is above a number is the first sum above it,
     /// and they never fall, which sums of any floats might.
     bounds: Vec<f64>,
-    /// How likely each outcome is.
-    probabilities: Vec<f64>,
     steps: Vec<Step<u32>>,
+    /// Of each outcome, as it is written: a step goes by the sums, planning by these.
+    probabilities: Vec<f64>,
 }
 
 impl Tabular {
@@ -71,11 +72,12 @@ impl Tabular {
         distribution("initial_state_distrib", start.iter().copied())?;
         let mut table = Self {
             actions,
+            initial: start.to_vec(),
             start: cumulative(start),
             first: vec![0],
             bounds: vec![],
-            probabilities: vec![],
             steps: vec![],
+            probabilities: vec![],
         };
         for (row, outcomes) in rows.iter().enumerate() {
             let place = format!("P[{}][{}]", row / actions, row % actions);
@@ -100,6 +102,23 @@ impl Tabular {
     /// How many states there are.
     pub fn states(&self) -> usize {
         self.start.len()
+    }
+
+    /// How likely each first state is.
+    pub fn initial(&self) -> &[f64] {
+        &self.initial
+    }
+
+    /// What may happen, in the order of `P`: how likely it is, and the step.
+    ///
+    /// # Panics
+    /// For a state or an action outside the table.
+    #[inline]
+    pub fn outcomes(&self, state: usize, action: usize) -> impl Iterator<Item = (f64, Step<u32>)> + '_ {
+        assert!(action < self.actions, "action {action} is none of {}", self.actions);
+        let row = state * self.actions + action;
+        let range = self.first[row]..self.first[row + 1];
+        self.probabilities[range.clone()].iter().copied().zip(self.steps[range].iter().copied())
     }
 
     /// Draws what happens.

@@ -5,8 +5,6 @@
 
 use super::{DIRECTIONS, MountainCar, MountainCarState};
 use crate::cosine;
-use crate::env::{Env, Step};
-use crate::random::NoDraw;
 
 /// How many cars go together best.
 const CARS: usize = 8;
@@ -14,7 +12,7 @@ const CARS: usize = 8;
 /// One step of the physics of `K` cars, none of whose numbers is NaN; bits equal the lone car's where the cosine is
 /// trusted.
 #[inline(always)]
-pub(crate) fn drive<const K: usize>(
+pub(crate) fn drive_all<const K: usize>(
     car: &MountainCar,
     position: &mut [f64; K],
     velocity: &mut [f64; K],
@@ -51,7 +49,7 @@ pub(super) fn step_lanes(
         pulp::Arch::new().dispatch(Wide { car: *car, states, actions, terminated, idle });
     }
     for (lane, state) in (chunked..).zip(rest).filter(|(lane, _)| !idle[*lane]) {
-        let step: Step<_> = car.step(*state, actions[lane], &mut NoDraw);
+        let step = car.drive(*state, actions[lane]);
         (*state, terminated[lane]) = (step.state, step.terminated);
     }
 }
@@ -76,7 +74,7 @@ impl pulp::NullaryFnOnce for Wide<'_> {
             let actions = std::array::from_fn(|lane| if idle[lane] { 0 } else { actions[lane] });
             let mut position: [f64; CARS] = std::array::from_fn(|lane| states[lane].position);
             let mut velocity: [f64; CARS] = std::array::from_fn(|lane| states[lane].velocity);
-            drive(&car, &mut position, &mut velocity, &actions);
+            drive_all(&car, &mut position, &mut velocity, &actions);
             for lane in 0..CARS {
                 let state = MountainCarState { position: position[lane], velocity: velocity[lane] };
                 states[lane] = if idle[lane] { states[lane] } else { state };
