@@ -4,10 +4,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from gymnasium.vector import AutoresetMode
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import lockstep
+import qtab
 from vectors import IDS, MODES, Vectors
 
 LANE_STEPS = 4_200
@@ -75,4 +77,21 @@ def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
 
     run()
     assert seen[1] > 0
-    assert seen[0] > 0 or name == "Pendulum-v1"
+    # At random a taxi and a walker by the cliff seldom arrive.
+    assert seen[0] > 0 or name in ("Pendulum-v1", "Taxi-v4", "CliffWalking-v1", "CliffWalkingSlippery-v1")
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("name", ["Taxi-v4", "CliffWalking-v1"])
+def test_those_who_know_the_way_arrive_in_lock_step(name: str, mode: Any) -> None:
+    policy = qtab.optimum(name).policy
+    vectors = Vectors(name, 9, mode)
+    observations, _ = vectors.reset(seed=3)
+    arrived = 0
+    for _ in range(60):
+        observations, _, terminated, _, _ = vectors.step(policy[observations].astype(np.int64))
+        arrived += int(terminated.sum())
+        if mode is AutoresetMode.DISABLED and terminated.any():
+            observations, _ = vectors.reset(options={"reset_mask": terminated})
+    assert arrived >= 18
+    vectors.same_streams()

@@ -194,58 +194,41 @@ where
 
 /// Classic control: one arm each.
 fn classics(py: Python<'_>, model: Model, terms: Terms) -> PyResult<Box<dyn Steps>> {
+    // A crew's step takes about a quarter of a millisecond.
     match model {
-        Model::MountainCar(env) => {
-            boxed(py, env, Nature { crew: 16_384, says: None, portray: portraits::car, fell: None }, terms)
+        Model::MountainCar(env) => boxed(py, env, Nature::new(16_384, portraits::car), terms),
+        Model::CartPole(env) => {
+            let nature = Nature::new(16_384, portraits::plain::<_, 4>);
+            boxed(py, env, Nature { fell: Some("steps_beyond_terminated"), ..nature }, terms)
         }
-        Model::CartPole(env) => boxed(
-            py,
-            env,
-            Nature { crew: 4096, says: None, portray: portraits::plain::<_, 4>, fell: Some("steps_beyond_terminated") },
-            terms,
-        ),
         Model::Acrobot(env) => {
             let env = Acrobot { single: numpys_cosine_and_sine, ..env };
-            boxed(py, env, Nature { crew: 512, says: None, portray: portraits::acrobot, fell: None }, terms)
+            boxed(py, env, Nature::new(512, portraits::acrobot), terms)
         }
-        Model::Pendulum(env) => {
-            boxed(py, env, Nature { crew: 2048, says: None, portray: portraits::pendulum, fell: None }, terms)
-        }
-        Model::ContinuousMountainCar(env) => {
-            boxed(py, env, Nature { crew: 4096, says: None, portray: portraits::continuous_car, fell: None }, terms)
-        }
+        Model::Pendulum(env) => boxed(py, env, Nature::new(2048, portraits::pendulum), terms),
+        Model::ContinuousMountainCar(env) => boxed(py, env, Nature::new(4096, portraits::continuous_car), terms),
     }
 }
 
 /// Toy text.
 fn toys(py: Python<'_>, kind: Kind, masks: Option<Vec<[i8; 6]>>, terms: Terms) -> PyResult<Box<dyn Steps>> {
-    let crew = 16_384;
-    match kind {
+    let Process { table, fickle } = match kind {
+        Kind::Process(process) => process,
         Kind::Rules(Rules { natural, sab }) => {
-            let nature = Nature { crew: 4096, says: None, portray: portraits::blackjack, fell: None };
-            boxed(py, Dealing(Blackjack { natural, sab }), nature, terms)
+            let nature = Nature::new(4096, portraits::blackjack);
+            return boxed(py, Dealing(Blackjack { natural, sab }), nature, terms);
         }
-        Kind::Process(Process { table, fickle }) => {
-            let table = table.get().0.clone();
-            match masks {
-                None => {
-                    let says = Says { probability: |told: &Told<_>| told.probability, whole: true, masks: None };
-                    boxed(
-                        py,
-                        Telling(table),
-                        Nature { crew, says: Some(says), portray: portraits::table, fell: None },
-                        terms,
-                    )
-                }
-                Some(masks) => {
-                    let masks = Some(Masks { table: masks, cell: |told: &Told<TaxiState>| told.state.cell as usize });
-                    let says = Says { probability: |told: &Told<_>| told.probability, whole: false, masks };
-                    let nature = Nature { crew, says: Some(says), portray: portraits::taxi, fell: None };
-                    boxed(py, Telling(Taxi { table, fickle }), nature, terms)
-                }
-            }
-        }
-    }
+    };
+    let table = table.get().0.clone();
+    let Some(masks) = masks else {
+        let says = Says { probability: |told: &Told<_>| told.probability, whole: true, masks: None };
+        let nature = Nature { says: Some(says), ..Nature::new(16_384, portraits::table) };
+        return boxed(py, Telling(table), nature, terms);
+    };
+    let masks = Masks { table: masks, cell: |told: &Told<TaxiState>| told.state.cell as usize };
+    let says = Says { probability: |told: &Told<_>| told.probability, whole: false, masks: Some(masks) };
+    let nature = Nature { says: Some(says), ..Nature::new(16_384, portraits::taxi) };
+    boxed(py, Telling(Taxi { table, fickle }), nature, terms)
 }
 
 /// `NumPy`'s own, in single precision, which are not the platform's.

@@ -22,6 +22,13 @@ pub(super) struct Nature<E: Env> {
     pub(super) fell: Option<&'static str>,
 }
 
+impl<E: Env> Nature<E> {
+    /// Of those that say nothing.
+    pub(super) fn new(crew: usize, portray: Portray<E>) -> Self {
+        Self { crew, says: None, portray, fell: None }
+    }
+}
+
 pub(super) type Portray<E> = fn(&Bound<'_, PyDict>, &E, &<E as Env>::State, Option<<E as Env>::Action>) -> PyResult<()>;
 
 /// A table's info.
