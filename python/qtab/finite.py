@@ -1,13 +1,14 @@
-"""What Rust trains on by a table or by blackjack's rules: taken from Gymnasium's environment as it stands."""
+"""What Rust trains on by a table or by a few rules: taken from the environment as it stands."""
 
 from typing import Any
 
 from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core, plan
+from qtab.reference.maximization_bias import MaximizationBiasEnv
 
 
-def describe(env: Any) -> plan.Process | plan.Rules:
+def describe(env: Any) -> plan.Process | plan.Rules | plan.Bias:
     """Returns an environment of Gymnasium's toy text, or a table of one's own, as the extension module takes it.
 
     Raises:
@@ -16,5 +17,7 @@ def describe(env: Any) -> plan.Process | plan.Rules:
     """
     if isinstance(env, BlackjackEnv):
         return {"natural": bool(env.natural), "sab": bool(env.sab)}
+    if isinstance(env, MaximizationBiasEnv):
+        return {"actions": int(env.action_space.n), "mean": env.mean, "deviation": env.deviation}
     fickle = float(env.fickle_probability) if getattr(env, "fickle_passenger", False) else None
     return {"table": _core.Transitions(env.P, env.initial_state_distrib, exact=True), "fickle": fickle}

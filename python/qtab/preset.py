@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from qtab.models import gymnasium_id
 
 # G. Hayes, "Getting Started with Reinforcement Learning and Open AI Gym" (2019). What equals the config's default is
@@ -40,6 +42,10 @@ _TAXI = {"learning_rate": 0.5, "discount": 0.99, "epsilon": 0.1, "initial_q": 0.
 _BLACKJACK = {"learning_rate": 0.02, "learning_rate_schedule": "linear", "discount": 1.0, "epsilon": 1.0}
 _BLACKJACK |= {"initial_q": 0.0, "episodes": 500_000}
 
+# Sutton & Barto, 2nd ed., Figure 6.5. In A there are two actions, -inf standing for the others.
+_BIAS_BOOK = {"learning_rate": 0.1, "discount": 1.0, "epsilon": 0.1, "epsilon_schedule": "constant", "ties": "random"}
+_BIAS_BOOK |= {"initial_q": np.array([[0.0] * 2 + [-np.inf] * 8, [0.0] * 10, [0.0] * 10]), "episodes": 300}
+
 # The first preset of an environment is its own.
 _PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "MountainCar-v0": {"article": _ARTICLE, "solved": _SOLVED},
@@ -49,6 +55,7 @@ _PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "CliffWalkingSlippery-v1": {"tuned": _SLIPPERY_CLIFF},
     "Taxi-v4": {"tuned": _TAXI},
     "Blackjack-v1": {"tuned": _BLACKJACK},
+    "MaximizationBias-v0": {"book": _BIAS_BOOK},
 }
 
 

@@ -13,6 +13,7 @@ SUBCOMMANDS = {
     "verify": "replay a saved run through Gymnasium and NumPy, and compare byte for byte",
     "bench": "time this package against Gymnasium and the article's loop",
     "sweep": "train many settings over many seeds, as a file says; called again, it goes on",
+    "book": "run an experiment of Sutton & Barto's book: its settings, a table, a figure",
     "report": "turn a sweep's store into tables, pictures and one HTML page",
 }
 """Each is a module of this package with ``run(arguments) -> exit code``."""

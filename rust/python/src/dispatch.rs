@@ -12,7 +12,7 @@ use qtab_core::worlds::{Boxed, Native, Recorded, Recordings, Start};
 use qtab_core::{Learner, Trainer, World};
 
 use crate::failure::Failure;
-use crate::finite::{Process, Rules};
+use crate::finite::{Bias, Process, Rules};
 use crate::model::Model;
 use crate::observation::{Floats, Integers};
 use crate::plan::{Discretizer, Plan, given, unknown};
@@ -237,6 +237,9 @@ pub(crate) fn build(environment: &Bound<'_, PyAny>, plan: &Plan<'_>) -> PyResult
     }
     if let Ok(rules) = environment.extract::<Rules>() {
         return rules.build(plan);
+    }
+    if let Ok(bias) = environment.extract::<Bias>() {
+        return bias.build(plan);
     }
     match environment.extract::<PythonEnvironment>() {
         Ok(environment) => python(environment, plan),

@@ -1,9 +1,9 @@
-//! Training on what has a row for each of its states: tables, and blackjack.
+//! Training on what has a row for each of its states: tables, blackjack, the example of maximisation bias.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::Env;
-use qtab_core::envs::{Blackjack, Taxi};
+use qtab_core::envs::{Blackjack, MAXIMIZATION_BIAS_STATES, MaximizationBias, Taxi};
 use qtab_core::features::{Cells, Features, Identity};
 use qtab_core::random::Stream;
 use qtab_core::worlds::Native;
@@ -31,6 +31,15 @@ pub(crate) struct Rules {
     sab: bool,
 }
 
+/// The example of maximisation bias: B's actions, and the mean and the deviation of its rewards.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Bias {
+    actions: usize,
+    mean: f64,
+    deviation: f64,
+}
+
 impl Process {
     pub(crate) fn build(self, py: Python<'_>, plan: &Plan<'_>) -> PyResult<Built> {
         let table = self.table.bind(py).get().0.clone();
@@ -47,6 +56,14 @@ impl Rules {
     pub(crate) fn build(self, plan: &Plan<'_>) -> PyResult<Built> {
         let Self { natural, sab } = self;
         build::<_, _, 2>(Blackjack { natural, sab }, Cells(BLACKJACK), plan)
+    }
+}
+
+impl Bias {
+    pub(crate) fn build(self, plan: &Plan<'_>) -> PyResult<Built> {
+        let Self { actions, mean, deviation } = self;
+        let env = MaximizationBias { actions, mean, deviation };
+        build::<_, _, 0>(env, Identity(MAXIMIZATION_BIAS_STATES), plan)
     }
 }
 

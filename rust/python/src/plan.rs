@@ -150,7 +150,8 @@ impl Plan<'_> {
         let plain = ["q_learning", "sarsa", "expected_sarsa"].contains(&self.algorithm.name.as_str())
             && (epsilon.schedule.as_str(), epsilon.warm_up, ties.as_str()) == ("linear", 0, "first")
             && self.learning_rate.schedule == "constant"
-            && self.on_truncation == "bootstrap";
+            && self.on_truncation == "bootstrap"
+            && !self.some_missing();
         if !plain {
             return Ok(None);
         }
@@ -198,16 +199,26 @@ impl Plan<'_> {
 
     fn policy(&self) -> PyResult<Behaviour> {
         match &self.policy {
-            Choice::EpsilonGreedy { epsilon, ties } => Ok(Behaviour::EpsilonGreedy {
-                epsilon: epsilon.schedule(self.episodes)?,
-                ties: match ties.as_str() {
+            Choice::EpsilonGreedy { epsilon, ties } => {
+                let epsilon = epsilon.schedule(self.episodes)?;
+                let ties = match ties.as_str() {
                     "first" => Ties::First,
                     "random" => Ties::Random,
                     other => return Err(unknown("ties", other)),
-                },
-            }),
+                };
+                Ok(if self.some_missing() {
+                    Behaviour::EpsilonGreedyAmongSome { epsilon, ties }
+                } else {
+                    Behaviour::EpsilonGreedy { epsilon, ties }
+                })
+            }
             Choice::Softmax { temperature } => Ok(Behaviour::softmax(*temperature, self.actions)),
         }
+    }
+
+    /// Whether states lack actions: their first values are -∞.
+    fn some_missing(&self) -> bool {
+        matches!(&self.initial_q, InitialQ::Table(values) if values.as_array().iter().any(|&q| q == f64::NEG_INFINITY))
     }
 
     fn rate(&self, weights: usize, lit: usize) -> PyResult<Rate> {

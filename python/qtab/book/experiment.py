@@ -1,0 +1,209 @@
+"""What an experiment of the book is: settings, what is measured of each, and the lines that they make."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab import checks
+from qtab.book import trials
+from qtab.book.trials import Environment, Outcome
+from qtab.many import thread_count
+from qtab.progress import Bar
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+CAP = 5_000
+"""An episode of an experiment ends after so many steps, if the experiment says nothing else."""
+RUNS_AT_ONCE = 5_000
+"""So many runs are kept before they are measured: the bar moves, and memory stays small."""
+
+Numbers: TypeAlias = NDArray[np.float64]
+Measure: TypeAlias = Callable[[Outcome], Numbers]
+"""From the outcome to (runs, points)."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One thing that is run many times."""
+
+    line: str
+    """The line of the figure that it belongs to."""
+    env: Environment
+    config: Mapping[str, Any]
+    """What :func:`qtab.train` is given."""
+    measure: Measure
+    x: tuple[float, ...] | None = None
+    """Where its points lie; None means episodes, from the first."""
+    most_runs: int | None = None
+    """The book's count, where it is less than the experiment's."""
+    drawn: bool = True
+    """Whether the picture shows it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A line of a figure: a point for each x."""
+
+    name: str
+    x: Numbers
+    mean: Numbers
+    """Over the runs."""
+    error: Numbers
+    """The standard error of each mean; NaN where there is one run."""
+    runs: int
+    capped: NDArray[np.int64]
+    """At each point, how many episodes of its setting were capped."""
+    diverged: NDArray[np.int64]
+    """At each point, how many runs of its setting diverged."""
+    drawn: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What an experiment brought. ``str`` of it is the table."""
+
+    experiment: "Experiment"
+    lines: tuple[Line, ...]
+    runs: int
+    seed: int
+    seconds: float
+    extra: Any = field(default=None, repr=False)
+    """What a picture needs beside the lines."""
+
+    def __str__(self) -> str:
+        """The table, with the settings above it."""
+        from qtab.book.table import table
+
+        return table(self)
+
+    def save(self, path: Path | str) -> None:
+        """Writes all points to a CSV file.
+
+        Raises:
+            OSError: if it cannot be written.
+        """
+        from qtab.book.table import save
+
+        save(self, Path(path))
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draws the figure and returns the axes.
+
+        Raises:
+            ModuleNotFoundError: without matplotlib; it names the ``pip install``.
+        """
+        return self.experiment.draw(self, ax)
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """An experiment of the book, and how its figure is drawn."""
+
+    name: str
+    """"figure-10.4"."""
+    title: str
+    book: str
+    """What the book says of the settings."""
+    silent: str
+    """What it leaves open, and what is done here."""
+    settings: Sequence[Setting]
+    runs: int
+    """Of each setting, as in the book."""
+    x: str
+    y: str
+    shown: tuple[float, ...] | None = None
+    """The points that the table shows; None means all."""
+    cap: int = CAP
+    log_x: bool = False
+    log_y: bool = False
+    x_range: tuple[float, float] | None = None
+    y_range: tuple[float, float] | None = None
+    error_unit: str = ""
+    """What follows a number in the table."""
+
+    @property
+    def number(self) -> str:
+        """The book's number."""
+        return self.name.partition("-")[2]
+
+    def run(
+        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
+    ) -> Result:
+        """Runs every setting; see :func:`qtab.book.run`."""
+        count, seed, workers = self.check(runs, seed, threads)
+        began = time.perf_counter()
+        counts = [min(count, setting.most_runs or count) for setting in self.settings]
+        points: dict[str, list[_Point]] = {}
+        with Bar(sum(counts), "run", progress, self.name) as shown:
+            done = 0
+            for setting, own in zip(self.settings, counts, strict=True):
+                point = _Point(setting)
+                for first in range(0, own, RUNS_AT_ONCE):
+                    seeds = range(seed + first, seed + min(first + RUNS_AT_ONCE, own))
+                    point.add(trials.train(setting.env, self.config(setting), seeds, workers))
+                    done += len(seeds)
+                    shown.move_to(done)
+                points.setdefault(setting.line, []).append(point)
+        lines = tuple(_line(name, row) for name, row in points.items())
+        return Result(self, lines, count, seed, time.perf_counter() - began)
+
+    def check(self, runs: int | None, seed: int, threads: int | None) -> tuple[int, int, int]:
+        """Returns how many runs of each setting there will be, their first seed, and how many threads.
+
+        Raises:
+            TypeError: for an argument of the wrong type.
+            ValueError: for an argument out of range.
+        """
+        count = self.runs if runs is None else checks.integer("runs", runs, least=1)
+        return count, checks.integer("seed", seed, least=0), thread_count(threads)
+
+    def config(self, setting: Setting) -> dict[str, Any]:
+        """Returns what a run of a setting is trained with, but for its seed."""
+        return {"max_episode_steps": self.cap, **setting.config}
+
+    def draw(self, result: Result, ax: "Axes | None" = None) -> "Axes":
+        """Draws the lines of a result; see :meth:`Result.plot`."""
+        from qtab.book.drawing import draw_lines
+
+        return draw_lines(result, ax)
+
+
+class _Point:
+    """A setting's numbers, gathered from one lot of runs to the next."""
+
+    def __init__(self, setting: Setting) -> None:
+        self.setting = setting
+        self.samples: list[Numbers] = []
+        self.capped = 0
+        self.diverged = 0
+
+    def add(self, outcome: Outcome) -> None:
+        self.samples.append(self.setting.measure(outcome))
+        self.capped += int(outcome.capped.sum())
+        self.diverged += int(outcome.diverged.sum())
+
+
+def _line(name: str, points: list[_Point]) -> Line:
+    x: list[float] = []
+    means: list[Numbers] = []
+    errors: list[Numbers] = []
+    capped: list[int] = []
+    diverged: list[int] = []
+    for point in points:
+        samples = np.concatenate(point.samples)
+        runs, width = samples.shape
+        x += range(1, width + 1) if point.setting.x is None else point.setting.x
+        means.append(samples.mean(axis=0))
+        errors.append(samples.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(width, np.nan))
+        capped += [point.capped] * width
+        diverged += [point.diverged] * width
+    mean, error = np.concatenate(means), np.concatenate(errors)
+    columns = np.array(x, np.float64), mean, error
+    counts = np.array(capped), np.array(diverged)
+    return Line(name, *columns, len(np.concatenate(points[0].samples)), *counts, points[0].setting.drawn)

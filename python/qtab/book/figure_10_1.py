@@ -1,0 +1,96 @@
+"""Figure 10.1: the cost-to-go of Mountain Car while it is learned."""
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from qtab import checks
+from qtab.book.experiment import Experiment, Line, Numbers, Result, Setting
+from qtab.book.measures import mean_length
+from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
+from qtab.progress import Bar
+from qtab.run import Run
+from qtab.training import train
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+FIRST_STEPS = 428
+EPISODES = (12, 104, 1000, 9000)
+POINTS = 40
+"""Of the surfaces, along each axis."""
+
+_SARSA = {**TILE_CODING, "algorithm": "sarsa", "learning_rate": 0.3}
+_POSITIONS = np.linspace(-1.2, 0.5, POINTS)
+_VELOCITIES = np.linspace(-0.07, 0.07, POINTS)
+
+
+def cost_to_go(run: Run) -> Numbers:
+    """Returns (positions, velocities): the negative of the largest action value."""
+    return np.array([[-run.q_values((x, v)).max() for v in _VELOCITIES] for x in _POSITIONS])
+
+
+@dataclass(frozen=True)
+class CostToGo(Experiment):
+    """One run, looked at five times."""
+
+    def run(
+        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
+    ) -> Result:
+        """Trains to each of the five moments: a run is the beginning of every longer one with its seed."""
+        count, seed, _ = self.check(runs, seed, threads)
+        began = time.perf_counter()
+        surfaces: dict[str, list[Numbers]] = {}
+        capped: dict[str, int] = {}
+        with Bar(count * len(self.settings), "surface", progress, self.name) as shown:
+            for number in range(count):
+                for setting in self.settings:
+                    run = train(setting.env, progress=False, **self.config(setting), seed=seed + number)  # type: ignore[arg-type]
+                    surfaces.setdefault(setting.line, []).append(cost_to_go(run))
+                    limited = setting.line != _FIRST
+                    capped[setting.line] = capped.get(setting.line, 0) + int((~run.terminated).sum()) * limited
+                    shown.move_to(sum(map(len, surfaces.values())))
+        lines = tuple(_line(name, rows, capped[name]) for name, rows in surfaces.items())
+        first = {name: rows[0] for name, rows in surfaces.items()}
+        return Result(self, lines, count, seed, time.perf_counter() - began, first)
+
+    def draw(self, result: Result, ax: "Axes | None" = None) -> "Axes":
+        """Draws the five surfaces side by side, each with its own axes; ``ax`` must be None.
+
+        Raises:
+            ValueError: if it is not.
+        """
+        from qtab.book.drawing import draw_surfaces
+
+        if ax is not None:
+            raise ValueError("ax must be None for figure-10.1, which has five of its own")
+        surfaces: dict[str, Any] = result.extra
+        return draw_surfaces(result, _POSITIONS, _VELOCITIES, surfaces)
+
+
+def _line(name: str, rows: list[Numbers], capped: int) -> Line:
+    samples = np.array([[rows_.max(), rows_.mean()] for rows_ in rows])
+    error = samples.std(axis=0, ddof=1) / np.sqrt(len(rows)) if len(rows) > 1 else np.full(2, np.nan)
+    counts = np.full(2, capped), np.zeros(2, np.int64)
+    return Line(name, np.array([1.0, 2.0]), samples.mean(axis=0), error, len(rows), *counts)
+
+
+_FIRST = f"episode 1, step {FIRST_STEPS}"
+
+EXPERIMENT = CostToGo(
+    name="figure-10.1",
+    title="the cost-to-go of Mountain Car",
+    book=f"one run with ε = 0, looked at after step {FIRST_STEPS} of the first episode and after episodes 12, 104, 1000 and "
+    "9000. By a footnote its data come from Sarsa(λ), and Sarsa is said to behave similarly",
+    silent=f"α (0.3/8 here; Sarsa without traces); {OPEN}",
+    settings=(
+        # A time-out learns from the last step as if the episode went on, which it did.
+        Setting(_FIRST, ENV, {**_SARSA, "episodes": 1, "max_episode_steps": FIRST_STEPS}, mean_length),
+        *(Setting(f"episode {episode}", ENV, {**_SARSA, "episodes": episode}, mean_length) for episode in EPISODES),
+    ),
+    runs=1,
+    x="1: largest, 2: mean",
+    y="cost-to-go",
+)
