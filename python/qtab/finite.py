@@ -18,6 +18,6 @@ def describe(env: Any) -> plan.Process | plan.Rules | plan.Bias:
     if isinstance(env, BlackjackEnv):
         return {"natural": bool(env.natural), "sab": bool(env.sab)}
     if isinstance(env, MaximizationBiasEnv):
-        return {"actions": int(env.action_space.n), "mean": env.mean, "deviation": env.deviation}
+        return {"actions": env.actions, "mean": env.mean, "deviation": env.deviation}
     fickle = float(env.fickle_probability) if getattr(env, "fickle_passenger", False) else None
     return {"table": _core.Transitions(env.P, env.initial_state_distrib, exact=True), "fickle": fickle}

@@ -44,22 +44,19 @@ def draw_surfaces(result: Result, x: Numbers, y: Numbers, surfaces: Mapping[str,
         from matplotlib.figure import Figure
     except ModuleNotFoundError as error:
         raise missing(error, "plot") from None
-    figure = Figure(figsize=(10.5, 6.5), layout="constrained")
+    figure = Figure(figsize=(9, 5.5), layout="constrained")
     figure.suptitle(_title(result))
     positions, velocities = np.meshgrid(x, y, indexing="ij")
     ax: Any = None
     for index, (name, surface) in enumerate(surfaces.items()):
+        points = {"rcount": len(x), "ccount": len(y)}
         ax = figure.add_subplot(2, 3, index + 1, projection="3d")
-        ax.plot_surface(positions, velocities, surface, cmap="viridis", linewidth=0, rcount=POINTS, ccount=POINTS)
+        ax.plot_surface(positions, velocities, surface, cmap="viridis", linewidth=0, **points)
         ax.set_title(f"{name}: up to {surface.max():.0f}", fontsize="medium")
-        ax.set_xlabel("position")
-        ax.set_ylabel("velocity")
+        ax.set(xlabel="position", ylabel="velocity", xticks=(x[0], -0.5, x[-1]), yticks=(y[0], 0, y[-1]))
         ax.tick_params(labelsize="x-small")
     axes: Axes = ax
     return axes
-
-
-POINTS = 40
 
 
 def _title(result: Result) -> str:

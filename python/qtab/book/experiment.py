@@ -58,7 +58,7 @@ class Line:
     """The standard error of each mean; NaN where there is one run."""
     runs: int
     capped: NDArray[np.int64]
-    """At each point, how many episodes of its setting were capped."""
+    """At each point, how many of its episodes were capped."""
     diverged: NDArray[np.int64]
     """At each point, how many runs of its setting diverged."""
     drawn: bool = True
@@ -120,12 +120,9 @@ class Experiment:
     shown: tuple[float, ...] | None = None
     """The points that the table shows; None means all."""
     cap: int = CAP
-    log_x: bool = False
     log_y: bool = False
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
-    error_unit: str = ""
-    """What follows a number in the table."""
 
     @property
     def number(self) -> str:
@@ -180,12 +177,13 @@ class _Point:
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
         self.samples: list[Numbers] = []
-        self.capped = 0
+        self.capped: NDArray[np.int64] = np.zeros(1, np.int64)
         self.diverged = 0
 
     def add(self, outcome: Outcome) -> None:
         self.samples.append(self.setting.measure(outcome))
-        self.capped += int(outcome.capped.sum())
+        # A curve has a point for each episode; elsewhere each point is made of them all.
+        self.capped = self.capped + (outcome.capped.sum(axis=0) if self.setting.x is None else outcome.capped.sum())
         self.diverged += int(outcome.diverged.sum())
 
 
@@ -193,7 +191,7 @@ def _line(name: str, points: list[_Point]) -> Line:
     x: list[float] = []
     means: list[Numbers] = []
     errors: list[Numbers] = []
-    capped: list[int] = []
+    capped: list[NDArray[np.int64]] = []
     diverged: list[int] = []
     for point in points:
         samples = np.concatenate(point.samples)
@@ -201,9 +199,9 @@ def _line(name: str, points: list[_Point]) -> Line:
         x += range(1, width + 1) if point.setting.x is None else point.setting.x
         means.append(samples.mean(axis=0))
         errors.append(samples.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(width, np.nan))
-        capped += [point.capped] * width
+        capped.append(np.broadcast_to(point.capped, width))
         diverged += [point.diverged] * width
     mean, error = np.concatenate(means), np.concatenate(errors)
     columns = np.array(x, np.float64), mean, error
-    counts = np.array(capped), np.array(diverged)
+    counts = np.concatenate(capped), np.array(diverged)
     return Line(name, *columns, len(np.concatenate(points[0].samples)), *counts, points[0].setting.drawn)

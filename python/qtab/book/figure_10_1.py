@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab import checks
 from qtab.book.experiment import Experiment, Line, Numbers, Result, Setting
 from qtab.book.measures import mean_length
 from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
@@ -22,7 +21,13 @@ EPISODES = (12, 104, 1000, 9000)
 POINTS = 40
 """Of the surfaces, along each axis."""
 
-_SARSA = {**TILE_CODING, "algorithm": "sarsa", "learning_rate": 0.3}
+_SARSA = {
+    **TILE_CODING,
+    "algorithm": "sarsa_lambda",
+    "traces": "replacing",
+    "trace_decay": 0.9,
+    "learning_rate": 0.5,
+}
 _POSITIONS = np.linspace(-1.2, 0.5, POINTS)
 _VELOCITIES = np.linspace(-0.07, 0.07, POINTS)
 
@@ -71,7 +76,7 @@ class CostToGo(Experiment):
 
 
 def _line(name: str, rows: list[Numbers], capped: int) -> Line:
-    samples = np.array([[rows_.max(), rows_.mean()] for rows_ in rows])
+    samples = np.array([[surface.max(), surface.mean()] for surface in rows])
     error = samples.std(axis=0, ddof=1) / np.sqrt(len(rows)) if len(rows) > 1 else np.full(2, np.nan)
     counts = np.full(2, capped), np.zeros(2, np.int64)
     return Line(name, np.array([1.0, 2.0]), samples.mean(axis=0), error, len(rows), *counts)
@@ -82,9 +87,9 @@ _FIRST = f"episode 1, step {FIRST_STEPS}"
 EXPERIMENT = CostToGo(
     name="figure-10.1",
     title="the cost-to-go of Mountain Car",
-    book=f"one run with ε = 0, looked at after step {FIRST_STEPS} of the first episode and after episodes 12, 104, 1000 and "
-    "9000. By a footnote its data come from Sarsa(λ), and Sarsa is said to behave similarly",
-    silent=f"α (0.3/8 here; Sarsa without traces); {OPEN}",
+    book=f"one run with ε = 0, looked at after step {FIRST_STEPS} of the first episode and after episodes 12, 104, "
+    "1000 and 9000. By a footnote its data come from semi-gradient Sarsa(λ)",
+    silent=f"λ, α and the kind of traces (0.9, 0.5/8, replacing here); {OPEN}",
     settings=(
         # A time-out learns from the last step as if the episode went on, which it did.
         Setting(_FIRST, ENV, {**_SARSA, "episodes": 1, "max_episode_steps": FIRST_STEPS}, mean_length),

@@ -10,7 +10,12 @@ EXPERIMENT = Experiment(
     book="8 tilings, ε = 0, α of 0.1/8, 0.2/8 and 0.5/8; 500 episodes, 100 runs",
     silent=OPEN,
     settings=tuple(
-        Setting(f"α = {alpha}/8", ENV, {**TILE_CODING, "algorithm": "sarsa", "learning_rate": alpha, "episodes": 500}, lengths)
+        Setting(
+            f"α = {alpha}/8",
+            ENV,
+            {**TILE_CODING, "algorithm": "sarsa", "learning_rate": alpha, "episodes": 500},
+            lengths,
+        )
         for alpha in (0.1, 0.2, 0.5)
     ),
     runs=100,

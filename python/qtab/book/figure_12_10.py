@@ -10,7 +10,8 @@ TRACE_DECAYS = (0.0, 0.68, 0.84, 0.92, 0.96, 0.98, 0.99)
 EXPERIMENT = Experiment(
     name="figure-12.10",
     title="Sarsa(λ) with replacing traces on Mountain Car, by λ and α",
-    book="λ of 0, 0.68, 0.84, 0.92, 0.96, 0.98 and 0.99; the first 50 episodes, 100 runs; beside it Figure 10.4 once more",
+    book="λ of 0, 0.68, 0.84, 0.92, 0.96, 0.98 and 0.99; the first 50 episodes, 100 runs; beside it, Figure 10.4 "
+    "once more",
     silent=f"which values of α (ten here); {OPEN}",
     settings=tuple(
         Setting(

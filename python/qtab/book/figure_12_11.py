@@ -17,8 +17,8 @@ KINDS: dict[str, dict[str, Any]] = {
 EXPERIMENT = Experiment(
     name="figure-12.11",
     title="Sarsa(λ) with four kinds of traces on Mountain Car",
-    book="true online Sarsa(λ), and Sarsa(λ) with replacing traces, with replacing traces that clear those of the other "
-    "actions, and with accumulating traces; the first 20 episodes, 100 runs",
+    book="true online Sarsa(λ), and Sarsa(λ) with replacing traces, with replacing traces that clear those of the "
+    "other actions, and with accumulating traces; the first 20 episodes, 100 runs",
     silent=f"λ (0.9 here); {OPEN}",
     settings=tuple(
         Setting(

@@ -8,7 +8,8 @@ _BOOK = {"preset": "book", "learning_rate": 0.1, "discount": 1.0, "epsilon": 0.1
 
 def left(outcome: Outcome) -> Numbers:
     """Returns, in per cent, whether an episode went left: it then took two steps."""
-    return 100.0 * (outcome.lengths == 2)
+    share: Numbers = 100.0 * (outcome.lengths == 2)
+    return share
 
 
 EXPERIMENT = Experiment(

@@ -19,8 +19,8 @@ EXPERIMENT = Experiment(
     name="figure-8.2",
     title="Dyna-Q with different numbers of planning steps",
     book="α = 0.1, ε = 0.1, γ = 0.95, values of zero, ties at random; 50 episodes, 30 runs",
-    silent="nothing. There the first episode is the same for every n (about 1,700 steps, not shown); here planning draws "
-    "from the same stream as acting, so that it differs",
+    silent="nothing. There the first episode is the same for every n (about 1,700 steps, not shown); here planning "
+    "draws from the same stream as acting, so that it differs",
     settings=tuple(
         Setting(f"n = {steps}", dyna_maze, {**_DYNA, "planning_steps": steps}, lengths) for steps in (0, 5, 50)
     ),

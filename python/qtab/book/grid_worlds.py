@@ -1,5 +1,7 @@
 """The book's grid worlds as transition tables. Cells are numbered row by row from the upper left corner."""
 
+from collections.abc import Callable
+
 from qtab.envs.tabular import Outcome, TabularEnv
 
 Cell = tuple[int, int]
@@ -55,7 +57,14 @@ def dyna_maze() -> TabularEnv:
 
 
 def _grid_world(
-    rows: int, columns: int, start: Cell, goal: Cell, step, *, step_reward: float, goal_reward: float
+    rows: int,
+    columns: int,
+    start: Cell,
+    goal: Cell,
+    step: Callable[[Cell, int], Cell],
+    *,
+    step_reward: float,
+    goal_reward: float,
 ) -> TabularEnv:
     def number(cell: Cell) -> int:
         return cell[0] * columns + cell[1]

@@ -17,7 +17,7 @@ TILE_CODING: dict[str, Any] = {
     "ties": "random",
     "initial_q": 0.0,
 }
-"""8 tilings of 8 by 8 tiles with asymmetric offsets. Values of zero are optimistic, so that no exploration is needed."""
+"""8 tilings of 8 by 8 tiles with asymmetric offsets. Values of zero are optimistic: no exploration is needed."""
 
 OPEN = (
     "how ties are broken (at random here), and what becomes of an episode that does not end (capped here). The book's "

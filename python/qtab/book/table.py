@@ -25,7 +25,7 @@ def table(result: Result) -> str:
                     line.name,
                     f"{line.x[index]:g}",
                     _rounded(line.mean[index], error),
-                    "-" if math.isnan(error) else f"{error:.2g}",
+                    "-" if math.isnan(error) else _rounded(error, error),
                     str(line.capped[index]),
                     str(line.diverged[index]),
                 )
@@ -51,12 +51,14 @@ def _head(result: Result) -> Iterator[str]:
     yield f"{experiment.name.replace('-', ' ').capitalize()}: {experiment.title}"
     for name, text in (("the book", experiment.book), ("it leaves open", experiment.silent)):
         yield from textwrap.wrap(f"{name}: {text}", WIDTH, initial_indent="  ", subsequent_indent="    ")
-    counts = sorted({line.runs for line in result.lines}, reverse=True)
-    fewer = f", fewer than its own {experiment.runs:,}: --runs" if result.runs < experiment.runs else ""
-    seeds = f"seeds from {result.seed}"
-    yield f"  {' and '.join(f'{count:,}' for count in counts)} runs of each setting{fewer}, {seeds}; " + (
-        f"an episode is cut off after {experiment.cap:,} steps; {result.seconds:.1f} s"
-    )
+    counts = " and ".join(f"{count:,}" for count in sorted({line.runs for line in result.lines}, reverse=True))
+    runs = f"{counts} {'run' if counts == '1' else 'runs'} of each setting"
+    if result.runs != experiment.runs:
+        runs += (
+            f" ({'FEWER' if result.runs < experiment.runs else 'more'} than the {experiment.runs:,} of a whole figure)"
+        )
+    rest = f"seeds from {result.seed}; episodes are capped at {experiment.cap:,} steps; {result.seconds:.1f} s"
+    yield from textwrap.wrap(f"{runs}, {rest}", WIDTH, initial_indent="  ", subsequent_indent="    ")
 
 
 def _shown(result: Result, line: Line) -> list[int]:
@@ -65,7 +67,7 @@ def _shown(result: Result, line: Line) -> list[int]:
 
 
 def _rounded(mean: float, error: float) -> str:
-    """A digit more than the standard error is good for."""
+    """As far as the first two digits of the standard error."""
     if math.isnan(error) or error <= 0:
         return f"{mean:.5g}"
     return f"{mean:,.{max(0, 1 - math.floor(math.log10(error)))}f}"

@@ -12,7 +12,7 @@ A, B, END = range(3)
 RIGHT, LEFT = range(2)
 
 
-class MaximizationBiasEnv(gym.Env[int, int]):
+class MaximizationBiasEnv(gym.Env[Any, Any]):
     """A, whence right ends the episode and left leads to B; there every action ends it with a normal reward.
 
     The mean reward of B lies below zero, so that left is always a mistake; yet the largest of B's estimates soon lies
@@ -31,7 +31,8 @@ class MaximizationBiasEnv(gym.Env[int, int]):
 
     def __init__(self, actions: int = 10, mean: float = -0.1, deviation: float = 1.0) -> None:
         self.observation_space = gym.spaces.Discrete(3)
-        self.action_space = gym.spaces.Discrete(checks.integer("actions", actions, least=2))
+        self.actions = checks.integer("actions", actions, least=2)
+        self.action_space = gym.spaces.Discrete(self.actions)
         self.mean, self.deviation = checks.finite("mean", mean), checks.finite("deviation", deviation)
         self.state = END
 
@@ -63,7 +64,7 @@ class MaximizationBiasEnv(gym.Env[int, int]):
         return self.mean + self.deviation * (math.sqrt(-2.0 * math.log(1.0 - u)) * math.cos(math.tau * v))
 
     def _info(self) -> dict[str, Any]:
-        mask = np.ones(int(self.action_space.n), np.int8)
+        mask = np.ones(self.actions, np.int8)
         if self.state == A:
             mask[LEFT + 1 :] = 0
         return {"action_mask": mask}

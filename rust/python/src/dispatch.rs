@@ -4,7 +4,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use qtab_core::features::{Features, MOST_TILINGS, Real, Rounding};
 use qtab_core::learners::{
-    self, Agent, Control, DoubleQLearning, DynaQ, DynaQPlus, EpsilonGreedy, ExpectedSarsa, NStepSarsa, QLearning, Rule,
+    self, Agent, Control, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, NStepSarsa, Policy, QLearning, Rule,
     Sarsa, SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
 };
 use qtab_core::random::{Pcg64, Stream};
@@ -74,14 +74,15 @@ pub(crate) fn native(model: Model, plan: &Plan<'_>) -> PyResult<Built> {
 
 /// The combinations that are compiled whole: a table of so many actions, learned as in the article, or by its next of
 /// kin.
-pub(crate) fn whole<W, const N: usize>(
+pub(crate) fn whole<W, P, const N: usize>(
     world: W,
-    agent: Agent<N, EpsilonGreedy, f64>,
+    agent: Agent<N, P, f64>,
     draw: Pcg64,
     plan: &Plan<'_>,
 ) -> Box<dyn Run>
 where
     W: World<Rows = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
+    P: Policy + Send + 'static,
 {
     match plan.algorithm.name.as_str() {
         "sarsa" => Box::new(Trainer::new(world, Control { agent, rule: Sarsa }, draw)),

@@ -67,7 +67,7 @@ impl Bias {
     }
 }
 
-/// The article's learner of `N` actions is compiled whole.
+/// The article's learner of `N` actions is compiled whole, and its next of kin with other policies.
 fn build<E, F, const N: usize>(env: E, features: F, plan: &Plan<'_>) -> PyResult<Built>
 where
     E: Env<Action = usize, State: Send> + Send + 'static,
@@ -78,11 +78,15 @@ where
     }
     let (rows, mut draw) = (features.len(), plan.stream()?);
     let world = Native::new(env, features, plan.max_episode_steps, plan.environment_stream());
-    if let (true, Stream::Pcg64(draw), 0) = (plan.actions == N, &mut draw, plan.record)
-        && let Some(agent) = plan.article::<N>(rows, draw)?
-    {
-        let run = whole(world, agent, draw.clone(), plan);
-        return Ok(Built { run, kept: Kept::Nothing, attached: false });
+    if let (true, Stream::Pcg64(draw), 0) = (plan.actions == N, &mut draw, plan.record) {
+        if let Some(agent) = plan.article::<N>(rows, draw)? {
+            let run = whole(world, agent, draw.clone(), plan);
+            return Ok(Built { run, kept: Kept::Nothing, attached: false });
+        }
+        if let Some(agent) = plan.plain::<N, _>(plan.policy()?, rows, draw)? {
+            let run = whole(world, agent, draw.clone(), plan);
+            return Ok(Built { run, kept: Kept::Nothing, attached: false });
+        }
     }
     boxed(world, rows, 1, draw, plan, Kept::Native, false)
 }

@@ -1,5 +1,7 @@
 //! How actions are chosen from their values.
 
+use std::hint::select_unpredictable;
+
 use super::{EpsilonGreedy, Schedule};
 use crate::random::Draw;
 use crate::table::{first_maximum, maximum};
@@ -35,7 +37,7 @@ impl Policy for EpsilonGreedy {
         // The answer for each action that might be the greedy one: for a few, sooner than to search first and add then.
         let best = first_maximum(values);
         (1..values.len())
-            .fold(expected(0), |found, action| std::hint::select_unpredictable(action == best, expected(action), found))
+            .fold(expected(0), |found, action| select_unpredictable(action == best, expected(action), found))
     }
 
     fn end_episode(&mut self) {
@@ -58,8 +60,11 @@ impl Ties {
         match self {
             Self::First => first_maximum(values),
             Self::Random => {
-                let largest = maximum(values);
-                any(values, |&value| value == largest, draw)
+                let best = first_maximum(values);
+                let largest = values[best];
+                // Mostly it is alone, and no draw is due.
+                let equals = values.iter().filter(|&&value| value == largest).count();
+                if equals == 1 { best } else { any(values, |&value| value == largest, draw) }
             }
         }
     }
@@ -68,20 +73,25 @@ impl Ties {
     #[inline]
     fn expected(self, epsilon: f64, values: impl Iterator<Item = f64> + Clone) -> f64 {
         let largest = values.clone().reduce(|largest, value| if value > largest { value } else { largest });
-        let is_largest = |value| Some(value) == largest;
+        let is_largest = |value| value == largest.unwrap_or(f64::NAN);
         let any = epsilon / values.clone().count() as f64;
-        let (mut left, share) = match self {
-            Self::First => (1, 1.0 - epsilon),
+        match self {
+            Self::First => {
+                let (greedy, mut found) = (any + (1.0 - epsilon), false);
+                sum(values.map(|value| {
+                    let first = is_largest(value) && !found;
+                    found |= first;
+                    (if first { greedy } else { any }) * value
+                }))
+            }
             Self::Random => {
                 let equals = values.clone().filter(|&value| is_largest(value)).count();
-                (equals, (1.0 - epsilon) / equals as f64)
+                // A division less where it changes nothing.
+                let share = if equals == 1 { 1.0 - epsilon } else { (1.0 - epsilon) / equals as f64 };
+                let greedy = any + share;
+                sum(values.map(|value| select_unpredictable(is_largest(value), greedy, any) * value))
             }
-        };
-        sum(values.map(|value| {
-            let greedy = is_largest(value) && left > 0;
-            left -= usize::from(greedy);
-            (if greedy { any + share } else { any }) * value
-        }))
+        }
     }
 }
 
