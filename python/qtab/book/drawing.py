@@ -31,6 +31,8 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
         ax.plot(line.x, line.mean, color=color(index), linewidth=1.6, label=line.name, **marker)
     if experiment.log_y:
         ax.set_yscale("log")
+        for axis in ("set_major_formatter", "set_minor_formatter"):
+            getattr(ax.yaxis, axis)("{x:,.0f}")
     if experiment.x_range is not None:
         ax.set_xlim(*experiment.x_range)
     if experiment.y_range is not None:
@@ -55,6 +57,7 @@ def draw_surfaces(result: Result, x: Numbers, y: Numbers, surfaces: Mapping[str,
         ax.set_title(f"{name}: up to {surface.max():.0f}", fontsize="medium")
         ax.set(xlabel="position", ylabel="velocity", xticks=(x[0], -0.5, x[-1]), yticks=(y[0], 0, y[-1]))
         ax.tick_params(labelsize="x-small")
+        ax.set_box_aspect(None, zoom=0.85)
     axes: Axes = ax
     return axes
 

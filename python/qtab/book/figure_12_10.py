@@ -34,5 +34,5 @@ EXPERIMENT = Experiment(
     runs=100,
     x="α × number of tilings (8)",
     y="steps per episode",
-    y_range=(180, 300),
+    y_range=(170, 300),
 )
