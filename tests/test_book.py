@@ -182,6 +182,11 @@ def test_an_intermediate_n_does_best():
     assert best[4] < best[16]
 
 
+def test_without_traces_sarsa_lambda_is_one_step_sarsa():
+    traces, steps = measured("12.10", "λ = 0", 0.4, 3), measured("10.4", "n = 1", 0.4, 3)
+    assert traces.tobytes() == steps.tobytes()
+
+
 def test_true_online_learns_soonest_and_accumulating_traces_diverge():
     result = qtab.book.run("12.11", runs=10)
     true_online, clearing, replacing, accumulating = result.lines
