@@ -235,3 +235,21 @@ def test_a_number_finds_its_experiment():
 def test_bad_arguments_are_refused(name, settings, error, message):
     with pytest.raises(error, match=message):
         qtab.book.run(name, **settings)
+
+
+def outcome(*lengths):
+    steps = np.array(lengths)
+    cut = np.zeros(steps.shape, bool)
+    return trials.Outcome(-steps.astype(float), steps, cut, cut[:, 0])
+
+
+def test_what_is_measured():
+    from qtab.book import example_6_5, figure_6_5, measures
+
+    several = outcome([2, 1, 1], [1, 2, 3])
+    assert measures.mean_length(several).tolist() == [[4 / 3], [2.0]]
+    assert measures.mean_return(several).tolist() == [[-4 / 3], [-2.0]]
+    assert measures.episodes_by((1, 2, 3, 100))(several).tolist() == [[0, 1, 2, 3], [1, 1, 2, 3]]
+    assert figure_6_5.left(several).tolist() == [[100.0, 0.0, 0.0], [0.0, 100.0, 0.0]]
+    # Episodes end after 7,000, 7,001, 7,999 and 8,001 steps: the two in the middle count.
+    assert example_6_5.last_lengths(outcome([7000, 1, 998, 2])).tolist() == [[499.5]]

@@ -137,7 +137,7 @@ def _initial_q(name: str, value: Any) -> float | tuple[float, float] | NDArray[n
         raise TypeError(f"{name} must be a range (low, high) or a table of numbers, got {value!r}") from None
     if not (np.isfinite(table) | np.isneginf(table)).all():
         raise ValueError(f"{name} must hold finite numbers (or -inf: no such action), got a table with nan or infinity")
-    if table.ndim and np.isneginf(table).all(axis=-1).any():
+    if table.size and table.ndim and np.isneginf(table).all(axis=-1).any():
         raise ValueError(f"{name} must leave an action to every state, got a row of -inf alone")
     table.flags.writeable = False
     return table

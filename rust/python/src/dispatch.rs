@@ -4,8 +4,8 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use qtab_core::features::{Features, MOST_TILINGS, Real, Rounding};
 use qtab_core::learners::{
-    self, Agent, Control, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, NStepSarsa, Policy, QLearning, Rule,
-    Sarsa, SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
+    self, Agent, Control, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, NStepSarsa, Policy, QLearning, Rule, Sarsa,
+    SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
 };
 use qtab_core::random::{Pcg64, Stream};
 use qtab_core::worlds::{Boxed, Native, Recorded, Recordings, Start};
