@@ -57,7 +57,7 @@ def draw_surfaces(result: Result, x: Numbers, y: Numbers, surfaces: Mapping[str,
         ax.set_title(f"{name}: up to {surface.max():.0f}", fontsize="medium")
         ax.set(xlabel="position", ylabel="velocity", xticks=(x[0], -0.5, x[-1]), yticks=(y[0], 0, y[-1]))
         ax.tick_params(labelsize="x-small")
-        ax.set_box_aspect(None, zoom=0.85)
+        ax.set_box_aspect(None, zoom=0.8)
     axes: Axes = ax
     return axes
 

@@ -6,7 +6,7 @@ from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
 
 EXPERIMENT = Experiment(
     name="figure-10.3",
-    title="one-step and eight-step semi-gradient Sarsa on Mountain Car",
+    title="one-step and eight-step Sarsa on Mountain Car",
     book="n = 1 with α = 0.5/8, n = 8 with α = 0.3/8; 500 episodes, 100 runs",
     silent=OPEN,
     settings=tuple(

@@ -4,6 +4,7 @@ import numpy as np
 
 from qtab.book.experiment import Measure, Numbers
 from qtab.book.trials import Outcome
+from qtab.summaries import FINAL_EPISODES
 
 
 def lengths(outcome: Outcome) -> Numbers:
@@ -25,6 +26,12 @@ def mean_length(outcome: Outcome) -> Numbers:
 def mean_return(outcome: Outcome) -> Numbers:
     """Returns the reward an episode brings on average."""
     means: Numbers = outcome.returns.mean(axis=1, keepdims=True)
+    return means
+
+
+def final_return(outcome: Outcome) -> Numbers:
+    """Returns the reward that each of the last 100 episodes brings on average."""
+    means: Numbers = outcome.returns[:, -FINAL_EPISODES:].mean(axis=1, keepdims=True)
     return means
 
 

@@ -22,7 +22,8 @@ use crate::trainer::STEPS_BETWEEN_LOOKS;
 /// What is worth a batch where there are fewer than `LANES`.
 const HALF: usize = LANES / 2;
 
-/// Where the results go: a row for each run, in the order of the runs.
+/// Where the results go: a row for each run, in the order of the runs. Of a run that failed, the episodes before are there,
+/// and the rest of its row is as it was.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Results<'py> {
