@@ -52,6 +52,7 @@ def features(draw: st.DrawFn, algorithm: str) -> dict[str, Any]:
         "discretizer": "tiles",
         "tilings": draw(st.integers(1, 9)),
         "tiles": draw(st.tuples(st.integers(1, 9), st.integers(1, 9))),
+        "hashed_rows": draw(st.sampled_from([None, None, 1, 20, 1000])),
         "low": draw(st.sampled_from([None, (-1.2, -0.07)])),
         "high": draw(st.sampled_from([None, (0.5, 0.07)])),
     }

@@ -41,6 +41,7 @@ OPTIONS: Mapping[str, Option] = {
     "scale": Option("discretizer", ("round",), None),
     "tilings": Option("discretizer", ("tiles",), 8),
     "tiles": Option("discretizer", ("tiles",), (8,)),
+    "hashed_rows": Option("discretizer", ("tiles",), None),
     "low": Option("discretizer", ("tiles",), None),
     "high": Option("discretizer", ("tiles",), None),
 }

@@ -12,7 +12,7 @@ from qtab import plan
 from qtab.cells import Cells, cells, components
 from qtab.config import Config, known_fields
 from qtab.finite import describe
-from qtab.models import Model, model_of, spec_of
+from qtab.models import Model, model_of, spec_of, versioned
 from qtab.options import defaults, stranger, tables
 from qtab.preset import preset
 from qtab.spaces import Grid, grid
@@ -37,6 +37,8 @@ class Resolved:
     """Whether the environment was made here, and so is closed here."""
     process: plan.Process | plan.Rules | plan.Bias | None = None
     """What a finite model steps by."""
+    limited: bool = False
+    """Whether the time limit is ours, the environment having none."""
 
     def close(self) -> None:
         """Closes the environment if it was made here."""
@@ -116,6 +118,8 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolve
 
 def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
     # An id keeps the package that it names, so that the config makes the environment anywhere.
+    if isinstance(env, str):
+        env = versioned(env)
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
     config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = model_of(spec, config.env_kwargs)
@@ -126,7 +130,7 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
     try:
         model, process = _finite(model, made, config)
         backend = _backend(config, model, f"Rust has no {spec.id} with these keyword arguments or wrappers")
-        config = _fitting(made, config)
+        config = _fitting(made, config, *layers)
         table = _features(made, config)
         steps = config.max_episode_steps or spec.max_episode_steps
         config = _complete(config, table, backend, steps)
@@ -135,8 +139,8 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
         raise
     if backend == "rust":
         made.close()
-        return Resolved(config, table, model, None, made=True, process=process)
-    return Resolved(config, table, None, made, made=True)
+        return Resolved(config, table, model, None, made=True, process=process, limited=steps is None)
+    return Resolved(config, table, None, made, made=True, limited=steps is None)
 
 
 def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
@@ -146,10 +150,11 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     if config.backend == "auto":
         config = config.replace(backend="rust" if is_own_table(env) else "gymnasium")
     model, process = _finite(model_of_object(env) if config.backend == "rust" else None, env, config)
-    config = _fitting(env, config)
+    config = _fitting(env, config, *layers)
     table = _features(env, config)
     steps = config.max_episode_steps or _time_limit(env)
-    return Resolved(_complete(config, table, config.backend, steps), table, model, env, made=False, process=process)
+    config = _complete(config, table, config.backend, steps)
+    return Resolved(config, table, model, env, made=False, process=process, limited=steps is None)
 
 
 def _finite(
@@ -166,10 +171,12 @@ def _finite(
         return None, None
 
 
-def _fitting(env: gym.Env, config: Config) -> Config:
+def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config:
     """The config with the discretizer that a discrete space has, where none was asked for."""
     if config.discretizer == "round" and components(env.observation_space) is not None:
-        return config.replace(discretizer="identity")
+        # A wrapper may have made a box discrete, for which the preset's scale means nothing; one asked for is refused.
+        asked = any("scale" in layer for layer in layers)
+        return config.replace(discretizer="identity", scale=config.scale if asked else ())
     return config
 
 

@@ -99,6 +99,8 @@ def grid(env: gym.Env, scale: tuple[float, ...]) -> Grid:
     (low, high), actions = box(env)
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
         raise ValueError(f"the observation space must have finite bounds, got {env.observation_space}")
+    if not (low <= high).all():
+        raise ValueError(f"the observation space must have low <= high, got {env.observation_space}")
     if len(scale) != len(low):
         raise ValueError(
             f"scale must hold {len(low)} numbers for this observation space, the cells per unit of each component, "

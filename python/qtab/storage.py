@@ -119,7 +119,7 @@ def _features(config: Config, file: Any, actions: int, first_action: int) -> Gri
         if config.tiles is None or config.tilings is None or config.low is None or config.high is None:
             raise ValueError("its config is not that of a run")
         edges = np.array(config.low), np.array(config.high)
-        return Tiling(low, high, edges, config.tiles, config.tilings, actions, first_action)
+        return Tiling(low, high, edges, config.tiles, config.tilings, config.hashed_rows, actions, first_action)
     if config.discretizer == "identity":
         return Cells(low, high, actions, first_action)
     return Grid(low, high, file["scale"], actions, first_action)

@@ -1,5 +1,6 @@
 """Tile coding over an environment's observations (Sutton & Barto, 2nd ed., section 9.5.4)."""
 
+import math
 from dataclasses import dataclass
 
 import gymnasium as gym
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from qtab import plan
 from qtab.config import Config
+from qtab.hashing import hashed_row
 from qtab.spaces import LARGEST_TABLE, box
 
 
@@ -24,13 +26,15 @@ class Tiling:
     tiles: tuple[int, ...]
     """Along each component."""
     tilings: int
+    hashed_rows: int | None
+    """How many rows the tilings share; None gives each tile its own."""
     actions: int
     first_action: int
 
     @property
     def rows(self) -> int:
         """How many rows the table has: the offsets add one tile along each component."""
-        return self.tilings * int(np.prod([count + 1 for count in self.tiles]))
+        return self.hashed_rows or self.tilings * math.prod(count + 1 for count in self.tiles)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -38,7 +42,7 @@ class Tiling:
         return self.rows, self.actions
 
     def lit(self, observation: NDArray[np.floating]) -> list[int]:
-        """Returns the rows of an observation, one of each tiling.
+        """Returns the rows of an observation, one of each tiling; a hashed one may come twice.
 
         Raises:
             TypeError: if it holds no numbers.
@@ -56,17 +60,33 @@ class Tiling:
         parts = np.floor((np.clip(numbers, low, high) - low) * (np.array(self.tiles) / (high - low)) * self.tilings)
         rows = []
         for tiling in range(self.tilings):
-            row = tiling
-            for index, part in enumerate(parts.astype(int).tolist()):
-                offset = tiling * (2 * index + 1) % self.tilings
-                row = row * (self.tiles[index] + 1) + (part + offset) // self.tilings
-            rows.append(row)
+            tile = [
+                (part + tiling * (2 * index + 1) % self.tilings) // self.tilings
+                for index, part in enumerate(parts.astype(int).tolist())
+            ]
+            if self.hashed_rows is not None:
+                rows.append(hashed_row((tiling, *tile), self.hashed_rows))
+            else:
+                rows.append(_dense_row(tiling, tile, self.tiles))
         return rows
 
     def plan(self) -> plan.Tiles:
         """Returns it as the extension module takes it."""
         low, high = self.edges
-        return {"low": low.tolist(), "high": high.tolist(), "tiles": list(self.tiles), "tilings": self.tilings}
+        return {
+            "low": low.tolist(),
+            "high": high.tolist(),
+            "tiles": list(self.tiles),
+            "tilings": self.tilings,
+            "hashed_rows": self.hashed_rows,
+        }
+
+
+def _dense_row(tiling: int, tile: list[int], tiles: tuple[int, ...]) -> int:
+    row = tiling
+    for coordinate, count in zip(tile, tiles, strict=True):
+        row = row * (count + 1) + coordinate
+    return row
 
 
 def tiling(env: gym.Env, config: Config) -> Tiling:
@@ -95,13 +115,19 @@ def tiling(env: gym.Env, config: Config) -> Tiling:
     tiles = config.tiles * dimensions if len(config.tiles) == 1 else config.tiles
     if len(tiles) != dimensions:
         raise ValueError(f"tiles must hold {dimensions} numbers for this observation space, or one, got {tiles!r}")
-    size = config.tilings * float(np.prod([count + 1.0 for count in tiles])) * int(actions.n)
+    found = Tiling(*bounds, (low, high), tiles, config.tilings, config.hashed_rows, int(actions.n), int(actions.start))
+    # In floats: an integer may have more digits than a message has room for.
+    size = float(config.hashed_rows or config.tilings * np.prod([count + 1.0 for count in tiles])) * found.actions
+    name, asked = ("tiles", tiles) if config.hashed_rows is None else ("hashed_rows", config.hashed_rows)
+    instead = ", or hashed_rows= of your choice" if config.hashed_rows is None else ""
     if not size < LARGEST_TABLE:
-        raise ValueError(f"tiles must give a table of fewer than 2**32 values, got {tiles!r}, which needs {size:.3g}")
+        raise ValueError(
+            f"{name} must give a table of fewer than 2**32 values{instead}, got {asked!r}, which needs {size:.3g}"
+        )
     try:
         np.empty(int(size))
     except MemoryError:
         raise ValueError(
-            f"tiles must give a table that fits into memory, got {tiles!r}, which needs {size:.3g} values"
+            f"{name} must give a table that fits into memory{instead}, got {asked!r}, which needs {size:.3g} values"
         ) from None
-    return Tiling(*bounds, (low, high), tiles, config.tilings, int(actions.n), int(actions.start))
+    return found

@@ -172,6 +172,7 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "scale": _scale,
     "tilings": _integer(1, MOST_TILINGS),
     "tiles": _tiles,
+    "hashed_rows": _integer(1, 2**32 - 1),
     "low": _each(checks.finite),
     "high": _each(checks.finite),
     "initial_q": _initial_q,

@@ -1,6 +1,7 @@
 //! From an observation to the rows of the table that it lights.
 
 mod bins;
+mod hashing;
 mod identity;
 mod real;
 mod rounding;
