@@ -1,5 +1,6 @@
 """What an experiment of the book is: settings, what is measured of each, and the lines that they make."""
 
+import dataclasses
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -136,7 +137,7 @@ class Experiment:
         count, seed, workers = self.check(runs, seed, threads)
         began = time.perf_counter()
         counts = [min(count, setting.most_runs or count) for setting in self.settings]
-        points: dict[str, list[_Point]] = {}
+        parts: dict[str, list[Line]] = {}
         with Bar(sum(counts), "run", progress, self.name) as shown:
             done = 0
             for setting, own in zip(self.settings, counts, strict=True):
@@ -146,8 +147,8 @@ class Experiment:
                     point.add(trials.train(setting.env, self.config(setting), seeds, workers))
                     done += len(seeds)
                     shown.move_to(done)
-                points.setdefault(setting.line, []).append(point)
-        lines = tuple(_line(name, row) for name, row in points.items())
+                parts.setdefault(setting.line, []).append(point.line())
+        lines = tuple(map(_joined, parts.values()))
         return Result(self, lines, count, seed, time.perf_counter() - began)
 
     def check(self, runs: int | None, seed: int, threads: int | None) -> tuple[int, int, int]:
@@ -186,22 +187,30 @@ class _Point:
         self.capped = self.capped + (outcome.capped.sum(axis=0) if self.setting.x is None else outcome.capped.sum())
         self.diverged += int(outcome.diverged.sum())
 
+    def line(self) -> Line:
+        """Returns it as a line of its own."""
+        samples = np.concatenate(self.samples)
+        return line(self.setting, samples, self.capped, self.diverged)
 
-def _line(name: str, points: list[_Point]) -> Line:
-    x: list[float] = []
-    means: list[Numbers] = []
-    errors: list[Numbers] = []
-    capped: list[NDArray[np.int64]] = []
-    diverged: list[int] = []
-    for point in points:
-        samples = np.concatenate(point.samples)
-        runs, width = samples.shape
-        x += range(1, width + 1) if point.setting.x is None else point.setting.x
-        means.append(samples.mean(axis=0))
-        errors.append(samples.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(width, np.nan))
-        capped.append(np.broadcast_to(point.capped, width))
-        diverged += [point.diverged] * width
-    mean, error = np.concatenate(means), np.concatenate(errors)
-    columns = np.array(x, np.float64), mean, error
-    counts = np.concatenate(capped), np.array(diverged)
-    return Line(name, *columns, len(np.concatenate(points[0].samples)), *counts, points[0].setting.drawn)
+
+def line(setting: Setting, samples: Numbers, capped: "NDArray[np.int64] | int", diverged: int) -> Line:
+    """Returns the line of one setting.
+
+    Args:
+        setting: Whose it is.
+        samples: (runs, points): what was measured.
+        capped: How many episodes were capped, of all or of each point.
+        diverged: How many runs diverged.
+    """
+    runs, width = samples.shape
+    error = samples.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(width, np.nan)
+    x = np.arange(1.0, width + 1) if setting.x is None else np.array(setting.x, np.float64)
+    counts = np.broadcast_to(capped, width), np.broadcast_to(diverged, width)
+    return Line(setting.line, x, samples.mean(axis=0), error, runs, *counts, setting.drawn)
+
+
+def _joined(parts: list[Line]) -> Line:
+    """The lines of several settings, one after the other, as one."""
+    names = ("x", "mean", "error", "capped", "diverged")
+    columns: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+    return dataclasses.replace(parts[0], **columns)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.book.experiment import Experiment, Line, Numbers, Result, Setting
+from qtab.book.experiment import Experiment, Line, Numbers, Result, Setting, line
 from qtab.book.measures import mean_length
 from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
 from qtab.progress import Bar
@@ -47,19 +47,21 @@ class CostToGo(Experiment):
         """Trains to each of the five moments: a run is the beginning of every longer one with its seed."""
         count, seed, _ = self.check(runs, seed, threads)
         began = time.perf_counter()
-        surfaces: dict[str, list[Numbers]] = {}
-        capped: dict[str, int] = {}
+        lines: list[Line] = []
+        first: dict[str, Numbers] = {}
         with Bar(count * len(self.settings), "surface", progress, self.name) as shown:
-            for number in range(count):
-                for setting in self.settings:
-                    run = train(setting.env, progress=False, **self.config(setting), seed=seed + number)  # type: ignore[arg-type]
-                    surfaces.setdefault(setting.line, []).append(cost_to_go(run))
-                    limited = setting.line != _FIRST
-                    capped[setting.line] = capped.get(setting.line, 0) + int((~run.terminated).sum()) * limited
-                    shown.move_to(sum(map(len, surfaces.values())))
-        lines = tuple(_line(name, rows, capped[name]) for name, rows in surfaces.items())
-        first = {name: rows[0] for name, rows in surfaces.items()}
-        return Result(self, lines, count, seed, time.perf_counter() - began, first)
+            for setting in self.settings:
+                samples, capped = [], 0
+                for number in range(count):
+                    run = train(ENV, progress=False, **self.config(setting), seed=seed + number)
+                    surface = cost_to_go(run)
+                    first.setdefault(setting.line, surface)
+                    samples.append((surface.max(), surface.mean()))
+                    # The first episode is left on purpose.
+                    capped += 0 if run.config.max_episode_steps == FIRST_STEPS else int((~run.terminated).sum())
+                    shown.move_to(len(lines) * count + len(samples))
+                lines.append(line(setting, np.array(samples), capped, 0))
+        return Result(self, tuple(lines), count, seed, time.perf_counter() - began, first)
 
     def draw(self, result: Result, ax: "Axes | None" = None) -> "Axes":
         """Draws the five surfaces side by side, each with its own axes; ``ax`` must be None.
@@ -75,15 +77,6 @@ class CostToGo(Experiment):
         return draw_surfaces(result, _POSITIONS, _VELOCITIES, surfaces)
 
 
-def _line(name: str, rows: list[Numbers], capped: int) -> Line:
-    samples = np.array([[surface.max(), surface.mean()] for surface in rows])
-    error = samples.std(axis=0, ddof=1) / np.sqrt(len(rows)) if len(rows) > 1 else np.full(2, np.nan)
-    counts = np.full(2, capped), np.zeros(2, np.int64)
-    return Line(name, np.array([1.0, 2.0]), samples.mean(axis=0), error, len(rows), *counts)
-
-
-_FIRST = f"episode 1, step {FIRST_STEPS}"
-
 EXPERIMENT = CostToGo(
     name="figure-10.1",
     title="the cost-to-go of Mountain Car",
@@ -92,7 +85,12 @@ EXPERIMENT = CostToGo(
     silent=f"λ, α and the kind of traces (0.9, 0.5/8, replacing here); {OPEN}",
     settings=(
         # A time-out learns from the last step as if the episode went on, which it did.
-        Setting(_FIRST, ENV, {**_SARSA, "episodes": 1, "max_episode_steps": FIRST_STEPS}, mean_length),
+        Setting(
+            f"episode 1, step {FIRST_STEPS}",
+            ENV,
+            {**_SARSA, "episodes": 1, "max_episode_steps": FIRST_STEPS},
+            mean_length,
+        ),
         *(Setting(f"episode {episode}", ENV, {**_SARSA, "episodes": episode}, mean_length) for episode in EPISODES),
     ),
     runs=1,
