@@ -9,6 +9,13 @@ from qtab.reference.maximization_bias import MaximizationBiasEnv
 
 
 def describe(env: Any) -> plan.Process | plan.Rules | plan.Bias:
+    """Returns what Rust trains on without physics as the extension module takes it; see :func:`process`."""
+    if isinstance(env, MaximizationBiasEnv):
+        return {"actions": env.actions, "mean": env.mean, "deviation": env.deviation}
+    return process(env)
+
+
+def process(env: Any) -> plan.Process | plan.Rules:
     """Returns an environment of Gymnasium's toy text, or a table of one's own, as the extension module takes it.
 
     Raises:
@@ -17,7 +24,5 @@ def describe(env: Any) -> plan.Process | plan.Rules | plan.Bias:
     """
     if isinstance(env, BlackjackEnv):
         return {"natural": bool(env.natural), "sab": bool(env.sab)}
-    if isinstance(env, MaximizationBiasEnv):
-        return {"actions": env.actions, "mean": env.mean, "deviation": env.deviation}
     fickle = float(env.fickle_probability) if getattr(env, "fickle_passenger", False) else None
     return {"table": _core.Transitions(env.P, env.initial_state_distrib, exact=True), "fickle": fickle}

@@ -1,6 +1,6 @@
 """What the extension module is handed: a run's description, every default resolved and every value checked."""
 
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,6 +136,12 @@ class Results(TypedDict):
     terminated: NDArray[np.bool_]
     tables: NDArray[np.float64]
     finished: NDArray[np.bool_]
+
+
+Solved: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]
+"""Of a table: values, values of the actions, the policy."""
+Changes: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
+"""From how many steps left on, in which state, which action is best."""
 
 
 def seed_words(seed: int) -> list[int]:

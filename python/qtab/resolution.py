@@ -152,7 +152,7 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     model, process = _finite(model_of_object(env) if config.backend == "rust" else None, env, config)
     config = _fitting(env, config, *layers)
     table = _features(env, config)
-    steps = config.max_episode_steps or _time_limit(env)
+    steps = config.max_episode_steps or time_limit(env)
     config = _complete(config, table, config.backend, steps)
     return Resolved(config, table, model, env, made=False, process=process, limited=steps is None)
 
@@ -188,7 +188,8 @@ def _backend(config: Config, model: Model | None, why_not: str) -> Literal["rust
     return "rust"
 
 
-def _time_limit(env: gym.Env) -> int | None:
+def time_limit(env: gym.Env) -> int | None:
+    """Returns the most steps of an episode, as the environment's own wrapper has it."""
     while isinstance(env, gym.Wrapper):
         if isinstance(env, gym.wrappers.TimeLimit):
             return env._max_episode_steps

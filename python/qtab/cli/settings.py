@@ -39,7 +39,7 @@ def _pairs(words: list[str]) -> dict[str, Any]:
     return {key: _value(text) for key, text in zip(words[::2], words[1::2], strict=True)}
 
 
-_PAIRS = tyro.constructors.PrimitiveConstructorSpec[Mapping[str, Any]](
+PAIRS = tyro.constructors.PrimitiveConstructorSpec[Mapping[str, Any]](
     nargs="*",
     metavar="[KEY VALUE ...]",
     instance_from_str=_pairs,
@@ -74,7 +74,7 @@ class Settings(Config):
 
     env: tyro.conf.Positional[str] = Config.env
     """Gymnasium's id of the environment (--env ID does as well)."""
-    env_kwargs: Annotated[Mapping[str, Any], _PAIRS] = field(default_factory=dict)
+    env_kwargs: Annotated[Mapping[str, Any], PAIRS] = field(default_factory=dict)
     """Keyword arguments of the environment's constructor."""
     initial_q: Annotated[Any, _FIRST_VALUES] = Config.initial_q
     """The first Q table: drawn uniformly from a range, one value everywhere, or a saved run to go on from."""

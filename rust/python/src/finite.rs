@@ -12,23 +12,20 @@ use crate::dispatch::{Built, Kept, boxed, whole};
 use crate::plan::Plan;
 use crate::table::Transitions;
 
-/// A sum, an open card, a usable ace: Gymnasium's spaces of blackjack.
-const BLACKJACK: [u32; 3] = [32, 11, 2];
-
 /// A table, and how likely a taxi's passenger changes their mind.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Process {
-    table: Py<Transitions>,
-    fickle: Option<f64>,
+    pub(crate) table: Py<Transitions>,
+    pub(crate) fickle: Option<f64>,
 }
 
 /// Those of blackjack.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Rules {
-    natural: bool,
-    sab: bool,
+    pub(crate) natural: bool,
+    pub(crate) sab: bool,
 }
 
 /// The example of maximisation bias: B's actions, and the mean and the deviation of its rewards.
@@ -55,7 +52,7 @@ impl Process {
 impl Rules {
     pub(crate) fn build(self, plan: &Plan<'_>) -> PyResult<Built> {
         let Self { natural, sab } = self;
-        build::<_, _, 2>(Blackjack { natural, sab }, Cells(BLACKJACK), plan)
+        build::<_, _, 2>(Blackjack { natural, sab }, Cells(Blackjack::CELLS.map(|count| count as u32)), plan)
     }
 }
 

@@ -12,6 +12,7 @@ mod numbers;
 mod observation;
 mod physics;
 mod plan;
+mod planning;
 mod python_world;
 mod run;
 mod stream;
@@ -33,6 +34,8 @@ mod _core {
     use super::model::parameter_names;
     #[pymodule_export]
     use super::physics::Physics;
+    #[pymodule_export]
+    use super::planning::{Planner, Valley};
     #[pymodule_export]
     use super::stream::Stream;
     #[pymodule_export]
