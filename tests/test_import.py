@@ -79,7 +79,7 @@ for module in pkgutil.iter_modules(qtab.__path__):
         importlib.import_module(f"qtab.{module.name}")
 print([name for name in qtab.__all__ if isinstance(getattr(qtab, name), types.ModuleType)])
 """
-    assert in_a_process(code).strip() == "['designs', 'plots', 'stats']"
+    assert in_a_process(code).strip() == "['book', 'designs', 'plots', 'stats']"
 
 
 def test_every_name_of_the_extension_module_is_in_its_stub():

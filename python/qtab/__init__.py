@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from qtab.envs import register as _register
 
 if TYPE_CHECKING:
-    from qtab import designs, plots, stats
+    from qtab import book, designs, plots, stats
     from qtab.config import Config
     from qtab.envs.tabular import TabularEnv
     from qtab.evaluation import Evaluation, evaluate
@@ -46,6 +46,7 @@ __all__ = [
     "SweepProgress",
     "TabularEnv",
     "Verification",
+    "book",
     "designs",
     "evaluate",
     "load",
@@ -87,7 +88,7 @@ _HOME = {
     "verify": "verification",
 }
 
-_MODULES = ("designs", "plots", "stats")
+_MODULES = ("book", "designs", "plots", "stats")
 
 
 def __getattr__(name: str) -> Any:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import disjoint_base
 
-from qtab.plan import Changes, Model, Plan, Process, PythonEnvironment, Results, Rules, Solved
+from qtab.plan import Bias, Changes, Model, Plan, Process, PythonEnvironment, Results, Rules, Solved
 
 __all__ = [
     "BUILD_PROFILE",
@@ -31,7 +31,7 @@ BUILD_PROFILE: Literal["debug", "release"]
 def numpy_calls_the_platform() -> bool: ...
 def parameter_names(model: str) -> list[str]: ...
 def train_many(
-    describe: Callable[[int], tuple[Model | Process | Rules, Plan]], results: Results, threads: int, go_on: bool
+    describe: Callable[[int], tuple[Model | Process | Rules | Bias, Plan]], results: Results, threads: int, go_on: bool
 ) -> list[tuple[int, Exception]]: ...
 
 class Blackjack:
@@ -77,7 +77,7 @@ class Taxi:
 
 @final
 class Trainer:
-    def __new__(cls, environment: Model | Process | Rules | PythonEnvironment, plan: Plan) -> Trainer: ...
+    def __new__(cls, environment: Model | Process | Rules | Bias | PythonEnvironment, plan: Plan) -> Trainer: ...
     def advance(self, episodes: int) -> None: ...
     def episodes(self, since: int = 0) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]]: ...
     def tables(self) -> NDArray[np.float64]: ...

@@ -100,7 +100,8 @@ class Config:
     high: tuple[float, ...] | None = None
     """The upper edges."""
     initial_q: InitialQ = (-1.0, 1.0)
-    """The first Q table: drawn uniformly from a range (low, high), one number everywhere, or an array to go on from."""
+    """The first Q table: drawn uniformly from a range (low, high), one number everywhere, or an array to go on from.
+    In an array -inf says that a state does not have an action, which is then never chosen."""
     terminal_update: TerminalUpdate = "target"
     """At a terminal state: move towards the reward (the book's rule), or assign it (the article's)."""
     on_truncation: OnTruncation = "bootstrap"

@@ -1,13 +1,21 @@
-"""What Rust trains on by a table or by blackjack's rules: taken from Gymnasium's environment as it stands."""
+"""What Rust trains on by a table or by a few rules: taken from the environment as it stands."""
 
 from typing import Any
 
 from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core, plan
+from qtab.reference.maximization_bias import MaximizationBiasEnv
 
 
-def describe(env: Any) -> plan.Process | plan.Rules:
+def describe(env: Any) -> plan.Process | plan.Rules | plan.Bias:
+    """Returns what Rust trains on without physics as the extension module takes it; see :func:`process`."""
+    if isinstance(env, MaximizationBiasEnv):
+        return {"actions": env.actions, "mean": env.mean, "deviation": env.deviation}
+    return process(env)
+
+
+def process(env: Any) -> plan.Process | plan.Rules:
     """Returns an environment of Gymnasium's toy text, or a table of one's own, as the extension module takes it.
 
     Raises:

@@ -153,7 +153,7 @@ def allocate(resolved: Resolved, runs: int, alive: int, tables: bool, limit: int
         check_memory(what, needed + runs * 8 * values, limit)
     return {
         "returns": np.zeros((runs, episodes)),
-        "lengths": np.empty((runs, episodes), dtype=np.int64),
+        "lengths": np.zeros((runs, episodes), dtype=np.int64),
         "terminated": np.empty((runs, episodes), dtype=np.bool_),
         "tables": np.empty((runs, values if tables else 0)),
         "finished": np.zeros(runs, dtype=np.bool_),

@@ -76,10 +76,22 @@ MODELS: Mapping[str, Model] = {
     ),
 }
 
+OWN: Mapping[str, Model] = {
+    f"{PREFIX}MaximizationBias-v0": Model(
+        "MaximizationBias", "", "qtab.reference.maximization_bias:MaximizationBiasEnv", **_FINITE
+    ),
+}
+"""Those that Gymnasium does not have."""
+
 
 def gymnasium_id(env: str) -> str:
     """Returns the id of Gymnasium's environment that an id of ours equals; any other id as it is."""
     return env.removeprefix(f"{PACKAGE}:").removeprefix(PREFIX)
+
+
+def known_model(env: str) -> Model | None:
+    """Returns the model that an id names, ours or Gymnasium's."""
+    return MODELS.get(gymnasium_id(env)) or OWN.get(env.removeprefix(f"{PACKAGE}:"))
 
 
 def versioned(env: str) -> str:
@@ -115,7 +127,7 @@ def spec_of(env: str) -> EnvSpec:
 
 def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:
     """Returns the model that computes what ``gymnasium.make(spec, **kwargs)`` would, or None if Rust has none."""
-    model = MODELS.get(gymnasium_id(spec.id))
+    model = known_model(spec.id)
     if model is None or not model.trains or spec.additional_wrappers:
         return None
     if spec.entry_point not in (model.gymnasium, model.qtab):

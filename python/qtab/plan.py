@@ -39,6 +39,14 @@ class Rules(TypedDict):
     sab: bool
 
 
+class Bias(TypedDict):
+    """The example of maximisation bias."""
+
+    actions: int
+    mean: float
+    deviation: float
+
+
 class Rounding(TypedDict):
     """The article's grid."""
 

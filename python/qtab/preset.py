@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from qtab.models import gymnasium_id
 
 # G. Hayes, "Getting Started with Reinforcement Learning and Open AI Gym" (2019). What equals the config's default is
@@ -56,6 +58,10 @@ _SOLVED_TAXI = {"learning_rate": 1.0, "discount": 1.0, "epsilon": 0.0, "initial_
 # At blackjack a hand that is seldom dealt has seldom been tried: it explores to the end.
 _SOLVED_BLACKJACK = {**_BLACKJACK, "learning_rate": 0.005, "episodes": 1_000_000}
 
+# Sutton & Barto, 2nd ed., Figure 6.5. In A there are two actions, -inf standing for the others.
+_BIAS_BOOK = {"learning_rate": 0.1, "discount": 1.0, "epsilon": 0.1, "epsilon_schedule": "constant", "ties": "random"}
+_BIAS_BOOK |= {"initial_q": np.array([[0.0] * 2 + [-np.inf] * 8, [0.0] * 10, [0.0] * 10]), "episodes": 300}
+
 # The first preset of an environment is its own.
 _PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "MountainCar-v0": {"article": _ARTICLE, "solved": _SOLVED},
@@ -65,6 +71,7 @@ _PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "CliffWalkingSlippery-v1": {"tuned": _SLIPPERY_CLIFF, "solved": _SOLVED_SLIPPERY_CLIFF},
     "Taxi-v4": {"tuned": _TAXI, "solved": _SOLVED_TAXI},
     "Blackjack-v1": {"tuned": _BLACKJACK, "solved": _SOLVED_BLACKJACK},
+    "MaximizationBias-v0": {"book": _BIAS_BOOK},
 }
 
 

@@ -35,7 +35,7 @@ class Resolved:
     """The environment stepped in Python."""
     made: bool
     """Whether the environment was made here, and so is closed here."""
-    process: plan.Process | plan.Rules | None = None
+    process: plan.Process | plan.Rules | plan.Bias | None = None
     """What a finite model steps by."""
     limited: bool = False
     """Whether the time limit is ours, the environment having none."""
@@ -45,7 +45,7 @@ class Resolved:
         if self.made and self.env is not None:
             self.env.close()
 
-    def core_environment(self) -> plan.Model | plan.Process | plan.Rules | plan.PythonEnvironment:
+    def core_environment(self) -> plan.Model | plan.Process | plan.Rules | plan.Bias | plan.PythonEnvironment:
         """Returns the environment as the extension module takes it."""
         if self.process is not None:
             return self.process
@@ -157,7 +157,9 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     return Resolved(config, table, model, env, made=False, process=process, limited=steps is None)
 
 
-def _finite(model: Model | None, env: gym.Env, config: Config) -> tuple[Model | None, plan.Process | plan.Rules | None]:
+def _finite(
+    model: Model | None, env: gym.Env, config: Config
+) -> tuple[Model | None, plan.Process | plan.Rules | plan.Bias | None]:
     """The model, if Rust can step by what the environment holds, and that."""
     if model is None or not model.finite or config.backend == "gymnasium":
         return model, None
@@ -214,6 +216,10 @@ def _complete(config: Config, table: Grid | Tiling | Cells, backend: str, steps:
     if isinstance(config.initial_q, np.ndarray):
         count = tables(config.algorithm)
         shape = table.shape if count == 1 else (count, *table.shape)
-        if config.initial_q.shape not in (shape, (count, table.rows, table.actions)):
+        if config.initial_q.shape == table.shape and count > 1:
+            changes["initial_q"] = np.stack([config.initial_q] * count)
+        elif config.initial_q.shape not in (shape, (count, table.rows, table.actions)):
             raise ValueError(f"initial_q must have the table's shape {shape}, got {config.initial_q.shape}")
+        elif len(np.unique(np.isneginf(config.initial_q.reshape(count, -1)), axis=0)) > 1:
+            raise ValueError("initial_q must have -inf in both tables or in none, got it in one")
     return config.replace(**changes)

@@ -10,6 +10,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import _core, checks
 from qtab.callbacks import Callback, Finished
+from qtab.config import Config
 from qtab.notices import say_limit
 from qtab.progress import Bar
 from qtab.replay import starts
@@ -85,7 +86,7 @@ def train_resolved(
                     verdict = callback(finished.look())
                     if verdict is not None and not verdict:  # NumPy's False stops too
                         break
-        _refuse_overflow(trainer)
+        _refuse_overflow(trainer, resolved.config)
     except BaseException as error:
         run = _run(resolved, trainer, began)
         with suppress(AttributeError):  # an exception that takes nothing along still comes through
@@ -94,9 +95,10 @@ def train_resolved(
     return _run(resolved, trainer, began)
 
 
-def _refuse_overflow(trainer: _core.Trainer) -> None:
+def _refuse_overflow(trainer: _core.Trainer, config: Config) -> None:
     """The learners notice values that they compute with; here those that were never read again."""
-    if not np.isfinite(trainer.tables()).all():
+    missing = isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q.ravel())
+    if not (np.isfinite(trainer.tables()) | missing).all():
         episode = len(trainer.episodes()[0]) - 1
         raise OverflowError(
             f"the action values overflowed by episode {episode} (counted from 0); most likely the rewards or initial_q "

@@ -29,6 +29,10 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
         most = LARGEST_MT19937_SEED if checked["bit_generator"] == "MT19937" else None
         checked["seed"] = checks.integer("seed", checked["seed"], least=0, most=most)
     refuse_strangers(checked)
+    if isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any():
+        for name, bad in (("algorithm", "dyna_q_plus"), ("exploration", "softmax"), ("discretizer", "tiles")):
+            if checked[name] == bad:
+                raise ValueError(f"{name} must be another for an initial_q with -inf in it, got {bad!r}")
     most_rate = 2 if checked["discretizer"] == "tiles" else 1
     checks.real("learning_rate", checked["learning_rate"], 0, most_rate)
     _at_most(checked, "min_epsilon", "epsilon", OPTIONS["epsilon"].default)
@@ -131,8 +135,10 @@ def _initial_q(name: str, value: Any) -> float | tuple[float, float] | NDArray[n
         table = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
         raise TypeError(f"{name} must be a range (low, high) or a table of numbers, got {value!r}") from None
-    if not np.isfinite(table).all():
-        raise ValueError(f"{name} must hold finite numbers, got a table with nan or infinity")
+    if not (np.isfinite(table) | np.isneginf(table)).all():
+        raise ValueError(f"{name} must hold finite numbers (or -inf: no such action), got a table with nan or infinity")
+    if table.size and table.ndim and np.isneginf(table).all(axis=-1).any():
+        raise ValueError(f"{name} must leave an action to every state, got a row of -inf alone")
     table.flags.writeable = False
     return table
 

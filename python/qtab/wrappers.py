@@ -3,7 +3,7 @@
 import gymnasium as gym
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
-from qtab.models import MODELS, TABLE, Model, gymnasium_id
+from qtab.models import TABLE, Model, known_model
 
 # What gymnasium.make puts around an environment; none of it changes a number.
 _HARMLESS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
@@ -33,7 +33,7 @@ def model_of_object(env: gym.Env) -> Model:
     if entry_point == TABLE.qtab:
         return TABLE
     spec = inner.spec
-    model = MODELS.get(gymnasium_id(spec.id)) if spec is not None else None
+    model = known_model(spec.id) if spec is not None else None
     if model is None or not model.trains or entry_point not in (model.gymnasium, model.qtab):
         raise ValueError(f"{refused}Rust has no {type(inner).__qualname__}")
     if model.finite:

@@ -2,7 +2,7 @@
 
 import gymnasium as gym
 
-from qtab.models import MODELS, PREFIX
+from qtab.models import MODELS, OWN, PREFIX
 
 
 def register() -> None:
@@ -20,3 +20,5 @@ def register() -> None:
             nondeterministic=theirs.nondeterministic,
             kwargs=dict(theirs.kwargs),
         )
+    for name, model in OWN.items():
+        gym.register(id=name, entry_point=model.qtab)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from qtab import _core, checks
 from qtab.envs.sub_environments import SubEnvironments, paint
-from qtab.finite import describe
+from qtab.finite import process
 from qtab.models import PREFIX
 
 _FAR = 1e6
@@ -84,7 +84,7 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         if self.render_mode is not None and not painted:
             return False
         try:
-            kind = None if isinstance(env, _core.Physics) else describe(env)
+            kind = None if isinstance(env, _core.Physics) else process(env)
         except (TypeError, ValueError):  # a table that Gymnasium may take, but Rust does not
             return False
         limited = self._example.has_wrapper_attr("_max_episode_steps")

@@ -13,7 +13,7 @@ from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 from qtab import _core, checks
 from qtab.cells import cells
 from qtab.envs.mountain_car import MountainCarEnv as RustMountainCarEnv
-from qtab.finite import describe
+from qtab.finite import process
 from qtab.models import spec_of, versioned
 from qtab.planning.tables import METHODS, TableTruth, solve
 from qtab.planning.truth import Optimum
@@ -135,7 +135,7 @@ def _solve(name: str, env: gym.Env, limit: int | None, discount: float | None, m
 
 def _plan(env: Any, method: str, discount: float, steps: int) -> dict[str, Any]:
     table = cells(env)
-    planner = _core.Planner(describe(env))
+    planner = _core.Planner(process(env))
     solution = solve(planner, method, discount, steps)
     # The first states are those that an observation shows; what follows is hidden behind them.
     if len(solution.values) < table.rows or solution.q_values.shape[1] != table.actions:

@@ -1,5 +1,7 @@
 """Expected Sarsa in plain NumPy (Sutton & Barto, 2nd ed., section 6.6)."""
 
+import math
+
 import gymnasium as gym
 
 from qtab.config import Config
@@ -22,7 +24,8 @@ def expected_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) 
                 task.end(Q, state, action, step.reward)
             else:
                 next_values = values(Q, step.state)
-                terms = [p * float(q) for p, q in zip(task.policy.probabilities(next_values), next_values, strict=True)]
+                shares = zip(task.policy.probabilities(next_values), next_values, strict=True)
+                terms = [p * float(q) for p, q in shares if (p, q) != (0.0, -math.inf)]
                 expected = terms[0]
                 for term in terms[1:]:
                     expected += term

@@ -33,13 +33,19 @@ class EpsilonGreedy:
         self.rng = rng
         self.epsilon = epsilon_schedule(config)
         self.random_ties = config.ties == "random"
+        self.some_missing = isinstance(config.initial_q, np.ndarray) and bool(np.isneginf(config.initial_q).any())
 
     def choose(self, values: Values) -> int:
         """Draws one ``random()`` always, and one integer to explore, or to choose among several greedy actions."""
         if self.rng.random() < 1.0 - self.epsilon.value:
             greedy = self.greedy(values)
             return greedy[0] if len(greedy) == 1 else greedy[int(self.rng.integers(0, len(greedy)))]
-        return int(self.rng.integers(0, len(values)))
+        some = self.there(values)
+        return some[int(self.rng.integers(0, len(some)))]
+
+    def there(self, values: Values) -> list[int]:
+        """Returns the actions that a state has: where some are missing, their values are -inf."""
+        return [action for action, value in enumerate(values) if not (self.some_missing and value == -math.inf)]
 
     def greedy(self, values: Values) -> list[int]:
         """Returns the actions among which the greedy one is chosen: the first, or all of the best."""
@@ -48,9 +54,10 @@ class EpsilonGreedy:
         return [int(np.argmax(values))]
 
     def probabilities(self, values: Values) -> list[float]:
-        """Returns ε / n for each action, and the rest for the greedy ones."""
+        """Returns ε / n for each of the actions there are, and the rest for the greedy ones."""
         epsilon, greedy = self.epsilon.value, self.greedy(values)
-        shares = [epsilon / len(values)] * len(values)
+        some = self.there(values)
+        shares = [epsilon / len(some) if action in some else 0.0 for action in range(len(values))]
         for action in greedy:
             shares[action] += (1.0 - epsilon) / len(greedy)
         return shares

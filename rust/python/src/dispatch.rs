@@ -4,15 +4,15 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use qtab_core::features::{Features, MOST_TILINGS, Real, Rounding};
 use qtab_core::learners::{
-    self, Agent, Control, DoubleQLearning, DynaQ, DynaQPlus, EpsilonGreedy, ExpectedSarsa, NStepSarsa, QLearning, Rule,
-    Sarsa, SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
+    self, Agent, Control, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, NStepSarsa, Policy, QLearning, Rule, Sarsa,
+    SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
 };
 use qtab_core::random::{Pcg64, Stream};
 use qtab_core::worlds::{Boxed, Native, Recorded, Recordings, Start};
 use qtab_core::{Learner, Trainer, World};
 
 use crate::failure::Failure;
-use crate::finite::{Process, Rules};
+use crate::finite::{Bias, Process, Rules};
 use crate::model::Model;
 use crate::observation::{Floats, Integers};
 use crate::plan::{Discretizer, Plan, given, unknown};
@@ -74,14 +74,15 @@ pub(crate) fn native(model: Model, plan: &Plan<'_>) -> PyResult<Built> {
 
 /// The combinations that are compiled whole: a table of so many actions, learned as in the article, or by its next of
 /// kin.
-pub(crate) fn whole<W, const N: usize>(
+pub(crate) fn whole<W, P, const N: usize>(
     world: W,
-    agent: Agent<N, EpsilonGreedy, f64>,
+    agent: Agent<N, P, f64>,
     draw: Pcg64,
     plan: &Plan<'_>,
 ) -> Box<dyn Run>
 where
     W: World<Rows = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
+    P: Policy + Send + 'static,
 {
     match plan.algorithm.name.as_str() {
         "sarsa" => Box::new(Trainer::new(world, Control { agent, rule: Sarsa }, draw)),
@@ -226,6 +227,9 @@ pub(crate) fn build(environment: &Bound<'_, PyAny>, plan: &Plan<'_>) -> PyResult
     }
     if let Ok(rules) = environment.extract::<Rules>() {
         return rules.build(plan);
+    }
+    if let Ok(bias) = environment.extract::<Bias>() {
+        return bias.build(plan);
     }
     match environment.extract::<PythonEnvironment>() {
         Ok(environment) => python(environment, plan),

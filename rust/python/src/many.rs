@@ -22,7 +22,8 @@ use crate::trainer::STEPS_BETWEEN_LOOKS;
 /// What is worth a batch where there are fewer than `LANES`.
 const HALF: usize = LANES / 2;
 
-/// Where the results go: a row for each run, in the order of the runs.
+/// Where the results go: a row for each run, in the order of the runs. Of a run that failed, the episodes before are there,
+/// and the rest of its row is as it was.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Results<'py> {
@@ -46,12 +47,18 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// Takes in a finished run.
-    fn fill(self, run: &dyn Run) -> PyResult<()> {
+    /// Takes in the episodes of a run; where one failed, those before.
+    fn fill_episodes(&mut self, run: &dyn Run) {
         let episodes = run.episodes();
-        self.returns.copy_from_slice(&episodes.returns);
-        self.lengths.copy_from_slice(&episodes.lengths);
-        self.terminated.copy_from_slice(&episodes.terminated);
+        let count = episodes.returns.len().min(self.returns.len());
+        self.returns[..count].copy_from_slice(&episodes.returns[..count]);
+        self.lengths[..count].copy_from_slice(&episodes.lengths[..count]);
+        self.terminated[..count].copy_from_slice(&episodes.terminated[..count]);
+    }
+
+    /// Takes in a finished run.
+    fn fill(mut self, run: &dyn Run) -> PyResult<()> {
+        self.fill_episodes(run);
         if !self.table.is_empty() {
             let tables = run.tables();
             if tables.len() != self.table.len() {
@@ -138,7 +145,7 @@ impl<'a> Work<'a> {
     /// The next run of the article's kind; whatever comes before is trained on the way.
     fn next_article(&self, stop: &AtomicBool) -> Option<(Row<'a>, Article)> {
         while !self.ends(stop) {
-            let row = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next()?;
+            let mut row = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next()?;
             let mut run = match self.begin(row.index) {
                 Ok(run) => run,
                 Err(error) => {
@@ -152,7 +159,10 @@ impl<'a> Work<'a> {
                 match self.train(&mut *run, row.returns.len(), stop) {
                     Ok(true) => self.finish(row, &*run),
                     Ok(false) => return None,
-                    Err(failure) => self.fail(row.index, failure.into()),
+                    Err(failure) => {
+                        row.fill_episodes(&*run);
+                        self.fail(row.index, failure.into());
+                    }
                 }
                 continue;
             };

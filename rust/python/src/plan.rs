@@ -147,8 +147,21 @@ impl Plan<'_> {
         draw: &mut Pcg64,
     ) -> PyResult<Option<Agent<N, EpsilonGreedy, f64>>> {
         let Choice::EpsilonGreedy { epsilon, ties } = &self.policy else { return Ok(None) };
+        let linear = (epsilon.schedule.as_str(), epsilon.warm_up, ties.as_str()) == ("linear", 0, "first");
+        if !linear || self.some_missing() {
+            return Ok(None);
+        }
+        self.plain(EpsilonGreedy::linear(epsilon.value, epsilon.least, self.episodes), rows, draw)
+    }
+
+    /// The same with any policy: a one-step learner of a single table with a constant learning rate.
+    pub(crate) fn plain<const N: usize, P>(
+        &self,
+        policy: P,
+        rows: usize,
+        draw: &mut Pcg64,
+    ) -> PyResult<Option<Agent<N, P, f64>>> {
         let plain = ["q_learning", "sarsa", "expected_sarsa"].contains(&self.algorithm.name.as_str())
-            && (epsilon.schedule.as_str(), epsilon.warm_up, ties.as_str()) == ("linear", 0, "first")
             && self.learning_rate.schedule == "constant"
             && self.on_truncation == "bootstrap";
         if !plain {
@@ -156,7 +169,7 @@ impl Plan<'_> {
         }
         Ok(Some(Agent {
             table: self.table((0, 1), rows, draw)?,
-            policy: EpsilonGreedy::linear(epsilon.value, epsilon.least, self.episodes),
+            policy,
             learning_rate: self.learning_rate.value,
             discount: self.discount,
             terminal_update: self.terminal_update()?,
@@ -196,18 +209,28 @@ impl Plan<'_> {
         Ok(Table::new(values, self.actions))
     }
 
-    fn policy(&self) -> PyResult<Behaviour> {
+    pub(crate) fn policy(&self) -> PyResult<Behaviour> {
         match &self.policy {
-            Choice::EpsilonGreedy { epsilon, ties } => Ok(Behaviour::EpsilonGreedy {
-                epsilon: epsilon.schedule(self.episodes)?,
-                ties: match ties.as_str() {
+            Choice::EpsilonGreedy { epsilon, ties } => {
+                let epsilon = epsilon.schedule(self.episodes)?;
+                let ties = match ties.as_str() {
                     "first" => Ties::First,
                     "random" => Ties::Random,
                     other => return Err(unknown("ties", other)),
-                },
-            }),
+                };
+                Ok(if self.some_missing() {
+                    Behaviour::EpsilonGreedyAmongSome { epsilon, ties }
+                } else {
+                    Behaviour::EpsilonGreedy { epsilon, ties }
+                })
+            }
             Choice::Softmax { temperature } => Ok(Behaviour::softmax(*temperature, self.actions)),
         }
+    }
+
+    /// Whether states lack actions: their first values are -∞.
+    fn some_missing(&self) -> bool {
+        matches!(&self.initial_q, InitialQ::Table(values) if values.as_array().iter().any(|&q| q == f64::NEG_INFINITY))
     }
 
     fn rate(&self, weights: usize, lit: usize) -> PyResult<Rate> {

@@ -1,5 +1,7 @@
 //! How actions are chosen from their values.
 
+use std::hint::select_unpredictable;
+
 use super::{EpsilonGreedy, Schedule};
 use crate::random::Draw;
 use crate::table::{first_maximum, maximum};
@@ -35,7 +37,7 @@ impl Policy for EpsilonGreedy {
         // The answer for each action that might be the greedy one: for a few, sooner than to search first and add then.
         let best = first_maximum(values);
         (1..values.len())
-            .fold(expected(0), |found, action| std::hint::select_unpredictable(action == best, expected(action), found))
+            .fold(expected(0), |found, action| select_unpredictable(action == best, expected(action), found))
     }
 
     fn end_episode(&mut self) {
@@ -52,11 +54,59 @@ pub enum Ties {
     Random,
 }
 
+impl Ties {
+    #[inline]
+    fn greedy(self, values: &[f64], draw: &mut impl Draw) -> usize {
+        match self {
+            Self::First => first_maximum(values),
+            Self::Random => {
+                let best = first_maximum(values);
+                let largest = values[best];
+                // Mostly it is alone, and no draw is due.
+                let equals = values.iter().filter(|&&value| value == largest).count();
+                if equals == 1 { best } else { any(values, |&value| value == largest, draw) }
+            }
+        }
+    }
+
+    /// Σₐ π(a) Q(a) of the ε-greedy policy over these values.
+    #[inline]
+    fn expected(self, epsilon: f64, values: impl Iterator<Item = f64> + Clone) -> f64 {
+        let largest = values.clone().reduce(|largest, value| if value > largest { value } else { largest });
+        let is_largest = |value| value == largest.unwrap_or(f64::NAN);
+        let any = epsilon / values.clone().count() as f64;
+        match self {
+            Self::First => {
+                let (greedy, mut found) = (any + (1.0 - epsilon), false);
+                sum(values.map(|value| {
+                    let first = is_largest(value) && !found;
+                    found |= first;
+                    (if first { greedy } else { any }) * value
+                }))
+            }
+            Self::Random => {
+                let equals = values.clone().filter(|&value| is_largest(value)).count();
+                // A division less where it changes nothing.
+                let share = if equals == 1 { 1.0 - epsilon } else { (1.0 - epsilon) / equals as f64 };
+                let greedy = any + share;
+                sum(values.map(|value| select_unpredictable(is_largest(value), greedy, any) * value))
+            }
+        }
+    }
+}
+
 /// Any of the ways, chosen at run time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Behaviour {
     /// Mostly the greedy action, sometimes any (Sutton & Barto, section 2.2).
     EpsilonGreedy {
+        /// ε.
+        epsilon: Schedule,
+        /// Which of several greedy actions.
+        ties: Ties,
+    },
+    /// The same among the actions that a state has: a value of -∞ stands for one that it has not.
+    EpsilonGreedyAmongSome {
         /// ε.
         epsilon: Schedule,
         /// Which of several greedy actions.
@@ -81,10 +131,15 @@ impl Policy for Behaviour {
             Self::EpsilonGreedy { epsilon, ties } => {
                 if draw.random() >= 1.0 - epsilon.value() {
                     draw.integers(values.len() as u32) as usize
-                } else if *ties == Ties::First {
-                    first_maximum(values)
                 } else {
-                    any_maximum(values, draw)
+                    ties.greedy(values, draw)
+                }
+            }
+            Self::EpsilonGreedyAmongSome { epsilon, ties } => {
+                if draw.random() >= 1.0 - epsilon.value() {
+                    any(values, is_there, draw)
+                } else {
+                    ties.greedy(values, draw)
                 }
             }
             Self::Softmax(softmax) => softmax.choose(values, draw),
@@ -94,21 +149,9 @@ impl Policy for Behaviour {
     #[inline]
     fn expected(&mut self, values: &[f64]) -> f64 {
         match self {
-            Self::EpsilonGreedy { epsilon, ties } => {
-                let largest = maximum(values);
-                let any = epsilon.value() / values.len() as f64;
-                let (mut left, share) = match ties {
-                    Ties::First => (1, 1.0 - epsilon.value()),
-                    Ties::Random => {
-                        let equals = values.iter().filter(|&&value| value == largest).count();
-                        (equals, (1.0 - epsilon.value()) / equals as f64)
-                    }
-                };
-                sum(values.iter().map(|&value| {
-                    let greedy = value == largest && left > 0;
-                    left -= usize::from(greedy);
-                    (if greedy { any + share } else { any }) * value
-                }))
+            Self::EpsilonGreedy { epsilon, ties } => ties.expected(epsilon.value(), values.iter().copied()),
+            Self::EpsilonGreedyAmongSome { epsilon, ties } => {
+                ties.expected(epsilon.value(), values.iter().copied().filter(is_there))
             }
             Self::Softmax(softmax) => {
                 sum(softmax.shares(values).iter().zip(values).map(|(share, value)| share * value))
@@ -117,7 +160,7 @@ impl Policy for Behaviour {
     }
 
     fn end_episode(&mut self) {
-        if let Self::EpsilonGreedy { epsilon, .. } = self {
+        if let Self::EpsilonGreedy { epsilon, .. } | Self::EpsilonGreedyAmongSome { epsilon, .. } = self {
             epsilon.end_episode();
         }
     }
@@ -156,12 +199,20 @@ impl Softmax {
     }
 }
 
-fn any_maximum(values: &[f64], draw: &mut impl Draw) -> usize {
-    let largest = maximum(values);
-    let equals = || values.iter().enumerate().filter(|&(_, &value)| value == largest).map(|(action, _)| action);
+/// Whether a state has the action of this value.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "filters hand out references")]
+#[inline]
+fn is_there(value: &f64) -> bool {
+    *value != f64::NEG_INFINITY
+}
+
+/// Any of those that fit.
+#[inline]
+fn any(values: &[f64], fits: impl Fn(&f64) -> bool, draw: &mut impl Draw) -> usize {
+    let fitting = || values.iter().enumerate().filter(|(_, value)| fits(value)).map(|(action, _)| action);
     // Where nothing equals the largest, it is NaN, and the run is about to stop.
-    let chosen = draw.integers(equals().count() as u32) as usize;
-    equals().nth(chosen).unwrap_or(0)
+    let chosen = draw.integers(fitting().count() as u32) as usize;
+    fitting().nth(chosen).unwrap_or(0)
 }
 
 /// From the left, beginning with the first.
@@ -199,16 +250,29 @@ mod tests {
         let mut draw = Pcg64::new(&SeedSequence::new(&[1]));
         let mut counts = [0; 3];
         for _ in 0..1000 {
-            counts[any_maximum(&[1.0, 0.0, 1.0], &mut draw)] += 1;
+            counts[Ties::Random.greedy(&[1.0, 0.0, 1.0], &mut draw)] += 1;
         }
         assert!(counts[0] > 400 && counts[2] > 400 && counts[1] == 0);
+    }
+
+    #[test]
+    fn an_action_that_is_not_there_is_neither_chosen_nor_counted() {
+        let values = [2.0, f64::NEG_INFINITY, -1.0, f64::NEG_INFINITY];
+        let mut some = Behaviour::EpsilonGreedyAmongSome { epsilon: Schedule::constant(1.0), ties: Ties::First };
+        let mut draw = Pcg64::new(&SeedSequence::new(&[1]));
+        let mut counts = [0; 4];
+        for _ in 0..1000 {
+            counts[some.choose(&values, &mut draw)] += 1;
+        }
+        assert!(counts[0] > 400 && counts[2] > 400 && counts[1] + counts[3] == 0);
+        assert_eq!(some.expected(&values), 0.5);
     }
 
     #[test]
     fn a_lone_maximum_draws_nothing_more() {
         let mut draw = Pcg64::new(&SeedSequence::new(&[1]));
         let before = draw.clone();
-        assert_eq!(any_maximum(&[0.0, 2.0], &mut draw), 1);
+        assert_eq!(Ties::Random.greedy(&[0.0, 2.0], &mut draw), 1);
         assert_eq!(draw, before);
     }
 }

@@ -21,6 +21,13 @@ pub trait Draw {
     fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.random()
     }
+
+    /// The next float of a normal distribution, by two draws of `random()` (Box & Muller, 1958): √(-2 ln(1 - u)) cos 2πv.
+    /// Not `rng.normal(mean, deviation)`, which looks into tables of `NumPy`'s own.
+    fn normal(&mut self, mean: f64, deviation: f64) -> f64 {
+        let (u, v) = (self.random(), self.random());
+        mean + deviation * ((-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos())
+    }
 }
 
 /// For what draws nothing.

@@ -1,0 +1,27 @@
+"""Figure 10.2: learning curves of semi-gradient Sarsa on Mountain Car."""
+
+from qtab.book.experiment import Experiment, Setting
+from qtab.book.measures import lengths
+from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
+
+EXPERIMENT = Experiment(
+    name="figure-10.2",
+    title="semi-gradient Sarsa on Mountain Car",
+    book="8 tilings, ε = 0, α of 0.1/8, 0.2/8 and 0.5/8; 500 episodes, 100 runs",
+    silent=OPEN,
+    settings=tuple(
+        Setting(
+            f"α = {alpha}/8",
+            ENV,
+            {**TILE_CODING, "algorithm": "sarsa", "learning_rate": alpha, "episodes": 500},
+            lengths,
+        )
+        for alpha in (0.1, 0.2, 0.5)
+    ),
+    runs=100,
+    x="episode",
+    y="steps per episode",
+    shown=(1, 2, 5, 10, 20, 50, 100, 200, 300, 400, 500),
+    log_y=True,
+    y_range=(100, 1000),
+)

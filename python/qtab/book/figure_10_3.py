@@ -1,0 +1,28 @@
+"""Figure 10.3: one-step and eight-step semi-gradient Sarsa on Mountain Car."""
+
+from qtab.book.experiment import Experiment, Setting
+from qtab.book.measures import lengths
+from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
+
+EXPERIMENT = Experiment(
+    name="figure-10.3",
+    title="one-step and eight-step Sarsa on Mountain Car",
+    book="n = 1 with α = 0.5/8, n = 8 with α = 0.3/8; 500 episodes, 100 runs",
+    silent=OPEN,
+    settings=tuple(
+        Setting(
+            f"n = {n}",
+            ENV,
+            {**TILE_CODING, "algorithm": "n_step_sarsa", "n_steps": n, "learning_rate": alpha, "episodes": 500},
+            lengths,
+        )
+        for n, alpha in ((1, 0.5), (8, 0.3))
+    ),
+    runs=100,
+    x="episode",
+    y="steps per episode",
+    shown=(1, 2, 5, 10, 20, 50, 100, 200, 300, 400, 500),
+    cap=20_000,
+    log_y=True,
+    y_range=(100, 1000),
+)

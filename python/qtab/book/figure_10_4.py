@@ -1,0 +1,38 @@
+"""Figure 10.4: n-step semi-gradient Sarsa on Mountain Car, early performance by n and α."""
+
+from qtab.book.experiment import Experiment, Setting
+from qtab.book.measures import mean_length
+from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
+
+ALPHAS = (0.1, 0.14, 0.2, 0.28, 0.4, 0.57, 0.8, 1.13, 1.6)
+"""On a log scale, as in the book."""
+STEPS = (1, 2, 4, 8, 16)
+
+
+def n_step_settings() -> tuple[Setting, ...]:
+    """Returns a line for each n."""
+    return tuple(
+        Setting(
+            f"n = {n}",
+            ENV,
+            {**TILE_CODING, "algorithm": "n_step_sarsa", "n_steps": n, "learning_rate": alpha, "episodes": 50},
+            mean_length,
+            x=(alpha,),
+        )
+        for n in STEPS
+        for alpha in ALPHAS
+    )
+
+
+EXPERIMENT = Experiment(
+    name="figure-10.4",
+    title="n-step semi-gradient Sarsa on Mountain Car, by n and α",
+    book="n of 1, 2, 4, 8 and 16; the first 50 episodes, 100 runs",
+    silent=f"which values of α (nine here, on a log scale as there); {OPEN}",
+    settings=n_step_settings(),
+    runs=100,
+    x="α × number of tilings (8)",
+    y="steps per episode",
+    cap=20_000,
+    y_range=(215, 300),
+)

@@ -1,0 +1,38 @@
+"""Figure 12.11: Sarsa(λ) with four kinds of traces on Mountain Car."""
+
+from typing import Any
+
+from qtab.book.experiment import Experiment, Setting
+from qtab.book.measures import mean_return
+from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
+
+ALPHAS = tuple(round(0.2 * fifth, 1) for fifth in range(1, 11))
+KINDS: dict[str, dict[str, Any]] = {
+    "true online Sarsa(λ)": {"algorithm": "true_online_sarsa_lambda"},
+    "replacing, clearing": {"algorithm": "sarsa_lambda", "traces": "clearing"},
+    "replacing": {"algorithm": "sarsa_lambda", "traces": "replacing"},
+    "accumulating": {"algorithm": "sarsa_lambda", "traces": "accumulating"},
+}
+
+EXPERIMENT = Experiment(
+    name="figure-12.11",
+    title="Sarsa(λ) with four kinds of traces on Mountain Car",
+    book="true online Sarsa(λ), and Sarsa(λ) with replacing traces, with replacing traces that clear those of the "
+    "other actions, and with accumulating traces; the first 20 episodes, 100 runs",
+    silent=f"λ (0.9 here); {OPEN}",
+    settings=tuple(
+        Setting(
+            name,
+            ENV,
+            {**TILE_CODING, **kind, "trace_decay": 0.9, "learning_rate": alpha, "episodes": 20},
+            mean_return,
+            x=(alpha,),
+        )
+        for name, kind in KINDS.items()
+        for alpha in ALPHAS
+    ),
+    runs=100,
+    x="α × number of tilings (8)",
+    y="reward per episode",
+    y_range=(-550, -150),
+)
