@@ -7,17 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import disjoint_base
 
-from qtab.plan import Model, Plan, Process, PythonEnvironment, Results, Rules
+from qtab.plan import Control, Plan, Process, PythonEnvironment, Results, Rules
 
 __all__ = [
     "BUILD_PROFILE",
     "Blackjack",
+    "Classic",
     "Physics",
     "Stream",
     "Table",
     "Taxi",
     "Trainer",
     "Transitions",
+    "computes_as_numpy",
     "numpy_calls_the_platform",
     "parameter_names",
     "train_many",
@@ -25,16 +27,21 @@ __all__ = [
 
 BUILD_PROFILE: Literal["debug", "release"]
 
+def computes_as_numpy(model: str) -> bool: ...
 def numpy_calls_the_platform() -> bool: ...
 def parameter_names(model: str) -> list[str]: ...
 def train_many(
-    describe: Callable[[int], tuple[Model | Process | Rules, Plan]], results: Results, threads: int, go_on: bool
+    describe: Callable[[int], tuple[Control | Process | Rules, Plan]], results: Results, threads: int, go_on: bool
 ) -> list[tuple[int, Exception]]: ...
 
 class Blackjack:
     def __new__(cls, *_args: Any, **_kwargs: Any) -> Blackjack: ...
     def step(self, action: Any) -> Any: ...
     def deal(self) -> Any: ...
+
+@final
+class Classic:
+    def __new__(cls, model: str, environment: Any) -> Classic: ...
 
 @disjoint_base
 class Physics:
@@ -61,7 +68,7 @@ class Taxi:
 
 @final
 class Trainer:
-    def __new__(cls, environment: Model | Process | Rules | PythonEnvironment, plan: Plan) -> Trainer: ...
+    def __new__(cls, environment: Control | Process | Rules | PythonEnvironment, plan: Plan) -> Trainer: ...
     def advance(self, episodes: int) -> None: ...
     def episodes(self) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]]: ...
     def tables(self) -> NDArray[np.float64]: ...

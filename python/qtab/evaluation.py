@@ -10,6 +10,9 @@ from qtab.models import spec_of
 from qtab.run import Run
 from qtab.training import train
 
+_TABLE = ("discretizer", "scale", "tilings", "tiles", "bins", "edges", "low", "high", "actions")
+"""What says which value of the table is which."""
+
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
@@ -71,7 +74,7 @@ def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.En
         epsilon=0.0,
         terminal_update="target",
         initial_q=_greedy_table(run),
-        **{name: getattr(config, name) for name in ("discretizer", "scale", "tilings", "tiles", "low", "high")},
+        **{name: getattr(config, name) for name in _TABLE},
         env_kwargs=config.env_kwargs,
         max_episode_steps=config.max_episode_steps,
         backend=config.backend if env is None else "auto",

@@ -1,20 +1,20 @@
 """What the extension module is handed: a run's description, every default resolved and every value checked."""
 
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from qtab._core import Transitions
+    from qtab._core import Classic, Transitions
     from qtab.config import Config
 
 
-class Model(TypedDict):
-    """An environment that Rust knows."""
+class Control(TypedDict):
+    """An environment of classic control that Rust knows, and the actions of a continuous one."""
 
-    model: str
-    parameters: dict[str, float]
+    constants: "Classic"
+    forces: list[float]
 
 
 class PythonEnvironment(TypedDict):
@@ -23,6 +23,7 @@ class PythonEnvironment(TypedDict):
     env: Any
     seed: int
     first_action: int
+    choices: list[NDArray[np.floating]]
 
 
 class Process(TypedDict):
@@ -60,6 +61,15 @@ class Cells(TypedDict):
     first: list[int]
     counts: list[int]
     scalar: bool
+
+
+class Bins(TypedDict):
+    """Between edges."""
+
+    edges: list[list[float]]
+
+
+Features: TypeAlias = Rounding | Tiles | Cells | Bins
 
 
 class Course(TypedDict):
@@ -103,7 +113,7 @@ class Plan(TypedDict):
     low: list[float]
     high: list[float]
     single: bool
-    features: Rounding | Tiles | Cells
+    features: Features
     actions: int
     max_episode_steps: int | None
     seed: list[int]

@@ -15,8 +15,8 @@ from qtab.config import Config, known_fields
 from qtab.models import spec_of
 from qtab.preset import preset
 from qtab.resolution import merge
-from qtab.spaces import Grid
 from qtab.storage import load
+from qtab.tiling import Tiling
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -98,7 +98,7 @@ class Settings(Config):
         }
         if isinstance(self.initial_q, Path):
             run = load(self.initial_q)
-            values["initial_q"] = run.q_table if isinstance(run.grid, Grid) and len(run.tables) == 1 else run.tables
+            values["initial_q"] = run.tables if isinstance(run.grid, Tiling) or len(run.tables) > 1 else run.q_table
         return values
 
 

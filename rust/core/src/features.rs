@@ -1,6 +1,7 @@
 //! From an observation to the rows of the table that it lights.
 
 mod bins;
+mod grid;
 mod identity;
 mod real;
 mod rounding;
@@ -10,6 +11,7 @@ use std::error::Error;
 use std::fmt;
 
 pub use bins::{Bins, Edges};
+pub use grid::Grid;
 pub use identity::{Cells, Identity};
 pub use real::Real;
 pub use rounding::{Axis, Rounding};

@@ -1,16 +1,20 @@
 //! `qtab._core`: what Python calls. Convert, dispatch, return; nothing else.
 
 mod blackjack;
+mod classic;
 mod dispatch;
 mod door;
 mod failure;
 mod finite;
+mod learning;
 mod many;
 mod model;
+mod native;
 mod numbers;
 mod observation;
 mod physics;
 mod plan;
+mod play;
 mod python_world;
 mod run;
 mod stream;
@@ -26,6 +30,8 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use super::blackjack::Blackjack;
+    #[pymodule_export]
+    use super::classic::Classic;
     #[pymodule_export]
     use super::many::train_many;
     #[pymodule_export]
@@ -43,7 +49,7 @@ mod _core {
     #[pymodule_export]
     use super::trainer::Trainer;
     #[pymodule_export]
-    use super::trigonometry::numpy_calls_the_platform;
+    use super::trigonometry::{computes_as_numpy, numpy_calls_the_platform};
 
     /// How the extension was compiled: only "release" says anything about speed.
     #[pymodule_export]

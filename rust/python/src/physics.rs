@@ -6,8 +6,9 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
-use crate::model::{Habits, Model, Played};
-use crate::numbers::{Values, constant};
+use crate::model::{Habits, Model};
+use crate::numbers::Values;
+use crate::play::{Played, State};
 use crate::trigonometry::numpy_calls_the_platform;
 
 /// Holds an environment's state, and steps it.
@@ -33,16 +34,6 @@ enum Constants {
     },
     /// Rust does not stand for all of them.
     Foreign,
-}
-
-/// The state of an episode.
-pub(crate) enum State {
-    /// Never assigned.
-    Missing,
-    /// As a step in Rust left it, zeros behind: an array of f64 in Gymnasium.
-    Rust([f64; 4]),
-    /// Assigned from Python, or handed out to it. An array can be written to, so it is read anew at each step.
-    Python(Py<PyAny>),
 }
 
 #[pymethods]
@@ -164,18 +155,8 @@ impl Physics {
                 return Ok(None);
             }
         }
-        let constants = model.constants();
-        for &name in constants.names() {
-            let Some(value) = slf.getattr_opt(name)? else { return Ok(None) };
-            let (Some(parameter), Some(number)) = (constants.parameter(name), constant(&value)) else {
-                return Ok(None);
-            };
-            *parameter = number;
-        }
-        for switch in constants.switches() {
-            let Some(value) = slf.getattr_opt(switch.name)? else { return Ok(None) };
-            let Some(on) = constants.switch(switch.name) else { return Ok(None) };
-            *on = switch.word.map_or_else(|| value.is_truthy(), |word| value.eq(word))?;
+        if model.read(slf)?.is_some() {
+            return Ok(None);
         }
         let render_mode = slf.getattr_opt(intern!(py, "render_mode"))?;
         Ok(Some(render_mode.is_some_and(|mode| mode.eq(intern!(py, "human")).unwrap_or(false))))

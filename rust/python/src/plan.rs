@@ -4,7 +4,7 @@ use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::Table;
-use qtab_core::features::{Axis, Real, Rounding, Tiles};
+use qtab_core::features::{Axis, Bins, Edges, Grid, Real, Rounding, Tiles};
 use qtab_core::learners::{Agent, Behaviour, EpsilonGreedy, Rate, Schedule, TerminalUpdate, Ties, Trace, Traces};
 use qtab_core::random::{Draw, Pcg64, Stream};
 
@@ -43,6 +43,8 @@ pub(crate) enum Discretizer {
     Tiles { low: Vec<f64>, high: Vec<f64>, tiles: Vec<u32>, tilings: u32 },
     #[pyo3(from_item_all)]
     Cells { first: Vec<i64>, counts: Vec<u32>, scalar: bool },
+    #[pyo3(from_item_all)]
+    Bins { edges: Vec<Vec<f64>> },
 }
 
 #[derive(FromPyObject)]
@@ -126,17 +128,43 @@ impl Plan<'_> {
         environment_stream(&self.seed)
     }
 
-    /// The grid over two float32 components.
+    /// The article's grid over two float32 components.
     pub(crate) fn plane(&self, scale: &[f64]) -> PyResult<Rounding<f32, [Axis<f32>; 2]>> {
         <[Axis<f32>; 2]>::try_from(self.axes(scale, |bound| bound as f32))
             .map(Rounding::new)
             .map_err(|axes| PyValueError::new_err(format!("scale must hold 2 numbers, got {}", axes.len())))
     }
 
-    /// The grid's axes, in the dtype of the bounds.
-    pub(crate) fn axes<T: Real>(&self, scale: &[f64], dtype: impl Fn(f64) -> T) -> Vec<Axis<T>> {
+    /// The grid of either kind, in the dtype of the bounds.
+    pub(crate) fn grid<T: Real>(&self, dtype: impl Fn(f64) -> T) -> PyResult<Grid<T>> {
+        match &self.features {
+            Discretizer::Rounding { scale } => Ok(Grid::Rounding(Rounding::new(self.axes(scale, dtype)))),
+            Discretizer::Bins { edges } => Ok(Grid::Bins(Bins::new(self.axes_of(edges)?))),
+            Discretizer::Tiles { .. } | Discretizer::Cells { .. } => Err(unknown("discretizer", "identity")),
+        }
+    }
+
+    /// The axes of the article's grid.
+    fn axes<T: Real>(&self, scale: &[f64], dtype: impl Fn(f64) -> T) -> Vec<Axis<T>> {
         let bounds = self.low.iter().zip(&self.high);
         bounds.zip(scale).map(|((&low, &high), &scale)| Axis::new(dtype(low), dtype(high), scale)).collect()
+    }
+
+    /// Bins over `N` float32 components.
+    pub(crate) fn bins<const N: usize>(&self, edges: &[Vec<f64>]) -> PyResult<Bins<f32, [Edges; N]>> {
+        self.axes_of(edges)?.try_into().map(Bins::new).map_err(|_| miscounted(N, edges))
+    }
+
+    fn axes_of(&self, edges: &[Vec<f64>]) -> PyResult<Vec<Edges>> {
+        if edges.len() != self.low.len() {
+            return Err(miscounted(self.low.len(), edges));
+        }
+        let rising = |edges: &&Vec<f64>| edges.is_sorted() && !edges.iter().any(|edge| edge.is_nan());
+        let checked = |edges: &Vec<f64>| match Some(edges).filter(rising) {
+            Some(edges) => Ok(Edges::new(edges.clone())),
+            None => Err(PyValueError::new_err(format!("edges must rise, got {edges:?}"))),
+        };
+        edges.iter().map(checked).collect()
     }
 
     /// What the article's learner is made of, if the plan asks for that: an exploration rate that falls linearly from the
@@ -220,7 +248,8 @@ impl Plan<'_> {
 
     fn terminal_update(&self) -> PyResult<TerminalUpdate> {
         match (self.terminal_update.as_str(), &self.features) {
-            ("assign", Discretizer::Rounding { .. } | Discretizer::Cells { .. }) => Ok(TerminalUpdate::Assign),
+            ("assign", Discretizer::Tiles { .. }) => Err(unknown("terminal_update", "assign")),
+            ("assign", _) => Ok(TerminalUpdate::Assign),
             ("target", _) => Ok(TerminalUpdate::Target),
             (other, _) => Err(unknown("terminal_update", other)),
         }
@@ -236,6 +265,10 @@ impl Plan<'_> {
         }
         Ok(Tiles::new(low, high, tiles, *tilings))
     }
+}
+
+fn miscounted(components: usize, edges: &[Vec<f64>]) -> PyErr {
+    PyValueError::new_err(format!("edges must hold a row for each of {components} components, got {}", edges.len()))
 }
 
 pub(crate) fn unknown(name: &str, value: &str) -> PyErr {

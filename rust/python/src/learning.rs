@@ -1,0 +1,148 @@
+//! The choice of a learner, on a world that was chosen before: the hot combinations whole, every other one boxed.
+
+use pyo3::prelude::*;
+use qtab_core::learners::{
+    self, Agent, DoubleQLearning, DynaQ, DynaQPlus, EpsilonGreedy, ExpectedSarsa, NStepSarsa, QLearning, Sarsa,
+    SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
+};
+use qtab_core::random::{Pcg64, Stream};
+use qtab_core::worlds::{Boxed, Recorded, Recordings, Start};
+use qtab_core::{Learner, Trainer, World};
+
+use crate::failure::Failure;
+use crate::plan::{Plan, given, unknown};
+use crate::run::Run;
+
+/// The last episodes of a run, where it was asked to keep them.
+pub(crate) enum Kept {
+    Nothing,
+    Native(Recordings<(u64, Option<u32>)>),
+    Python(Recordings<Py<PyAny>>),
+}
+
+/// A run that has not begun.
+pub(crate) struct Built {
+    pub(crate) run: Box<dyn Run>,
+    pub(crate) kept: Kept,
+    /// Whether it steps Python, and so stays on the calling thread, attached.
+    pub(crate) attached: bool,
+}
+
+/// The combinations that are compiled whole: a table of so many actions, learned as in the article, or by its next of
+/// kin.
+pub(crate) fn whole<W, const N: usize>(
+    world: W,
+    agent: Agent<N, EpsilonGreedy, f64>,
+    draw: Pcg64,
+    plan: &Plan<'_>,
+) -> Box<dyn Run>
+where
+    W: World<Rows = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
+{
+    match plan.algorithm.name.as_str() {
+        "sarsa" => Box::new(Trainer::new(world, Sarsa { agent }, draw)),
+        "expected_sarsa" => Box::new(Trainer::new(world, ExpectedSarsa { agent }, draw)),
+        _ => Box::new(Trainer::new(world, QLearning::from(agent), draw)),
+    }
+}
+
+pub(crate) fn boxed<W>(
+    world: W,
+    rows: usize,
+    lit: usize,
+    draw: Stream,
+    plan: &Plan<'_>,
+    kept: impl FnOnce(Recordings<W::Start>) -> Kept,
+    attached: bool,
+) -> PyResult<Built>
+where
+    W: Start + World<Rows: Send, State: Send, Error: Into<Failure>> + Send + 'static,
+    W::Start: Send,
+    Failure: From<W::Error>,
+{
+    let (world, kept) = if plan.record == 0 {
+        (Boxed::<W::Rows, Failure>::new(world), Kept::Nothing)
+    } else {
+        let (world, recordings) = Recorded::new(world, plan.record);
+        (Boxed::new(world), kept(recordings))
+    };
+    Ok(Built { run: learning(world, rows, lit, draw, plan)?, kept, attached })
+}
+
+/// Any learner in a boxed world, with a stream chosen at run time: compiled once for each kind of rows.
+fn learning<R>(
+    world: Boxed<R, Failure>,
+    rows: usize,
+    lit: usize,
+    mut draw: Stream,
+    plan: &Plan<'_>,
+) -> PyResult<Box<dyn Run>>
+where
+    R: Copy + AsRef<[u32]> + Send + 'static,
+{
+    let algorithm = &plan.algorithm;
+    let mut agent = |tables| plan.agent(tables, rows, lit, &mut draw);
+    Ok(match algorithm.name.as_str() {
+        "q_learning" => {
+            let learner = QLearning::from(agent(1)?);
+            start(world, learner, draw, plan)
+        }
+        "sarsa" => {
+            let learner = Sarsa { agent: agent(1)? };
+            start(world, learner, draw, plan)
+        }
+        "expected_sarsa" => {
+            let learner = ExpectedSarsa { agent: agent(1)? };
+            start(world, learner, draw, plan)
+        }
+        "double_q_learning" => {
+            let agent = agent(2)?;
+            let second = plan.table((1, 2), rows, &mut draw)?;
+            start(world, DoubleQLearning::new(agent, second), draw, plan)
+        }
+        "n_step_sarsa" => {
+            let learner = NStepSarsa::new(agent(1)?, given("n_steps", algorithm.n_steps)?);
+            start(world, learner, draw, plan)
+        }
+        "sarsa_lambda" => {
+            let agent = agent(1)?;
+            let (traces, kind) = (algorithm.no_traces(&agent)?, algorithm.trace()?);
+            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
+            start(world, SarsaLambda { agent, traces, kind, trace_decay }, draw, plan)
+        }
+        "true_online_sarsa_lambda" => {
+            let agent = agent(1)?;
+            let traces = algorithm.no_traces(&agent)?;
+            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
+            start(world, TrueOnlineSarsaLambda::new(agent, traces, trace_decay), draw, plan)
+        }
+        "watkins_q_lambda" => {
+            let agent = agent(1)?;
+            let (traces, kind) = (algorithm.no_traces(&agent)?, algorithm.trace()?);
+            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
+            start(world, WatkinsQLambda { agent, traces, kind, trace_decay }, draw, plan)
+        }
+        // A model of pairs needs a table.
+        "dyna_q" if lit == 1 => {
+            let (agent, model) = (agent(1)?, learners::Model::new(rows, plan.actions));
+            let planning_steps = given("planning_steps", algorithm.planning_steps)?;
+            start(world, DynaQ { agent, model, planning_steps }, draw, plan)
+        }
+        "dyna_q_plus" if lit == 1 => {
+            let (agent, model) = (agent(1)?, learners::Model::new(rows, plan.actions));
+            let planning_steps = given("planning_steps", algorithm.planning_steps)?;
+            let time_weight = given("time_weight", algorithm.time_weight)?;
+            start(world, DynaQPlus::new(agent, model, planning_steps, time_weight), draw, plan)
+        }
+        other => return Err(unknown("algorithm", other)),
+    })
+}
+
+fn start<R, L>(world: Boxed<R, Failure>, learner: L, draw: Stream, plan: &Plan<'_>) -> Box<dyn Run>
+where
+    R: Copy + AsRef<[u32]> + Send + 'static,
+    L: Learner<R> + Send + 'static,
+{
+    let learner = TimeOuts { learner, terminate: plan.on_truncation == "terminate" };
+    Box::new(Trainer::new(world, learner, draw))
+}
