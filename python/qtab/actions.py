@@ -76,7 +76,7 @@ def _listed(space: spaces.Box, wanted: Any) -> NDArray[np.floating]:
     if len(wanted) > MOST_ACTIONS:
         raise ValueError(f"actions must be at most {MOST_ACTIONS}, got {len(wanted)}")
     with np.errstate(over="ignore"):
-        values: NDArray[np.floating] = np.array(wanted, dtype=space.dtype).reshape(-1, components)
+        values: NDArray[Any] = np.array(wanted, dtype=space.dtype).reshape(-1, components)
     if not ((space.low <= values) & (values <= space.high)).all():
         raise ValueError(f"actions must lie in the action space {space}, got {wanted!r}")
     return values

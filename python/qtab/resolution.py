@@ -176,7 +176,9 @@ def _refused(why_not: str) -> ValueError:
 def _fitting(env: gym.Env, config: Config) -> Config:
     """The config with the discretizer that a discrete space has, where none was asked for."""
     if config.discretizer == "round" and components(env.observation_space) is not None:
-        return config.replace(discretizer="identity")
+        # The scale of the environment's preset yields, as in a merge; one that was asked for does not fit.
+        own = preset(config.env, config.preset)[1].get("scale") == config.scale
+        return config.replace(discretizer="identity", **({"scale": ()} if own else {}))
     return config
 
 
