@@ -269,7 +269,7 @@ SPACES = {
 @pytest.mark.parametrize(("env", "message"), SPACES.values(), ids=SPACES)
 def test_spaces_that_do_not_fit_are_named_with_what_fits(env, message):
     with pytest.raises(ValueError, match=message):
-        qtab.train(env, scale=(1.0,))
+        qtab.train(env, discretizer="round", scale=(1.0,))
 
 
 def test_a_box_of_two_axes_does_not_fit():

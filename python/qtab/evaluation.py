@@ -70,6 +70,7 @@ def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.En
         config.env if env is None else env,
         episodes=episodes,
         seed=seed,
+        algorithm="q_learning",
         learning_rate=0.0,
         epsilon=0.0,
         terminal_update="target",

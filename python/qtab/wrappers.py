@@ -35,7 +35,7 @@ def model_of_object(env: gym.Env) -> Model:
     untouched = type(inner)(**(spec.kwargs if spec is not None else {}))
     for name in parameter_names(model.name):
         now, then = getattr(inner, name), getattr(untouched, name)
-        if type(now) not in (int, float, bool, str) or now != then:
+        if type(now) not in (int, float, bool, str, list) or now != then:
             raise ValueError(f"{refused}its attribute {name} was changed from {then!r} to {now!r}")
     return model
 

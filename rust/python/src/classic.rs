@@ -7,7 +7,7 @@ use qtab_core::envs::{Acrobot, FewActions, Scalar};
 use qtab_core::features::MOST_TILINGS;
 
 use crate::learning::Built;
-use crate::model::Model;
+use crate::model::{Model, TORQUES};
 use crate::native::{cold, hot};
 use crate::plan::{Discretizer, Plan};
 use crate::trigonometry::single_precision;
@@ -26,7 +26,7 @@ impl Classic {
             return Err(PyValueError::new_err(format!("Rust does not stand for its attribute {name}")));
         }
         if let Model::Acrobot(env) = &mut model {
-            env.torques = environment.getattr("AVAIL_TORQUE")?.extract()?;
+            env.torques = environment.getattr(TORQUES)?.extract()?;
         }
         Ok(Self(model))
     }

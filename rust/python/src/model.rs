@@ -54,6 +54,9 @@ impl<P: Parameters> Constants for P {
     }
 }
 
+/// Gymnasium's name for the torques of Acrobot's actions.
+pub(crate) const TORQUES: &str = "AVAIL_TORQUE";
+
 impl Model {
     pub(crate) fn new(name: &str) -> PyResult<Self> {
         Ok(match name {
@@ -111,10 +114,12 @@ impl Model {
     }
 }
 
-/// The names of a model's constants, as Gymnasium spells its attributes.
+/// The names of all that is constant in a model, as Gymnasium spells its attributes.
 #[pyfunction]
 pub(crate) fn parameter_names(model: &str) -> PyResult<Vec<&'static str>> {
     let mut model = Model::new(model)?;
+    let torques = matches!(model, Model::Acrobot(_)).then_some(TORQUES);
     let constants = model.constants();
-    Ok(constants.names().iter().copied().chain(constants.switches().iter().map(|switch| switch.name)).collect())
+    let switches = constants.switches().iter().map(|switch| switch.name);
+    Ok(constants.names().iter().copied().chain(switches).chain(torques).collect())
 }
