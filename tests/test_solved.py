@@ -46,7 +46,7 @@ def test_cart_poles_own_preset_is_a_grid_that_learns() -> None:
     assert best_average(run) >= 475
 
 
-@pytest.mark.parametrize("env", SOLVED)
+@pytest.mark.parametrize("env", ["MountainCar-v0", "CartPole-v1", "MountainCarContinuous-v0"])
 def test_the_presets_are_what_numpy_computes(env: str) -> None:
     run = qtab.train(env, preset=SOLVED[env][0], seed=0)
     assert qtab.verify(run, episodes=3).equal

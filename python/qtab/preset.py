@@ -40,32 +40,30 @@ _TAXI = {"learning_rate": 0.5, "discount": 0.99, "epsilon": 0.1, "initial_q": 0.
 _BLACKJACK = {"learning_rate": 0.02, "learning_rate_schedule": "linear", "discount": 1.0, "epsilon": 1.0}
 _BLACKJACK |= {"initial_q": 0.0, "episodes": 500_000}
 
-# The cart's and the pole's speeds, which have no bounds, seldom come to these limits. Q-learning on a grid, from values
-# that are optimistic at first (50 of at most 500) and with an exploration rate that falls to nothing.
-_CART_POLE = {
+# The speeds of cart and pole have no bounds: beyond these limits the outermost bins serve. Q-learning on a grid, from
+# values that are optimistic at first (50 of at most 500) and with an exploration rate that falls to nothing.
+_CART_POLE: Mapping[str, Any] = {
     "discretizer": "bins",
     "bins": (3, 3, 6, 6),
     "low": (-2.4, -2.0, -0.21, -2.0),
     "high": (2.4, 2.0, 0.21, 2.0),
-}
-_CART_POLE |= {"learning_rate": 0.5, "learning_rate_schedule": "linear", "discount": 0.999, "epsilon": 0.2}
-_CART_POLE |= {"initial_q": 50.0, "episodes": 5000}
-_TRACED = {
-    "algorithm": "sarsa_lambda",
-    "trace_cutoff": 1e-3,
-    "discretizer": "tiles",
+    "learning_rate": 0.5,
     "learning_rate_schedule": "linear",
+    "discount": 0.999,
+    "epsilon": 0.2,
+    "initial_q": 50.0,
+    "episodes": 5000,
 }
-_CART_POLE_SOLVED = {**_TRACED, "tilings": 16, "tiles": (4,), "low": (-2.4, -2.5, -0.21, -3.5)}
-_CART_POLE_SOLVED |= {"high": (2.4, 2.5, 0.21, 3.5), "learning_rate": 0.5, "discount": 0.999, "trace_decay": 0.8}
-_CART_POLE_SOLVED |= {"epsilon": 0.1, "initial_q": 0.0, "episodes": 1000}
-_ACROBOT = {**_TRACED, "tilings": 32, "tiles": (4, 4, 4, 4, 5, 5), "learning_rate": 0.5, "discount": 0.99}
-_ACROBOT |= {"trace_decay": 0.8, "epsilon": 0.0, "initial_q": 0.0, "episodes": 1000}
-_PENDULUM = {**_TRACED, "actions": 3, "tilings": 16, "tiles": (6,), "learning_rate": 0.5, "discount": 0.98}
-_PENDULUM |= {"trace_decay": 0.8, "epsilon": 0.1, "initial_q": 0.0, "episodes": 1000}
-# Pushing costs: only values of 100 in all (12.5 a tiling) keep the car from learning to stand still.
-_CONTINUOUS_CAR = {**_TRACED, "actions": (-0.3, 0.3), "tilings": 8, "tiles": (16,), "learning_rate": 0.2}
-_CONTINUOUS_CAR |= {"discount": 1.0, "trace_decay": 0.9, "epsilon": 0.1, "initial_q": 12.5, "episodes": 500}
+# Sarsa(λ) on tile coding again.
+_TRACED: Mapping[str, Any] = {**_SOLVED, "learning_rate": 0.5, "trace_decay": 0.8, "epsilon": 0.1, "episodes": 1000}
+_CART_POLE_SOLVED = {**_TRACED, "tilings": 16, "tiles": (4,), "discount": 0.999}
+_CART_POLE_SOLVED |= {"low": (-2.4, -2.5, -0.21, -3.5), "high": (2.4, 2.5, 0.21, 3.5)}
+_ACROBOT = {**_TRACED, "tilings": 32, "tiles": (4, 4, 4, 4, 5, 5), "discount": 0.99, "epsilon": 0.0}
+_ACROBOT |= {"learning_rate_schedule": "constant"}
+_PENDULUM = {**_TRACED, "actions": 3, "tilings": 16, "tiles": (6,), "discount": 0.98}
+# Pushing costs: only first values of 100 (12.5 a tiling) keep the car from learning to stand still.
+_CONTINUOUS_CAR = {**_TRACED, "actions": (-0.3, 0.3), "learning_rate": 0.2, "trace_decay": 0.9}
+_CONTINUOUS_CAR |= {"initial_q": 12.5, "episodes": 500}
 
 # The first preset of an environment is its own.
 _PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
