@@ -1,52 +1,18 @@
-"""The presets that solve what they are for, by Gymnasium's thresholds."""
+"""The preset that solves MountainCar-v0."""
 
-import gymnasium as gym
 import numpy as np
-import pytest
 
 import qtab
 
-SOLVED = {
-    "MountainCar-v0": ("solved", 20, -106.0),
-    "CartPole-v0": ("tuned", 3, 195.0),
-    "CartPole-v1": ("solved", 5, 475.0),
-    "Acrobot-v1": ("solved", 3, -100.0),
-    "MountainCarContinuous-v0": ("solved", 5, 90.0),
-}
-"""For each environment the preset, how many seeds are tried, and what their last 100 episodes come to on average."""
 
-
-def best_average(run: qtab.Run) -> float:
-    """Over 100 consecutive episodes of the training."""
-    return float(np.convolve(run.episode_returns, np.full(100, 0.01), "valid").max())
-
-
-@pytest.mark.filterwarnings("ignore:.*out of date")
-@pytest.mark.parametrize("env", SOLVED)
-def test_every_seed_solves_its_environment_and_together_they_end_above_the_threshold(env: str) -> None:
-    preset, seeds, least = SOLVED[env]
-    runs = [qtab.train(env, preset=preset, seed=seed) for seed in range(seeds)]
-    threshold = gym.spec(env).reward_threshold
-    assert threshold is not None
+def test_every_seed_solves_mountain_car_and_together_they_end_above_minus_106():
+    runs = [qtab.train("MountainCar-v0", preset="solved", seed=seed) for seed in range(20)]
     for run in runs:
-        assert best_average(run) >= threshold, run.config.seed
-    assert np.mean([run.mean_returns(100)[-1] for run in runs]) >= least
+        averages = np.convolve(run.episode_returns, np.full(100, 0.01), "valid")
+        assert averages.max() >= -110, run.config.seed
+    assert np.mean([run.mean_returns(100)[-1] for run in runs]) > -106
 
 
-def test_pendulum_learns_to_stand() -> None:
-    # Upright in time costs some 140; hanging down costs 1,200 and more.
-    for seed in range(3):
-        assert qtab.train("Pendulum-v1", seed=seed).mean_returns(100)[-1] > -200
-
-
-def test_cart_poles_own_preset_is_a_grid_that_learns() -> None:
-    run = qtab.train("CartPole-v1", seed=0)
-    assert run.config.preset == "tuned"
-    assert run.q_table.shape == (3, 3, 6, 6, 2)
-    assert best_average(run) >= 475
-
-
-@pytest.mark.parametrize("env", ["MountainCar-v0", "CartPole-v1", "MountainCarContinuous-v0"])
-def test_the_presets_are_what_numpy_computes(env: str) -> None:
-    run = qtab.train(env, preset=SOLVED[env][0], seed=0)
-    assert qtab.verify(run, episodes=3).equal
+def test_the_solved_preset_is_what_numpy_computes():
+    run = qtab.train("MountainCar-v0", preset="solved", seed=0)
+    assert qtab.verify(run, episodes=5).equal

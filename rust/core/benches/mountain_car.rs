@@ -8,7 +8,7 @@ use criterion::{BatchSize, Criterion, Throughput};
 use qtab_core::batch::{self, Article, LANES};
 use qtab_core::envs::{MountainCar, MountainCarState};
 use qtab_core::features::{Axis, Rounding};
-use qtab_core::learners::{EpsilonGreedy, QLearning, TerminalUpdate};
+use qtab_core::learners::{Agent, Control, EpsilonGreedy, QLearning, TerminalUpdate};
 use qtab_core::random::{Draw, Mt19937, Pcg64, SeedSequence};
 use qtab_core::world::{Next, World};
 use qtab_core::worlds::Native;
@@ -31,14 +31,17 @@ fn world() -> Valley {
     Native::new(MountainCar::default(), rounding(), Some(LIMIT), Pcg64::new(&SeedSequence::new(&[0])))
 }
 
-fn learner(draw: &mut impl Draw) -> QLearning<3> {
-    QLearning {
+type QLearner = Control<QLearning, Agent<3, EpsilonGreedy, f64>>;
+
+fn learner(draw: &mut impl Draw) -> QLearner {
+    let agent = Agent {
         table: Table::uniform(Features::<[f32; 2]>::len(&rounding()), 3, -1.0, 1.0, draw),
         policy: EpsilonGreedy::linear(0.8, 0.0, EPISODES as u64),
         learning_rate: 0.2,
         discount: 0.9,
         terminal_update: TerminalUpdate::Assign,
-    }
+    };
+    Control { agent, rule: QLearning }
 }
 
 /// The agent's stream of seed 0.
@@ -113,12 +116,12 @@ fn update(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn trainer<D: Draw + Clone>(mut draw: D) -> Trainer<Valley, QLearning<3>, D> {
+fn trainer<D: Draw + Clone>(mut draw: D) -> Trainer<Valley, QLearner, D> {
     let learner = learner(&mut draw);
     Trainer::new(world(), learner, draw)
 }
 
-fn train<D: Draw + Clone>(mut trainer: Trainer<Valley, QLearning<3>, D>) -> u64 {
+fn train<D: Draw + Clone>(mut trainer: Trainer<Valley, QLearner, D>) -> u64 {
     trainer.advance(Until { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
     trainer.episodes().lengths.iter().sum::<i64>() as u64
 }

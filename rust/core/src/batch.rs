@@ -14,7 +14,7 @@ mod words;
 use crate::Env;
 use crate::envs::MountainCar;
 use crate::features::{Axis, Features, Outside, Rounding};
-use crate::learners::QLearning;
+use crate::learners::{Agent, Control, EpsilonGreedy, QLearning};
 use crate::random::Pcg64;
 use crate::trainer::{Trainer, Until};
 use crate::worlds::Native;
@@ -26,7 +26,11 @@ pub const LANES: usize = 8;
 const FAR_FROM_OVERFLOW: f64 = 1e300;
 
 /// The article's run: what a batch is made for.
-pub type Article = Trainer<Native<MountainCar, Rounding<f32, [Axis<f32>; 2]>>, QLearning<3>, Pcg64>;
+pub type Article = Trainer<
+    Native<MountainCar, Rounding<f32, [Axis<f32>; 2]>>,
+    Control<QLearning, Agent<3, EpsilonGreedy, f64>>,
+    Pcg64,
+>;
 
 /// Advances every run by up to `until.steps` steps, until one of them has `until.episodes`. Each is then where it would
 /// be had it advanced alone by as many steps, and may go on with others, or alone.
@@ -48,15 +52,16 @@ pub fn advance<const K: usize>(runs: &mut [Article; K], until: Until) -> Result<
 }
 
 fn alike(one: &Article, other: &Article) -> bool {
-    let (world, learner) = (&one.world, &one.learner);
+    let (world, agent) = (&one.world, &one.learner.agent);
+    let others = &other.learner.agent;
     world.env == other.world.env
         && world.features == other.world.features
         && world.max_episode_steps == other.world.max_episode_steps
-        && learner.learning_rate == other.learner.learning_rate
-        && learner.discount == other.learner.discount
-        && learner.terminal_update == other.learner.terminal_update
-        && learner.table.values().len() == other.learner.table.values().len()
-        && learner.table.values().iter().all(|value| value.abs() < FAR_FROM_OVERFLOW)
+        && agent.learning_rate == others.learning_rate
+        && agent.discount == others.discount
+        && agent.terminal_update == others.terminal_update
+        && agent.table.values().len() == others.table.values().len()
+        && agent.table.values().iter().all(|value| value.abs() < FAR_FROM_OVERFLOW)
 }
 
 /// Whether no observation can lie outside the grid: it rises with position and velocity, so that the corners tell.
@@ -75,7 +80,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::learners::{EpsilonGreedy, TerminalUpdate};
+    use crate::learners::TerminalUpdate;
     use crate::random::SeedSequence;
     use crate::{Table, Trainer};
 
@@ -112,7 +117,7 @@ mod tests {
         let seed = SeedSequence::new(&[seed]);
         let mut draw = Pcg64::new(&seed.child(0));
         let grid = Rounding::new([Axis::new(-1.2, 0.6, 10.0), Axis::new(-0.07, 0.07, 100.0)]);
-        let learner = QLearning {
+        let agent = Agent {
             table: Table::uniform(Features::<[f32; 2]>::len(&grid), 3, -1.0, 1.0, &mut draw),
             policy: EpsilonGreedy::linear(setting.epsilon, 0.0, episodes),
             learning_rate: setting.learning_rate,
@@ -120,7 +125,7 @@ mod tests {
             terminal_update: setting.terminal_update,
         };
         let world = Native::new(setting.car, grid, Some(setting.max_episode_steps), Pcg64::new(&seed));
-        Trainer::new(world, learner, draw)
+        Trainer::new(world, Control { agent, rule: QLearning }, draw)
     }
 
     /// Batches, then alone to the end: everything is as if each had been alone all the time.
@@ -136,8 +141,9 @@ mod tests {
             assert_eq!(one.episodes(), alone.episodes());
             assert_eq!(one.draw, alone.draw);
             assert_eq!(one.world.draw(), alone.world.draw());
-            let bits =
-                |run: &Article| run.learner.table.values().iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+            let bits = |run: &Article| {
+                run.learner.agent.table.values().iter().map(|value| value.to_bits()).collect::<Vec<_>>()
+            };
             assert_eq!(bits(&one), bits(&alone));
         }
     }
@@ -165,7 +171,7 @@ mod tests {
         advance(&mut runs, Until { episodes: 20, steps: u64::MAX }).expect(INSIDE);
         let mut alone = run(1, 20, other);
         alone.advance(Until { episodes: 20, steps: u64::MAX }).expect(INSIDE);
-        assert_eq!(runs[1].learner.table, alone.learner.table);
+        assert_eq!(runs[1].learner.agent.table, alone.learner.agent.table);
     }
 
     proptest! {

@@ -8,7 +8,7 @@
 //! ```
 //! use qtab_core::envs::MountainCar;
 //! use qtab_core::features::{Axis, Rounding};
-//! use qtab_core::learners::{EpsilonGreedy, QLearning, TerminalUpdate};
+//! use qtab_core::learners::{Agent, Control, EpsilonGreedy, QLearning, TerminalUpdate};
 //! use qtab_core::random::{Pcg64, SeedSequence, Stream};
 //! use qtab_core::worlds::Native;
 //! use qtab_core::{Table, Trainer, Until};
@@ -17,14 +17,14 @@
 //! let mut draw = Stream::pcg64(&seed);
 //! let rounding = Rounding::new([Axis::new(-1.2_f32, 0.6, 10.0), Axis::new(-0.07_f32, 0.07, 100.0)]);
 //! let world = Native::new(MountainCar::default(), rounding, Some(200), Pcg64::new(&seed));
-//! let learner = QLearning {
+//! let agent = Agent {
 //!     table: Table::<3>::uniform(19 * 15, 3, -1.0, 1.0, &mut draw),
 //!     policy: EpsilonGreedy::linear(0.8, 0.0, 5000),
 //!     learning_rate: 0.2,
 //!     discount: 0.9,
 //!     terminal_update: TerminalUpdate::Assign,
 //! };
-//! let mut trainer = Trainer::new(world, learner, draw);
+//! let mut trainer = Trainer::new(world, Control { agent, rule: QLearning }, draw);
 //! trainer.advance(Until { episodes: 100, steps: u64::MAX }).unwrap();
 //! assert_eq!(trainer.episodes().returns.len(), 100);
 //! ```

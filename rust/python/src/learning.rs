@@ -2,8 +2,8 @@
 
 use pyo3::prelude::*;
 use qtab_core::learners::{
-    self, Agent, DoubleQLearning, DynaQ, DynaQPlus, EpsilonGreedy, ExpectedSarsa, NStepSarsa, QLearning, Sarsa,
-    SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
+    self, Agent, Control, DoubleQLearning, DynaQ, DynaQPlus, EpsilonGreedy, ExpectedSarsa, NStepSarsa, QLearning, Rule,
+    Sarsa, SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
 };
 use qtab_core::random::{Pcg64, Stream};
 use qtab_core::worlds::{Boxed, Recorded, Recordings, Start};
@@ -40,12 +40,13 @@ where
     W: World<Rows = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
 {
     match plan.algorithm.name.as_str() {
-        "sarsa" => Box::new(Trainer::new(world, Sarsa { agent }, draw)),
-        "expected_sarsa" => Box::new(Trainer::new(world, ExpectedSarsa { agent }, draw)),
-        _ => Box::new(Trainer::new(world, QLearning::from(agent), draw)),
+        "sarsa" => Box::new(Trainer::new(world, Control { agent, rule: Sarsa }, draw)),
+        "expected_sarsa" => Box::new(Trainer::new(world, Control { agent, rule: ExpectedSarsa }, draw)),
+        _ => Box::new(Trainer::new(world, Control { agent, rule: QLearning }, draw)),
     }
 }
 
+/// A run of any learner, recorded where that was asked for.
 pub(crate) fn boxed<W>(
     world: W,
     rows: usize,
@@ -81,61 +82,50 @@ where
     R: Copy + AsRef<[u32]> + Send + 'static,
 {
     let algorithm = &plan.algorithm;
-    let mut agent = |tables| plan.agent(tables, rows, lit, &mut draw);
+    if algorithm.name == "double_q_learning" {
+        let agent = plan.agent(2, rows, lit, &mut draw)?;
+        let second = plan.table((1, 2), rows, &mut draw)?;
+        return Ok(start(world, DoubleQLearning::new(agent, second), draw, plan));
+    }
+    let agent = plan.agent(1, rows, lit, &mut draw)?;
+    let trace_decay = || given("trace_decay", algorithm.trace_decay);
+    // A model of pairs needs a table.
+    let model = || {
+        if lit == 1 { Ok(learners::Model::new(rows, plan.actions)) } else { Err(unknown("algorithm", &algorithm.name)) }
+    };
+    let planning_steps = || given("planning_steps", algorithm.planning_steps);
     Ok(match algorithm.name.as_str() {
-        "q_learning" => {
-            let learner = QLearning::from(agent(1)?);
-            start(world, learner, draw, plan)
-        }
-        "sarsa" => {
-            let learner = Sarsa { agent: agent(1)? };
-            start(world, learner, draw, plan)
-        }
-        "expected_sarsa" => {
-            let learner = ExpectedSarsa { agent: agent(1)? };
-            start(world, learner, draw, plan)
-        }
-        "double_q_learning" => {
-            let agent = agent(2)?;
-            let second = plan.table((1, 2), rows, &mut draw)?;
-            start(world, DoubleQLearning::new(agent, second), draw, plan)
-        }
-        "n_step_sarsa" => {
-            let learner = NStepSarsa::new(agent(1)?, given("n_steps", algorithm.n_steps)?);
-            start(world, learner, draw, plan)
-        }
+        "q_learning" => control(world, agent, QLearning, draw, plan),
+        "sarsa" => control(world, agent, Sarsa, draw, plan),
+        "expected_sarsa" => control(world, agent, ExpectedSarsa, draw, plan),
+        "n_step_sarsa" => control(world, agent, NStepSarsa::new(given("n_steps", algorithm.n_steps)?), draw, plan),
         "sarsa_lambda" => {
-            let agent = agent(1)?;
             let (traces, kind) = (algorithm.no_traces(&agent)?, algorithm.trace()?);
-            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
-            start(world, SarsaLambda { agent, traces, kind, trace_decay }, draw, plan)
-        }
-        "true_online_sarsa_lambda" => {
-            let agent = agent(1)?;
-            let traces = algorithm.no_traces(&agent)?;
-            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
-            start(world, TrueOnlineSarsaLambda::new(agent, traces, trace_decay), draw, plan)
+            control(world, agent, SarsaLambda { traces, kind, trace_decay: trace_decay()? }, draw, plan)
         }
         "watkins_q_lambda" => {
-            let agent = agent(1)?;
             let (traces, kind) = (algorithm.no_traces(&agent)?, algorithm.trace()?);
-            let trace_decay = given("trace_decay", algorithm.trace_decay)?;
-            start(world, WatkinsQLambda { agent, traces, kind, trace_decay }, draw, plan)
+            control(world, agent, WatkinsQLambda { traces, kind, trace_decay: trace_decay()? }, draw, plan)
         }
-        // A model of pairs needs a table.
-        "dyna_q" if lit == 1 => {
-            let (agent, model) = (agent(1)?, learners::Model::new(rows, plan.actions));
-            let planning_steps = given("planning_steps", algorithm.planning_steps)?;
-            start(world, DynaQ { agent, model, planning_steps }, draw, plan)
+        "true_online_sarsa_lambda" => {
+            let traces = algorithm.no_traces(&agent)?;
+            control(world, agent, TrueOnlineSarsaLambda::new(traces, trace_decay()?), draw, plan)
         }
-        "dyna_q_plus" if lit == 1 => {
-            let (agent, model) = (agent(1)?, learners::Model::new(rows, plan.actions));
-            let planning_steps = given("planning_steps", algorithm.planning_steps)?;
+        "dyna_q" => control(world, agent, DynaQ { model: model()?, planning_steps: planning_steps()? }, draw, plan),
+        "dyna_q_plus" => {
             let time_weight = given("time_weight", algorithm.time_weight)?;
-            start(world, DynaQPlus::new(agent, model, planning_steps, time_weight), draw, plan)
+            control(world, agent, DynaQPlus::new(model()?, planning_steps()?, time_weight), draw, plan)
         }
         other => return Err(unknown("algorithm", other)),
     })
+}
+
+fn control<R, U>(world: Boxed<R, Failure>, agent: Agent, rule: U, draw: Stream, plan: &Plan<'_>) -> Box<dyn Run>
+where
+    R: Copy + AsRef<[u32]> + Send + 'static,
+    U: Rule<R, Agent> + Send + 'static,
+{
+    start(world, Control { agent, rule }, draw, plan)
 }
 
 fn start<R, L>(world: Boxed<R, Failure>, learner: L, draw: Stream, plan: &Plan<'_>) -> Box<dyn Run>

@@ -9,7 +9,7 @@ use crate::envs::mountain_car::{DIRECTIONS, REWARD};
 use crate::envs::{MountainCar, MountainCarState};
 use crate::features::Outside;
 use crate::hint::seldom;
-use crate::learners::TerminalUpdate;
+use crate::learners::{Agent, TerminalUpdate};
 use crate::trainer::{Underway, Until};
 use crate::worlds::Position;
 
@@ -46,8 +46,7 @@ fn turns<const K: usize>(
     let car = runs[0].world.env;
     let grid = runs[0].world.features.clone();
     let limit = runs[0].world.max_episode_steps;
-    let (learning_rate, discount) = (runs[0].learner.learning_rate, runs[0].learner.discount);
-    let terminal_update = runs[0].learner.terminal_update;
+    let Agent { learning_rate, discount, terminal_update, .. } = runs[0].learner.agent;
     let mut result = Ok(());
     let mut on = true;
     let mut steps = until.steps;
@@ -68,7 +67,7 @@ fn turns<const K: usize>(
             any |= over[lane];
         }
         for lane in 0..K {
-            let values = runs[lane].learner.table.values_mut();
+            let values = runs[lane].learner.agent.table.values_mut();
             let (here, there) = (lanes.place[lane] + lanes.action[lane], places[lane]);
             let value = values[here];
             if terminal[lane] {
@@ -165,7 +164,7 @@ impl<const K: usize> Lanes<K> {
         self.place[lane] = now.here[0] as usize * ACTIONS;
         self.action[lane] = now.action;
         self.total[lane] = now.total;
-        self.greedy[lane] = 1.0 - run.learner.policy.epsilon();
+        self.greedy[lane] = 1.0 - run.learner.agent.policy.epsilon();
     }
 
     fn get(&self, lane: usize) -> Option<Now> {

@@ -1,8 +1,18 @@
-//! What every learner but the article's is made of: Q, how actions are chosen, how far an update goes.
+//! What every learner is made of: Q, how actions are chosen, how far an update goes.
 
-use super::{Behaviour, Policy, Rate, StepSize, TerminalUpdate};
+use super::{Behaviour, Policy, Rate, StepSize};
 use crate::random::Draw;
 use crate::table::Table;
+use crate::world::Next;
+
+/// What an update does at a terminal state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TerminalUpdate {
+    /// Q ← R, the article's rule: right where the last reward is always the same.
+    Assign,
+    /// Q ← Q + α (R - Q), the book's: the value of a terminal state is zero.
+    Target,
+}
 
 /// A table, a policy and the constants of an update.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +35,23 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[inline(always)]
     pub fn choose(&mut self, rows: impl AsRef<[u32]>, draw: &mut impl Draw) -> usize {
         self.policy.choose(self.table.read(rows.as_ref()), draw)
+    }
+
+    /// S′ and an action A′ there; none after a terminal state. At a time-out A′ is drawn for its value, and not taken.
+    #[expect(clippy::inline_always, reason = "a call a step costs a tenth of it")]
+    #[inline(always)]
+    pub fn follow<R: Copy + AsRef<[u32]>>(&mut self, next: Next<R>, draw: &mut impl Draw) -> Option<(R, usize)> {
+        match next {
+            Next::Goes(there) | Next::TimedOut(there) => Some((there, self.choose(there, draw))),
+            Next::Terminal => None,
+        }
+    }
+
+    /// An action to go on with, for those whose update needs none; nothing is drawn where the episode ends.
+    #[expect(clippy::inline_always, reason = "a call a step costs a tenth of it")]
+    #[inline(always)]
+    pub fn go_on<R: Copy + AsRef<[u32]>>(&mut self, next: Next<R>, draw: &mut impl Draw) -> usize {
+        if let Next::Goes(there) = next { self.choose(there, draw) } else { 0 }
     }
 
     /// Q(S, A).

@@ -1,7 +1,6 @@
 //! Dyna-Q: Q-learning that also learns from what it remembers (Sutton, 1990; Sutton & Barto, the box in section 8.2).
 
-use super::{Agent, Model, Outcome};
-use crate::learner::Learner;
+use super::{Agent, Model, Outcome, Rule};
 use crate::random::Draw;
 use crate::table::maximum;
 use crate::world::Next;
@@ -10,8 +9,6 @@ use crate::world::Next;
 /// row of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynaQ {
-    /// Q, the policy and the constants.
-    pub agent: Agent,
     /// What followed each pair the last time.
     pub model: Model,
     /// n: how many updates follow each step.
@@ -51,49 +48,42 @@ pub(crate) fn lone(rows: &impl AsRef<[u32]>) -> u32 {
     row
 }
 
-impl<R: Copy + AsRef<[u32]>> Learner<R> for DynaQ {
+impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for DynaQ {
     #[inline]
-    fn begin(&mut self, here: R, draw: &mut impl Draw) -> usize {
-        self.agent.choose(here, draw)
-    }
-
-    #[inline]
-    fn learn(&mut self, here: R, action: usize, reward: f64, next: Next<R>, draw: &mut impl Draw) -> usize {
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        here: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        draw: &mut impl Draw,
+    ) -> usize {
         let (row, outcome) = (lone(&here), Outcome::new(reward, &next));
-        self.agent.learn_outcome(row, action, outcome);
+        agent.learn_outcome(row, action, outcome);
         self.model.remember(row, action, outcome);
         for _ in 0..self.planning_steps {
             let row = self.model.any_row(draw);
             let action = self.model.any_action(row, draw);
             if let Some(outcome) = self.model.outcome(row, action) {
-                self.agent.learn_outcome(row, action, outcome);
+                agent.learn_outcome(row, action, outcome);
             }
         }
-        if let Next::Goes(there) = next { self.agent.choose(there, draw) } else { 0 }
-    }
-
-    fn end_episode(&mut self) {
-        self.agent.end_episode();
-    }
-
-    fn tables(&self) -> Vec<&[f64]> {
-        vec![self.agent.table.values()]
-    }
-
-    fn diverged(&self) -> bool {
-        self.agent.table.diverged()
+        agent.go_on(next, draw)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Learner;
+    use crate::learners::Control;
     use crate::learners::example::{agent, draw};
 
     #[test]
     fn planning_repeats_the_only_thing_that_happened() {
-        let model = Model::new(2, 2);
-        let mut learner = DynaQ { agent: agent(&[1.0, 0.0, 2.0, 3.0]), model, planning_steps: 2 };
+        let rule = DynaQ { model: Model::new(2, 2), planning_steps: 2 };
+        let mut learner = Control { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         learner.learn([0], 0, -1.0, Next::Goes([1]), &mut draw());
         // Three times half the way to -1 + 0.5 · 3: 0.75, 0.625, 0.5625
         assert_eq!(learner.agent.table.values(), [0.5625, 0.0, 2.0, 3.0]);

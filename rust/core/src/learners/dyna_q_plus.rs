@@ -1,8 +1,7 @@
 //! Dyna-Q+: Dyna-Q that grows curious of what it has not tried for long (Sutton, 1990; Sutton & Barto, section 8.3).
 
 use super::dyna_q::lone;
-use super::{Agent, Model, Outcome};
-use crate::learner::Learner;
+use super::{Agent, Model, Outcome, Rule};
 use crate::random::Draw;
 use crate::world::Next;
 
@@ -11,8 +10,6 @@ use crate::world::Next;
 /// counts from the run's beginning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynaQPlus {
-    /// Q, the policy and the constants.
-    pub agent: Agent,
     /// What followed each pair the last time.
     pub model: Model,
     /// n: how many updates follow each step.
@@ -24,59 +21,53 @@ pub struct DynaQPlus {
 }
 
 impl DynaQPlus {
-    /// An agent that has tried nothing yet.
-    pub fn new(agent: Agent, model: Model, planning_steps: u32, time_weight: f64) -> Self {
-        let last_tried = vec![0; agent.table.values().len()];
-        Self { agent, model, planning_steps, time_weight, now: 0, last_tried }
+    /// A rule for an agent that has tried nothing yet.
+    pub fn new(model: Model, planning_steps: u32, time_weight: f64) -> Self {
+        let last_tried = vec![0; model.pairs()];
+        Self { model, planning_steps, time_weight, now: 0, last_tried }
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> Learner<R> for DynaQPlus {
+impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for DynaQPlus {
     #[inline]
-    fn begin(&mut self, here: R, draw: &mut impl Draw) -> usize {
-        self.agent.choose(here, draw)
-    }
-
-    #[inline]
-    fn learn(&mut self, here: R, action: usize, reward: f64, next: Next<R>, draw: &mut impl Draw) -> usize {
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        here: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        draw: &mut impl Draw,
+    ) -> usize {
         let (row, outcome) = (lone(&here), Outcome::new(reward, &next));
         self.now += 1;
-        self.last_tried[self.agent.table.weight(row, action)] = self.now;
-        self.agent.learn_outcome(row, action, outcome);
+        self.last_tried[agent.table.weight(row, action)] = self.now;
+        agent.learn_outcome(row, action, outcome);
         self.model.remember(row, action, outcome);
         for _ in 0..self.planning_steps {
             let row = self.model.any_row(draw);
-            let action = draw.integers(self.agent.table.actions() as u32) as usize;
+            let action = draw.integers(agent.table.actions() as u32) as usize;
             let Outcome { reward, next } =
                 self.model.outcome(row, action).unwrap_or(Outcome { reward: 0.0, next: Some(row) });
-            let elapsed = (self.now - self.last_tried[self.agent.table.weight(row, action)]) as f64;
+            let elapsed = (self.now - self.last_tried[agent.table.weight(row, action)]) as f64;
             let curious = reward + self.time_weight * elapsed.sqrt();
-            self.agent.learn_outcome(row, action, Outcome { reward: curious, next });
+            agent.learn_outcome(row, action, Outcome { reward: curious, next });
         }
-        if let Next::Goes(there) = next { self.agent.choose(there, draw) } else { 0 }
-    }
-
-    fn end_episode(&mut self) {
-        self.agent.end_episode();
-    }
-
-    fn tables(&self) -> Vec<&[f64]> {
-        vec![self.agent.table.values()]
-    }
-
-    fn diverged(&self) -> bool {
-        self.agent.table.diverged()
+        agent.go_on(next, draw)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Learner;
+    use crate::learners::Control;
     use crate::learners::example::{agent, draw};
 
     #[test]
     fn what_was_not_tried_for_long_gains() {
-        let mut learner = DynaQPlus::new(agent(&[0.0, 0.0]), Model::new(1, 2), 64, 1.0);
+        let rule = DynaQPlus::new(Model::new(1, 2), 64, 1.0);
+        let mut learner = Control { agent: agent(&[0.0, 0.0]), rule };
         learner.learn([0], 0, 0.0, Next::Terminal, &mut draw());
         // Action 1, never tried, is taken to lead back with κ √1: its value v = 1 + 0.5 v, so 2 in the end.
         let &[tried, untried] = learner.agent.table.values() else { unreachable!("two actions") };

@@ -12,6 +12,7 @@ mod true_online_sarsa_lambda;
 mod watkins_q_lambda;
 
 mod agent;
+mod control;
 mod epsilon_greedy;
 #[cfg(test)]
 mod example;
@@ -22,7 +23,8 @@ mod step_size;
 mod time_outs;
 mod traces;
 
-pub use agent::Agent;
+pub use agent::{Agent, TerminalUpdate};
+pub use control::{Control, Rule};
 pub use double_q_learning::DoubleQLearning;
 pub use dyna_q::DynaQ;
 pub use dyna_q_plus::DynaQPlus;
@@ -31,7 +33,7 @@ pub use expected_sarsa::ExpectedSarsa;
 pub use model::{Model, Outcome};
 pub use n_step_sarsa::NStepSarsa;
 pub use policy::{Behaviour, Policy, Softmax, Ties};
-pub use q_learning::{QLearning, TerminalUpdate};
+pub use q_learning::QLearning;
 pub use sarsa::Sarsa;
 pub use sarsa_lambda::SarsaLambda;
 pub use schedule::{Decay, Schedule};

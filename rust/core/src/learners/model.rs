@@ -36,6 +36,11 @@ impl Model {
         }
     }
 
+    /// How many pairs there are.
+    pub(crate) fn pairs(&self) -> usize {
+        self.outcomes.len()
+    }
+
     /// Remembers what followed.
     pub fn remember(&mut self, row: u32, action: usize, outcome: Outcome) {
         let (pairs, index) = (row as usize * self.actions, row as usize * self.actions + action);

@@ -45,13 +45,14 @@ impl<R, L: Learner<R>> Learner<R> for TimeOuts<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::learners::Sarsa;
     use crate::learners::example::{agent, draw};
+    use crate::learners::{Control, Sarsa};
 
     #[test]
     fn the_mistake_forgets_what_would_have_followed() {
         for (terminate, value) in [(false, 0.75), (true, 0.0)] {
-            let mut learner = TimeOuts { learner: Sarsa { agent: agent(&[1.0, 0.0, 2.0, 3.0]) }, terminate };
+            let mut learner =
+                TimeOuts { learner: Control { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: Sarsa }, terminate };
             learner.learn([0], 0, -1.0, Next::TimedOut([1]), &mut draw());
             assert_eq!(learner.learner.agent.table.values()[0], value);
         }

@@ -1,15 +1,12 @@
 //! True online Sarsa(λ), with dutch traces (van Seijen et al., 2016; Sutton & Barto, the box in section 12.7).
 
-use super::{Agent, StepSize, Traces};
-use crate::learner::Learner;
+use super::{Agent, Rule, StepSize, Traces};
 use crate::random::Draw;
 use crate::world::Next;
 
 /// z ← γλ z + (1 - αγλ zᵀx) x; w ← w + α (δ + Q - Qₒ) z - α (Q - Qₒ) x; Qₒ ← Q′, the old value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrueOnlineSarsaLambda {
-    /// Q, the policy and the constants.
-    pub agent: Agent,
     /// z.
     pub traces: Traces,
     /// λ.
@@ -18,28 +15,27 @@ pub struct TrueOnlineSarsaLambda {
 }
 
 impl TrueOnlineSarsaLambda {
-    /// An agent with its traces.
-    pub fn new(agent: Agent, traces: Traces, trace_decay: f64) -> Self {
-        Self { agent, traces, trace_decay, old: 0.0 }
+    /// A rule that has seen nothing yet.
+    pub fn new(traces: Traces, trace_decay: f64) -> Self {
+        Self { traces, trace_decay, old: 0.0 }
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> Learner<R> for TrueOnlineSarsaLambda {
+impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for TrueOnlineSarsaLambda {
     #[inline]
-    fn begin(&mut self, here: R, draw: &mut impl Draw) -> usize {
-        self.agent.choose(here, draw)
-    }
-
-    #[inline]
-    fn learn(&mut self, here: R, action: usize, reward: f64, next: Next<R>, draw: &mut impl Draw) -> usize {
-        let Self { agent, traces, .. } = self;
-        let rows = here.as_ref();
-        let (next_action, next_value) = match next {
-            Next::Goes(there) | Next::TimedOut(there) => {
-                let next_action = agent.choose(there, draw);
-                (next_action, agent.value(there, next_action))
-            }
-            Next::Terminal => (0, 0.0),
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        here: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        draw: &mut impl Draw,
+    ) -> usize {
+        let (traces, rows) = (&mut self.traces, here.as_ref());
+        let (next_action, next_value) = match agent.follow(next, draw) {
+            Some((there, next_action)) => (next_action, agent.value(there, next_action)),
+            None => (0, 0.0),
         };
         let value = agent.value(here, action);
         let error = reward + agent.discount * next_value - value;
@@ -66,26 +62,23 @@ impl<R: Copy + AsRef<[u32]>> Learner<R> for TrueOnlineSarsaLambda {
     fn end_episode(&mut self) {
         self.old = 0.0;
         self.traces.clear();
-        self.agent.end_episode();
-    }
-
-    fn tables(&self) -> Vec<&[f64]> {
-        vec![self.agent.table.values()]
-    }
-
-    fn diverged(&self) -> bool {
-        self.agent.table.diverged()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Learner;
+    use crate::learners::Control;
     use crate::learners::example::{agent, draw};
+
+    fn learner(values: &[f64]) -> Control<TrueOnlineSarsaLambda> {
+        Control { agent: agent(values), rule: TrueOnlineSarsaLambda::new(Traces::new(values.len(), 0.0), 0.5) }
+    }
 
     #[test]
     fn the_first_update_corrects_for_the_old_value_of_zero() {
-        let mut learner = TrueOnlineSarsaLambda::new(agent(&[1.0, 0.0, 2.0, 3.0]), Traces::new(4, 0.0), 0.5);
+        let mut learner = learner(&[1.0, 0.0, 2.0, 3.0]);
         // z = 1; δ = -1 + 0.5 · 3 - 1; 1 + 0.5 (δ + 1 - 0) - 0.5 (1 - 0)
         learner.learn([0], 0, -1.0, Next::Goes([1]), &mut draw());
         assert_eq!(learner.agent.table.values(), [0.75, 0.0, 2.0, 3.0]);
@@ -96,11 +89,11 @@ mod tests {
 
     #[test]
     fn a_second_visit_adds_less_than_a_whole_trace() {
-        let mut learner = TrueOnlineSarsaLambda::new(agent(&[0.0, 0.0]), Traces::new(2, 0.0), 0.5);
+        let mut learner = learner(&[0.0, 0.0]);
         for _ in 0..2 {
             learner.learn([0], 0, 0.0, Next::Goes([0]), &mut draw());
         }
         // 1/4 + 1 - 0.5 · 0.25 · 1
-        assert_eq!(learner.traces.get(0), 1.125);
+        assert_eq!(learner.rule.traces.get(0), 1.125);
     }
 }

@@ -1,7 +1,6 @@
 //! Watkins's Q(λ) (Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
 
-use super::{Agent, Trace, Traces};
-use crate::learner::Learner;
+use super::{Agent, Rule, Trace, Traces};
 use crate::random::Draw;
 use crate::table::maximum;
 use crate::world::Next;
@@ -9,8 +8,6 @@ use crate::world::Next;
 /// δ = R + γ maxₐ Q(S′, a) - Q(S, A); w ← w + α δ z; z ← γλ z while A′ is greedy, 0 otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatkinsQLambda {
-    /// Q, the policy and the constants.
-    pub agent: Agent,
     /// z.
     pub traces: Traces,
     /// How a visit marks it.
@@ -19,63 +16,57 @@ pub struct WatkinsQLambda {
     pub trace_decay: f64,
 }
 
-impl<R: Copy + AsRef<[u32]>> Learner<R> for WatkinsQLambda {
+impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for WatkinsQLambda {
     #[inline]
-    fn begin(&mut self, here: R, draw: &mut impl Draw) -> usize {
-        self.agent.choose(here, draw)
-    }
-
-    #[inline]
-    fn learn(&mut self, here: R, action: usize, reward: f64, next: Next<R>, draw: &mut impl Draw) -> usize {
-        let Self { agent, traces, .. } = self;
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        here: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        draw: &mut impl Draw,
+    ) -> usize {
         agent.visit(here, action);
-        traces.visit(self.kind, &agent.table, here.as_ref(), action);
+        self.traces.visit(self.kind, &agent.table, here.as_ref(), action);
         let value = agent.value(here, action);
-        let (next_action, target, greedy) = match next {
-            Next::Goes(there) | Next::TimedOut(there) => {
-                let next_action = agent.choose(there, draw);
+        let (next_action, target, greedy) = match agent.follow(next, draw) {
+            Some((there, next_action)) => {
                 let values = agent.table.read(there.as_ref());
                 let largest = maximum(values);
                 // An action that ties for the largest value is greedy, whether it was explored or not.
                 (next_action, reward + agent.discount * largest, values[next_action] == largest)
             }
-            Next::Terminal => (0, reward, false),
+            None => (0, reward, false),
         };
         let error = target - value;
         agent.table.watch(error);
-        traces.correct(&mut agent.table, &agent.learning_rate, error);
+        self.traces.correct(&mut agent.table, &agent.learning_rate, error);
         if greedy {
-            traces.decay(agent.discount * self.trace_decay);
+            self.traces.decay(agent.discount * self.trace_decay);
         } else {
-            traces.clear();
+            self.traces.clear();
         }
         next_action
     }
 
     fn end_episode(&mut self) {
         self.traces.clear();
-        self.agent.end_episode();
-    }
-
-    fn tables(&self) -> Vec<&[f64]> {
-        vec![self.agent.table.values()]
-    }
-
-    fn diverged(&self) -> bool {
-        self.agent.table.diverged()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Learner;
     use crate::learners::example::{agent, draw};
-    use crate::learners::{Behaviour, Schedule, Ties};
+    use crate::learners::{Behaviour, Control, Schedule, Ties};
 
-    fn learner(epsilon: f64) -> WatkinsQLambda {
+    fn learner(epsilon: f64) -> Control<WatkinsQLambda> {
         let mut agent = agent(&[1.0, 0.0, 2.0, 3.0]);
         agent.policy = Behaviour::EpsilonGreedy { epsilon: Schedule::constant(epsilon), ties: Ties::First };
-        WatkinsQLambda { agent, traces: Traces::new(4, 0.0), kind: Trace::Replacing, trace_decay: 0.5 }
+        let rule = WatkinsQLambda { traces: Traces::new(4, 0.0), kind: Trace::Replacing, trace_decay: 0.5 };
+        Control { agent, rule }
     }
 
     #[test]
@@ -92,8 +83,8 @@ mod tests {
         let mut learner = learner(1.0);
         let mut draw = draw();
         while learner.learn([0], 0, -1.0, Next::Goes([1]), &mut draw) == 1 {
-            assert!(!learner.traces.is_empty());
+            assert!(!learner.rule.traces.is_empty());
         }
-        assert!(learner.traces.is_empty());
+        assert!(learner.rule.traces.is_empty());
     }
 }
