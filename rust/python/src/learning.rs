@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use qtab_core::learners::{
     self, Agent, Control, DoubleQLearning, DynaQ, DynaQPlus, EpsilonGreedy, ExpectedSarsa, NStepSarsa, QLearning, Rule,
-    Sarsa, SarsaLambda, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
+    Sarsa, SarsaLambda, Schedule, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
 };
 use qtab_core::random::{Pcg64, Stream};
 use qtab_core::worlds::{Boxed, Recorded, Recordings, Start};
@@ -32,7 +32,7 @@ pub(crate) struct Built {
 /// kin.
 pub(crate) fn whole<W, const N: usize>(
     world: W,
-    agent: Agent<N, EpsilonGreedy, f64>,
+    agent: Agent<N, EpsilonGreedy, Schedule>,
     draw: Pcg64,
     plan: &Plan<'_>,
 ) -> Box<dyn Run>
@@ -42,6 +42,12 @@ where
     match plan.algorithm.name.as_str() {
         "sarsa" => Box::new(Trainer::new(world, Control { agent, rule: Sarsa }, draw)),
         "expected_sarsa" => Box::new(Trainer::new(world, Control { agent, rule: ExpectedSarsa }, draw)),
+        _ if plan.learning_rate.is_constant() => {
+            // The type that is batched.
+            let Agent { table, policy, learning_rate, discount, terminal_update } = agent;
+            let agent = Agent { table, policy, learning_rate: learning_rate.value(), discount, terminal_update };
+            Box::new(Trainer::new(world, Control { agent, rule: QLearning }, draw))
+        }
         _ => Box::new(Trainer::new(world, Control { agent, rule: QLearning }, draw)),
     }
 }

@@ -109,6 +109,10 @@ pub(crate) fn given<T>(name: &str, option: Option<T>) -> PyResult<T> {
 }
 
 impl Course {
+    pub(crate) fn is_constant(&self) -> bool {
+        self.schedule == "constant"
+    }
+
     fn schedule(&self, episodes: u64) -> PyResult<Schedule> {
         match self.schedule.as_str() {
             "constant" => Ok(Schedule::constant(self.value)),
@@ -167,17 +171,17 @@ impl Plan<'_> {
         edges.iter().map(checked).collect()
     }
 
-    /// What the article's learner is made of, if the plan asks for that: an exploration rate that falls linearly from the
-    /// first episode on, a constant learning rate.
+    /// What the article's learner is made of, if the plan asks for its kind: an exploration rate that falls linearly from
+    /// the first episode on, a learning rate that does not look at the visits.
     pub(crate) fn article<const N: usize>(
         &self,
         rows: usize,
         draw: &mut Pcg64,
-    ) -> PyResult<Option<Agent<N, EpsilonGreedy, f64>>> {
+    ) -> PyResult<Option<Agent<N, EpsilonGreedy, Schedule>>> {
         let Choice::EpsilonGreedy { epsilon, ties } = &self.policy else { return Ok(None) };
         let plain = ["q_learning", "sarsa", "expected_sarsa"].contains(&self.algorithm.name.as_str())
             && (epsilon.schedule.as_str(), epsilon.warm_up, ties.as_str()) == ("linear", 0, "first")
-            && self.learning_rate.schedule == "constant"
+            && self.learning_rate.schedule != "visits"
             && self.on_truncation == "bootstrap";
         if !plain {
             return Ok(None);
@@ -185,7 +189,7 @@ impl Plan<'_> {
         Ok(Some(Agent {
             table: self.table((0, 1), rows, draw)?,
             policy: EpsilonGreedy::linear(epsilon.value, epsilon.least, self.episodes),
-            learning_rate: self.learning_rate.value,
+            learning_rate: self.learning_rate.schedule(self.episodes)?,
             discount: self.discount,
             terminal_update: self.terminal_update()?,
         }))
