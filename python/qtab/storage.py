@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import math
 import os
 import zipfile
 from pathlib import Path
@@ -97,7 +98,7 @@ def _load(opened: BinaryIO) -> Run:
             fields["initial_q"] = file["initial_q"]
         config = Config(**fields)
         choices = Actions(int(header["actions"]), int(header["first_action"]), file.get("actions"))
-        features = _features(config, file, choices)
+        features = _features(config, file, choices, arrays["tables"].shape[1])
     with np.errstate(all="raise"):
         _check_shapes(config, features, arrays)
     completed = len(arrays["episode_returns"]) == config.episodes
@@ -120,7 +121,7 @@ def _array(file: Any, name: str, dtype: "np.dtype[Any]", ndim: int) -> Any:
     return array
 
 
-def _features(config: Config, file: Any, choices: Actions) -> Features:
+def _features(config: Config, file: Any, choices: Actions, rows: int) -> Features:
     low, high = file["low"], file["high"]
     if config.discretizer == "identity":
         return Cells(low, high, choices)
@@ -129,7 +130,8 @@ def _features(config: Config, file: Any, choices: Actions) -> Features:
     if config.discretizer == "edges" and config.edges is not None:
         return bins.of_config(low, high, choices, config)
     if config.low is not None and config.high is not None:
-        if config.discretizer == "bins" and config.bins is not None:
+        # No more edges are computed than there are rows.
+        if config.discretizer == "bins" and config.bins is not None and math.prod(config.bins) == rows:
             return bins.of_config(low, high, choices, config)
         if config.tiles is not None and config.tilings is not None:
             edges = np.array(config.low), np.array(config.high)
@@ -137,10 +139,22 @@ def _features(config: Config, file: Any, choices: Actions) -> Features:
     raise ValueError("its config is not that of a run")
 
 
+def _are_actions_of(config: Config, choices: Actions) -> bool:
+    values, wanted = choices.values, config.actions
+    if values is None or wanted is None:
+        return values is None and wanted is None
+    if values.dtype not in FLOATS or values.ndim != 2 or len(values) != choices.count or not np.isfinite(values).all():
+        return False
+    return (
+        isinstance(wanted, int)
+        or np.array(wanted, values.dtype).reshape(-1, values.shape[1]).tolist() == values.tolist()
+    )
+
+
 def _check_shapes(config: Config, features: Features, arrays: dict[str, Any]) -> None:
     if config.seed is None or config.max_episode_steps is None or defaults(vars(config)):
         raise ValueError("its config is not that of a run")
-    low, high, values = features.low, features.high, features.choices.values
+    low, high = features.low, features.high
     if low.dtype not in ((np.dtype(np.int64),) if isinstance(features, Cells) else FLOATS) or high.dtype != low.dtype:
         raise ValueError("its bounds are not those of a space")
     if isinstance(features, Grid):
@@ -153,15 +167,17 @@ def _check_shapes(config: Config, features: Features, arrays: dict[str, Any]) ->
         if low.shape != high.shape or low.ndim > 1 or (low > high).any():
             raise ValueError("its bounds are not those of a discrete space")
     elif isinstance(features, Bins):
-        if low.shape != high.shape or low.shape != (len(features.edges),):
+        if (
+            low.shape != high.shape
+            or low.shape != (len(features.edges),)
+            or not all(np.isfinite(edges).all() for edges in features.edges)
+        ):
             raise ValueError("its bounds do not fit its bins")
     elif isinstance(features, Tiling) and {edge.shape for edge in (low, high, *features.edges)} != {
         (len(features.tiles),)
     }:
         raise ValueError("its bounds do not fit its tiles")
-    if (values is None) is not (config.actions is None) or (
-        values is not None and (values.dtype not in FLOATS or values.ndim != 2 or len(values) != features.actions)
-    ):
+    if not _are_actions_of(config, features.choices):
         raise ValueError("its actions are not those of its config")
     shape, expected = arrays["tables"].shape, (tables(config.algorithm), features.rows, features.actions)
     if shape != expected or features.actions < 1:
