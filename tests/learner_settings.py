@@ -70,7 +70,9 @@ def features(draw: st.DrawFn, algorithm: str, env: str = CAR) -> dict[str, Any]:
     kinds = ["round"] * (env in SCALES) + ["bins", "edges"] + ["tiles"] * (algorithm not in TABLES_ONLY)
     kind = draw(st.sampled_from(kinds))
     if kind == "tiles":
-        return {"discretizer": kind, "tilings": draw(st.integers(1, 9)), "tiles": draw(counts), **draw(limits)}
+        hashed = draw(st.sampled_from([None, None, 1, 20, 1000]))
+        tiles = {"tilings": draw(st.integers(1, 9)), "tiles": draw(counts), "hashed_rows": hashed}
+        return {"discretizer": kind, **tiles, **draw(limits)}
     settings: dict[str, Any] = {"discretizer": kind}
     if kind == "round":
         settings["scale"] = draw(st.sampled_from(SCALES[env]))

@@ -8,7 +8,7 @@ import pytest
 
 import qtab as package
 from command import qtab, refused
-from qtab.bench import article, article_numba, footprint, measure, report, subjects
+from qtab.bench import article, article_numba, footprint, measure, overhead, report, subjects
 from qtab.bench.rounds import Timings
 
 
@@ -46,11 +46,18 @@ def test_subjects_take_turns_and_ratios_are_taken_within_a_round() -> None:
     assert drifting.median("slow") == 30.0
 
 
+def test_what_learning_adds_is_a_difference_within_each_round() -> None:
+    times = {overhead.BARE: np.array([100.0, 400.0, 200.0]), overhead.LEARNING: np.array([350.0, 600.0, 410.0])}
+    assert overhead.sentence(Timings(times)).startswith("learning adds 210 ns a step")
+
+
 def test_every_subject_counts_its_steps() -> None:
     training = subjects.training()
     assert 1900 <= training[subjects.ARTICLE](0) <= 2000
     assert training[subjects.TRAIN](0) == package.train("MountainCar-v0", seed=0).episode_lengths.sum()
     assert all(step(0) == subjects.STEPS for step in subjects.stepping().values())
+    idle = overhead.EPISODES * overhead.EPISODE_STEPS
+    assert [loop(0) for loop in overhead.python_stepping().values()] == [idle, idle]
 
 
 def test_the_bench_prints_its_tables_with_versions_and_build(tmp_path: Path) -> None:
@@ -58,6 +65,7 @@ def test_the_bench_prints_its_tables_with_versions_and_build(tmp_path: Path) -> 
     assert done.returncode == 0, done.stderr
     for name in (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP, subjects.QTAB_MAKE):
         assert f"\n{name}  " in done.stdout
+    assert "learning adds" in done.stdout
     assert "import qtab adds" in done.stdout
     assert f"numpy {np.__version__}" in done.stdout
     assert f"build {package.versions.versions()['build']}" in done.stdout

@@ -1,12 +1,16 @@
 """A callback sees the progress, may stop the run, and may fail without losing what was learned."""
 
+from itertools import pairwise
+
 import gymnasium as gym
 import numpy as np
 import pytest
 
 import qtab
 from parity import assert_same_run
+from qtab import _core
 from qtab.reference import q_learning
+from qtab.resolution import resolve
 
 BACKENDS = ["rust", "gymnasium"]
 
@@ -92,3 +96,20 @@ def test_a_callback_may_train():
     outer = train(callback=lambda progress: inner.append(train(seed=1)), callback_every=5)
     assert_same_run(outer, train())
     assert_same_run(inner[0], inner[1])
+
+
+def test_a_look_brings_what_is_new_and_keeps_the_rest_in_place():
+    seen = []
+    train(episodes=64, callback=seen.append, callback_every=1)
+    moves = sum(not np.shares_memory(after.returns, before.returns) for before, after in pairwise(seen))
+    assert moves == 6  # at 2, 3, 5, 9, 17 and 33 episodes: the room doubles
+
+
+def test_a_trainer_lists_the_episodes_since_any_other():
+    resolved = resolve("MountainCar-v0", {"seed": 6, "episodes": 10, "max_episode_steps": 30})
+    trainer = _core.Trainer(resolved.core_environment(), resolved.plan())
+    trainer.advance(10)
+    every = trainer.episodes()
+    for since in (0, 4, 10, 11):
+        for some, all_of_them in zip(trainer.episodes(since=since), every, strict=True):
+            assert some.tobytes() == all_of_them[since:].tobytes()

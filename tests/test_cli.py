@@ -106,6 +106,16 @@ def test_an_environment_in_python_is_said_to_be_and_so_is_the_limit_it_lacks(tmp
     assert "no time limit" not in limited.stdout
 
 
+@pytest.mark.parametrize("arguments", [["CliffWalking"], ["--seed", "0", "CliffWalking"], ["--env", "CliffWalking"]])
+def test_an_id_without_a_version_is_the_newest_with_its_preset(tmp_path: Path, arguments: list[str]) -> None:
+    done = qtab("train", *arguments, "--episodes", "2", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("CliffWalking-v1 in Rust, preset tuned, 2 episodes, seed ")
+    assert "Using the latest versioned environment `CliffWalking-v1`" in done.stderr
+    # The header has said it.
+    assert "no time limit" not in done.stderr
+
+
 @pytest.mark.parametrize("name", ["rewards.jpg", "rewards.png", "rewards.pdf", "rewards.svg"])
 def test_plots_are_written_in_the_format_of_their_ending(tmp_path: Path, name: str) -> None:
     done = qtab("train", "--episodes", "300", "--plot", name, cwd=tmp_path)
@@ -209,9 +219,11 @@ def test_ctrl_c_saves_and_plots_what_was_learned_so_far(tmp_path: Path) -> None:
     )
     assert process.stdout is not None
     assert process.stdout.readline().startswith("MountainCar-v0 in Rust")
-    assert process.stdout.readline().startswith("Episode 100 ")
+    first = process.stdout.readline()
+    assert first.startswith("Episode 100 ")
     process.send_signal(signal.SIGINT)
     out, err = process.communicate()
+    out = first + out
     assert process.returncode == 130
     assert err == ""
     run = package.load(tmp_path / "part.npz")

@@ -29,44 +29,58 @@ class Shown(gym.Env[Any, Any]):
         return self.observation, 1.0, True, False, {}
 
 
-def formula(observation: Any, low: Any, high: Any, tiles: Any, tilings: int) -> list[int]:
-    """Row = the tiling, then the coordinates, in C order."""
+def formula(
+    observation: Any, low: Any, high: Any, tiles: Any, tilings: int, hashed_rows: int | None = None
+) -> list[int]:
+    """Row = the tiling, then the coordinates, in C order; or hashed."""
     rows = []
     for t in range(tilings):
-        row = t
+        row, numbers = t, [t]
         for i, x in enumerate(observation):
             x = min(max(float(x), low[i]), high[i])
             q = int(np.floor((x - low[i]) * (tiles[i] / (high[i] - low[i])) * tilings))
-            row = row * (tiles[i] + 1) + (q + (t * (2 * i + 1)) % tilings) // tilings
-        rows.append(row)
+            numbers.append((q + (t * (2 * i + 1)) % tilings) // tilings)
+            row = row * (tiles[i] + 1) + numbers[-1]
+        rows.append(row if hashed_rows is None else splitmix(numbers, hashed_rows))
     return rows
+
+
+def splitmix(numbers: list[int], rows: int) -> int:
+    """In NumPy's 64-bit integers, which wrap round."""
+    word = np.zeros(1, np.uint64)
+    for number in numbers:
+        word = word + np.uint64(number) + np.uint64(0x9E3779B97F4A7C15)
+        word = (word ^ word >> np.uint64(30)) * np.uint64(0xBF58476D1CE4E5B9)
+        word = (word ^ word >> np.uint64(27)) * np.uint64(0x94D049BB133111EB)
+        word = word ^ word >> np.uint64(31)
+    return int(word[0] >> np.uint64(32)) * rows // 2**32
 
 
 @st.composite
 def observations(draw: st.DrawFn) -> tuple[Any, ...]:
-    dimensions = draw(st.integers(1, 3))
+    hashed = draw(st.sampled_from([None, 1, 3, 256, 100_000]))
+    dimensions = draw(st.integers(1, 3 if hashed is None else 12))
     low = [draw(st.floats(-100, 100)) for _ in range(dimensions)]
     high = [edge + draw(st.floats(1e-3, 100)) for edge in low]
     tiles = tuple(draw(st.integers(1, 12)) for _ in range(dimensions))
     dtype = draw(st.sampled_from([np.float32, np.float64]))
     shown = [draw(st.one_of(st.floats(-300, 300), st.sampled_from([low[i], high[i]]))) for i in range(dimensions)]
-    return np.array(shown, dtype=dtype), tuple(low), tuple(high), tiles, draw(st.integers(1, 32))
+    return np.array(shown, dtype=dtype), tuple(low), tuple(high), tiles, draw(st.integers(1, 32)), hashed
 
 
 @settings(max_examples=300, deadline=None)
 @given(observations())
 def test_the_rows_lit_are_those_of_the_formula(case: tuple[Any, ...]) -> None:
-    observation, low, high, tiles, tilings = case
+    observation, low, high, tiles, tilings, hashed = case
     space = gym.spaces.Box(-np.inf, np.inf, observation.shape, observation.dtype.type)
     env = Shown(space, observation)
-    run = qtab.train(
-        env, discretizer="tiles", low=low, high=high, tiles=tiles, tilings=tilings, episodes=1, initial_q=0.0, seed=0
-    )
-    expected = formula(observation, low, high, tiles, tilings)
-    assert np.flatnonzero(run.tables[0, :, 0]).tolist() == sorted(expected)
+    options = {"low": low, "high": high, "tiles": tiles, "tilings": tilings, "hashed_rows": hashed}
+    run = qtab.train(env, discretizer="tiles", **options, episodes=1, initial_q=0.0, seed=0)
+    expected = formula(observation, low, high, tiles, tilings, hashed)
+    assert np.flatnonzero(run.tables[0, :, 0]).tolist() == sorted(set(expected))
     assert run.grid.lit(observation) == expected
     assert TileCoding(space, run.config).rows(observation) == expected
-    assert run.tables.shape == (1, tilings * np.prod(np.array(tiles) + 1), 1)
+    assert run.tables.shape == (1, hashed or tilings * np.prod(np.array(tiles) + 1), 1)
     assert qtab.verify(run, env=env).equal
 
 
@@ -75,6 +89,28 @@ def test_each_weight_moves_by_its_share() -> None:
     run = qtab.train(env, discretizer="tiles", tilings=4, learning_rate=0.5, episodes=1, initial_q=0.0, seed=0)
     assert run.tables[run.tables != 0.0].tolist() == [0.125] * 4
     assert run.q_values(np.array([0.5, 0.5])).tolist() == [0.5]
+
+
+def test_a_row_that_is_lit_twice_counts_twice() -> None:
+    observation = np.array([0.5, 0.5])
+    env = Shown(gym.spaces.Box(0.0, 1.0, (2,), np.float64), observation)
+    run = qtab.train(
+        env, discretizer="tiles", tilings=4, hashed_rows=1, learning_rate=0.5, episodes=1, initial_q=0.0, seed=0
+    )
+    assert run.grid.lit(observation) == [0, 0, 0, 0]
+    assert run.tables.tolist() == [[[4 * 0.125]]]
+    assert run.q_values(observation).tolist() == [4 * 0.5]
+
+
+def test_a_table_too_large_for_its_tiles_is_hashed() -> None:
+    env = Shown(gym.spaces.Box(0.0, 1.0, (40,), np.float32), np.full(40, 0.3, np.float32))
+    with pytest.raises(
+        ValueError, match=r"^tiles must give .* or hashed_rows= of your choice, got .* needs 1.18e\+39$"
+    ):
+        qtab.train(env, discretizer="tiles")
+    run = qtab.train(env, discretizer="tiles", hashed_rows=5000, episodes=3, seed=0)
+    assert run.tables.shape == (1, 5000, 1)
+    assert qtab.verify(run, env=env).equal
 
 
 def test_one_number_of_tiles_is_for_every_component() -> None:
@@ -137,6 +173,18 @@ def test_it_is_saved_and_loaded(run: qtab.Run, tmp_path: Any) -> None:
     assert loaded.q_values(observation).tobytes() == run.q_values(observation).tobytes()
     assert vars(loaded.config) == vars(run.config)
     assert qtab.verify(loaded, episodes=2).equal
+
+
+def test_a_hashed_run_is_saved_loaded_and_evaluated(tmp_path: Any) -> None:
+    run = qtab.train("MountainCar-v0", preset="solved", hashed_rows=1500, episodes=300, seed=0)
+    run.save(tmp_path / "run.npz")
+    loaded = qtab.load(tmp_path / "run.npz")
+    assert loaded.tables.tobytes() == run.tables.tobytes()
+    assert loaded.config.hashed_rows == 1500
+    assert qtab.verify(loaded, episodes=2).equal
+    observation = np.array([-0.5, 0.01], dtype=np.float32)
+    assert loaded.q_values(observation).tobytes() == run.q_values(observation).tobytes()
+    assert qtab.evaluate(loaded, episodes=20, seed=1).mean_return > -150
 
 
 def test_it_is_evaluated(run: qtab.Run) -> None:

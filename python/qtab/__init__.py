@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from qtab.runs import Runs
     from qtab.storage import load
     from qtab.sweeping import StoreError, Sweep, SweepProgress, load_sweep, sweep
-    from qtab.training import Progress, train
+    from qtab.training import train
     from qtab.verification import Verification, verify
 
     __version__: str
@@ -60,7 +60,7 @@ __all__ = [
 _HOME = {
     "Config": "config",
     "Evaluation": "evaluation",
-    "Progress": "training",
+    "Progress": "callbacks",
     "Recording": "run",
     "Run": "run",
     "Runs": "runs",

@@ -93,6 +93,9 @@ class Config:
     """How many tilings lie over each other (8), at most 32."""
     tiles: tuple[int, ...] | None = None
     """Tiles along each component of the observation, or one number for all (8)."""
+    hashed_rows: int | None = None
+    """Rows of a table that all tilings share, found by hashing, for what has more tiles than memory; none where nothing
+    is given: each tile has a row of its own."""
     bins: tuple[int, ...] | None = None
     """Bins of equal width along each component of the observation, or one number for all (10)."""
     edges: tuple[tuple[float, ...], ...] | None = None

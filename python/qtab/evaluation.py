@@ -10,8 +10,8 @@ from qtab.models import spec_of
 from qtab.run import Run
 from qtab.training import train
 
-_TABLE = ("discretizer", "scale", "tilings", "tiles", "bins", "edges", "low", "high", "actions")
-"""What says which value of the table is which."""
+DISCRETIZERS = ("discretizer", "scale", "tilings", "tiles", "hashed_rows", "bins", "edges", "low", "high")
+"""What a table is to be read by."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.En
         epsilon=0.0,
         terminal_update="target",
         initial_q=_greedy_table(run),
-        **{name: getattr(config, name) for name in _TABLE},
+        **{name: getattr(config, name) for name in (*DISCRETIZERS, "actions")},
         env_kwargs=config.env_kwargs,
         max_episode_steps=config.max_episode_steps,
         backend=config.backend if env is None else "auto",

@@ -124,8 +124,8 @@ def counts(name: str, given: tuple[int, ...], env: gym.Env) -> tuple[int, ...]:
     return every
 
 
-def check_size(name: str, given: Any, values: float) -> None:
-    """Refuses a table of so many values that is too large, before it is made.
+def check_size(name: str, given: Any, values: float, instead: str = "") -> None:
+    """Refuses a table of so many values that is too large, before it is made; ``instead`` says what else would do.
 
     Raises:
         ValueError: says what made it so large, and how large it would be.
@@ -138,5 +138,5 @@ def check_size(name: str, given: Any, values: float) -> None:
         np.empty(int(values))
     except MemoryError:
         raise ValueError(
-            f"{name} must give a table that fits into memory, got {given!r}, which needs {values:.3g} values"
+            f"{name} must give a table that fits into memory{instead}, got {given!r}, which needs {values:.3g} values"
         ) from None

@@ -11,6 +11,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import _core, checks, plan
 from qtab.memory import BYTES_AN_EPISODE, check_memory, memory_limit
+from qtab.notices import say_limit
 from qtab.resolution import Resolved, resolve
 from qtab.runs import Runs
 from qtab.versions import versions
@@ -53,6 +54,7 @@ def train_many(
     if "seed" in overrides:
         raise TypeError("seed is what seeds=... gives to each run")
     resolved = resolve_one(env, {**overrides, "seed": numbers[0]})
+    say_limit(resolved)
     resolved.config.replace(seed=max(numbers))
     limit = _limit(memory_limit)
     began = time.perf_counter()

@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import Any
 
 import gymnasium as gym
-from gymnasium.envs.registration import EnvSpec
+from gymnasium.envs.registration import EnvSpec, find_highest_version, get_env_id, parse_env_id
 
 PACKAGE = "qtab"
 PREFIX = "qtab/"
@@ -83,6 +83,27 @@ def gymnasium_id(env: str) -> str:
     return env.removeprefix(f"{PACKAGE}:").removeprefix(PREFIX)
 
 
+def versioned(env: str) -> str:
+    """Returns an id with its version: the newest where it names none, which ``gymnasium.make`` takes with this warning.
+
+    Raises:
+        gymnasium.error.Error: Gymnasium's own, for what is no id.
+        ModuleNotFoundError: for a package that is not installed.
+    """
+    package, colon, name = env.rpartition(":")
+    if package:
+        import_module(package)
+    namespace, bare, version = parse_env_id(name)
+    newest = find_highest_version(namespace, bare)
+    if version is not None or newest is None:
+        return env
+    found = get_env_id(namespace, bare, newest)
+    gym.logger.warn(
+        f"Using the latest versioned environment `{found}` instead of the unversioned environment `{name}`."
+    )
+    return f"{package}{colon}{found}"
+
+
 def spec_of(env: str) -> EnvSpec:
     """Returns the spec of an id, whose package is imported where the id names it ("package:id").
 
@@ -90,10 +111,7 @@ def spec_of(env: str) -> EnvSpec:
         gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
         ModuleNotFoundError: for a package that is not installed.
     """
-    package, _, name = env.rpartition(":")
-    if package:
-        import_module(package)
-    return gym.spec(name)
+    return gym.spec(versioned(env).rpartition(":")[2])
 
 
 def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:

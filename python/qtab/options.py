@@ -41,6 +41,7 @@ OPTIONS: Mapping[str, Option] = {
     "scale": Option("discretizer", ("round",), None),
     "tilings": Option("discretizer", ("tiles",), 8),
     "tiles": Option("discretizer", ("tiles",), (8,)),
+    "hashed_rows": Option("discretizer", ("tiles",), None),
     "bins": Option("discretizer", ("bins",), (10,)),
     "edges": Option("discretizer", ("edges",), None),
     "low": Option("discretizer", ("bins", "tiles"), None),

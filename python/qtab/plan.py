@@ -53,6 +53,7 @@ class Tiles(TypedDict):
     high: list[float]
     tiles: list[int]
     tilings: int
+    hashed_rows: int | None
 
 
 class Cells(TypedDict):

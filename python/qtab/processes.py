@@ -15,6 +15,7 @@ from typing import Any
 import cloudpickle
 
 from qtab import _core, plan
+from qtab.models import spec_of
 from qtab.resolution import resolve
 
 WAIT = 0.2
@@ -76,9 +77,7 @@ def train_to_the_end(trainer: _core.Trainer, episodes: int) -> None:
 
 def _portable_env(env: Any) -> Any:
     """An id as its EnvSpec: a worker has not imported what registered it."""
-    import gymnasium as gym
-
-    return gym.spec(env) if isinstance(env, str) else env
+    return spec_of(env) if isinstance(env, str) else env
 
 
 def _fill(index: int, future: "Future[Any]", results: plan.Results) -> Exception | None:

@@ -14,7 +14,7 @@ from qtab.bins import Bins, bins
 from qtab.cells import cells, components
 from qtab.config import Config, known_fields
 from qtab.features import Features
-from qtab.models import Model, model_of, spec_of
+from qtab.models import Model, model_of, spec_of, versioned
 from qtab.options import defaults, stranger, tables
 from qtab.preset import preset
 from qtab.spaces import grid
@@ -43,6 +43,8 @@ class Resolved:
     """Whether the environment was made here, and so is closed here."""
     described: Described | None = None
     """What the model steps by."""
+    limited: bool = False
+    """Whether the time limit is ours, the environment having none."""
 
     def close(self) -> None:
         """Closes the environment if it was made here."""
@@ -120,6 +122,8 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolve
 
 def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
     # An id keeps the package that it names, so that the config makes the environment anywhere.
+    if isinstance(env, str):
+        env = versioned(env)
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
     config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = model_of(spec, config.env_kwargs)
@@ -130,7 +134,7 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
         limit["max_episode_steps"] = config.max_episode_steps
     made = gym.make(spec, **config.env_kwargs, **limit)
     try:
-        resolved = _resolved(made, model, config, spec.max_episode_steps, made=True)
+        resolved = _resolved(made, model, config, spec.max_episode_steps, layers, made=True)
     except BaseException:
         made.close()
         raise
@@ -146,12 +150,20 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     if config.backend == "auto":
         config = config.replace(backend="rust" if is_own_table(env) else "gymnasium")
     model = model_of_object(env) if config.backend == "rust" else None
-    return _resolved(env, model, config, _time_limit(env), made=False)
+    return _resolved(env, model, config, _time_limit(env), layers, made=False)
 
 
-def _resolved(env: gym.Env, model: Model | None, config: Config, steps: int | None, *, made: bool) -> Resolved:
+def _resolved(
+    env: gym.Env,
+    model: Model | None,
+    config: Config,
+    own_limit: int | None,
+    layers: tuple[Mapping[str, Any], ...],
+    *,
+    made: bool,
+) -> Resolved:
     """What is run, on the model where Rust can step by what the environment holds and is not kept from it."""
-    config = _fitting(env, config)
+    config = _fitting(env, config, *layers)
     choices = actions(env.action_space, config.actions)
     described = None
     if model is not None and config.backend != "gymnasium":
@@ -162,23 +174,22 @@ def _resolved(env: gym.Env, model: Model | None, config: Config, steps: int | No
             if config.backend == "rust":
                 raise _refused(str(error)) from None
     table = _features(env, config, choices)
-    backend = "gymnasium" if described is None else "rust"
-    config = _complete(config, table, backend, config.max_episode_steps or steps)
-    if described is not None:
-        return Resolved(config, table, model, None, made, described)
-    return Resolved(config, table, None, env, made)
+    steps = config.max_episode_steps or own_limit
+    config = _complete(config, table, "gymnasium" if described is None else "rust", steps)
+    model, stepped = (None, env) if described is None else (model, None)
+    return Resolved(config, table, model, stepped, made, described, limited=steps is None)
 
 
 def _refused(why_not: str) -> ValueError:
     return ValueError(f"backend must be 'gymnasium' or 'auto' here, got 'rust': {why_not}")
 
 
-def _fitting(env: gym.Env, config: Config) -> Config:
+def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config:
     """The config with the discretizer that a discrete space has, where none was asked for."""
     if config.discretizer == "round" and components(env.observation_space) is not None:
-        # The scale of the environment's preset yields, as in a merge; one that was asked for does not fit.
-        own = preset(config.env, config.preset)[1].get("scale") == config.scale
-        return config.replace(discretizer="identity", **({"scale": ()} if own else {}))
+        # A wrapper may have made a box discrete, for which the preset's scale means nothing; one asked for is refused.
+        asked = any("scale" in layer for layer in layers)
+        return config.replace(discretizer="identity", scale=config.scale if asked else ())
     return config
 
 

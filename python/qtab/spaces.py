@@ -68,6 +68,8 @@ def grid(env: gym.Env, scale: tuple[float, ...], actions: Actions | None = None)
             f"the observation space must have finite bounds, got {env.observation_space}; "
             "discretizer 'bins' and 'tiles' take low= and high="
         )
+    if not (low <= high).all():
+        raise ValueError(f"the observation space must have low <= high, got {env.observation_space}")
     if len(scale) != len(low):
         raise ValueError(
             f"scale must hold {len(low)} numbers for this observation space, the cells per unit of each component, "

@@ -135,7 +135,7 @@ def _features(config: Config, file: Any, choices: Actions, rows: int) -> Feature
             return bins.of_config(low, high, choices, config)
         if config.tiles is not None and config.tilings is not None:
             edges = np.array(config.low), np.array(config.high)
-            return Tiling(low, high, choices, edges, config.tiles, config.tilings)
+            return Tiling(low, high, choices, edges, config.tiles, config.tilings, config.hashed_rows)
     raise ValueError("its config is not that of a run")
 
 

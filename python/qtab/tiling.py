@@ -1,5 +1,6 @@
 """Tile coding over an environment's observations (Sutton & Barto, 2nd ed., section 9.5.4)."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +12,7 @@ from qtab import plan
 from qtab.actions import Actions
 from qtab.config import Config
 from qtab.features import Features, box, check_size, counts, limits
+from qtab.hashing import hashed_row
 
 
 @dataclass(frozen=True)
@@ -22,11 +24,13 @@ class Tiling(Features):
     tiles: tuple[int, ...]
     """Along each component."""
     tilings: int
+    hashed_rows: int | None
+    """How many rows the tilings share; None gives each tile its own."""
 
     @property
     def rows(self) -> int:
         """How many rows the table has: the offsets add one tile along each component."""
-        return self.tilings * int(np.prod([count + 1 for count in self.tiles]))
+        return self.hashed_rows or self.tilings * math.prod(count + 1 for count in self.tiles)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -34,7 +38,7 @@ class Tiling(Features):
         return self.rows, self.actions
 
     def lit(self, observation: NDArray[Any]) -> list[int]:
-        """Returns the rows of an observation, one of each tiling.
+        """Returns the rows of an observation, one of each tiling; a hashed one may come twice.
 
         Raises:
             TypeError: if it holds no numbers.
@@ -45,17 +49,33 @@ class Tiling(Features):
         parts = np.floor((np.clip(numbers, low, high) - low) * (np.array(self.tiles) / (high - low)) * self.tilings)
         rows = []
         for tiling in range(self.tilings):
-            row = tiling
-            for index, part in enumerate(parts.astype(int).tolist()):
-                offset = tiling * (2 * index + 1) % self.tilings
-                row = row * (self.tiles[index] + 1) + (part + offset) // self.tilings
-            rows.append(row)
+            tile = [
+                (part + tiling * (2 * index + 1) % self.tilings) // self.tilings
+                for index, part in enumerate(parts.astype(int).tolist())
+            ]
+            if self.hashed_rows is not None:
+                rows.append(hashed_row((tiling, *tile), self.hashed_rows))
+            else:
+                rows.append(_dense_row(tiling, tile, self.tiles))
         return rows
 
     def plan(self) -> plan.Tiles:
         """Returns it as the extension module takes it."""
         low, high = self.edges
-        return {"low": low.tolist(), "high": high.tolist(), "tiles": list(self.tiles), "tilings": self.tilings}
+        return {
+            "low": low.tolist(),
+            "high": high.tolist(),
+            "tiles": list(self.tiles),
+            "tilings": self.tilings,
+            "hashed_rows": self.hashed_rows,
+        }
+
+
+def _dense_row(tiling: int, tile: list[int], tiles: tuple[int, ...]) -> int:
+    row = tiling
+    for coordinate, count in zip(tile, tiles, strict=True):
+        row = row * (count + 1) + coordinate
+    return row
 
 
 def tiling(env: gym.Env, config: Config, actions: Actions) -> Tiling:
@@ -68,6 +88,9 @@ def tiling(env: gym.Env, config: Config, actions: Actions) -> Tiling:
     assert config.tiles is not None  # noqa: S101 - filled in
     assert config.tilings is not None  # noqa: S101
     tiles = counts("tiles", config.tiles, env)
-    values = config.tilings * float(np.prod([count + 1.0 for count in tiles])) * actions.count
-    check_size("tiles", tiles, values)
-    return Tiling(*box(env), actions, edges, tiles, config.tilings)
+    if config.hashed_rows is not None:
+        check_size("hashed_rows", config.hashed_rows, float(config.hashed_rows) * actions.count)
+    else:
+        values = config.tilings * float(np.prod([count + 1.0 for count in tiles])) * actions.count
+        check_size("tiles", tiles, values, ", or hashed_rows= of your choice")
+    return Tiling(*box(env), actions, edges, tiles, config.tilings, config.hashed_rows)

@@ -1,17 +1,16 @@
 """``qtab.train``: from an environment and a config to a run."""
 
 import time
-from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
-from numpy.typing import NDArray
 
 from qtab import _core, checks
+from qtab.callbacks import Callback, Finished
+from qtab.notices import say_limit
 from qtab.progress import Bar
 from qtab.replay import starts
 from qtab.resolution import Resolved, resolve
@@ -19,23 +18,6 @@ from qtab.run import Recording, Run
 from qtab.versions import versions
 
 CALLBACK_EVERY = 100
-
-
-@dataclass(frozen=True)
-class Progress:
-    """A run underway, as a callback sees it."""
-
-    episodes: int
-    """How many episodes are finished …"""
-    total: int
-    """… of how many."""
-    returns: NDArray[np.float64]
-    """(episodes,): the return of each finished episode."""
-    lengths: NDArray[np.int64]
-    """(episodes,): the steps of each finished episode."""
-
-
-Callback = Callable[[Progress], bool | None]
 
 
 def train(
@@ -72,6 +54,7 @@ def train(
     callback_every = checks.integer("callback_every", callback_every, least=1)
     record = checks.count("record", record, least=0)
     resolved = resolve(env, overrides)
+    say_limit(resolved)
     try:
         return train_resolved(resolved, callback, callback_every, record, progress)
     finally:
@@ -89,6 +72,7 @@ def train_resolved(
     total = resolved.config.episodes
     began = time.perf_counter()
     trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record))
+    finished = Finished(trainer, total)
     done = 0
     try:
         with Bar(total, "episode", progress) as shown:
@@ -98,8 +82,7 @@ def train_resolved(
                     trainer.advance(stop)
                 done = target
                 if callback is not None:
-                    returns, lengths, _ = trainer.episodes()
-                    verdict = callback(Progress(done, total, returns, lengths))
+                    verdict = callback(finished.look())
                     if verdict is not None and not verdict:  # NumPy's False stops too
                         break
         _refuse_overflow(trainer)

@@ -195,6 +195,7 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "scale": _scale,
     "tilings": _integer(1, MOST_TILINGS),
     "tiles": _counts(1, None),
+    "hashed_rows": _integer(1, 2**32 - 1),
     "bins": _counts(1, MOST_BINS),
     "edges": _edges,
     "low": _each(checks.finite),

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from qtab import checks
-from qtab.bench import subjects
+from qtab.bench import overhead, subjects
 from qtab.bench.footprint import Footprint, footprint
 from qtab.bench.rounds import Timings, measure
 from qtab.versions import versions
@@ -59,6 +59,8 @@ class Report:
             (subjects.GYMNASIUM_MAKE, subjects.QTAB_MAKE),
         ):
             lines.append(_line(name, _number(self.timings.median(name)), _number(self.timings.ratio(base, name))))
+        if overhead.LEARNING in self.timings.nanoseconds:
+            lines.append(overhead.sentence(self.timings))
         return lines
 
     def _footprint(self) -> list[str]:
@@ -89,7 +91,8 @@ def bench(seconds: float = DEFAULT_SECONDS, rounds: int | None = None, progress:
     if rounds is not None:
         rounds = checks.integer("rounds", rounds, least=1)
     cost = footprint()
-    timings = measure(subjects.training() | subjects.stepping(), seconds=seconds, rounds=rounds, progress=progress)
+    timed = subjects.training() | subjects.stepping() | overhead.python_stepping()
+    timings = measure(timed, seconds=seconds, rounds=rounds, progress=progress)
     return Report(timings, len(next(iter(timings.nanoseconds.values()))), cost, versions())
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import tyro
 
 from qtab.config import Config, known_fields
-from qtab.models import spec_of
+from qtab.models import spec_of, versioned
 from qtab.preset import preset
 from qtab.resolution import merge
 from qtab.storage import load
@@ -167,7 +167,7 @@ def defaults(env: str | None, preset: str | None, config: Path | None) -> Settin
     named = layer.pop("env", Config.env)
     if not isinstance(named, str):
         raise TypeError(f"env must be an environment id, got {named!r}")
-    env = env or named
+    env = versioned(env or named)
     start = layer.pop("initial_q", None)
     if start is not None and not isinstance(start, str):
         layer["initial_q"] = np.array(start) if np.ndim(start) > 1 else start

@@ -1,28 +1,27 @@
 """``qtab train``."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
 import tyro
 
+from qtab.callbacks import Progress
 from qtab.cli.outputs import Outputs
 from qtab.cli.parsing import parse
 from qtab.cli.settings import Settings, defaults, last_value
 from qtab.cli.usage import refusing
-from qtab.models import spec_of
+from qtab.models import versioned
+from qtab.notices import limit
 from qtab.progress import write
 from qtab.resolution import Resolved, resolve
 from qtab.run import Run
-from qtab.training import Progress, train_resolved
+from qtab.training import train_resolved
 
 COMMAND = "qtab train"
 BLOCK = 100
 """Episodes to an average, as in the article."""
-
-LOOKS = 1000
-"""A long run prints its averages several at a time, because each look at it copies its returns."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ def run(arguments: list[str]) -> int:
         with refusing():
             outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record)
         with outputs:
-            write(_header(resolved, asked.settings))
+            write(_header(resolved))
             _train(resolved, outputs)
     finally:
         resolved.close()
@@ -70,9 +69,10 @@ def _parse(arguments: list[str]) -> Arguments:
         with refusing():
             start = defaults(env, preset, Path(file) if file is not None else None)
         asked = parse(Arguments, COMMAND, arguments, default=Arguments(start))
-        if asked.settings.env == start.env:
-            return asked
-        env = asked.settings.env
+        with refusing():
+            env = versioned(asked.settings.env)
+        if env == start.env:
+            return replace(asked, settings=replace(asked.settings, env=env))
 
 
 def _without_env(arguments: list[str]) -> list[str]:
@@ -84,7 +84,7 @@ def _without_env(arguments: list[str]) -> list[str]:
     return kept
 
 
-def _header(resolved: Resolved, settings: Settings) -> str:
+def _header(resolved: Resolved) -> str:
     config = resolved.config
     backend = "in Rust" if config.backend == "rust" else "stepped by Gymnasium in Python"
     parts = [
@@ -94,18 +94,13 @@ def _header(resolved: Resolved, settings: Settings) -> str:
         f"seed {config.seed}",
     ]
     header = ", ".join(parts)
-    if settings.max_episode_steps is None and spec_of(config.env).max_episode_steps is None:
-        header += (
-            f"\n{config.env} has no time limit of its own: an episode ends after {config.max_episode_steps:,} steps"
-        )
-    return header
+    return f"{header}\n{limit(resolved)}" if resolved.limited else header
 
 
 def _train(resolved: Resolved, outputs: Outputs) -> None:
-    blocks_a_look = max(1, resolved.config.episodes // (BLOCK * LOOKS))
     averages = _averages()
     try:
-        finished = train_resolved(resolved, averages, BLOCK * blocks_a_look, record=outputs.shown)
+        finished = train_resolved(resolved, averages, BLOCK, record=outputs.shown)
     except BaseException as error:
         partial = getattr(error, "run", None)
         if isinstance(partial, Run):
@@ -127,9 +122,9 @@ def _averages() -> Callable[[Progress], None]:
     def callback(progress: Progress) -> None:
         nonlocal printed
         while printed + BLOCK <= progress.episodes:
-            printed += BLOCK
-            average = float(progress.returns[printed - BLOCK : printed].mean())
-            write(f"Episode {printed} Average Reward: {average}")
+            average = float(progress.returns[printed : printed + BLOCK].mean())
+            write(f"Episode {printed + BLOCK} Average Reward: {average}")
+            printed += BLOCK  # last: a line that Ctrl-C cut off is written again
 
     return callback
 

@@ -2,7 +2,10 @@
 
 from typing import Any
 
+import gymnasium as gym
+import numpy as np
 from gymnasium.error import ResetNeeded
+from numpy.typing import NDArray
 
 from qtab import _core
 
@@ -10,7 +13,7 @@ from qtab import _core
 class RustPhysics(_core.Physics):
     """The base of an environment that steps in Rust; Gymnasium's class comes after it.
 
-    Spaces, reset, reset options, rendering and attributes are Gymnasium's own. Whatever Gymnasium lets a user assign is
+    Spaces, reset options, rendering and attributes are Gymnasium's own. Whatever Gymnasium lets a user assign is
     honoured from the next step on, in a class from the next reset on. CartPole, Acrobot and Pendulum call NumPy's sine
     and cosine: where those are not the platform's, they step in Gymnasium's own code, and its logger says so once.
     """
@@ -25,6 +28,20 @@ class RustPhysics(_core.Physics):
     def __delattr__(self, name: str) -> None:
         super().__delattr__(name)
         self.changed()
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Draws the first state in Rust, from the environment's own generator; by ``options`` in Gymnasium's code."""
+        if options is None:
+            gym.Env.reset(self, seed=seed)  # type: ignore[arg-type]
+            begun = self.begin()
+            if begun is not None:
+                return begun
+            seed = None  # it has been heeded
+        theirs: Any = super(_core.Physics, self)
+        first: tuple[NDArray[np.float32], dict[str, Any]] = theirs.reset(seed=seed, options=options)
+        return first
 
     def step_in_python(self, action: Any) -> Any:
         """Steps through Gymnasium's own code what Rust does not stand for, such as a float32 state.

@@ -10,6 +10,7 @@ from gymnasium.envs.toy_text.utils import categorical_sample
 from numpy.typing import ArrayLike
 
 from qtab import _core
+from qtab.envs.toy_text import RustReset
 
 Outcome: TypeAlias = tuple[float, int, float, bool]
 """Probability, next state, reward, terminated."""
@@ -18,7 +19,7 @@ Table: TypeAlias = Mapping[int, Mapping[int, Outcomes]] | Sequence[Sequence[Outc
 """``P[state][action]`` lists the outcomes, as in Gymnasium's toy text."""
 
 
-class TabularEnv(_core.Table, gym.Env[Any, Any]):
+class TabularEnv(_core.Table, RustReset, gym.Env[Any, Any]):
     """A finite Markov decision process of one's own: states and actions numbered from 0, everything else in a table.
 
     It draws as Gymnasium's toy text does, one ``random()`` for each reset and each step, so that
@@ -52,9 +53,8 @@ class TabularEnv(_core.Table, gym.Env[Any, Any]):
         self.observation_space = gym.spaces.Discrete(states)
         self.action_space = gym.spaces.Discrete(actions)
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[int, dict[str, Any]]:
-        """Draws the first state."""
-        super().reset(seed=seed, options=options)
+    def reset_in_python(self) -> tuple[int, dict[str, Any]]:
+        """Draws by Gymnasium's own code what Rust does not stand for, such as a list of probabilities."""
         self.s = categorical_sample(self.initial_state_distrib, self.np_random)
         self.lastaction = None
         if self.render_mode == "human":

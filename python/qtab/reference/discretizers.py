@@ -1,12 +1,14 @@
 """From an observation to the rows of the table that it lights."""
 
+import math
 from typing import Any, Protocol
 
 import gymnasium as gym
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from qtab.config import Config
+from qtab.hashing import hashed_row
 
 
 class Discretizer(Protocol):
@@ -62,7 +64,10 @@ class Bins:
 
 
 class TileCoding:
-    """Tilings shifted by 1, 3, 5, … parts of a tile along the first, second, third … component (section 9.5.4)."""
+    """Tilings shifted by 1, 3, 5, … parts of a tile along the first, second, third … component (section 9.5.4).
+
+    A tile's row is counted in C order, or hashed into fewer rows.
+    """
 
     def __init__(self, space: gym.spaces.Box, config: Config) -> None:
         assert config.tilings is not None  # noqa: S101
@@ -71,7 +76,8 @@ class TileCoding:
         self.low, self.high = np.array(config.low), np.array(config.high)
         self.tiles, self.lit = np.array(config.tiles), config.tilings
         self.tiling_shape = tuple(count + 1 for count in config.tiles)
-        self.shape: tuple[int, ...] = (self.lit * int(np.prod(self.tiling_shape)),)
+        self.hashed_rows = config.hashed_rows
+        self.shape: tuple[int, ...] = (self.hashed_rows or self.lit * math.prod(self.tiling_shape),)
 
     def rows(self, observation: ArrayLike) -> list[int]:
         """Returns one row of each tiling."""
@@ -79,14 +85,13 @@ class TileCoding:
         clipped = np.clip(numbers, self.low, self.high)
         parts = np.floor((clipped - self.low) * (self.tiles / (self.high - self.low)) * self.lit).astype(int)
         odd = 2 * np.arange(len(parts)) + 1
-        return [
-            int(
-                np.ravel_multi_index(
-                    (tiling, *((parts + tiling * odd % self.lit) // self.lit)), (self.lit, *self.tiling_shape)
-                )
-            )
-            for tiling in range(self.lit)
-        ]
+        return [self.row(tiling, (parts + tiling * odd % self.lit) // self.lit) for tiling in range(self.lit)]
+
+    def row(self, tiling: int, tile: NDArray[np.int64]) -> int:
+        """Returns the row of a tiling's tile."""
+        if self.hashed_rows is not None:
+            return hashed_row((tiling, *tile.tolist()), self.hashed_rows)
+        return int(np.ravel_multi_index((tiling, *tile), (self.lit, *self.tiling_shape)))
 
 
 class Identity:

@@ -96,9 +96,9 @@ class Task:
     def update(self, Q: Table, state: Rows, action: int, target: float, rate: LearningRate | None = None) -> None:
         """Q(S, A) <- Q(S, A) + α [target - Q(S, A)]; the rows that S lights share it."""
         rate = rate or self.learning_rate
-        rate.visit(state, action)
         error = target - value(Q, state, action)
         for row in state:
+            rate.visit([row], action)
             Q[row, action] += rate.step(row, action) * error
 
     def end(self, Q: Table, state: Rows, action: int, reward: float, rate: LearningRate | None = None) -> None:

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import cloudpickle
-import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
 from qtab import checks, memory
 from qtab.many import MakeEnv, thread_count
+from qtab.models import spec_of
+from qtab.notices import say_limit
 from qtab.processes import pool
 from qtab.sweeping.loading import table
 from qtab.sweeping.results import Sweep
@@ -88,8 +89,10 @@ def sweep(
     if executor is not None and not hasattr(executor, "submit"):
         raise TypeError(f"executor must have the method submit, as those of concurrent.futures do, got {executor!r}")
     if isinstance(env, str):
-        env = gym.spec(env)  # a worker may not have imported what registered it
+        env = spec_of(env)  # a worker may not have imported what registered it
     planned = study(env, grid, seeds, block, config)
+    for resolved in planned.resolved:
+        say_limit(resolved)
     planned.check_memory(memory.memory_limit(memory_limit))
     with closing(Store(store, planned)) as kept:
         report = _Report(planned, kept, callback)

@@ -2,6 +2,7 @@
 
 mod bins;
 mod grid;
+mod hashing;
 mod identity;
 mod real;
 mod rounding;

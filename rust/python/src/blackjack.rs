@@ -106,7 +106,7 @@ fn hand(cards: Bound<'_, PyAny>) -> Option<(Bound<'_, PyList>, Hand)> {
 }
 
 /// Whether `choice` of it is `integers` of it.
-fn is_numpys(generator: &Bound<'_, PyAny>) -> bool {
+pub(crate) fn is_numpys(generator: &Bound<'_, PyAny>) -> bool {
     static GENERATOR: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let class = GENERATOR.import(generator.py(), "numpy.random", "Generator");
     class.is_ok_and(|class| generator.is_exact_instance(class))

@@ -1,5 +1,6 @@
 //! `qtab._core`: what Python calls. Convert, dispatch, return; nothing else.
 
+mod begin;
 mod blackjack;
 mod classic;
 mod dispatch;

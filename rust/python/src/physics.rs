@@ -6,9 +6,11 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
+use crate::blackjack::is_numpys;
 use crate::model::{Habits, Model};
 use crate::numbers::Values;
 use crate::play::{Played, State};
+use crate::toy_text::{generator, watch};
 use crate::trigonometry::numpy_calls_the_platform;
 
 /// Holds an environment's state, and steps it.
@@ -48,6 +50,31 @@ impl Physics {
     ) -> PyResult<Self> {
         let model = Model::new(class.getattr(intern!(class.py(), "model"))?.extract()?)?;
         Ok(Self { model, constants: Constants::Unread, state: State::Missing })
+    }
+
+    /// The first state, from the generator as it stands; what `reset` returns, or None, nothing drawn, where that is
+    /// Gymnasium's to do.
+    fn begin<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let py = slf.py();
+        let (generator, model) = (generator(slf)?, slf.borrow().model);
+        if !is_numpys(&generator) || (model.habits().trigonometry && !numpy_calls_the_platform(py)?) {
+            return Ok(None);
+        }
+        let Some(begun) = model.begin(&generator)? else { return Ok(None) };
+        // Straight to its place, since no constant changes.
+        let attributes = slf.getattr(intern!(py, "__dict__"))?.cast_into::<PyDict>()?;
+        match model {
+            Model::CartPole(_) => attributes.set_item(intern!(py, "steps_beyond_terminated"), py.None())?,
+            Model::Pendulum(_) => attributes.set_item(intern!(py, "last_u"), py.None())?,
+            _ => (),
+        }
+        {
+            let mut this = slf.borrow_mut();
+            this.state = State::Python(begun.state.into_any().unbind());
+            this.constants = Constants::Unread;
+        }
+        watch(slf)?;
+        Ok(Some((begun.observation, PyDict::new(py)).into_pyobject(py)?.into_any()))
     }
 
     /// One step, with the types that Gymnasium returns.

@@ -40,7 +40,7 @@ pub(crate) enum Discretizer {
     #[pyo3(from_item_all)]
     Rounding { scale: Vec<f64> },
     #[pyo3(from_item_all)]
-    Tiles { low: Vec<f64>, high: Vec<f64>, tiles: Vec<u32>, tilings: u32 },
+    Tiles { low: Vec<f64>, high: Vec<f64>, tiles: Vec<u32>, tilings: u32, hashed_rows: Option<u32> },
     #[pyo3(from_item_all)]
     Cells { first: Vec<i64>, counts: Vec<u32>, scalar: bool },
     #[pyo3(from_item_all)]
@@ -261,13 +261,17 @@ impl Plan<'_> {
 
     /// Tile coding.
     pub(crate) fn tiles<T: Real, const M: usize>(&self) -> PyResult<Tiles<T, M>> {
-        let Discretizer::Tiles { low, high, tiles, tilings } = &self.features else {
+        let Discretizer::Tiles { low, high, tiles, tilings, hashed_rows } = &self.features else {
             return Err(PyValueError::new_err("discretizer must be 'tiles'"));
         };
         if [low.len(), high.len(), tiles.len()].iter().any(|&length| length != self.low.len()) {
             return Err(PyValueError::new_err(format!("tiles must hold {} numbers", self.low.len())));
         }
-        Ok(Tiles::new(low, high, tiles, *tilings))
+        let tiles = Tiles::new(low, high, tiles, *tilings);
+        Ok(match *hashed_rows {
+            Some(rows) => tiles.hashed(rows),
+            None => tiles,
+        })
     }
 }
 

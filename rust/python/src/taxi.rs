@@ -3,10 +3,11 @@
 use numpy::{PyArray1, PyArrayDescrMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::pyclass::CompareOp;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::numbers::index;
-use crate::toy_text::{draw, generator, in_python, python_int, watch};
+use crate::toy_text::{begin_in_python, draw, draw_first, generator, in_python, python_int, watch};
 
 const STATES: usize = 500;
 /// The passenger's place once they are in the taxi.
@@ -39,6 +40,26 @@ impl Taxi {
     #[pyo3(signature = (*_args, **_kwargs))]
     fn new(_args: &Bound<'_, PyTuple>, _kwargs: Option<&Bound<'_, PyDict>>) -> Self {
         Self
+    }
+
+    /// The first state, from the generator as it stands; what `reset` returns.
+    fn begin<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let Some(state) = draw_first(slf)? else { return begin_in_python(slf) };
+        slf.setattr(intern!(py, "s"), &state)?;
+        slf.setattr(intern!(py, "lastaction"), py.None())?;
+        let mut fickle = slf.getattr(intern!(py, "fickle_passenger"))?;
+        if fickle.is_truthy()? {
+            let random = generator(slf)?.call_method0(intern!(py, "random"))?;
+            fickle = random.rich_compare(slf.getattr(intern!(py, "fickle_probability"))?, CompareOp::Lt)?;
+        }
+        slf.setattr(intern!(py, "fickle_step"), fickle)?;
+        slf.setattr(intern!(py, "taxi_orientation"), 0)?;
+        watch(slf)?;
+        let info = PyDict::new(py);
+        info.set_item(intern!(py, "prob"), 1.0)?;
+        info.set_item(intern!(py, "action_mask"), slf.call_method1(intern!(py, "action_mask"), (&state,))?)?;
+        Ok((python_int(state)?, info).into_pyobject(py)?.into_any())
     }
 
     /// One step, with the types that Gymnasium returns.

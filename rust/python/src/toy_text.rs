@@ -1,6 +1,7 @@
 //! What steps Gymnasium's toy text: its own attributes, read anew at each step, so that whatever was assigned or edited
 //! counts; its own generator, called in Python. What is odd in any way steps in Gymnasium's code.
 
+use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyAttributeError;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -18,6 +19,18 @@ impl Table {
     #[pyo3(signature = (*_args, **_kwargs))]
     fn new(_args: &Bound<'_, PyTuple>, _kwargs: Option<&Bound<'_, PyDict>>) -> Self {
         Self
+    }
+
+    /// The first state, from the generator as it stands; what `reset` returns.
+    fn begin<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let Some(state) = draw_first(slf)? else { return begin_in_python(slf) };
+        slf.setattr(intern!(py, "s"), &state)?;
+        slf.setattr(intern!(py, "lastaction"), py.None())?;
+        watch(slf)?;
+        let info = PyDict::new(py);
+        info.set_item(intern!(py, "prob"), 1)?;
+        Ok((python_int(state)?, info).into_pyobject(py)?.into_any())
     }
 
     /// One step, with the types that Gymnasium returns.
@@ -84,6 +97,26 @@ pub(crate) fn draw<'py>(
     Ok(Some(Landing { probability, state, reward, terminated }))
 }
 
+/// Gymnasium's `categorical_sample` of `initial_state_distrib`, an `np.int64`; None before anything was drawn, where that
+/// is no row of float64.
+pub(crate) fn draw_first<'py>(env: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let py = env.py();
+    let Some(weights) = env.getattr_opt(intern!(py, "initial_state_distrib"))? else { return Ok(None) };
+    let Ok(weights) = weights.cast_into::<PyArray1<f64>>() else { return Ok(None) };
+    let Ok(weights) = weights.try_readonly() else { return Ok(None) };
+    if weights.is_empty() {
+        return Ok(None);
+    }
+    let random: f64 = generator(env)?.call_method0(intern!(py, "random"))?.extract()?;
+    let mut sum = 0.0;
+    let chosen = weights.as_array().iter().position(|weight| {
+        sum += weight;
+        sum > random
+    });
+    let state = chosen.and_then(|state| i64::try_from(state).ok()).unwrap_or(0);
+    PyArray1::from_slice(py, &[state]).get_item(0).map(Some)
+}
+
 /// Of an outcome; NaN for what sums otherwise than floats.
 fn probability(outcome: &Bound<'_, PyTuple>) -> PyResult<f64> {
     Ok(double(&outcome.get_item(0)?).unwrap_or(f64::NAN))
@@ -108,6 +141,11 @@ pub(crate) fn reset<'py>(env: &Bound<'py, PyAny>, name: &Bound<'py, PyString>) -
 /// The user's own generator.
 pub(crate) fn generator<'py>(env: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     env.getattr(intern!(env.py(), "np_random"))
+}
+
+/// The reset in Gymnasium's code, its generator seeded before.
+pub(crate) fn begin_in_python<'py>(env: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    env.call_method0(intern!(env.py(), "reset_in_python"))
 }
 
 /// The step in Gymnasium's code.

@@ -57,14 +57,16 @@ impl Trainer {
         .map_err(|failure: crate::failure::Failure| failure.into())
     }
 
-    /// The finished episodes: their returns, their lengths, and whether each ended in a terminal state.
-    fn episodes<'py>(&self, py: Python<'py>) -> PyResult<Finished<'py>> {
+    /// The episodes finished `since` then: their returns, their lengths, and whether each ended in a terminal state.
+    #[pyo3(signature = (since = 0))]
+    fn episodes<'py>(&self, py: Python<'py>, since: usize) -> PyResult<Finished<'py>> {
         let built = self.lock()?;
         let episodes = built.run.episodes();
+        let since = since.min(episodes.returns.len());
         Ok((
-            PyArray1::from_slice(py, &episodes.returns),
-            PyArray1::from_slice(py, &episodes.lengths),
-            PyArray1::from_slice(py, &episodes.terminated),
+            PyArray1::from_slice(py, &episodes.returns[since..]),
+            PyArray1::from_slice(py, &episodes.lengths[since..]),
+            PyArray1::from_slice(py, &episodes.terminated[since..]),
         ))
     }
 

@@ -1,7 +1,8 @@
-//! Tile coding with asymmetric offsets (Sutton & Barto, section 9.5.4), densely indexed.
+//! Tile coding with asymmetric offsets (Sutton & Barto, section 9.5.4), densely indexed unless hashing is asked for.
 
 use std::marker::PhantomData;
 
+use super::hashing::{Hashed, stir};
 use super::{Features, Outside, Real};
 
 /// The most tilings there can be.
@@ -39,7 +40,7 @@ struct Axis<const M: usize> {
 pub struct Tiles<T = f64, const M: usize = MOST_TILINGS> {
     axes: Vec<Axis<M>>,
     tilings: u32,
-    rows_a_tiling: u32,
+    hashed: Option<Hashed>,
     dtype: PhantomData<T>,
 }
 
@@ -64,8 +65,65 @@ impl<T: Real, const M: usize> Tiles<T, M> {
                 offsets: std::array::from_fn(|tiling| tiling as u32 * (2 * index as u32 + 1) % tilings),
             })
             .collect();
-        let rows_a_tiling = axes.iter().map(|axis| axis.tiles).product();
-        Self { axes, tilings, rows_a_tiling, dtype: PhantomData }
+        Self { axes, tilings, hashed: None, dtype: PhantomData }
+    }
+
+    /// The same over a table of so many `rows` for all tilings together, each row found by a hash of the tiling and the
+    /// tile. Tiles that share a row share its value, and one observation may light a row twice.
+    ///
+    /// # Panics
+    /// If there are no rows.
+    #[must_use]
+    pub fn hashed(self, rows: u32) -> Self {
+        assert!(rows > 0, "hashed_rows must be at least 1");
+        Self { hashed: Some(Hashed { rows }), ..self }
+    }
+
+    /// The rows of a table too large to be indexed densely, from the tile of each tiling along each component.
+    #[inline(never)]
+    fn hashed_rows(&self, observation: &[T], table: Hashed) -> Result<Lit<M>, Outside> {
+        let mut hashes: [u64; M] = std::array::from_fn(|tiling| stir(0, tiling as u32));
+        for (index, (axis, &value)) in self.axes.iter().zip(observation).enumerate() {
+            let place = axis.place(index, value.into(), self.tilings)?;
+            for (hash, offset) in hashes[..self.tilings as usize].iter_mut().zip(axis.offsets) {
+                *hash = stir(*hash, place.tile(offset, self.tilings));
+            }
+        }
+        Ok(Lit { rows: hashes.map(|hash| table.row(hash)), tilings: self.tilings as usize })
+    }
+}
+
+/// Where a number lies along an axis: in parts of a tile, of which each has as many as there are tilings.
+#[derive(Clone, Copy)]
+struct Place {
+    tile: u32,
+    rest: u32,
+}
+
+impl Place {
+    /// The tile of the tiling of that offset: `(parts + offset) / tilings`, of which only the remainder differs from
+    /// tiling to tiling.
+    #[inline]
+    fn tile(self, offset: u32, tilings: u32) -> u32 {
+        self.tile + u32::from(self.rest + offset >= tilings)
+    }
+}
+
+impl<const M: usize> Axis<M> {
+    #[inline]
+    fn place(&self, index: usize, value: f64, tilings: u32) -> Result<Place, Outside> {
+        if value.is_nan() {
+            return Err(Outside { axis: index, value });
+        }
+        let value = value.clamp(self.low, self.high);
+        // It is not negative, so that the conversion is `floor`.
+        let parts = ((value - self.low) * self.tiles_a_unit * f64::from(tilings)) as u32;
+        let (tile, rest) = if tilings.is_power_of_two() {
+            (parts >> tilings.trailing_zeros(), parts & (tilings - 1))
+        } else {
+            (parts / tilings, parts % tilings)
+        };
+        Ok(Place { tile, rest })
     }
 }
 
@@ -74,31 +132,25 @@ impl<T: Real, O: AsRef<[T]> + ?Sized, const M: usize> Features<O> for Tiles<T, M
 
     #[inline]
     fn rows(&self, observation: &O) -> Result<Lit<M>, Outside> {
+        if let Some(table) = self.hashed {
+            return self.hashed_rows(observation.as_ref(), table);
+        }
         let tilings = self.tilings;
         let mut rows: [u32; M] = std::array::from_fn(|tiling| tiling as u32);
         for (index, (axis, &value)) in self.axes.iter().zip(observation.as_ref()).enumerate() {
-            let value = value.into();
-            if value.is_nan() {
-                return Err(Outside { axis: index, value });
-            }
-            let value = value.clamp(axis.low, axis.high);
-            // It is not negative, so that the conversion is `floor`.
-            let parts = ((value - axis.low) * axis.tiles_a_unit * f64::from(tilings)) as u32;
-            // (parts + offset) / tilings, of which only the remainder differs from tiling to tiling.
-            let (tile, rest) = if tilings.is_power_of_two() {
-                (parts >> tilings.trailing_zeros(), parts & (tilings - 1))
-            } else {
-                (parts / tilings, parts % tilings)
-            };
+            let place = axis.place(index, value.into(), tilings)?;
             for (row, offset) in rows[..tilings as usize].iter_mut().zip(axis.offsets) {
-                *row = *row * axis.tiles + tile + u32::from(rest + offset >= tilings);
+                *row = *row * axis.tiles + place.tile(offset, tilings);
             }
         }
         Ok(Lit { rows, tilings: tilings as usize })
     }
 
     fn len(&self) -> usize {
-        self.tilings as usize * self.rows_a_tiling as usize
+        match self.hashed {
+            Some(table) => table.rows as usize,
+            None => self.axes.iter().fold(self.tilings as usize, |rows, axis| rows * axis.tiles as usize),
+        }
     }
 }
 
@@ -127,6 +179,17 @@ mod tests {
         assert_eq!(shared([0.5, 0.5], [0.5, 0.5]), 8);
         assert!((1..8).contains(&shared([0.5, 0.5], [0.53, 0.5])));
         assert_eq!(shared([0.1, 0.1], [0.9, 0.9]), 0);
+    }
+
+    #[test]
+    fn a_hashed_table_has_the_rows_asked_for_and_lights_one_a_tiling() {
+        let space = ([0.0; 12], [1.0; 12], [9; 12]);
+        let tiles = Tiles::<f64, 8>::new(&space.0, &space.1, &space.2, 8).hashed(1000);
+        assert_eq!(Features::<[f64; 12]>::len(&tiles), 1000);
+        let Ok(lit) = tiles.rows(&[0.3; 12]) else { unreachable!("it lies in the box") };
+        assert_eq!(lit.as_ref().len(), 8);
+        assert!(lit.as_ref().iter().all(|&row| row < 1000));
+        assert_ne!(tiles.rows(&[0.3; 12]), tiles.rows(&[0.7; 12]));
     }
 
     #[test]
