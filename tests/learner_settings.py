@@ -2,8 +2,12 @@
 
 from typing import Any
 
+import pytest
 from hypothesis import strategies as st
 
+from lockstep import MACHINE
+from qtab import _core
+from qtab.models import MODELS
 from qtab.options import ONE_STEP, TABLES_ONLY
 
 CAR = "MountainCar-v0"
@@ -23,6 +27,16 @@ KEYWORDS = {
     "CartPole-v1": ("sutton_barto_reward", [False, True]),
     "Pendulum-v1": ("g", [10.0, 9.81, 0]),
 }
+TRAINED = [
+    pytest.param(
+        env,
+        marks=pytest.mark.skipif(
+            not _core.computes_as_numpy(MODELS[env].name), reason=f"Rust does not compute as NumPy here: {MACHINE}"
+        ),
+    )
+    for env in LIMITS
+]
+"""The environments that train in Rust on this machine."""
 share = st.floats(0, 1)
 falling = st.sampled_from(["linear", "exponential"])
 

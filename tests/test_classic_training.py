@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from learner_settings import CAR, KEYWORDS, LIMITS
+from learner_settings import CAR, KEYWORDS, LIMITS, TRAINED
 from lockstep import MACHINE
 from parity import assert_same_run
 from qtab import _core
@@ -15,7 +15,7 @@ from qtab.names import Algorithm
 from qtab.options import TABLES_ONLY
 
 ALGORITHMS = get_args(Algorithm)
-OTHERS = [env for env in LIMITS if env != CAR]
+OTHERS = [env for env in TRAINED if env.values != (CAR,)]
 STEPS = 100_000
 
 
@@ -71,7 +71,7 @@ def test_every_way_to_name_it_is_the_same(env: str) -> None:
     assert_same_run(run, qtab.train(gym.make(env), **chosen))
 
 
-@pytest.mark.parametrize("env", KEYWORDS)
+@pytest.mark.parametrize("env", [env for env in TRAINED if env.values[0] in KEYWORDS])
 def test_keyword_arguments_reach_rust(env: str) -> None:
     name, values = KEYWORDS[env]
     chosen = {**settings_of(env, "bins"), "seed": 4, "episodes": 30, "max_episode_steps": 300}
@@ -128,14 +128,15 @@ def test_rust_trains_where_numpy_calls_the_platform() -> None:
         assert _core.computes_as_numpy(name) == _core.numpy_calls_the_platform(), MACHINE
 
 
-def test_acrobots_first_observations_are_numpys_single_precision() -> None:
+@pytest.mark.parametrize("name", [env for env in TRAINED if env.values == ("Acrobot-v1",)])
+def test_acrobots_first_observations_are_numpys_single_precision(name: str) -> None:
     """Bins that part next to each first observation of Gymnasium find it again."""
-    env = gym.make("Acrobot-v1")
+    env = gym.make(name)
     for seed in range(300):
         observation, _ = env.reset(seed=seed)
         edges = tuple((float(np.nextafter(x, np.float32(-99))), float(x)) for x in observation)
         run = qtab.train(
-            "Acrobot-v1",
+            name,
             backend="rust",
             seed=seed,
             episodes=1,
