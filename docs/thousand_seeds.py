@@ -14,6 +14,9 @@ for name, runs in (("article", article), ("solved", solved)):
     final = runs.final_returns(100)
     print(f"{name}: {qtab.stats.mean(final)} over the last 100 episodes of {len(runs)} seeds, best {final.max():.1f}")
 
-ax = qtab.plots.learning_curves(article.episode_returns, label="article: mean")
-qtab.plots.learning_curves(solved.episode_returns, ax, label="solved: mean", index=1, title="MountainCar-v0")
+best = qtab.optimum("MountainCar-v0")
+print(f"{best.label}: {best.expected_return:.1f}")
+
+ax = qtab.plots.learning_curves(article.episode_returns, label="article")
+qtab.plots.learning_curves(solved.episode_returns, ax, label="solved", index=1, optimum=best, title="MountainCar-v0")
 ax.figure.savefig(Path(__file__).with_suffix(".png"), dpi=110)

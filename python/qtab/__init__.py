@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from qtab.envs.tabular import TabularEnv
     from qtab.evaluation import Evaluation, evaluate
     from qtab.many import train_many
+    from qtab.planning import Gap, Optimum, optimum
     from qtab.plotting import plot
     from qtab.preset import presets
     from qtab.run import Recording, Run
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 __all__ = [
     "Config",
     "Evaluation",
+    "Gap",
+    "Optimum",
     "Progress",
     "Recording",
     "Run",
@@ -47,6 +50,7 @@ __all__ = [
     "evaluate",
     "load",
     "load_sweep",
+    "optimum",
     "plot",
     "plots",
     "presets",
@@ -60,6 +64,8 @@ __all__ = [
 _HOME = {
     "Config": "config",
     "Evaluation": "evaluation",
+    "Gap": "planning",
+    "Optimum": "planning",
     "Progress": "callbacks",
     "Recording": "run",
     "Run": "run",
@@ -72,6 +78,7 @@ _HOME = {
     "evaluate": "evaluation",
     "load": "storage",
     "load_sweep": "sweeping",
+    "optimum": "planning",
     "plot": "plotting",
     "presets": "preset",
     "sweep": "sweeping",

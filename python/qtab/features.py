@@ -35,6 +35,11 @@ class Features(ABC):
         return self.choices.count
 
     @property
+    def first_action(self) -> int:
+        """The environment's own number of the first of them, where its space is Discrete."""
+        return self.choices.first
+
+    @property
     @abstractmethod
     def shape(self) -> tuple[int, ...]:
         """The shape of the Q table: cells along each axis where there are any, else rows; then the actions."""
@@ -132,7 +137,7 @@ def check_size(name: str, given: Any, values: float, instead: str = "") -> None:
     """
     if not values < LARGEST_TABLE:
         raise ValueError(
-            f"{name} must give a table of fewer than 2**32 values, got {given!r}, which needs {values:.3g}"
+            f"{name} must give a table of fewer than 2**32 values{instead}, got {given!r}, which needs {values:.3g}"
         )
     try:
         np.empty(int(values))

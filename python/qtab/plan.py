@@ -140,6 +140,12 @@ class Results(TypedDict):
     finished: NDArray[np.bool_]
 
 
+Solved: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]
+"""Of a table: values, values of the actions, the policy."""
+Changes: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
+"""From how many steps left on, in which state, which action is best."""
+
+
 def seed_words(seed: int) -> list[int]:
     """Returns a non-negative integer as 32-bit words, least significant first; zero is one word."""
     count = max(1, (seed.bit_length() + 31) // 32)

@@ -7,23 +7,27 @@ import numpy as np
 
 from qtab.extras import missing
 from qtab.files import replacing
+from qtab.plots.axes import mark_optimum
 from qtab.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from qtab.planning import Optimum
 
 DOTS_PER_INCH = 150
 LARGEST_CLOUD = 20_000
 """More single episodes than this are thinned out: more dots would only darken the cloud."""
 
 
-def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100) -> "Axes":
+def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100, optimum: "Optimum | float | None" = None) -> "Axes":
     """Draws the average return of each block of episodes, as the article does, over the single returns.
 
     Args:
         run: What to draw.
         ax: Where to draw; None makes a figure of its own.
         block: How many episodes an average is taken over.
+        optimum: What :func:`qtab.optimum` found, or a return: a dashed line, its number in the legend.
 
     Returns:
         The axes that were drawn on.
@@ -61,6 +65,7 @@ def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100) -> "Axes":
             solid_capstyle="round",
             label=f"mean of {block} episodes",
         )
+    mark_optimum(ax, optimum)
     ax.set_xlabel("Episode")
     ax.set_ylabel("Return")
     ax.set_title(run.config.env, loc="left", fontweight="bold")
@@ -69,7 +74,9 @@ def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100) -> "Axes":
     ax.xaxis.set_major_formatter("{x:,.0f}")
     ax.grid(alpha=0.25)
     ax.spines[["top", "right"]].set_visible(False)
-    legend = ax.legend(loc="upper left", frameon=False, markerscale=2)
+    # The optimum is at the top, where the legend would be.
+    below = {"bbox_to_anchor": (0.0, -0.12), "ncols": 3}
+    legend = ax.legend(loc="upper left", frameon=False, markerscale=2, **({} if optimum is None else below))
     for handle in legend.legend_handles:
         if handle is not None:
             handle.set_alpha(1)
@@ -96,7 +103,7 @@ def check_format(name: str, path: Path) -> None:
         raise ValueError(f"{name} must end in one of .{', .'.join(formats)}, got {str(path)!r}")
 
 
-def save_plot(run: Run, path: Path) -> None:
+def save_plot(run: Run, path: Path, optimum: "Optimum | None" = None) -> None:
     """Draws the learning curve to a file, whole or not at all; its ending gives the format.
 
     Raises:
@@ -104,7 +111,7 @@ def save_plot(run: Run, path: Path) -> None:
         OSError: if the file cannot be written.
     """
     figure = _figure()
-    plot(run, figure.subplots())
+    plot(run, figure.subplots(), optimum=optimum)
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=DOTS_PER_INCH)
 

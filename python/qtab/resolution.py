@@ -57,7 +57,12 @@ class Resolved:
             return self.described
         assert self.config.seed is not None  # noqa: S101 - resolved
         choices = self.grid.choices
-        return {"env": self.env, "seed": self.config.seed, "first_action": choices.first, "choices": choices.arrays()}
+        return {
+            "env": self.env,
+            "seed": self.config.seed,
+            "first_action": self.grid.first_action,
+            "choices": choices.arrays(),
+        }
 
     def plan(self, record: int = 0) -> plan.Plan:
         """Returns the run's description as the extension module takes it."""
@@ -150,7 +155,7 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     if config.backend == "auto":
         config = config.replace(backend="rust" if is_own_table(env) else "gymnasium")
     model = model_of_object(env) if config.backend == "rust" else None
-    return _resolved(env, model, config, _time_limit(env), layers, made=False)
+    return _resolved(env, model, config, time_limit(env), layers, made=False)
 
 
 def _resolved(
@@ -193,7 +198,8 @@ def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config
     return config
 
 
-def _time_limit(env: gym.Env) -> int | None:
+def time_limit(env: gym.Env) -> int | None:
+    """Returns the most steps of an episode, as the environment's own wrapper has it."""
     while isinstance(env, gym.Wrapper):
         if isinstance(env, gym.wrappers.TimeLimit):
             return env._max_episode_steps

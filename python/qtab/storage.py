@@ -51,7 +51,7 @@ def save(run: Run, path: Path) -> None:
         "version": FORMAT_VERSION,
         "config": config,
         "actions": run.grid.actions,
-        "first_action": run.grid.choices.first,
+        "first_action": run.grid.first_action,
         "completed": run.completed,
         "seconds": run.seconds,
         "versions": dict(run.versions),

@@ -9,6 +9,15 @@ from qtab.models import MODELS, TABLE, Model, gymnasium_id
 _HARMLESS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
 
 
+def foreign_wrapper(env: gym.Env) -> str | None:
+    """Returns the name of the outermost wrapper that may change a number; None where there is none."""
+    while isinstance(env, gym.Wrapper):
+        if type(env) not in _HARMLESS:
+            return type(env).__name__
+        env = env.env
+    return None
+
+
 def model_of_object(env: gym.Env) -> Model:
     """Returns the model that computes what an environment object would.
 
@@ -16,11 +25,10 @@ def model_of_object(env: gym.Env) -> Model:
         ValueError: if there is none; it names the wrapper or the attribute in the way.
     """
     refused = "backend must be 'gymnasium' or 'auto' for this environment, got 'rust': "
-    inner = env
-    while isinstance(inner, gym.Wrapper):
-        if type(inner) not in _HARMLESS:
-            raise ValueError(f"{refused}Rust does not know its wrapper {type(inner).__name__}")
-        inner = inner.env
+    inner = env.unwrapped
+    wrapper = foreign_wrapper(env)
+    if wrapper is not None:
+        raise ValueError(f"{refused}Rust does not know its wrapper {wrapper}")
     entry_point = f"{type(inner).__module__}:{type(inner).__qualname__}"
     if entry_point == TABLE.qtab:
         return TABLE
@@ -48,4 +56,4 @@ def is_own_table(env: gym.Env) -> bool:
         return False
 
 
-__all__ = ["is_own_table", "model_of_object"]
+__all__ = ["foreign_wrapper", "is_own_table", "model_of_object"]

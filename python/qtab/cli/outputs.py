@@ -7,6 +7,7 @@ from types import TracebackType
 from qtab import checks
 from qtab.config import Config
 from qtab.files import check_writable
+from qtab.planning import Optimum
 from qtab.plotting import check_format, save_plot
 from qtab.progress import write
 from qtab.replay import play_all
@@ -60,8 +61,8 @@ class Outputs:
     ) -> None:
         self._opened.__exit__(kind, error, traceback)
 
-    def keep(self, run: Run) -> None:
-        """Saves and plots a run, a finished or an interrupted one, and says where.
+    def keep(self, run: Run, optimum: Optimum | None = None) -> None:
+        """Saves and plots a run, a finished or an interrupted one, beside its optimum, and says where.
 
         Raises:
             OSError: if a file cannot be written after all.
@@ -70,7 +71,7 @@ class Outputs:
             run.save(self._save)
             write(f"Saved the run to {self._save}")
         if self._plot is not None:
-            save_plot(run, self._plot)
+            save_plot(run, self._plot, optimum)
             write(f"Saved the plot to {self._plot}")
 
     def show(self, run: Run) -> None:

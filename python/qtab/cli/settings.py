@@ -39,7 +39,7 @@ def _pairs(words: list[str]) -> dict[str, Any]:
     return {key: _value(text) for key, text in zip(words[::2], words[1::2], strict=True)}
 
 
-_PAIRS = tyro.constructors.PrimitiveConstructorSpec[Mapping[str, Any]](
+PAIRS = tyro.constructors.PrimitiveConstructorSpec[Mapping[str, Any]](
     nargs="*",
     metavar="[KEY VALUE ...]",
     instance_from_str=_pairs,
@@ -116,7 +116,7 @@ class Settings(Config):
 
     env: tyro.conf.Positional[str] = Config.env
     """Gymnasium's id of the environment (--env ID does as well)."""
-    env_kwargs: Annotated[Mapping[str, Any], _PAIRS] = field(default_factory=dict)
+    env_kwargs: Annotated[Mapping[str, Any], PAIRS] = field(default_factory=dict)
     """Keyword arguments of the environment's constructor."""
     edges: Annotated[Any, _EDGES] = None
     """For each component of the observation the rising numbers between its bins, such as [-0.5,0,0.5] [0]."""

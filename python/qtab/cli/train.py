@@ -14,6 +14,7 @@ from qtab.cli.settings import Settings, defaults, last_value
 from qtab.cli.usage import refusing
 from qtab.models import versioned
 from qtab.notices import limit
+from qtab.planning import Optimum, optimum
 from qtab.progress import write
 from qtab.resolution import Resolved, resolve
 from qtab.run import Run
@@ -22,6 +23,10 @@ from qtab.training import train_resolved
 COMMAND = "qtab train"
 BLOCK = 100
 """Episodes to an average, as in the article."""
+
+
+QUICK = 10**8
+"""So many looks at a state and an action take less than a second: the optimum is computed unasked."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +44,8 @@ class Arguments:
     """Show this many of the last training episodes on the screen."""
     record: Path | None = None
     """Write the last training episodes, 20 or as many as --watch says, to videos in this folder."""
+    optimum: bool = False
+    """Say how far the run is from the optimum, and draw it; from a table, where it is quick, this is done unasked."""
 
 
 def run(arguments: list[str]) -> int:
@@ -49,9 +56,10 @@ def run(arguments: list[str]) -> int:
     try:
         with refusing():
             outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record)
+            truth = _truth(resolved) if asked.optimum or _quick(resolved) else None
         with outputs:
             write(_header(resolved))
-            _train(resolved, outputs)
+            _train(resolved, outputs, truth)
     finally:
         resolved.close()
     return 0
@@ -97,7 +105,18 @@ def _header(resolved: Resolved) -> str:
     return f"{header}\n{limit(resolved)}" if resolved.limited else header
 
 
-def _train(resolved: Resolved, outputs: Outputs) -> None:
+def _quick(resolved: Resolved) -> bool:
+    if resolved.model is None or not resolved.model.finite or resolved.config.max_episode_steps is None:
+        return False
+    return resolved.grid.rows * resolved.grid.actions * resolved.config.max_episode_steps <= QUICK
+
+
+def _truth(resolved: Resolved) -> Optimum:
+    config = resolved.config
+    return optimum(config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps)
+
+
+def _train(resolved: Resolved, outputs: Outputs, truth: Optimum | None) -> None:
     averages = _averages()
     try:
         finished = train_resolved(resolved, averages, BLOCK, record=outputs.shown)
@@ -107,12 +126,18 @@ def _train(resolved: Resolved, outputs: Outputs) -> None:
             done, total = len(partial.episode_returns), partial.config.episodes
             averages(Progress(done, total, partial.episode_returns, partial.episode_lengths))
             write(f"Stopped after {done:,} of {total:,} episodes; what was learned so far:")
-            write(_summary(partial))
-            outputs.keep(partial)
+            _tell(partial, outputs, truth)
         raise
-    write(_summary(finished))
-    outputs.keep(finished)
+    _tell(finished, outputs, truth)
     outputs.show(finished)
+
+
+def _tell(run: Run, outputs: Outputs, truth: Optimum | None) -> None:
+    write(_summary(run))
+    if truth is not None:
+        gap = str(truth.gap(run))
+        write(gap[0].upper() + gap[1:])
+    outputs.keep(run, truth)
 
 
 def _averages() -> Callable[[Progress], None]:

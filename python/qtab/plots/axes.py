@@ -7,6 +7,8 @@ from qtab.extras import missing
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from qtab.planning import Optimum
+
 COLORS = ("#1f5fa8", "#d1662b", "#2f8f5b", "#8a4fa3", "#b0892b", "#4b8fa8", "#b03a48", "#5b5b5b")
 """Told apart in grey and by most colour-blind readers."""
 
@@ -29,6 +31,16 @@ def own_axes(ax: "Axes | None") -> "Axes":
     except ModuleNotFoundError as error:
         raise missing(error, "plot") from None
     return Figure(figsize=(8, 4.5), layout="constrained").subplots()
+
+
+def mark_optimum(ax: "Axes", optimum: "Optimum | float | None") -> None:
+    """Draws a dashed line at the optimum, or at a return of one's own, with its number in the legend."""
+    if optimum is None:
+        return
+    value, label = (
+        (float(optimum), "optimum") if isinstance(optimum, int | float) else (optimum.expected_return, optimum.label)
+    )
+    ax.axhline(value, color="#a3262f", linestyle=(0, (5, 3)), linewidth=1.5, label=f"{label} {value:.4g}", zorder=4)
 
 
 def finish(ax: "Axes", x: str, y: str, title: str = "") -> "Axes":

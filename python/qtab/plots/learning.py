@@ -5,10 +5,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qtab.plots.axes import color, finish, own_axes
+from qtab.plots.axes import color, finish, mark_optimum, own_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from qtab.planning import Optimum
 
 MOST_SINGLE_RUNS = 200
 """More single runs than this would only blacken the picture."""
@@ -23,6 +25,7 @@ def learning_curves(
     confidence: float = 0.95,
     label: str | None = None,
     index: int = 0,
+    optimum: "Optimum | float | None" = None,
     title: str = "",
 ) -> "Axes":
     """Draws a statistic over the runs with its bootstrap interval, the single runs faint behind it.
@@ -35,6 +38,7 @@ def learning_curves(
         confidence: Of the interval.
         label: For the legend.
         index: Which colour: a number for each setting drawn on the same axes.
+        optimum: What :func:`qtab.optimum` found, or a return: a dashed line, its number in the legend.
         title: The picture's.
 
     Raises:
@@ -56,5 +60,6 @@ def learning_curves(
     ax.fill_between(x, low, high, color=color(index), alpha=0.35, linewidth=0, zorder=2)
     name = f"{label + ': ' if label else ''}{statistic} of {len(runs)} runs, {band}"
     ax.plot(x, [point.estimate for point in points], color=color(index), linewidth=2.2, label=name, zorder=3)
+    mark_optimum(ax, optimum)
     ax.xaxis.set_major_formatter("{x:,.0f}")
     return finish(ax, "Episode", f"Return, mean of {block} episodes", title)

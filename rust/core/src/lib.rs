@@ -36,6 +36,7 @@ pub mod features;
 mod hint;
 pub mod learner;
 pub mod learners;
+pub mod planning;
 pub mod random;
 mod table;
 mod trainer;

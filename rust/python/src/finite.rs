@@ -11,23 +11,20 @@ use crate::native::{cold, hot};
 use crate::plan::Plan;
 use crate::table::Transitions;
 
-/// A sum, an open card, a usable ace: Gymnasium's spaces of blackjack.
-const BLACKJACK: [u32; 3] = [32, 11, 2];
-
 /// A table, and how likely a taxi's passenger changes their mind.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Process {
-    table: Py<Transitions>,
-    fickle: Option<f64>,
+    pub(crate) table: Py<Transitions>,
+    pub(crate) fickle: Option<f64>,
 }
 
 /// Those of blackjack.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Rules {
-    natural: bool,
-    sab: bool,
+    pub(crate) natural: bool,
+    pub(crate) sab: bool,
 }
 
 impl Process {
@@ -45,6 +42,6 @@ impl Process {
 impl Rules {
     pub(crate) fn build(self, plan: &Plan<'_>) -> PyResult<Built> {
         let Self { natural, sab } = self;
-        hot::<_, _, 2>(Blackjack { natural, sab }, Cells(BLACKJACK), plan)
+        hot::<_, _, 2>(Blackjack { natural, sab }, Cells(Blackjack::CELLS.map(|count| count as u32)), plan)
     }
 }

@@ -15,6 +15,7 @@ mod numbers;
 mod observation;
 mod physics;
 mod plan;
+mod planning;
 mod play;
 mod python_world;
 mod run;
@@ -39,6 +40,8 @@ mod _core {
     use super::model::parameter_names;
     #[pymodule_export]
     use super::physics::Physics;
+    #[pymodule_export]
+    use super::planning::{Planner, Valley};
     #[pymodule_export]
     use super::stream::Stream;
     #[pymodule_export]

@@ -44,6 +44,14 @@ impl Hand {
         Self { total: self.total + card, cards: self.cards + 1, ace: self.ace || card == ACE }
     }
 
+    /// A hand of three cards or more that shows this sum, with a usable ace or without; None where none does. Which
+    /// cards they are makes no difference.
+    pub fn showing(sum: u32, usable_ace: bool) -> Option<Self> {
+        let total = sum.checked_sub(if usable_ace { 10 } else { 0 })?;
+        let hand = Self { total, cards: 3, ace: usable_ace };
+        (hand.sum() == sum && hand.usable_ace() == usable_ace && total > 0).then_some(hand)
+    }
+
     /// Whether an ace can count 11.
     #[inline]
     pub fn usable_ace(&self) -> bool {
@@ -87,6 +95,33 @@ pub struct BlackjackState {
 }
 
 impl Blackjack {
+    /// How many numbers Gymnasium's observations take: of the sum, the open card, the usable ace.
+    pub const CELLS: [usize; 3] = [32, 11, 2];
+
+    /// Each card of the deck, and how likely it is.
+    pub fn cards() -> impl Iterator<Item = (f64, u32)> {
+        DECK.iter().map(|&card| (1.0 / DECK.len() as f64, card))
+    }
+
+    /// What the dealer ends with who shows this card, and how likely it is. Hands of the same worth are one.
+    pub fn dealers_hands(shown: u32) -> Vec<(f64, Hand)> {
+        let mut hands: Vec<(f64, Hand)> = Vec::new();
+        let mut open = vec![(1.0, Hand::default().with(shown))];
+        while let Some((probability, hand)) = open.pop() {
+            if hand.sum() < DEALER_STICKS {
+                open.extend(Self::cards().map(|(share, card)| (probability * share, hand.with(card))));
+                continue;
+            }
+            let same =
+                |(_, other): &&mut (f64, Hand)| (other.score(), other.natural()) == (hand.score(), hand.natural());
+            match hands.iter_mut().find(same) {
+                Some((sum, _)) => *sum += probability,
+                None => hands.push((probability, hand)),
+            }
+        }
+        hands
+    }
+
     /// What a player who sticks gets when the dealer has drawn.
     #[inline]
     pub fn settle(&self, player: &Hand, dealer: &Hand) -> f64 {

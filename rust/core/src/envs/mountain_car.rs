@@ -5,7 +5,7 @@ use crate::hint::seldom;
 use crate::random::Draw;
 
 /// The starting position is uniform over these, unless Gymnasium's reset options say otherwise.
-const START: (f64, f64) = (-0.6, -0.4);
+pub(crate) const START: (f64, f64) = (-0.6, -0.4);
 /// Action - 1: left, none, right. Looked up, because turning the action into a float takes longer, and the next step
 /// waits for it.
 pub(crate) const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
@@ -100,6 +100,19 @@ impl Env for MountainCar {
 
     #[inline]
     fn step(&self, state: MountainCarState, action: usize, _draw: &mut impl Draw) -> Step<MountainCarState> {
+        self.drive(state, action)
+    }
+
+    #[inline]
+    fn observe(&self, state: &MountainCarState) -> [f32; 2] {
+        [state.position as f32, state.velocity as f32]
+    }
+}
+
+impl MountainCar {
+    /// One step: nothing in it is left to chance.
+    #[inline]
+    pub fn drive(&self, state: MountainCarState, action: usize) -> Step<MountainCarState> {
         let MountainCarState { mut position, mut velocity } = state;
         let push = DIRECTIONS[action] * self.force;
         velocity += push + (3.0 * position).cos() * (-self.gravity);
@@ -117,11 +130,6 @@ impl Env for MountainCar {
             reward: REWARD,
             terminated: position >= self.goal_position && velocity >= self.goal_velocity,
         }
-    }
-
-    #[inline]
-    fn observe(&self, state: &MountainCarState) -> [f32; 2] {
-        [state.position as f32, state.velocity as f32]
     }
 }
 

@@ -43,6 +43,7 @@ impl Error for BadTable {}
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tabular {
     actions: usize,
+    initial: Vec<f64>,
     start: Vec<f64>,
     /// Where the outcomes of a state and an action begin; those of the next end them.
     first: Vec<usize>,
@@ -50,6 +51,8 @@ pub struct Tabular {
     /// and they never fall, which sums of any floats might.
     bounds: Vec<f64>,
     steps: Vec<Step<u32>>,
+    /// Of each outcome, as it is written: a step goes by the sums, planning by these.
+    probabilities: Vec<f64>,
 }
 
 impl Tabular {
@@ -66,7 +69,15 @@ impl Tabular {
             return bad(format!("P must have rows for {states} states of {actions} actions, got {}", rows.len()));
         }
         distribution("initial_state_distrib", start.iter().copied())?;
-        let mut table = Self { actions, start: cumulative(start), first: vec![0], bounds: vec![], steps: vec![] };
+        let mut table = Self {
+            actions,
+            initial: start.to_vec(),
+            start: cumulative(start),
+            first: vec![0],
+            bounds: vec![],
+            steps: vec![],
+            probabilities: vec![],
+        };
         for (row, outcomes) in rows.iter().enumerate() {
             let place = format!("P[{}][{}]", row / actions, row % actions);
             distribution(&place, outcomes.iter().map(|outcome| outcome.probability))?;
@@ -81,6 +92,7 @@ impl Tabular {
             }
             let probabilities: Vec<f64> = outcomes.iter().map(|outcome| outcome.probability).collect();
             table.bounds.extend(cumulative(&probabilities));
+            table.probabilities.extend(probabilities);
             table.first.push(table.steps.len());
         }
         Ok(table)
@@ -89,6 +101,23 @@ impl Tabular {
     /// How many states there are.
     pub fn states(&self) -> usize {
         self.start.len()
+    }
+
+    /// How likely each first state is.
+    pub fn initial(&self) -> &[f64] {
+        &self.initial
+    }
+
+    /// What may happen, in the order of `P`: how likely it is, and the step.
+    ///
+    /// # Panics
+    /// For a state or an action outside the table.
+    #[inline]
+    pub fn outcomes(&self, state: usize, action: usize) -> impl Iterator<Item = (f64, Step<u32>)> + '_ {
+        assert!(action < self.actions, "action {action} is none of {}", self.actions);
+        let row = state * self.actions + action;
+        let range = self.first[row]..self.first[row + 1];
+        self.probabilities[range.clone()].iter().copied().zip(self.steps[range].iter().copied())
     }
 }
 

@@ -28,6 +28,22 @@ pub struct TaxiState {
     pub fickle: bool,
 }
 
+impl Taxi {
+    /// Whether a step took the passenger along to another square.
+    #[inline]
+    pub fn carries(before: u32, after: u32) -> bool {
+        let square = DESTINATIONS * PLACES;
+        before / DESTINATIONS % PLACES == ABOARD && after / square != before / square
+    }
+
+    /// The same state with the three other destinations.
+    #[inline]
+    pub fn elsewhere(cell: u32) -> [u32; 3] {
+        let old = cell % DESTINATIONS;
+        [0, 1, 2].map(|other| cell - old + other + u32::from(other >= old))
+    }
+}
+
 impl Env for Taxi {
     type State = TaxiState;
     type Action = usize;
@@ -48,14 +64,10 @@ impl Env for Taxi {
     fn step(&self, state: TaxiState, action: usize, draw: &mut impl Draw) -> Step<TaxiState> {
         let Step { state: mut cell, reward, terminated } = self.table.step(state.cell, action, draw);
         let mut fickle = state.fickle;
-        let aboard = state.cell / DESTINATIONS % PLACES == ABOARD;
-        let square = DESTINATIONS * PLACES;
-        if fickle && aboard && cell / square != state.cell / square {
+        if fickle && Self::carries(state.cell, cell) {
             fickle = false;
             // One of the three others, `np_random.choice` of them.
-            let other = draw.integers(DESTINATIONS - 1);
-            let old = state.cell % DESTINATIONS;
-            cell = cell - cell % DESTINATIONS + other + u32::from(other >= old);
+            cell = Self::elsewhere(cell)[draw.integers(DESTINATIONS - 1) as usize];
         }
         Step { state: TaxiState { cell, fickle }, reward, terminated }
     }
