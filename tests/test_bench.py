@@ -8,7 +8,19 @@ import pytest
 
 import qtab as package
 from command import qtab, refused
-from qtab.bench import article, article_numba, footprint, measure, overhead, report, subjects
+from qtab.bench import (
+    article,
+    article_numba,
+    environments,
+    footprint,
+    learners,
+    measure,
+    overhead,
+    plain,
+    report,
+    sarsa_numba,
+    subjects,
+)
 from qtab.bench.rounds import Timings
 
 
@@ -24,6 +36,25 @@ def test_the_numba_loop_is_the_articles_loop_to_the_bit() -> None:
 def test_the_plain_loop_is_the_articles_loop_to_the_bit() -> None:
     run = package.train("MountainCar-v0", episodes=30, seed=4)
     table, steps = article.q_learning(gym.make("MountainCar-v0"), 0.2, 0.9, 0.8, 0.0, 30, 4)
+    assert table.tobytes() == run.q_table.tobytes()
+    assert steps == run.episode_lengths.sum()
+
+
+@pytest.mark.parametrize("cutoff", [0.0, learners.CUTOFF])
+def test_the_numba_loop_of_sarsa_lambda_is_ours_to_the_bit(cutoff: float) -> None:
+    settings = {**learners.SETTINGS[learners.CUT], "episodes": 6, "trace_cutoff": cutoff}
+    run = package.train("MountainCar-v0", seed=4, bit_generator="MT19937", **settings)
+    starts = np.random.default_rng(4).uniform(-0.6, -0.4, 6)
+    table, returns, steps = sarsa_numba.sarsa_lambda(sarsa_numba.look, starts, 4, 0.3, 0.9, cutoff)
+    assert table.tobytes() == run.tables.tobytes()
+    assert returns.tobytes() == run.episode_returns.tobytes()
+    assert steps == run.episode_lengths.sum()
+
+
+@pytest.mark.parametrize("name", environments.names())
+def test_the_plain_loop_by_a_preset_is_ours_to_the_bit(name: str) -> None:
+    run = package.train(name, episodes=30, seed=4)
+    table, steps = plain.q_learning(name, 30, 4)
     assert table.tobytes() == run.q_table.tobytes()
     assert steps == run.episode_lengths.sum()
 
@@ -56,6 +87,10 @@ def test_every_subject_counts_its_steps() -> None:
     assert 1900 <= training[subjects.ARTICLE](0) <= 2000
     assert training[subjects.TRAIN](0) == package.train("MountainCar-v0", seed=0).episode_lengths.sum()
     assert all(step(0) == subjects.STEPS for step in subjects.stepping().values())
+    lone = f"Taxi, {environments.WAYS[1]}"
+    assert environments.training()[lone](0) == package.train("Taxi-v4", seed=0).episode_lengths.sum()
+    cut = package.train("MountainCar-v0", seed=0, **learners.SETTINGS[learners.CUT])
+    assert learners.training()[learners.CUT](0) == cut.episode_lengths.sum()
     idle = overhead.EPISODES * overhead.EPISODE_STEPS
     assert [loop(0) for loop in overhead.python_stepping().values()] == [idle, idle]
 
@@ -65,10 +100,26 @@ def test_the_bench_prints_its_tables_with_versions_and_build(tmp_path: Path) -> 
     assert done.returncode == 0, done.stderr
     for name in (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP, subjects.QTAB_MAKE):
         assert f"\n{name}  " in done.stdout
+    for name in (environments.FIRST, *learners.SETTINGS):
+        assert f"\n{name}  " in done.stdout
     assert "learning adds" in done.stdout
     assert "import qtab adds" in done.stdout
     assert f"numpy {np.__version__}" in done.stdout
     assert f"build {package.versions.versions()['build']}" in done.stdout
+
+
+def test_a_part_is_timed_alone() -> None:
+    printed = str(report.bench(rounds=1, progress=False, part="stepping"))
+    assert subjects.QTAB_STEP in printed
+    assert not any(subject in printed for subject in (subjects.TRAIN, environments.FIRST, learners.Q_LEARNING))
+
+
+def test_a_learners_time_is_a_multiple_of_q_learnings() -> None:
+    times = dict.fromkeys(learners.SETTINGS, np.array([30.0, 60.0])) | {learners.Q_LEARNING: np.array([10.0, 20.0])}
+    times |= dict.fromkeys(learners.NUMBA, np.array([90.0, 180.0]))
+    rows = {name: columns for name, *columns in learners.lines(Timings(times))}
+    assert rows[learners.TRACES] == ["45.0", "3.00", "3.0"]
+    assert rows[learners.Q_LEARNING] == ["15.0", "1.00", ""]
 
 
 def test_without_numba_the_table_says_how_to_get_it_and_a_debug_build_is_warned_of() -> None:
@@ -81,6 +132,6 @@ def test_without_numba_the_table_says_how_to_get_it_and_a_debug_build_is_warned_
     assert "× numba" not in printed
 
 
-@pytest.mark.parametrize("arguments", [["--rounds", "0"], ["--seconds", "-1"], ["--laps", "3"]])
+@pytest.mark.parametrize("arguments", [["--rounds", "0"], ["--seconds", "-1"], ["--laps", "3"], ["--part", "whole"]])
 def test_bad_usage_is_refused(tmp_path: Path, arguments: list[str]) -> None:
     assert refused("bench", *arguments, cwd=tmp_path).startswith("qtab bench: error: ")

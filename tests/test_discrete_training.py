@@ -83,7 +83,7 @@ def test_every_preset_learns(name):
 
 
 def test_the_books_cliff_is_a_preset():
-    assert list(qtab.presets("CliffWalking-v1")) == ["tuned", "book"]
+    assert list(qtab.presets("CliffWalking-v1")) == ["tuned", "book", "solved"]
     assert qtab.train("CliffWalking-v1", preset="book", episodes=20, seed=0).config.epsilon_schedule == "constant"
 
 

@@ -39,6 +39,22 @@ _SLIPPERY_CLIFF = {**_CLIFF, "learning_rate": 0.2, "learning_rate_schedule": "li
 _TAXI = {"learning_rate": 0.5, "discount": 0.99, "epsilon": 0.1, "initial_q": 0.0, "episodes": 10_000}
 _BLACKJACK = {"learning_rate": 0.02, "learning_rate_schedule": "linear", "discount": 1.0, "epsilon": 1.0}
 _BLACKJACK |= {"initial_q": 0.0, "episodes": 500_000}
+# Those that solve: no exploration rate, since values that begin above all that can be had explore by themselves (Sutton
+# & Barto, section 2.6). Where nothing is left to chance an update may go all the way; elsewhere the learning rate falls
+# to nothing. The lakes' time limits make a shorter way worth a little risk, as a discount does.
+_SOLVED_LAKE = {"learning_rate": 0.1, "learning_rate_schedule": "linear", "discount": 0.99, "epsilon": 0.0}
+_SOLVED_LAKE |= {"initial_q": 1.0, "episodes": 10_000}
+_SOLVED_LARGE_LAKE = {**_SOLVED_LAKE, "discount": 0.997}
+_SOLVED_CLIFF = {"learning_rate": 1.0, "discount": 1.0, "epsilon": 0.0, "initial_q": 0.0, "episodes": 200}
+_SOLVED_SLIPPERY_CLIFF = {
+    **_SOLVED_CLIFF,
+    "learning_rate": 0.01,
+    "learning_rate_schedule": "linear",
+    "episodes": 20_000,
+}
+_SOLVED_TAXI = {"learning_rate": 1.0, "discount": 1.0, "epsilon": 0.0, "initial_q": 20.0, "episodes": 5_000}
+# At blackjack a hand that is seldom dealt has seldom been tried: it explores to the end.
+_SOLVED_BLACKJACK = {**_BLACKJACK, "learning_rate": 0.005, "episodes": 1_000_000}
 
 # The speeds of cart and pole have no bounds: beyond these limits the outermost bins serve. Q-learning on a grid, from
 # values that are optimistic at first (50 of at most 500) and with an exploration rate that falls to nothing.
@@ -73,12 +89,12 @@ _PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "CartPole-v1": {"tuned": _CART_POLE, "solved": _CART_POLE_SOLVED},
     "Acrobot-v1": {"solved": _ACROBOT},
     "Pendulum-v1": {"tuned": _PENDULUM},
-    "FrozenLake-v1": {"tuned": _LAKE},
-    "FrozenLake8x8-v1": {"tuned": _LARGE_LAKE},
-    "CliffWalking-v1": {"tuned": _CLIFF, "book": _CLIFF_BOOK},
-    "CliffWalkingSlippery-v1": {"tuned": _SLIPPERY_CLIFF},
-    "Taxi-v4": {"tuned": _TAXI},
-    "Blackjack-v1": {"tuned": _BLACKJACK},
+    "FrozenLake-v1": {"tuned": _LAKE, "solved": _SOLVED_LAKE},
+    "FrozenLake8x8-v1": {"tuned": _LARGE_LAKE, "solved": _SOLVED_LARGE_LAKE},
+    "CliffWalking-v1": {"tuned": _CLIFF, "book": _CLIFF_BOOK, "solved": _SOLVED_CLIFF},
+    "CliffWalkingSlippery-v1": {"tuned": _SLIPPERY_CLIFF, "solved": _SOLVED_SLIPPERY_CLIFF},
+    "Taxi-v4": {"tuned": _TAXI, "solved": _SOLVED_TAXI},
+    "Blackjack-v1": {"tuned": _BLACKJACK, "solved": _SOLVED_BLACKJACK},
 }
 
 

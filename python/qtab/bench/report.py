@@ -1,16 +1,25 @@
 """The bench and its tables."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from qtab import checks
-from qtab.bench import overhead, subjects
+from qtab.bench import environments, learners, overhead, subjects
 from qtab.bench.footprint import Footprint, footprint
-from qtab.bench.rounds import Timings, measure
+from qtab.bench.rounds import Subject, Timings, measure
 from qtab.versions import versions
 
 DEFAULT_SECONDS = 25.0
 
-_WIDTH = 46
+PARTS: Mapping[str, Callable[[], dict[str, Subject]]] = {
+    "training": subjects.training,
+    "stepping": lambda: subjects.stepping() | overhead.python_stepping(),
+    "environments": environments.training,
+    "learners": learners.training,
+}
+"""What may be timed by itself."""
+
+_WIDTH = 55
 
 
 @dataclass(frozen=True)
@@ -24,7 +33,17 @@ class Report:
 
     def __str__(self) -> str:
         """Tables for a person."""
-        lines = [*self._warning(), *self._training(), "", *self._stepping(), "", *self._footprint(), ""]
+        parts = {
+            subjects.TRAIN: self._training,
+            subjects.QTAB_STEP: self._stepping,
+            environments.FIRST: self._environments,
+            learners.Q_LEARNING: self._learners,
+        }
+        lines = self._warning()
+        for subject, part in parts.items():
+            if subject in self.timings.nanoseconds:
+                lines += [*part(), ""]
+        lines += [*self._footprint(), ""]
         lines.append(
             f"{self.rounds} interleaved rounds; ns/step is a median, × (times as fast) the median of each round's ratio"
         )
@@ -63,6 +82,15 @@ class Report:
             lines.append(overhead.sentence(self.timings))
         return lines
 
+    def _environments(self) -> list[str]:
+        head = _line(environments.TITLE, "ns/step", "× plain loop")
+        return [head, *(_line(*columns) for columns in environments.lines(self.timings))]
+
+    def _learners(self) -> list[str]:
+        head = _line(learners.TITLE, "ns/step", "its time", "× numba")
+        lines = [head, *(_line(*columns) for columns in learners.lines(self.timings))]
+        return [*lines, "  (its time: how many times that of Q-learning on the grid)"]
+
     def _footprint(self) -> list[str]:
         cost = self.footprint
         lines = [
@@ -75,23 +103,34 @@ class Report:
         return lines
 
 
-def bench(seconds: float = DEFAULT_SECONDS, rounds: int | None = None, progress: bool | None = None) -> Report:
+def bench(
+    seconds: float = DEFAULT_SECONDS,
+    rounds: int | None = None,
+    progress: bool | None = None,
+    part: str | None = None,
+) -> Report:
     """Times training and stepping beside the article's loop and Gymnasium.
 
     Args:
         seconds: About how long the rounds take together.
         rounds: How many rounds to make instead.
         progress: Whether to show a bar; None shows one on a terminal.
+        part: One of :data:`PARTS`; None times them all.
 
     Raises:
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range.
+        ValueError: for an argument out of range, or an unknown part.
     """
     seconds = checks.real("seconds", seconds, 0, 86_400)
     if rounds is not None:
         rounds = checks.integer("rounds", rounds, least=1)
+    if part is not None and part not in PARTS:
+        raise ValueError(f"part must be one of {', '.join(map(repr, PARTS))}, got {part!r}")
     cost = footprint()
-    timed = subjects.training() | subjects.stepping() | overhead.python_stepping()
+    timed: dict[str, Subject] = {}
+    for name, make in PARTS.items():
+        if part in (None, name):
+            timed |= make()
     timings = measure(timed, seconds=seconds, rounds=rounds, progress=progress)
     return Report(timings, len(next(iter(timings.nanoseconds.values()))), cost, versions())
 

@@ -19,13 +19,15 @@ class Arguments:
     """About how long the rounds take together."""
     rounds: int | None = None
     """Make so many rounds, however long they take."""
+    part: str | None = None
+    """Time this part alone: training, stepping, environments or learners."""
 
 
 def run(arguments: list[str]) -> int:
     """Times as the arguments say; returns the exit code."""
     asked = parse(Arguments, COMMAND, arguments)
     try:
-        report = bench(asked.seconds, asked.rounds)
+        report = bench(asked.seconds, asked.rounds, part=asked.part)
     except ValueError as error:
         raise UsageError(str(error)) from None
     write(str(report))

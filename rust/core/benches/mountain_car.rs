@@ -2,34 +2,22 @@
 //!
 //! `cargo bench`, or `cargo bench -- run` for the run alone.
 
+mod valley;
+
 use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, Throughput};
 use qtab_core::batch::{self, Article, LANES};
 use qtab_core::envs::{MountainCar, MountainCarState};
-use qtab_core::features::{Axis, Rounding};
 use qtab_core::learners::{Agent, Control, EpsilonGreedy, QLearning, TerminalUpdate};
 use qtab_core::random::{Draw, Mt19937, Pcg64, SeedSequence};
 use qtab_core::world::{Next, World};
-use qtab_core::worlds::Native;
 use qtab_core::{Env, Features, Learner, Table, Trainer, Until};
+use valley::{INSIDE, LIMIT, Valley, agent, rounding, world};
 
-const LIMIT: u64 = 200;
 const EPISODES: usize = 500;
 /// Small enough to stay in the first cache, large enough to train no branch predictor by heart.
 const BATCH: usize = 4096;
-const INSIDE: &str = "the valley lies inside the box";
-
-type Grid = Rounding<f32, [Axis<f32>; 2]>;
-type Valley = Native<MountainCar, Grid>;
-
-fn rounding() -> Grid {
-    Rounding::new([Axis::new(-1.2, 0.6, 10.0), Axis::new(-0.07, 0.07, 100.0)])
-}
-
-fn world() -> Valley {
-    Native::new(MountainCar::default(), rounding(), Some(LIMIT), Pcg64::new(&SeedSequence::new(&[0])))
-}
 
 type QLearner = Control<QLearning, Agent<3, EpsilonGreedy, f64>>;
 
@@ -42,11 +30,6 @@ fn learner(draw: &mut impl Draw) -> QLearner {
         terminal_update: TerminalUpdate::Assign,
     };
     Control { agent, rule: QLearning }
-}
-
-/// The agent's stream of seed 0.
-fn agent() -> Pcg64 {
-    Pcg64::new(&SeedSequence::new(&[0]).child(0))
 }
 
 /// States all over the valley, an action for each.
@@ -91,7 +74,7 @@ fn discretizer(criterion: &mut Criterion) {
 /// The update and the choice of the next action, along the rows of a random walk through the valley.
 fn update(criterion: &mut Criterion) {
     let mut draw = agent();
-    let (mut world, mut learner) = (world(), learner(&mut draw));
+    let (mut world, mut learner) = (world(rounding()), learner(&mut draw));
     let (mut state, mut here) = world.reset().expect(INSIDE);
     let mut walk = Vec::with_capacity(BATCH);
     while walk.len() < BATCH {
@@ -118,7 +101,7 @@ fn update(criterion: &mut Criterion) {
 
 fn trainer<D: Draw + Clone>(mut draw: D) -> Trainer<Valley, QLearner, D> {
     let learner = learner(&mut draw);
-    Trainer::new(world(), learner, draw)
+    Trainer::new(world(rounding()), learner, draw)
 }
 
 fn train<D: Draw + Clone>(mut trainer: Trainer<Valley, QLearner, D>) -> u64 {
@@ -130,7 +113,7 @@ fn batch_of_runs() -> [Article; LANES] {
     std::array::from_fn(|seed| {
         let mut draw = Pcg64::new(&SeedSequence::new(&[seed as u32]).child(0));
         let learner = learner(&mut draw);
-        Trainer::new(world(), learner, draw)
+        Trainer::new(world(rounding()), learner, draw)
     })
 }
 

@@ -49,6 +49,9 @@ impl<const N: usize> Table<N> {
     /// The action values of a row.
     #[inline]
     pub fn row(&self, row: u32) -> &[f64] {
+        if N > 0 {
+            return &self.values.as_chunks::<N>().0[row as usize];
+        }
         let actions = self.actions();
         &self.values[row as usize * actions..][..actions]
     }
@@ -56,22 +59,26 @@ impl<const N: usize> Table<N> {
     /// One action value.
     #[inline]
     pub fn value_mut(&mut self, row: u32, action: usize) -> &mut f64 {
+        if N > 0 {
+            return &mut self.values.as_chunks_mut::<N>().0[row as usize][action];
+        }
         let actions = self.actions();
         &mut self.values[row as usize * actions..][..actions][action]
     }
 }
 
-/// The first of the largest values: `np.argmax`.
+/// The first of the largest values: `np.argmax`. By pairs, so that fewer comparisons wait for each other.
 #[inline]
 pub(crate) fn first_maximum(values: &[f64]) -> usize {
     // The largest value is carried along: looked up by index, it would add a load to the chain of comparisons.
-    let (mut best, mut largest) = (0, values[0]);
-    for (action, &value) in values.iter().enumerate().skip(1) {
-        if value > largest {
-            (best, largest) = (action, value);
-        }
+    let larger = |one: (usize, f64), other: (usize, f64)| if other.1 > one.1 { other } else { one };
+    let mut best = (0, values[0]);
+    for (pair, values) in values.chunks(2).enumerate() {
+        let first = (2 * pair, values[0]);
+        let of_pair = if let &[_, second] = values { larger(first, (2 * pair + 1, second)) } else { first };
+        best = if pair == 0 { of_pair } else { larger(best, of_pair) };
     }
-    best
+    best.0
 }
 
 /// `np.max`.

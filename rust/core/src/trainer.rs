@@ -88,29 +88,30 @@ impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
     fn advance_with(&mut self, draw: &mut D, until: Until) -> Result<(), W::Error> {
         let mut steps = until.steps;
         while steps > 0 && self.episodes.returns.len() < until.episodes && !self.learner.diverged() {
-            let mut now = match self.underway.take() {
+            let now = match self.underway.take() {
                 Some(now) => now,
                 None => self.begin(draw)?,
             };
+            let Underway { mut state, mut here, mut action, mut total, mut length } = now;
             loop {
-                let transition = self.world.step(&mut now.state, now.action)?;
-                now.total += transition.reward;
-                now.length += 1;
+                let transition = self.world.step(&mut state, action)?;
+                total += transition.reward;
+                length += 1;
                 steps -= 1;
-                now.action = self.learner.learn(now.here, now.action, transition.reward, transition.next, draw);
+                action = self.learner.learn(here, action, transition.reward, transition.next, draw);
                 match transition.next {
-                    Next::Goes(there) => now.here = there,
+                    Next::Goes(there) => here = there,
                     Next::TimedOut(_) => {
-                        self.finish(now.total, now.length, false);
+                        self.finish(total, length, false);
                         break;
                     }
                     Next::Terminal => {
-                        self.finish(now.total, now.length, true);
+                        self.finish(total, length, true);
                         break;
                     }
                 }
                 if steps == 0 {
-                    self.underway = Some(now);
+                    self.underway = Some(Underway { state, here, action, total, length });
                     break;
                 }
             }

@@ -31,7 +31,7 @@ fn compile(table: &Bound<'_, PyAny>, start: &[f64], exact: bool) -> PyResult<Tab
             return Err(PyValueError::new_err(message));
         }
         for action in 0..actions {
-            let place = format!("P[{state}][{action}]");
+            let place = || format!("P[{state}][{action}]");
             let lacks = |_| {
                 PyValueError::new_err(format!(
                     "P[{state}] must have the actions 0 to {}, it lacks {action}",
@@ -41,11 +41,11 @@ fn compile(table: &Bound<'_, PyAny>, start: &[f64], exact: bool) -> PyResult<Tab
             let listed = row.get_item(action).map_err(lacks)?;
             // What has no length may be gone once it was looked at.
             let listed = listed.len().and_then(|_| listed.try_iter());
-            let listed = listed.map_err(|_| PyTypeError::new_err(format!("{place} must be a list of outcomes")))?;
+            let listed = listed.map_err(|_| PyTypeError::new_err(format!("{} must be a list of outcomes", place())))?;
             rows.push(
                 listed
                     .enumerate()
-                    .map(|(index, entry)| outcome(&place, index, &entry?, exact))
+                    .map(|(index, entry)| outcome(place, index, &entry?, exact))
                     .collect::<PyResult<_>>()?,
             );
         }
@@ -53,14 +53,15 @@ fn compile(table: &Bound<'_, PyAny>, start: &[f64], exact: bool) -> PyResult<Tab
     Tabular::new(actions, start, &rows).map_err(|bad| PyValueError::new_err(bad.to_string()))
 }
 
-fn outcome(place: &str, index: usize, entry: &Bound<'_, PyAny>, exact: bool) -> PyResult<Outcome> {
+fn outcome(place: impl Fn() -> String, index: usize, entry: &Bound<'_, PyAny>, exact: bool) -> PyResult<Outcome> {
     if exact && entry.get_item(0).is_ok_and(|probability| double(&probability).is_none()) {
-        return Err(PyTypeError::new_err(format!("{place}[{index}] must have a float for a probability")));
+        return Err(PyTypeError::new_err(format!("{}[{index}] must have a float for a probability", place())));
     }
     match entry.extract() {
         Ok((probability, state, reward, terminated)) => Ok(Outcome { probability, state, reward, terminated }),
         Err(_) => Err(PyTypeError::new_err(format!(
-            "{place}[{index}] must be (probability, state, reward, terminated), got {}",
+            "{}[{index}] must be (probability, state, reward, terminated), got {}",
+            place(),
             entry.repr()?
         ))),
     }

@@ -3,55 +3,28 @@
 //! `P[state][action]` lists what may happen as (probability, state, reward, terminated), and every reset and every step
 //! makes one draw, where only one thing can happen, too (`gymnasium.envs.toy_text.utils.categorical_sample`).
 
-use std::error::Error;
-use std::fmt;
+mod entry;
+mod row;
+
+pub use entry::{BadTable, Outcome, TOLERANCE};
 
 use crate::env::{Env, Step};
 use crate::random::Draw;
-
-/// So many comparisons take no longer than a search.
-const FEW: usize = 8;
-/// Probabilities may miss one by this much.
-pub const TOLERANCE: f64 = 1e-9;
-
-/// One entry of `P[state][action]`, as it is written there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
-    /// How likely it is.
-    pub probability: f64,
-    /// Where it leads.
-    pub state: i64,
-    /// What it brings.
-    pub reward: f64,
-    /// Whether the episode ends there.
-    pub terminated: bool,
-}
-
-/// Why a table is none, and where; as Python spells it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BadTable(String);
-
-impl fmt::Display for BadTable {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.0)
-    }
-}
-
-impl Error for BadTable {}
+use entry::distribution;
+use row::{Row, bounds, passed};
 
 /// `P` and the distribution of the first state, in flat arrays. Its state is the table's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tabular {
     actions: usize,
     initial: Vec<f64>,
-    start: Vec<f64>,
-    /// Where the outcomes of a state and an action begin; those of the next end them.
-    first: Vec<usize>,
-    /// For each outcome the largest cumulative sum so far: the first that is above a number is the first sum above it,
-    /// and they never fall, which sums of any floats might.
-    bounds: Vec<f64>,
+    start: Vec<u64>,
+    /// What a state and an action may lead to; empty where nothing is left to chance, and each has the step of its number.
+    rows: Vec<Row>,
+    /// Of each outcome the least draw that passes it by.
+    bounds: Vec<u64>,
     steps: Vec<Step<u32>>,
-    /// Of each outcome, as it is written: a step goes by the sums, planning by these.
+    /// Of each outcome, as it is written: steps go by the bounds, plans by these.
     probabilities: Vec<f64>,
 }
 
@@ -64,36 +37,44 @@ impl Tabular {
     /// number, rows that are no whole states; it says where.
     pub fn new(actions: usize, start: &[f64], rows: &[Vec<Outcome>]) -> Result<Self, BadTable> {
         let bad = |what: String| Err(BadTable(what));
-        let states = start.len();
+        let (states, outcomes) = (start.len(), rows.iter().map(Vec::len).sum::<usize>());
         if actions == 0 || states == 0 || rows.len() != states * actions || u32::try_from(states).is_err() {
             return bad(format!("P must have rows for {states} states of {actions} actions, got {}", rows.len()));
         }
-        distribution("initial_state_distrib", start.iter().copied())?;
+        if u32::try_from(outcomes).is_err() {
+            return bad(format!("P must have at most {} outcomes, got {outcomes}", u32::MAX));
+        }
+        distribution(|| "initial_state_distrib".into(), start.iter().copied())?;
+        let sure = rows.iter().all(|outcomes| outcomes.len() == 1);
         let mut table = Self {
             actions,
             initial: start.to_vec(),
-            start: cumulative(start),
-            first: vec![0],
+            start: bounds(start),
+            rows: vec![],
             bounds: vec![],
             steps: vec![],
             probabilities: vec![],
         };
         for (row, outcomes) in rows.iter().enumerate() {
-            let place = format!("P[{}][{}]", row / actions, row % actions);
-            distribution(&place, outcomes.iter().map(|outcome| outcome.probability))?;
+            let place = || format!("P[{}][{}]", row / actions, row % actions);
+            distribution(place, outcomes.iter().map(|outcome| outcome.probability))?;
+            let first = table.steps.len();
+            table.probabilities.extend(outcomes.iter().map(|outcome| outcome.probability));
+            if !sure {
+                let bounds = bounds(&table.probabilities[first..]);
+                table.rows.push(Row::new(&bounds, first));
+                table.bounds.extend(bounds);
+            }
             for (index, &Outcome { state, reward, terminated, .. }) in outcomes.iter().enumerate() {
                 let Some(state) = u32::try_from(state).ok().filter(|&state| (state as usize) < states) else {
-                    return bad(format!("{place}[{index}] must lead to a state from 0 to {}, got {state}", states - 1));
+                    let last = states - 1;
+                    return bad(format!("{}[{index}] must lead to a state from 0 to {last}, got {state}", place()));
                 };
                 if !reward.is_finite() {
-                    return bad(format!("{place}[{index}] must have a finite reward, got {reward}"));
+                    return bad(format!("{}[{index}] must have a finite reward, got {reward}", place()));
                 }
                 table.steps.push(Step { state, reward, terminated });
             }
-            let probabilities: Vec<f64> = outcomes.iter().map(|outcome| outcome.probability).collect();
-            table.bounds.extend(cumulative(&probabilities));
-            table.probabilities.extend(probabilities);
-            table.first.push(table.steps.len());
         }
         Ok(table)
     }
@@ -116,47 +97,21 @@ impl Tabular {
     pub fn outcomes(&self, state: usize, action: usize) -> impl Iterator<Item = (f64, Step<u32>)> + '_ {
         assert!(action < self.actions, "action {action} is none of {}", self.actions);
         let row = state * self.actions + action;
-        let range = self.first[row]..self.first[row + 1];
+        let range = if self.rows.is_empty() { row..row + 1 } else { self.rows[row].range() };
         self.probabilities[range.clone()].iter().copied().zip(self.steps[range].iter().copied())
     }
-}
 
-/// The largest of the sums so far, of one number, two, …, added from left to right as `np.cumsum` does.
-fn cumulative(probabilities: &[f64]) -> Vec<f64> {
-    let (mut sum, mut largest) = (0.0, f64::NEG_INFINITY);
-    let sums = probabilities.iter().map(|probability| {
-        sum += probability;
-        largest = sum.max(largest);
-        largest
-    });
-    sums.collect()
-}
-
-/// Looks whether these are probabilities.
-fn distribution(place: &str, probabilities: impl Iterator<Item = f64>) -> Result<(), BadTable> {
-    let mut sum = 0.0;
-    for (index, probability) in probabilities.enumerate() {
-        if !(0.0..=1.0 + TOLERANCE).contains(&probability) {
-            return Err(BadTable(format!("{place}[{index}] must have a probability in [0, 1], got {probability}")));
+    /// Draws what happens: the number of the outcome.
+    #[expect(clippy::inline_always, reason = "a call a step costs a fifth of it")]
+    #[inline(always)]
+    fn outcome(&self, state: u32, action: usize, draw: &mut impl Draw) -> usize {
+        assert!(action < self.actions, "action {action} is none of {}", self.actions);
+        let (row, drawn) = (state as usize * self.actions + action, draw.fraction());
+        if self.rows.is_empty() {
+            return row;
         }
-        sum += probability;
+        self.rows[row].taken(&self.bounds, drawn)
     }
-    if (sum - 1.0_f64).abs() > TOLERANCE {
-        return Err(BadTable(format!("{place} must have probabilities that sum to 1, got {sum}")));
-    }
-    Ok(())
-}
-
-/// `np.argmax(np.cumsum(probabilities) > random)`: index 0 where no sum is above it.
-#[inline]
-fn chosen(bounds: &[f64], random: f64) -> usize {
-    let index = if bounds.len() <= FEW {
-        // Counted without a branch, which would often be mispredicted.
-        bounds.iter().map(|&bound| usize::from(bound <= random)).sum()
-    } else {
-        bounds.partition_point(|&bound| bound <= random)
-    };
-    if index < bounds.len() { index } else { 0 }
 }
 
 impl Env for Tabular {
@@ -171,15 +126,14 @@ impl Env for Tabular {
 
     #[inline]
     fn reset(&self, draw: &mut impl Draw) -> u32 {
-        chosen(&self.start, draw.random()) as u32
+        let state = passed(&self.start, draw.fraction());
+        if state < self.start.len() { state as u32 } else { 0 }
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "a call a step costs a fifth of it")]
+    #[inline(always)]
     fn step(&self, state: u32, action: usize, draw: &mut impl Draw) -> Step<u32> {
-        assert!(action < self.actions, "action {action} is none of {}", self.actions);
-        let row = state as usize * self.actions + action;
-        let (from, to) = (self.first[row], self.first[row + 1]);
-        self.steps[from + chosen(&self.bounds[from..to], draw.random())]
+        self.steps[self.outcome(state, action, draw)]
     }
 
     #[inline]
@@ -193,6 +147,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::random::FLOATS;
 
     /// A stream of given numbers.
     struct Given<'a>(&'a [f64]);
@@ -232,6 +187,22 @@ mod tests {
     }
 
     #[test]
+    fn it_tells_what_it_was_made_of() {
+        let uneven = vec![outcome(0.25, 1), outcome(0.75, 0)];
+        for row in [uneven, vec![outcome(1.0, 1)]] {
+            let table = two_states(row.clone()).expect("a table");
+            let steps = |row: &[Outcome]| -> Vec<_> {
+                let step =
+                    |&Outcome { reward, state, terminated, .. }| Step { state: state as u32, reward, terminated };
+                row.iter().map(|outcome| (outcome.probability, step(outcome))).collect()
+            };
+            assert_eq!(table.outcomes(0, 0).collect::<Vec<_>>(), steps(&row));
+            assert_eq!(table.outcomes(1, 0).collect::<Vec<_>>(), steps(&[outcome(1.0, 0)]));
+            assert_eq!(table.initial(), [0.5, 0.5]);
+        }
+    }
+
+    #[test]
     fn a_sure_step_draws_too() {
         let table = two_states(vec![outcome(1.0, 1)]).expect("a table");
         let mut draw = Given(&[0.3]);
@@ -263,13 +234,27 @@ mod tests {
     proptest! {
         #[test]
         fn the_choice_is_categorical_samples(
-            probabilities in prop::collection::vec(prop_oneof![0.0..0.3, Just(0.0), -0.2..0.0], 1..12),
-            random in 0.0..1.0,
+            weights in prop::collection::vec(prop_oneof![0.0..1.0, Just(0.0)], 1..12),
+            short in prop_oneof![Just(0.0), 0.0..1e-10],
+            place in 0.0..1.0,
+            at_a_sum in any::<prop::sample::Index>(),
         ) {
+            let total: f64 = weights.iter().sum();
+            prop_assume!(total > 0.0);
+            let probabilities: Vec<f64> = weights.iter().map(|weight| weight / total * (1.0 - short)).collect();
             let mut sum = 0.0;
             let sums: Vec<f64> = probabilities.iter().map(|probability| { sum += probability; sum }).collect();
-            let expected = sums.iter().position(|&sum| sum > random).unwrap_or(0);
-            prop_assert_eq!(chosen(&cumulative(&probabilities), random), expected);
+            let outcomes = (0..).zip(&probabilities).map(|(state, &probability)| outcome(probability, state)).collect();
+            let rest = vec![vec![outcome(1.0, 0)]; weights.len() - 1];
+            let table = Tabular::new(1, &probabilities, &[vec![outcomes], rest].concat()).expect("a table");
+            let sum = at_a_sum.get(&sums);
+            // Draws lie on a grid; those around a sum matter most.
+            for random in [place, *sum, sum - 2.0 / FLOATS, 1.0 - 1.0 / FLOATS] {
+                let random = ((random * FLOATS).round() / FLOATS).clamp(0.0, 1.0 - 1.0 / FLOATS);
+                let expected = sums.iter().position(|&sum| sum > random).unwrap_or(0) as u32;
+                prop_assert_eq!(table.step(0, 0, &mut Given(&[random])).state, expected);
+                prop_assert_eq!(table.reset(&mut Given(&[random])), expected);
+            }
         }
     }
 }

@@ -35,8 +35,8 @@ impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for SarsaLambda {
         };
         let error = target - value;
         agent.table.watch(error);
-        self.traces.correct(&mut agent.table, &agent.learning_rate, error);
-        self.traces.decay(agent.discount * self.trace_decay);
+        let decay = agent.discount * self.trace_decay;
+        self.traces.correct_and_decay(&mut agent.table, &agent.learning_rate, error, decay);
         next_action
     }
 

@@ -121,9 +121,40 @@ impl Traces {
     /// z ← γλ z.
     #[inline]
     pub fn decay(&mut self, factor: f64) {
+        let (cutoff, mut ends) = (self.cutoff, false);
+        for Alive { trace, .. } in &mut self.alive {
+            *trace *= factor;
+            ends |= trace.abs() <= cutoff;
+        }
+        if ends {
+            self.forget();
+        }
+    }
+
+    /// w ← w + α δ z and z ← γλ z in one pass.
+    #[inline]
+    pub fn correct_and_decay<const N: usize>(&mut self, table: &mut Table<N>, rate: &Rate, error: f64, factor: f64) {
+        let Some(step) = rate.shared() else {
+            self.correct(table, rate, error);
+            self.decay(factor);
+            return;
+        };
+        let (step, cutoff, mut ends) = (step * error, self.cutoff, false);
+        let values = table.values_mut();
+        for Alive { weight, trace } in &mut self.alive {
+            values[*weight as usize] += step * *trace;
+            *trace *= factor;
+            ends |= trace.abs() <= cutoff;
+        }
+        if ends {
+            self.forget();
+        }
+    }
+
+    /// Drops the traces at the cutoff or below.
+    fn forget(&mut self) {
         let mut place = 0;
-        while let Some(alive) = self.alive.get_mut(place) {
-            alive.trace *= factor;
+        while let Some(alive) = self.alive.get(place) {
             if alive.trace.abs() <= self.cutoff {
                 self.remove(place);
             } else {
@@ -143,6 +174,7 @@ impl Traces {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::learners::Schedule;
 
     fn visited(kind: Trace, actions: &[usize]) -> [f64; 2] {
         let table = Table::<2>::new(vec![0.0; 2], 2);
@@ -159,6 +191,19 @@ mod tests {
         assert_eq!(visited(Trace::Accumulating, &[0, 1, 1]), [0.25, 1.5]);
         assert_eq!(visited(Trace::Replacing, &[0, 1, 1]), [0.25, 1.0]);
         assert_eq!(visited(Trace::Clearing, &[0, 1, 1]), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn one_pass_does_what_two_do() {
+        let mut tables = [Table::<2>::new(vec![1.0, 2.0, 3.0, 4.0], 2), Table::new(vec![1.0, 2.0, 3.0, 4.0], 2)];
+        let mut traces = Traces::new(4, 0.25);
+        (0..4).for_each(|weight| traces.change(weight, |_| 0.3 * (1 + weight) as f64));
+        let (rate, mut once) = (Rate::scheduled(Schedule::constant(0.1), 2), traces.clone());
+        traces.correct(&mut tables[0], &rate, -7.0);
+        traces.decay(0.5);
+        once.correct_and_decay(&mut tables[1], &rate, -7.0, 0.5);
+        assert_eq!((&tables[0], traces), (&tables[1], once.clone()));
+        assert_eq!(once.len(), 3);
     }
 
     #[test]

@@ -1,9 +1,18 @@
 //! What an agent or an environment may ask of a stream.
 
+/// How many floats `random()` knows: 2⁵³.
+pub(crate) const FLOATS: f64 = 9_007_199_254_740_992.0;
+
 /// A stream of random numbers with `NumPy`'s draws.
 pub trait Draw {
     /// The next float in [0, 1), on the grid of 2⁻⁵³: `rng.random()`.
     fn random(&mut self) -> f64;
+
+    /// `random()` in units of 2⁻⁵³: the same draw as a whole number, which compares sooner than a float.
+    #[inline]
+    fn fraction(&mut self) -> u64 {
+        (self.random() * FLOATS) as u64
+    }
 
     /// The next integer in 0 … `below` - 1: `rng.integers(0, below)`. Draws nothing when `below` is 1 (or 0).
     fn integers(&mut self, below: u32) -> u32;

@@ -7,6 +7,7 @@ mod seed_sequence;
 mod stream;
 
 pub use draw::Draw;
+pub(crate) use draw::FLOATS;
 pub use mt19937::Mt19937;
 pub use pcg64::Pcg64;
 pub(crate) use pcg64::{bounded, unit};

@@ -2,7 +2,7 @@
 
 use rand_core::Rng;
 
-use super::{Draw, SeedSequence};
+use super::{Draw, FLOATS, SeedSequence};
 
 /// PCG-XSL-RR 128/64 with `NumPy`'s seeding and `NumPy`'s buffer of one 32-bit half.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,6 +59,11 @@ impl Draw for Pcg64 {
     }
 
     #[inline]
+    fn fraction(&mut self) -> u64 {
+        fraction(self.next_u64())
+    }
+
+    #[inline]
     fn integers(&mut self, below: u32) -> u32 {
         bounded(below, || self.next_u32())
     }
@@ -67,7 +72,13 @@ impl Draw for Pcg64 {
 /// A float in [0, 1) from a word's upper 53 bits.
 #[inline]
 pub(crate) fn unit(word: u64) -> f64 {
-    (word >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+    fraction(word) as f64 * (1.0 / FLOATS)
+}
+
+/// A word's upper 53 bits.
+#[inline]
+fn fraction(word: u64) -> u64 {
+    word >> 11
 }
 
 /// Lemire's multiply-shift with rejection, as `Generator.integers` does for ranges under 2³².
@@ -89,6 +100,7 @@ pub(crate) fn bounded(below: u32, mut next: impl FnMut() -> u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Mt19937;
 
     #[test]
     fn the_first_draws_of_seed_zero_are_numpys() {
@@ -97,6 +109,16 @@ mod tests {
         assert_eq!(stream.random(), 0.636_961_687_321_454_3);
         assert_eq!(stream.integers(3), 1);
         assert_eq!(stream.random(), 0.040_973_523_936_194_69);
+    }
+
+    #[test]
+    fn a_fraction_is_the_float_as_a_whole_number() {
+        let mut draw = Pcg64::new(&SeedSequence::new(&[0]));
+        let mut other = Mt19937::new(0);
+        for _ in 0..1000 {
+            assert_eq!(draw.clone().fraction() as f64 / FLOATS, draw.random());
+            assert_eq!(other.clone().fraction() as f64 / FLOATS, other.random());
+        }
     }
 
     #[test]

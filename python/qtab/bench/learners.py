@@ -1,0 +1,55 @@
+"""What the learners cost a step, beside Q-learning on the article's grid and beside numba."""
+
+from typing import Any
+
+from qtab.bench.rounds import Subject, Timings
+from qtab.bench.sarsa_numba import EPISODES, TILES, TILINGS, compiled
+from qtab.training import train
+
+ENV = "MountainCar-v0"
+TITLE = "Learners on MountainCar-v0"
+
+CUTOFF = 1e-3
+_TILES: dict[str, Any] = {"discretizer": "tiles", "tilings": TILINGS, "tiles": TILES, "episodes": EPISODES}
+_TILES |= {"learning_rate": 0.3, "discount": 1.0, "epsilon": 0.0, "initial_q": 0.0}
+_TRACES = {**_TILES, "algorithm": "sarsa_lambda", "trace_decay": 0.9}
+
+Q_LEARNING = "Q-learning, the article's grid"
+TRACES, CUT = "Sarsa(0.9), 8 tilings", "Sarsa(0.9), 8 tilings, trace_cutoff=1e-3"
+SETTINGS: dict[str, dict[str, Any]] = {
+    Q_LEARNING: {},
+    "Sarsa, the same grid": {"algorithm": "sarsa"},
+    "Expected Sarsa, the same grid": {"algorithm": "expected_sarsa"},
+    "Q-learning, 8 tilings": _TILES,
+    "Sarsa, 8 tilings": {**_TILES, "algorithm": "sarsa"},
+    TRACES: _TRACES,
+    CUT: {**_TRACES, "trace_cutoff": CUTOFF},
+}
+NUMBA = {f"{name}, under numba": (name, cutoff) for name, cutoff in ((TRACES, 0.0), (CUT, CUTOFF))}
+
+
+def training() -> dict[str, Subject]:
+    """Returns a run of each learner, and numba's where it is installed."""
+    loops = {name: compiled(0.9, cutoff) for name, (_, cutoff) in NUMBA.items()}
+    return {name: _lone(settings) for name, settings in SETTINGS.items()} | {
+        name: loop for name, loop in loops.items() if loop is not None
+    }
+
+
+def lines(timings: Timings) -> list[list[str]]:
+    """Returns each row: its name, nanoseconds a step, and how many times the time of Q-learning and of numba's loop."""
+    rivals = {ours: name for name, (ours, _) in NUMBA.items() if name in timings.nanoseconds}
+    rows = [name for name in (*SETTINGS, *NUMBA) if name in timings.nanoseconds]
+    return [
+        [
+            name,
+            f"{timings.median(name):,.1f}",
+            f"{timings.ratio(name, Q_LEARNING):.2f}",
+            f"{timings.ratio(rivals[name], name):.1f}" if name in rivals else "",
+        ]
+        for name in rows
+    ]
+
+
+def _lone(settings: dict[str, Any]) -> Subject:
+    return lambda index: int(train(ENV, seed=index, progress=False, **settings).episode_lengths.sum())
