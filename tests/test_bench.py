@@ -20,6 +20,7 @@ from qtab.bench import (
     report,
     sarsa_numba,
     subjects,
+    vectors,
 )
 from qtab.bench.rounds import Timings
 
@@ -95,10 +96,25 @@ def test_every_subject_counts_its_steps() -> None:
     assert [loop(0) for loop in overhead.python_stepping().values()] == [idle, idle]
 
 
+def test_vector_environments_count_the_steps_of_all_and_are_compared_with_their_own_kind() -> None:
+    steps = vectors.stepping()
+    assert steps[vectors.QTAB_POLES](0) == 200 * 4096
+    assert steps[vectors.QTAB_ONE](0) == 10_000
+    nanoseconds = {vectors.SYNC: 900.0, vectors.QTAB_CARS: 3.0, vectors.NUMPY_POLES: 8.0, vectors.QTAB_POLES: 2.0}
+    rows = dict(vectors.compared(Timings({name: np.array([number]) for name, number in nanoseconds.items()})))
+    assert rows == {
+        vectors.SYNC: [1.0, None, None],
+        vectors.QTAB_CARS: [300.0, None, None],
+        vectors.NUMPY_POLES: [1.0, None, None],
+        vectors.QTAB_POLES: [4.0, None, None],
+    }
+
+
 def test_the_bench_prints_its_tables_with_versions_and_build(tmp_path: Path) -> None:
     done = qtab("bench", "--rounds", "1", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    for name in (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP, subjects.QTAB_MAKE):
+    names = (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP, subjects.QTAB_MAKE)
+    for name in (*names, vectors.SYNC, vectors.QTAB_CARS, vectors.QTAB_POLES, vectors.QTAB_ONE):
         assert f"\n{name}  " in done.stdout
     for name in (environments.FIRST, *learners.SETTINGS):
         assert f"\n{name}  " in done.stdout

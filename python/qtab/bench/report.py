@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from qtab import checks
-from qtab.bench import environments, learners, overhead, subjects
+from qtab.bench import environments, learners, overhead, subjects, vectors
 from qtab.bench.footprint import Footprint, footprint
 from qtab.bench.rounds import Subject, Timings, measure
 from qtab.versions import versions
@@ -14,6 +14,7 @@ DEFAULT_SECONDS = 25.0
 PARTS: Mapping[str, Callable[[], dict[str, Subject]]] = {
     "training": subjects.training,
     "stepping": lambda: subjects.stepping() | overhead.python_stepping(),
+    "vectors": lambda: {subjects.QTAB_MAKE: subjects.stepping()[subjects.QTAB_MAKE]} | vectors.stepping(),
     "environments": environments.training,
     "learners": learners.training,
 }
@@ -36,6 +37,7 @@ class Report:
         parts = {
             subjects.TRAIN: self._training,
             subjects.QTAB_STEP: self._stepping,
+            vectors.SYNC: self._vectors,
             environments.FIRST: self._environments,
             learners.Q_LEARNING: self._learners,
         }
@@ -80,6 +82,16 @@ class Report:
             lines.append(_line(name, _number(self.timings.median(name)), _number(self.timings.ratio(base, name))))
         if overhead.LEARNING in self.timings.nanoseconds:
             lines.append(overhead.sentence(self.timings))
+        return lines
+
+    def _vectors(self) -> list[str]:
+        rows = vectors.compared(self.timings)
+        lines = [_line("Stepping many sub-environments", "ns/step", *(short for short, _ in vectors.BASES))]
+        for name, ratios in rows:
+            columns = ("" if ratio is None else _number(ratio) for ratio in ratios)
+            lines.append(_line(name, _number(self.timings.median(name)), *columns))
+        if vectors.ENVPOOL not in self.timings.nanoseconds:
+            lines.append("  (EnvPool is not installed: pip install envpool)")
         return lines
 
     def _environments(self) -> list[str]:

@@ -20,7 +20,7 @@ class Arguments:
     rounds: int | None = None
     """Make so many rounds, however long they take."""
     part: str | None = None
-    """Time this part alone: training, stepping, environments or learners."""
+    """Time this part alone: training, stepping, vectors, environments or learners."""
 
 
 def run(arguments: list[str]) -> int:

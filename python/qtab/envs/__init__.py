@@ -14,6 +14,7 @@ def register() -> None:
         gym.register(
             id=PREFIX + name,
             entry_point=model.qtab,
+            vector_entry_point=f"qtab.envs.vector:{name}",
             max_episode_steps=theirs.max_episode_steps,
             reward_threshold=theirs.reward_threshold,
             nondeterministic=theirs.nondeterministic,

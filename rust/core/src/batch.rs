@@ -7,11 +7,11 @@
 #![expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
 #![expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be a branch that nobody can predict")]
 
-mod cosine;
 mod lanes;
 mod words;
 
 use crate::Env;
+use crate::cosine;
 use crate::envs::MountainCar;
 use crate::features::{Axis, Features, Outside, Rounding};
 use crate::learners::{Agent, Control, EpsilonGreedy, QLearning};

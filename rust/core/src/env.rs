@@ -28,11 +28,42 @@ pub trait Env {
     /// The first state of an episode.
     fn reset(&self, draw: &mut impl Draw) -> Self::State;
 
+    /// The two numbers between which first states lie, under the names of Gymnasium's reset options.
+    const START: Option<[(&'static str, f64); 2]> = None;
+
+    /// The first state of an episode between other numbers than `START`'s; where it has none, any first state.
+    fn reset_between(&self, _start: [f64; 2], draw: &mut impl Draw) -> Self::State {
+        self.reset(draw)
+    }
+
     /// One step of the dynamics.
     ///
     /// # Panics
     /// It may, where the action is none of the environment's: whoever takes actions from outside checks them.
     fn step(&self, state: Self::State, action: Self::Action, draw: &mut impl Draw) -> Step<Self::State>;
+
+    /// One step in each of several lanes: its state moves on, its reward and its end are put in their places. Those that
+    /// are `idle` keep their states, whatever their actions are. It may be computed in another way where wide registers
+    /// pay, never with other results than `step`'s.
+    #[inline]
+    fn step_lanes(
+        &self,
+        states: &mut [Self::State],
+        actions: &[Self::Action],
+        draws: &mut [impl Draw],
+        rewards: &mut [f64],
+        terminated: &mut [bool],
+        idle: &[bool],
+    ) {
+        let places = rewards.iter_mut().zip(terminated).zip(idle);
+        for (((state, &action), draw), ((reward, end), &idle)) in states.iter_mut().zip(actions).zip(draws).zip(places)
+        {
+            if !idle {
+                let step = self.step(*state, action, draw);
+                (*state, *reward, *end) = (step.state, step.reward, step.terminated);
+            }
+        }
+    }
 
     /// What the agent sees of a state.
     fn observe(&self, state: &Self::State) -> Self::Observation;

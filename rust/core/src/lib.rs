@@ -30,6 +30,7 @@
 //! ```
 
 pub mod batch;
+mod cosine;
 pub mod env;
 pub mod envs;
 pub mod features;
@@ -40,6 +41,7 @@ pub mod planning;
 pub mod random;
 mod table;
 mod trainer;
+pub mod vector;
 pub mod world;
 pub mod worlds;
 
@@ -48,4 +50,5 @@ pub use features::Features;
 pub use learner::Learner;
 pub use table::Table;
 pub use trainer::{Episodes, Trainer, Until};
+pub use vector::Vector;
 pub use world::World;

@@ -13,8 +13,8 @@ use crate::toy_text::{generator, in_python, reset, watch};
 
 /// No card that a user could mean is larger.
 const LARGEST_CARD: u32 = 1000;
-const SUITS: [&str; 4] = ["C", "D", "H", "S"];
-const FACES: [&str; 3] = ["J", "Q", "K"];
+pub(crate) const SUITS: [&str; 4] = ["C", "D", "H", "S"];
+pub(crate) const FACES: [&str; 3] = ["J", "Q", "K"];
 
 /// The base of blackjack.
 #[pyclass(subclass, frozen, module = "qtab._core")]
@@ -125,7 +125,7 @@ fn has_gymnasiums_space(env: &Bound<'_, PyAny>) -> bool {
 }
 
 /// As `choice` hands it out.
-fn numpy_string<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn numpy_string<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
     static STRING: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     STRING.import(py, "numpy", "str_")?.call1((text,))
 }

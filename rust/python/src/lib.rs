@@ -25,6 +25,7 @@ mod taxi;
 mod toy_text;
 mod trainer;
 mod trigonometry;
+mod vector;
 
 use pyo3::prelude::*;
 
@@ -54,6 +55,8 @@ mod _core {
     use super::trainer::Trainer;
     #[pymodule_export]
     use super::trigonometry::{computes_as_numpy, numpy_calls_the_platform};
+    #[pymodule_export]
+    use super::vector::Vector;
 
     /// How the extension was compiled: only "release" says anything about speed.
     #[pymodule_export]

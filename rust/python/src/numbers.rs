@@ -11,7 +11,7 @@ const LARGEST_FLOAT: f64 = 1e30;
 /// Python computes exactly with integers of any size.
 const LARGEST_INTEGER: f64 = 1e6;
 /// `math.pow` raises where the square of a force is too large.
-const LARGEST_FORCE: f64 = 1e150;
+pub(crate) const LARGEST_FORCE: f64 = 1e150;
 
 /// A constant of the physics: a plain Python number, not one of `NumPy`'s, which promotes otherwise.
 pub(crate) fn constant(value: &Bound<'_, PyAny>) -> Option<f64> {

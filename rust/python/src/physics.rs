@@ -153,6 +153,11 @@ impl Physics {
         Ok(model.play(slf, &values, action)?.map(|played| (played, human)))
     }
 
+    /// The model with the constants of its attributes; None where Rust does not stand for one of them.
+    pub(crate) fn model(slf: &Bound<'_, Self>) -> PyResult<Option<Model>> {
+        Ok(Self::read(slf)?.map(|_| slf.borrow().model))
+    }
+
     /// Reads the attributes into the model; None where Rust does not stand for one of them.
     fn read(slf: &Bound<'_, Self>) -> PyResult<Option<bool>> {
         let mut model = slf.borrow().model;

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat};
 use qtab_core::env::{Env, Step};
 use qtab_core::envs::Scalar;
-use qtab_core::random::Draw;
+use qtab_core::random::NoDraw;
 
 use crate::model::Model;
 use crate::numbers::{Values, double, force, index, numpy_scalar};
@@ -111,17 +111,5 @@ impl Played<'_> {
     /// Where numbers run over, Python and `NumPy` warn or raise: Gymnasium's code is to do so.
     fn if_finite(self) -> Option<Self> {
         self.finite.then_some(self)
-    }
-}
-
-/// For steps that draw nothing.
-struct NoDraw;
-
-impl Draw for NoDraw {
-    fn random(&mut self) -> f64 {
-        0.0
-    }
-    fn integers(&mut self, _below: u32) -> u32 {
-        0
     }
 }

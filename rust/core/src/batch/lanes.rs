@@ -3,10 +3,9 @@
 use std::hint::select_unpredictable;
 
 use super::Article;
-use super::cosine::monotone;
 use super::words::Words;
-use crate::envs::mountain_car::{DIRECTIONS, REWARD};
-use crate::envs::{MountainCar, MountainCarState};
+use crate::envs::MountainCarState;
+use crate::envs::mountain_car::{DIRECTIONS, REWARD, drive_all};
 use crate::features::Outside;
 use crate::hint::seldom;
 use crate::learners::{Agent, TerminalUpdate};
@@ -52,7 +51,7 @@ fn turns<const K: usize>(
     let mut steps = until.steps;
     while on && steps > 0 {
         steps -= 1;
-        lanes.drive(&car);
+        drive_all(&car, &mut lanes.position, &mut lanes.velocity, &lanes.action);
         let mut places = [0; K];
         let mut terminal = [false; K];
         let mut over = [false; K];
@@ -177,23 +176,6 @@ impl<const K: usize> Lanes<K> {
             length: self.elapsed[lane].cast_signed(),
         })
     }
-
-    /// The physics of every car: the operations of `MountainCar::step`, in its order.
-    #[inline(always)]
-    fn drive(&mut self, car: &MountainCar) {
-        let push = self.action.map(|action| DIRECTIONS[action] * car.force);
-        let angle = self.position.map(|position| 3.0 * position);
-        let before = self.velocity;
-        let velocity = |lane: usize, cosine: f64| before[lane] + (push[lane] + cosine * (-car.gravity));
-        monotone(&angle, velocity, &mut self.velocity);
-        for lane in 0..K {
-            let velocity = clip(self.velocity[lane], -car.max_speed, car.max_speed);
-            let position = clip(self.position[lane] + velocity, car.min_position, car.max_position);
-            let absorbed = (position == car.min_position) & (velocity < 0.0);
-            self.position[lane] = position;
-            self.velocity[lane] = if absorbed { 0.0 } else { velocity };
-        }
-    }
 }
 
 /// The first of the largest values of a row, and that value, without a branch.
@@ -207,11 +189,4 @@ fn best(values: &[f64], place: usize) -> (usize, f64) {
         largest = select_unpredictable(larger, value, largest);
     }
     (best, largest)
-}
-
-/// `np.clip` of what is not NaN, without a branch.
-#[inline(always)]
-fn clip(value: f64, low: f64, high: f64) -> f64 {
-    let value = if value < low { low } else { value };
-    if value > high { high } else { value }
 }

@@ -6,8 +6,8 @@ use super::numpy::squared;
 use crate::env::{Env, Parameters, Step, Switch};
 use crate::random::Draw;
 
-/// Each component of the first state is uniform over these, unless Gymnasium's reset options say otherwise.
-const START: (f64, f64) = (-0.1, 0.1);
+/// Each component of the first state is uniform over these.
+const START: [(&str, f64); 2] = [("low", -0.1), ("high", 0.1)];
 const GRAVITY: f64 = 9.8;
 /// Gymnasium takes turns off an angle one by one; a state so far out is none that the physics reach.
 const MOST_TURNS: f64 = 1e6;
@@ -180,9 +180,16 @@ impl Env for Acrobot {
         self.torques.len()
     }
 
+    const START: Option<[(&'static str, f64); 2]> = Some(START);
+
     #[inline]
     fn reset(&self, draw: &mut impl Draw) -> AcrobotState {
-        let start = [(); 4].map(|()| f64::from(draw.uniform(START.0, START.1) as f32));
+        self.reset_between(START.map(|(_, number)| number), draw)
+    }
+
+    #[inline]
+    fn reset_between(&self, [low, high]: [f64; 2], draw: &mut impl Draw) -> AcrobotState {
+        let start = [(); 4].map(|()| f64::from(draw.uniform(low, high) as f32));
         AcrobotState { single: true, ..start.into() }
     }
 

@@ -1,5 +1,9 @@
 //! `Blackjack-v1`: get nearer to 21 than the dealer, and not beyond (Sutton & Barto, 2nd ed., Example 5.1).
 
+mod dealt;
+
+pub use dealt::{Dealing, Dealt};
+
 use crate::env::{Env, Step};
 use crate::random::Draw;
 

@@ -1,11 +1,13 @@
 //! `CartPole-v1`: a pole on a cart that is pushed left or right (Barto, Sutton & Anderson, 1983; R. V. Florian, "Correct
 //! equations for the dynamics of the cart-pole system", 2005).
 
+mod wide;
+
 use crate::env::{Env, Parameters, Step, Switch};
 use crate::random::Draw;
 
-/// Each component of the first state is uniform over these, unless Gymnasium's reset options say otherwise.
-const START: (f64, f64) = (-0.05, 0.05);
+/// Each component of the first state is uniform over these.
+const START: [(&str, f64); 2] = [("low", -0.05), ("high", 0.05)];
 
 /// The constants of the dynamics, under Gymnasium's names. Those that Gymnasium derives from others when it makes the
 /// environment (`total_mass`, `polemass_length`) are constants of their own afterwards, there as here.
@@ -119,6 +121,51 @@ impl From<CartPoleState> for [f64; 4] {
     }
 }
 
+impl CartPole {
+    #[inline]
+    fn force(&self, action: usize) -> f64 {
+        if action == 1 { self.force_mag } else { -self.force_mag }
+    }
+
+    #[inline]
+    fn reward(&self, terminated: bool) -> f64 {
+        match (self.sutton_barto_reward, terminated) {
+            (false, _) => 1.0,
+            (true, false) => 0.0,
+            (true, true) => -1.0,
+        }
+    }
+
+    /// Moves `K` poles under a force each, and says which come to a terminal state.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    #[expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be a branch in each of many lanes")]
+    fn push<const K: usize>(&self, [x, x_dot, theta, theta_dot]: &mut [[f64; K]; 4], force: [f64; K]) -> [bool; K] {
+        let costheta = theta.map(f64::cos);
+        let sintheta = theta.map(f64::sin);
+        let mut terminated = [false; K];
+        for lane in 0..K {
+            let (costheta, sintheta) = (costheta[lane], sintheta[lane]);
+            let (speed, spin) = (x_dot[lane], theta_dot[lane]);
+            let temp = (force[lane] + self.polemass_length * (spin * spin) * sintheta) / self.total_mass;
+            let thetaacc = (self.gravity * sintheta - costheta * temp)
+                / (self.length * (4.0 / 3.0 - self.masspole * (costheta * costheta) / self.total_mass));
+            let xacc = temp - self.polemass_length * thetaacc * costheta / self.total_mass;
+
+            x_dot[lane] = speed + self.tau * xacc;
+            theta_dot[lane] = spin + self.tau * thetaacc;
+            // Semi-implicit, the positions move by the new speeds.
+            x[lane] += self.tau * if self.euler { speed } else { x_dot[lane] };
+            theta[lane] += self.tau * if self.euler { spin } else { theta_dot[lane] };
+            terminated[lane] = (x[lane] < -self.x_threshold)
+                | (x[lane] > self.x_threshold)
+                | (theta[lane] < -self.theta_threshold_radians)
+                | (theta[lane] > self.theta_threshold_radians);
+        }
+        terminated
+    }
+}
+
 impl Env for CartPole {
     type State = CartPoleState;
     type Action = usize;
@@ -129,47 +176,41 @@ impl Env for CartPole {
         2
     }
 
+    const START: Option<[(&'static str, f64); 2]> = Some(START);
+
     #[inline]
     fn reset(&self, draw: &mut impl Draw) -> CartPoleState {
-        [(); 4].map(|()| draw.uniform(START.0, START.1)).into()
+        self.reset_between(START.map(|(_, number)| number), draw)
+    }
+
+    #[inline]
+    fn reset_between(&self, [low, high]: [f64; 2], draw: &mut impl Draw) -> CartPoleState {
+        [(); 4].map(|()| draw.uniform(low, high)).into()
     }
 
     /// The reward is that of an episode under way: what Gymnasium gives for stepping on after the fall is not here.
     #[expect(clippy::inline_always, reason = "a call a step costs a tenth of it")]
     #[inline(always)]
     fn step(&self, state: CartPoleState, action: usize, _draw: &mut impl Draw) -> Step<CartPoleState> {
-        let CartPoleState { mut x, mut x_dot, mut theta, mut theta_dot } = state;
-        let force = if action == 1 { self.force_mag } else { -self.force_mag };
-        let costheta = theta.cos();
-        let sintheta = theta.sin();
+        let mut one = <[f64; 4]>::from(state).map(|number| [number]);
+        let [terminated] = self.push(&mut one, [self.force(action)]);
+        Step { state: one.map(|[number]| number).into(), reward: self.reward(terminated), terminated }
+    }
 
-        let temp = (force + self.polemass_length * (theta_dot * theta_dot) * sintheta) / self.total_mass;
-        let thetaacc = (self.gravity * sintheta - costheta * temp)
-            / (self.length * (4.0 / 3.0 - self.masspole * (costheta * costheta) / self.total_mass));
-        let xacc = temp - self.polemass_length * thetaacc * costheta / self.total_mass;
-
-        if self.euler {
-            x += self.tau * x_dot;
-            x_dot += self.tau * xacc;
-            theta += self.tau * theta_dot;
-            theta_dot += self.tau * thetaacc;
-        } else {
-            x_dot += self.tau * xacc;
-            x += self.tau * x_dot;
-            theta_dot += self.tau * thetaacc;
-            theta += self.tau * theta_dot;
+    #[inline]
+    fn step_lanes(
+        &self,
+        states: &mut [CartPoleState],
+        actions: &[usize],
+        _draws: &mut [impl Draw],
+        rewards: &mut [f64],
+        terminated: &mut [bool],
+        idle: &[bool],
+    ) {
+        wide::step_lanes(self, states, actions, terminated, idle);
+        for (reward, &end) in rewards.iter_mut().zip(&*terminated) {
+            *reward = self.reward(end);
         }
-
-        let terminated = x < -self.x_threshold
-            || x > self.x_threshold
-            || theta < -self.theta_threshold_radians
-            || theta > self.theta_threshold_radians;
-        let reward = match (self.sutton_barto_reward, terminated) {
-            (false, _) => 1.0,
-            (true, false) => 0.0,
-            (true, true) => -1.0,
-        };
-        Step { state: CartPoleState { x, x_dot, theta, theta_dot }, reward, terminated }
     }
 
     #[inline]

@@ -4,8 +4,8 @@ use super::numpy::{Scalar, squared};
 use crate::env::{Env, Parameters, Step};
 use crate::random::Draw;
 
-/// The starting position is uniform over these, unless Gymnasium's reset options say otherwise.
-const START: (f64, f64) = (-0.6, -0.4);
+/// The starting position is uniform over these.
+const START: [(&str, f64); 2] = [("low", -0.6), ("high", -0.4)];
 /// The acceleration along the slope at its steepest, a step.
 const GRAVITY: f64 = 0.0025;
 const GOAL_REWARD: f64 = 100.0;
@@ -105,9 +105,16 @@ impl Env for ContinuousMountainCar {
         0
     }
 
+    const START: Option<[(&'static str, f64); 2]> = Some(START);
+
     #[inline]
     fn reset(&self, draw: &mut impl Draw) -> Self::State {
-        let position = Scalar::Double(draw.uniform(START.0, START.1));
+        self.reset_between(START.map(|(_, number)| number), draw)
+    }
+
+    #[inline]
+    fn reset_between(&self, [low, high]: [f64; 2], draw: &mut impl Draw) -> Self::State {
+        let position = Scalar::Double(draw.uniform(low, high));
         ContinuousMountainCarState { position, velocity: Scalar::Double(0.0) }
     }
 

@@ -10,9 +10,10 @@ mod numpy;
 mod pendulum;
 mod tabular;
 mod taxi;
+mod telling;
 
 pub use acrobot::{Acrobot, AcrobotState};
-pub use blackjack::{Blackjack, BlackjackState, DEALER_STICKS, DECK, Hand};
+pub use blackjack::{Blackjack, BlackjackState, DEALER_STICKS, DECK, Dealing, Dealt, Hand};
 pub use cart_pole::{CartPole, CartPoleState};
 pub use continuous_mountain_car::{ContinuousMountainCar, ContinuousMountainCarState};
 pub use few_actions::FewActions;
@@ -21,3 +22,4 @@ pub use numpy::{Scalar, small_cosine_and_sine};
 pub use pendulum::{Pendulum, PendulumState};
 pub use tabular::{BadTable, Outcome, TOLERANCE, Tabular};
 pub use taxi::{Taxi, TaxiState};
+pub use telling::{Telling, Tells, Told};

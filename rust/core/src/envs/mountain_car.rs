@@ -1,11 +1,14 @@
 //! `MountainCar-v0`: an underpowered car in a sinusoidal valley (A. W. Moore, 1990; Sutton & Barto, Example 10.1).
 
+mod wide;
+
 use crate::env::{Env, Parameters, Step};
 use crate::hint::seldom;
 use crate::random::Draw;
+pub(crate) use wide::drive_all;
 
-/// The starting position is uniform over these, unless Gymnasium's reset options say otherwise.
-pub(crate) const START: (f64, f64) = (-0.6, -0.4);
+/// The starting position is uniform over these.
+pub(crate) const START: [(&str, f64); 2] = [("low", -0.6), ("high", -0.4)];
 /// Action - 1: left, none, right. Looked up, because turning the action into a float takes longer, and the next step
 /// waits for it.
 pub(crate) const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
@@ -93,14 +96,35 @@ impl Env for MountainCar {
         DIRECTIONS.len()
     }
 
+    const START: Option<[(&'static str, f64); 2]> = Some(START);
+
     #[inline]
     fn reset(&self, draw: &mut impl Draw) -> MountainCarState {
-        MountainCarState { position: draw.uniform(START.0, START.1), velocity: 0.0 }
+        self.reset_between(START.map(|(_, number)| number), draw)
+    }
+
+    #[inline]
+    fn reset_between(&self, [low, high]: [f64; 2], draw: &mut impl Draw) -> MountainCarState {
+        MountainCarState { position: draw.uniform(low, high), velocity: 0.0 }
     }
 
     #[inline]
     fn step(&self, state: MountainCarState, action: usize, _draw: &mut impl Draw) -> Step<MountainCarState> {
         self.drive(state, action)
+    }
+
+    #[inline]
+    fn step_lanes(
+        &self,
+        states: &mut [MountainCarState],
+        actions: &[usize],
+        _draws: &mut [impl Draw],
+        rewards: &mut [f64],
+        terminated: &mut [bool],
+        idle: &[bool],
+    ) {
+        wide::step_lanes(self, states, actions, terminated, idle);
+        rewards.fill(REWARD);
     }
 
     #[inline]

@@ -6,9 +6,8 @@ use super::numpy::{Scalar, clip, modulo, squared};
 use crate::env::{Env, Parameters, Step};
 use crate::random::Draw;
 
-/// The first angle and the first speed are uniform between these and their negatives, unless Gymnasium's reset options
-/// say otherwise.
-const START: (f64, f64) = (PI, 1.0);
+/// The first angle and the first speed are uniform between these and their negatives.
+const START: [(&str, f64); 2] = [("x_init", PI), ("y_init", 1.0)];
 
 /// The constants of the dynamics, under Gymnasium's names.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,10 +95,17 @@ impl Env for Pendulum {
         0
     }
 
+    const START: Option<[(&'static str, f64); 2]> = Some(START);
+
     #[inline]
     fn reset(&self, draw: &mut impl Draw) -> PendulumState {
-        let theta = draw.uniform(-START.0, START.0);
-        PendulumState { theta, theta_dot: draw.uniform(-START.1, START.1) }
+        self.reset_between(START.map(|(_, number)| number), draw)
+    }
+
+    #[inline]
+    fn reset_between(&self, [angle, speed]: [f64; 2], draw: &mut impl Draw) -> PendulumState {
+        let theta = draw.uniform(-angle, angle);
+        PendulumState { theta, theta_dot: draw.uniform(-speed, speed) }
     }
 
     #[inline]

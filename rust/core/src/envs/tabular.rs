@@ -8,6 +8,7 @@ mod row;
 
 pub use entry::{BadTable, Outcome, TOLERANCE};
 
+use super::Tells;
 use crate::env::{Env, Step};
 use crate::random::Draw;
 use entry::distribution;
@@ -139,6 +140,14 @@ impl Env for Tabular {
     #[inline]
     fn observe(&self, &state: &u32) -> u32 {
         state
+    }
+}
+
+impl Tells for Tabular {
+    #[inline]
+    fn tell(&self, state: u32, action: usize, draw: &mut impl Draw) -> (Step<u32>, f64) {
+        let outcome = self.outcome(state, action, draw);
+        (self.steps[outcome], self.probabilities[outcome])
     }
 }
 

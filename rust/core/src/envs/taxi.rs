@@ -1,6 +1,6 @@
 //! `Taxi`: fetch the passenger, bring them where they want (T. Dietterich, 2000, section 3.1; the fickle one: 7.1).
 
-use super::Tabular;
+use super::{Tabular, Tells};
 use crate::env::{Env, Step};
 use crate::random::Draw;
 
@@ -62,19 +62,26 @@ impl Env for Taxi {
 
     #[inline]
     fn step(&self, state: TaxiState, action: usize, draw: &mut impl Draw) -> Step<TaxiState> {
-        let Step { state: mut cell, reward, terminated } = self.table.step(state.cell, action, draw);
+        self.tell(state, action, draw).0
+    }
+
+    #[inline]
+    fn observe(&self, state: &TaxiState) -> u32 {
+        state.cell
+    }
+}
+
+impl Tells for Taxi {
+    #[inline]
+    fn tell(&self, state: TaxiState, action: usize, draw: &mut impl Draw) -> (Step<TaxiState>, f64) {
+        let (Step { state: mut cell, reward, terminated }, probability) = self.table.tell(state.cell, action, draw);
         let mut fickle = state.fickle;
         if fickle && Self::carries(state.cell, cell) {
             fickle = false;
             // One of the three others, `np_random.choice` of them.
             cell = Self::elsewhere(cell)[draw.integers(DESTINATIONS - 1) as usize];
         }
-        Step { state: TaxiState { cell, fickle }, reward, terminated }
-    }
-
-    #[inline]
-    fn observe(&self, state: &TaxiState) -> u32 {
-        state.cell
+        (Step { state: TaxiState { cell, fickle }, reward, terminated }, probability)
     }
 }
 

@@ -21,7 +21,8 @@ const CELL: f64 = 1e-4;
 
 /// The middles of equal shares of the starting positions.
 pub fn starts(count: u32) -> Vec<f64> {
-    (0..count).map(|index| START.0 + (START.1 - START.0) * ((f64::from(index) + 0.5) / f64::from(count))).collect()
+    let [low, high] = START.map(|(_, number)| number);
+    (0..count).map(|index| low + (high - low) * ((f64::from(index) + 0.5) / f64::from(count))).collect()
 }
 
 /// The actions that lead from a standing start to the goal, the fewest that the beam finds; None where it finds no way

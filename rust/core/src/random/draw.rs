@@ -22,3 +22,16 @@ pub trait Draw {
         low + (high - low) * self.random()
     }
 }
+
+/// For what draws nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct NoDraw;
+
+impl Draw for NoDraw {
+    fn random(&mut self) -> f64 {
+        0.0
+    }
+    fn integers(&mut self, _below: u32) -> u32 {
+        0
+    }
+}

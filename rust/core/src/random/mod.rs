@@ -6,8 +6,8 @@ mod pcg64;
 mod seed_sequence;
 mod stream;
 
-pub use draw::Draw;
 pub(crate) use draw::FLOATS;
+pub use draw::{Draw, NoDraw};
 pub use mt19937::Mt19937;
 pub use pcg64::Pcg64;
 pub(crate) use pcg64::{bounded, unit};

@@ -6,6 +6,8 @@
 //! where `f` gives the same bits for both and for `near`, it gives them for the platform's cosine too. Elsewhere (one
 //! step in twenty) the platform is asked.
 
+#![expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+
 /// Cells of 1/64, from 0 to 4.
 const CELLS: usize = 256;
 const PER_UNIT: i128 = 64;
@@ -64,12 +66,12 @@ const BEYOND_HALF: f64 = 0.05 * f64::EPSILON;
 const OWN_ERROR: f64 = 1.0 / 36_893_488_147_419_103_232.0; // 2⁻⁶⁵
 
 /// Whether the promise that all this rests on is given here.
-pub(super) const TRUSTED: bool = cfg!(all(target_os = "linux", target_env = "gnu"));
+pub(crate) const TRUSTED: bool = cfg!(all(target_os = "linux", target_env = "gnu"));
 
 /// Puts `f(lane, angles[lane].cos())` into `values`, with the bits that the platform's cosine gives. `f` must be
 /// monotone in the cosine.
 #[inline(always)]
-pub(super) fn monotone<const K: usize>(angles: &[f64; K], f: impl Fn(usize, f64) -> f64, values: &mut [f64; K]) {
+pub(crate) fn monotone<const K: usize>(angles: &[f64; K], f: impl Fn(usize, f64) -> f64, values: &mut [f64; K]) {
     let mut rests = [0.0; K];
     let mut entries = [[0.0; K]; 4];
     for lane in 0..K {
