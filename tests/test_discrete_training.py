@@ -185,7 +185,7 @@ def test_a_run_refuses_observations_that_are_none():
         ("FrozenLake-v1", {"scale": (1.0,)}, "scale belongs to discretizer 'round', not to 'identity'"),
         ("FrozenLake-v1", {"discretizer": "tiles"}, "the observation space must be a Box"),
         ("MountainCar-v0", {"discretizer": "identity"}, "the observation space must be Discrete"),
-        (Steps(Discrete(2**33)), {}, r"the table must have fewer than 2\*\*32 values"),
+        (Steps(Discrete(2**33)), {}, r"the observation space must give a table of fewer than 2\*\*32 values"),
         (Steps(Box(0, 1, (2, 2))), {}, "must be a Box of one float axis"),
         (Steps(Tuple((Discrete(2), Box(0, 1, (1,))))), {}, "must be a Box of one float axis"),
     ],

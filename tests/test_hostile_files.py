@@ -209,6 +209,58 @@ def test_a_header_that_does_not_fit_is_refused(members, tmp_path, change, messag
     refused(tmp_path / "run.npz", message)
 
 
+@pytest.fixture(scope="module")
+def few_actions(tmp_path_factory):
+    path = tmp_path_factory.mktemp("saved") / "run.npz"
+    chosen = {"discretizer": "bins", "bins": (4, 3, 5), "actions": (-1.0, 0.5)}
+    qtab.train("Pendulum-v1", seed=0, episodes=2, max_episode_steps=9, initial_q=0.0, **chosen).save(path)
+    with np.load(path) as file:
+        return dict(file)
+
+
+WRONG_BINS = {
+    "more bins": config(bins=[4, 3, 6]),
+    "the same rows otherwise": config(bins=[4, 15]),
+    "bins without end": config(bins=[1_000_000] * 400),
+    "bins left open": config(bins=None),
+    "limits left open": config(low=None),
+    "limits the wrong way round": config(low=[1.0, 1.0, 8.0], high=[-1.0, -1.0, -8.0]),
+    "limits of another length": config(low=[-1.0, -1.0], high=[1.0, 1.0]),
+    "limits beyond float32": config(low=[-1e300] * 3, high=[1e300] * 3),
+    "other actions": config(actions=[-1.0, 0.25]),
+    "more actions": config(actions=[-1.0, 0.5, 1.0]),
+    "no actions": config(actions=None),
+    "edges, too": config(edges=[[0.0], [0.0], [0.0]]),
+    "edges instead": config(edges=[[0.0], [0.0], [0.0]], discretizer="edges", bins=None, low=None, high=None),
+}
+
+
+@pytest.mark.parametrize("change", WRONG_BINS.values(), ids=WRONG_BINS)
+def test_bins_and_actions_that_do_not_fit_are_refused(few_actions, tmp_path, change):
+    np.savez(tmp_path / "run.npz", **few_actions)
+    assert qtab.load(tmp_path / "run.npz").grid.actions == 2
+    np.savez(tmp_path / "run.npz", **changed_header(few_actions, change))
+    refused(tmp_path / "run.npz")
+
+
+@pytest.mark.parametrize(
+    "actions",
+    [
+        None,
+        np.zeros(2),
+        np.array([[-1.0, 0.5]]),
+        np.array([[-1.0], [np.nan]]),
+        np.array([[-1], [1]]),
+        np.array(["a", "b"]),
+    ],
+    ids=repr,
+)
+def test_an_array_of_actions_that_does_not_fit_is_refused(few_actions, tmp_path, actions):
+    changed = {name: array for name, array in few_actions.items() if name != "actions"}
+    np.savez(tmp_path / "run.npz", **changed | ({} if actions is None else {"actions": actions}))
+    refused(tmp_path / "run.npz", "actions")
+
+
 HEADERS = {
     "half": np.array("{"),
     "a list": np.array("[1]"),

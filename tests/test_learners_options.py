@@ -31,6 +31,8 @@ VALUES: dict[str, Any] = {
     "tilings": 8,
     "tiles": (8, 8),
     "hashed_rows": 1000,
+    "bins": (9, 9),
+    "edges": ((-0.5,), (0.0,)),
     "low": (-1.2, -0.07),
     "high": (0.6, 0.07),
 }
@@ -43,7 +45,7 @@ def strangers() -> list[tuple[str, dict[str, Any]]]:
         "learning_rate_schedule": ["constant", "linear", "visits"],
         "exploration": ["epsilon_greedy", "softmax"],
         "epsilon_schedule": ["constant", "linear"],
-        "discretizer": ["round", "tiles"],
+        "discretizer": ["round", "bins", "edges", "tiles"],
     }
     return [
         (name, {option.choice: chosen})

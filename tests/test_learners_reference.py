@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 import qtab
-from learner_settings import run_settings
+from learner_settings import CAR, TRAINED, run_settings
 from qtab.names import Algorithm
 from qtab.reference import LEARNERS
 
@@ -19,13 +19,14 @@ def test_every_algorithm_has_a_reference() -> None:
     assert tuple(LEARNERS) == ALGORITHMS
 
 
+@pytest.mark.parametrize("env", TRAINED)
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
-def test_random_settings_give_the_identical_table(algorithm: str) -> None:
-    @settings(max_examples=40, deadline=None)
-    @given(run_settings(algorithm))
+def test_random_settings_give_the_identical_table(algorithm: str, env: str) -> None:
+    @settings(max_examples=40 if env == CAR else 8, deadline=None)
+    @given(run_settings(algorithm, env))
     def check(chosen: dict[str, Any]) -> None:
         try:
-            run = qtab.train("MountainCar-v0", **chosen)
+            run = qtab.train(env, backend="rust", **chosen)
         except OverflowError:
             return
         verification = qtab.verify(run)

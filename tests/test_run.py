@@ -79,7 +79,8 @@ def test_presets_are_named_per_environment():
     assert list(qtab.presets("MountainCar-v0")) == ["article", "solved"]
     assert qtab.presets("qtab/MountainCar-v0") == qtab.presets("MountainCar-v0")
     assert qtab.presets("MountainCar-v0")["article"]["terminal_update"] == "assign"
-    assert dict(qtab.presets("CartPole-v1")) == {}
+    assert list(qtab.presets("CartPole-v1")) == ["tuned", "solved"]
+    assert dict(qtab.presets("LunarLander-v3")) == {}
 
 
 def test_an_explicit_setting_wins_over_the_preset():

@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import disjoint_base
 
-from qtab.plan import Bias, Changes, Model, Plan, Process, PythonEnvironment, Results, Rules, Solved
+from qtab.plan import Bias, Changes, Control, Plan, Process, PythonEnvironment, Results, Rules, Solved
 
 __all__ = [
     "BUILD_PROFILE",
     "Blackjack",
+    "Classic",
     "Physics",
     "Planner",
     "Stream",
@@ -21,6 +22,7 @@ __all__ = [
     "Transitions",
     "Valley",
     "Vector",
+    "computes_as_numpy",
     "numpy_calls_the_platform",
     "parameter_names",
     "train_many",
@@ -28,16 +30,24 @@ __all__ = [
 
 BUILD_PROFILE: Literal["debug", "release"]
 
+def computes_as_numpy(model: str) -> bool: ...
 def numpy_calls_the_platform() -> bool: ...
 def parameter_names(model: str) -> list[str]: ...
 def train_many(
-    describe: Callable[[int], tuple[Model | Process | Rules | Bias, Plan]], results: Results, threads: int, go_on: bool
+    describe: Callable[[int], tuple[Control | Process | Rules | Bias, Plan]],
+    results: Results,
+    threads: int,
+    go_on: bool,
 ) -> list[tuple[int, Exception]]: ...
 
 class Blackjack:
     def __new__(cls, *_args: Any, **_kwargs: Any) -> Blackjack: ...
     def step(self, action: Any) -> Any: ...
     def deal(self) -> Any: ...
+
+@final
+class Classic:
+    def __new__(cls, model: str, environment: Any) -> Classic: ...
 
 @disjoint_base
 class Physics:
@@ -77,7 +87,7 @@ class Taxi:
 
 @final
 class Trainer:
-    def __new__(cls, environment: Model | Process | Rules | Bias | PythonEnvironment, plan: Plan) -> Trainer: ...
+    def __new__(cls, environment: Control | Process | Rules | Bias | PythonEnvironment, plan: Plan) -> Trainer: ...
     def advance(self, episodes: int) -> None: ...
     def episodes(self, since: int = 0) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]]: ...
     def tables(self) -> NDArray[np.float64]: ...

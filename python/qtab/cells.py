@@ -9,19 +9,16 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from qtab import plan
-from qtab.spaces import LARGEST_TABLE
+from qtab.actions import Actions
+from qtab.features import Features, check_size
 
 
 @dataclass(frozen=True)
-class Cells:
-    """Observations that are whole numbers, their rows counted in C order, and the actions."""
+class Cells(Features):
+    """Observations that are whole numbers from ``low`` to ``high``, their rows counted in C order.
 
-    low: NDArray[np.int64]
-    """The first number of each component; () for a Discrete space, else (d,)."""
-    high: NDArray[np.int64]
-    """The last number of each component."""
-    actions: int
-    first_action: int
+    The bounds are int64, of shape () for a Discrete space, else (d,).
+    """
 
     @property
     def counts(self) -> tuple[int, ...]:
@@ -32,11 +29,6 @@ class Cells:
     def shape(self) -> tuple[int, ...]:
         """Numbers of each component, then the actions: the shape of the Q table."""
         return (*self.counts, self.actions)
-
-    @property
-    def rows(self) -> int:
-        """How many rows the table has."""
-        return int(np.prod(self.counts))
 
     def lit(self, observation: NDArray[Any]) -> list[int]:
         """Returns the rows of an observation: one.
@@ -77,26 +69,19 @@ def components(space: gym.Space[Any]) -> tuple[NDArray[np.int64], NDArray[np.int
     return first, first + count - 1
 
 
-def cells(env: gym.Env) -> Cells:
+def cells(env: gym.Env, actions: Actions) -> Cells:
     """Returns the rows of an environment's observations.
 
     Raises:
         ValueError: if a space does not fit, or the table would be too large; it says which, and what fits.
     """
-    actions, observations = env.action_space, env.observation_space
-    if not isinstance(actions, spaces.Discrete):
-        raise ValueError(f"the action space must be Discrete, got {actions}")
-    found = components(observations)
+    found = components(env.observation_space)
     if found is None:
         raise ValueError(
-            f"the observation space must be Discrete, or a row of them, for discretizer 'identity', got {observations}"
+            "the observation space must be Discrete, or a row of them, for discretizer 'identity', got "
+            f"{env.observation_space}"
         )
     low, high = found
-    size = float(np.prod((high - low + 1).astype(np.float64))) * int(actions.n)
-    if not size < LARGEST_TABLE:
-        raise ValueError(f"the table must have fewer than 2**32 values, {observations} needs {size:.3g}")
-    try:
-        np.empty(int(size))
-    except MemoryError:
-        raise ValueError(f"the table must fit into memory, {observations} needs {size:.3g} values") from None
-    return Cells(low, high, int(actions.n), int(actions.start))
+    values = float(np.prod((high - low + 1).astype(np.float64))) * actions.count
+    check_size("the observation space", env.observation_space, values)
+    return Cells(low, high, actions)

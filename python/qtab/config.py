@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from qtab.names import (
+    Actions,
     Algorithm,
     Backend,
     BitGenerator,
@@ -84,8 +85,8 @@ class Config:
     time_weight: float | None = None
     """κ: Dyna-Q+ adds κ √τ to the rewards of what was not tried for τ steps (0.001)."""
     discretizer: Discretizer = "round"
-    """How observations become rows of the table: rounded to a grid, lit by tile coding, or as they are, which is
-    what a discrete space gets where nothing is given."""
+    """How observations become rows of the table: rounded to a grid, by bins of equal width or between your own edges,
+    lit by tile coding, or as they are, which is what a discrete space gets where nothing is given."""
     scale: tuple[float, ...] = ()
     """Cells per unit of each component of the observation: (10, 100) rounds to 0.1 and 0.01."""
     tilings: int | None = None
@@ -95,10 +96,18 @@ class Config:
     hashed_rows: int | None = None
     """Rows of a table that all tilings share, found by hashing, for what has more tiles than memory; none where nothing
     is given: each tile has a row of its own."""
+    bins: tuple[int, ...] | None = None
+    """Bins of equal width along each component of the observation, or one number for all (10)."""
+    edges: tuple[tuple[float, ...], ...] | None = None
+    """For each component of the observation the rising numbers between its bins, as np.digitize takes them."""
     low: tuple[float, ...] | None = None
-    """The lower edges of the tilings; the space's own where nothing is given."""
+    """The lower limits of tilings or bins, one for each component of the observation; the space's own where nothing is
+    given. What lies beyond belongs to the outermost."""
     high: tuple[float, ...] | None = None
-    """The upper edges."""
+    """The upper limits."""
+    actions: Actions | None = None
+    """What a learner chooses from where the action space is a Box: so many equal steps from its low to its high along
+    each component, or the actions themselves."""
     initial_q: InitialQ = (-1.0, 1.0)
     """The first Q table: drawn uniformly from a range (low, high), one number everywhere, or an array to go on from.
     In an array -inf says that a state does not have an action, which is then never chosen."""

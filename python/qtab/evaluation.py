@@ -10,7 +10,7 @@ from qtab.models import spec_of
 from qtab.run import Run
 from qtab.training import train
 
-DISCRETIZERS = ("discretizer", "scale", "tilings", "tiles", "hashed_rows", "low", "high")
+DISCRETIZERS = ("discretizer", "scale", "tilings", "tiles", "hashed_rows", "bins", "edges", "low", "high")
 """What a table is to be read by."""
 
 
@@ -70,11 +70,12 @@ def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.En
         config.env if env is None else env,
         episodes=episodes,
         seed=seed,
+        algorithm="q_learning",
         learning_rate=0.0,
         epsilon=0.0,
         terminal_update="target",
         initial_q=_greedy_table(run),
-        **{name: getattr(config, name) for name in DISCRETIZERS},
+        **{name: getattr(config, name) for name in (*DISCRETIZERS, "actions")},
         env_kwargs=config.env_kwargs,
         max_episode_steps=config.max_episode_steps,
         backend=config.backend if env is None else "auto",

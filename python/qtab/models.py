@@ -23,25 +23,27 @@ class Model:
     qtab: str
     """This package's entry point."""
     arguments: frozenset[str] = field(default_factory=frozenset)
-    """The constructor's keyword arguments that are constants of the model, of the same name."""
-    trains: bool = False
-    """Whether Rust trains on it, too; if not, training steps the environment."""
+    """The constructor's keyword arguments that make constants of the model, and nothing else."""
     finite: bool = False
     """Whether Rust takes its table, or its rules, from Gymnasium's environment, whatever its arguments were."""
 
 
 _CLASSIC = "gymnasium.envs.classic_control"
-_FINITE: Any = {"trains": True, "finite": True}
 _TOYS = "gymnasium.envs.toy_text"
-TABLE = Model("Table", "", "qtab.envs.tabular:TabularEnv", trains=True, finite=True)
+TABLE = Model("Table", "", "qtab.envs.tabular:TabularEnv", finite=True)
 """A table of one's own, which has no id."""
 _FROZEN_LAKE = Model(
-    "FrozenLake", f"{_TOYS}.frozen_lake:FrozenLakeEnv", "qtab.envs.frozen_lake:FrozenLakeEnv", **_FINITE
+    "FrozenLake", f"{_TOYS}.frozen_lake:FrozenLakeEnv", "qtab.envs.frozen_lake:FrozenLakeEnv", finite=True
 )
 _CLIFF = Model(
-    "CliffWalking", f"{_TOYS}.cliffwalking:CliffWalkingEnv", "qtab.envs.cliff_walking:CliffWalkingEnv", **_FINITE
+    "CliffWalking", f"{_TOYS}.cliffwalking:CliffWalkingEnv", "qtab.envs.cliff_walking:CliffWalkingEnv", finite=True
 )
-_CART_POLE = Model("CartPole", f"{_CLASSIC}.cartpole:CartPoleEnv", "qtab.envs.cart_pole:CartPoleEnv")
+_CART_POLE = Model(
+    name="CartPole",
+    gymnasium=f"{_CLASSIC}.cartpole:CartPoleEnv",
+    qtab="qtab.envs.cart_pole:CartPoleEnv",
+    arguments=frozenset({"sutton_barto_reward"}),
+)
 
 MODELS: Mapping[str, Model] = {
     "MountainCar-v0": Model(
@@ -49,7 +51,6 @@ MODELS: Mapping[str, Model] = {
         gymnasium=f"{_CLASSIC}.mountain_car:MountainCarEnv",
         qtab="qtab.envs.mountain_car:MountainCarEnv",
         arguments=frozenset({"goal_velocity"}),
-        trains=True,
     ),
     "MountainCarContinuous-v0": Model(
         name="ContinuousMountainCar",
@@ -70,15 +71,15 @@ MODELS: Mapping[str, Model] = {
     "FrozenLake8x8-v1": _FROZEN_LAKE,
     "CliffWalking-v1": _CLIFF,
     "CliffWalkingSlippery-v1": _CLIFF,
-    "Taxi-v4": Model("Taxi", f"{_TOYS}.taxi:TaxiEnv", "qtab.envs.taxi:TaxiEnv", **_FINITE),
+    "Taxi-v4": Model("Taxi", f"{_TOYS}.taxi:TaxiEnv", "qtab.envs.taxi:TaxiEnv", finite=True),
     "Blackjack-v1": Model(
-        "Blackjack", f"{_TOYS}.blackjack:BlackjackEnv", "qtab.envs.blackjack:BlackjackEnv", **_FINITE
+        "Blackjack", f"{_TOYS}.blackjack:BlackjackEnv", "qtab.envs.blackjack:BlackjackEnv", finite=True
     ),
 }
 
 OWN: Mapping[str, Model] = {
     f"{PREFIX}MaximizationBias-v0": Model(
-        "MaximizationBias", "", "qtab.reference.maximization_bias:MaximizationBiasEnv", **_FINITE
+        "MaximizationBias", "", "qtab.reference.maximization_bias:MaximizationBiasEnv", finite=True
     ),
 }
 """Those that Gymnasium does not have."""
@@ -128,7 +129,7 @@ def spec_of(env: str) -> EnvSpec:
 def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:
     """Returns the model that computes what ``gymnasium.make(spec, **kwargs)`` would, or None if Rust has none."""
     model = known_model(spec.id)
-    if model is None or not model.trains or spec.additional_wrappers:
+    if model is None or spec.additional_wrappers:
         return None
     if spec.entry_point not in (model.gymnasium, model.qtab):
         return None
@@ -139,5 +140,5 @@ def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:
     if model.finite:
         return None if "render_mode" in arguments else model
     # A number of another width than Python's would promote differently.
-    plain = all(type(value) in (int, float) for value in arguments.values())
+    plain = all(type(value) in (int, float, bool) for value in arguments.values())
     return model if plain and arguments.keys() <= model.arguments else None

@@ -42,8 +42,10 @@ OPTIONS: Mapping[str, Option] = {
     "tilings": Option("discretizer", ("tiles",), 8),
     "tiles": Option("discretizer", ("tiles",), (8,)),
     "hashed_rows": Option("discretizer", ("tiles",), None),
-    "low": Option("discretizer", ("tiles",), None),
-    "high": Option("discretizer", ("tiles",), None),
+    "bins": Option("discretizer", ("bins",), (10,)),
+    "edges": Option("discretizer", ("edges",), None),
+    "low": Option("discretizer", ("bins", "tiles"), None),
+    "high": Option("discretizer", ("bins", "tiles"), None),
 }
 
 ONE_STEP = ("q_learning", "sarsa", "expected_sarsa", "double_q_learning", "dyna_q", "dyna_q_plus")

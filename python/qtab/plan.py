@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from qtab._core import Transitions
+    from qtab._core import Classic, Transitions
     from qtab.config import Config
 
 
-class Model(TypedDict):
-    """An environment that Rust knows."""
+class Control(TypedDict):
+    """An environment of classic control that Rust knows, and the actions of a continuous one."""
 
-    model: str
-    parameters: dict[str, float]
+    constants: "Classic"
+    forces: list[float]
 
 
 class PythonEnvironment(TypedDict):
@@ -23,6 +23,7 @@ class PythonEnvironment(TypedDict):
     env: Any
     seed: int
     first_action: int
+    choices: list[NDArray[np.floating]]
 
 
 class Process(TypedDict):
@@ -71,6 +72,15 @@ class Cells(TypedDict):
     scalar: bool
 
 
+class Bins(TypedDict):
+    """Between edges."""
+
+    edges: list[list[float]]
+
+
+Features: TypeAlias = Rounding | Tiles | Cells | Bins
+
+
 class Course(TypedDict):
     """A rate from episode to episode."""
 
@@ -112,7 +122,7 @@ class Plan(TypedDict):
     low: list[float]
     high: list[float]
     single: bool
-    features: Rounding | Tiles | Cells
+    features: Features
     actions: int
     max_episode_steps: int | None
     seed: list[int]

@@ -61,10 +61,39 @@ _SOLVED_BLACKJACK = {**_BLACKJACK, "learning_rate": 0.005, "episodes": 1_000_000
 # Sutton & Barto, 2nd ed., Figure 6.5. In A there are two actions, -inf standing for the others.
 _BIAS_BOOK = {"learning_rate": 0.1, "discount": 1.0, "epsilon": 0.1, "epsilon_schedule": "constant", "ties": "random"}
 _BIAS_BOOK |= {"initial_q": np.array([[0.0] * 2 + [-np.inf] * 8, [0.0] * 10, [0.0] * 10]), "episodes": 300}
+# The speeds of cart and pole have no bounds: beyond these limits the outermost bins serve. Q-learning on a grid, from
+# values that are optimistic at first (50 of at most 500) and with an exploration rate that falls to nothing.
+_CART_POLE: Mapping[str, Any] = {
+    "discretizer": "bins",
+    "bins": (3, 3, 6, 6),
+    "low": (-2.4, -2.0, -0.21, -2.0),
+    "high": (2.4, 2.0, 0.21, 2.0),
+    "learning_rate": 0.5,
+    "learning_rate_schedule": "linear",
+    "discount": 0.999,
+    "epsilon": 0.2,
+    "initial_q": 50.0,
+    "episodes": 5000,
+}
+# Sarsa(λ) on tile coding again.
+_TRACED: Mapping[str, Any] = {**_SOLVED, "learning_rate": 0.5, "trace_decay": 0.8, "epsilon": 0.1, "episodes": 1000}
+_CART_POLE_SOLVED = {**_TRACED, "tilings": 16, "tiles": (4,), "discount": 0.999}
+_CART_POLE_SOLVED |= {"low": (-2.4, -2.5, -0.21, -3.5), "high": (2.4, 2.5, 0.21, 3.5)}
+_ACROBOT = {**_TRACED, "tilings": 32, "tiles": (4, 4, 4, 4, 5, 5), "discount": 0.99, "epsilon": 0.0}
+_ACROBOT |= {"learning_rate_schedule": "constant"}
+_PENDULUM = {**_TRACED, "actions": 3, "tilings": 16, "tiles": (6,), "discount": 0.98}
+# Pushing costs: only first values of 100 (12.5 a tiling) keep the car from learning to stand still.
+_CONTINUOUS_CAR = {**_TRACED, "actions": (-0.3, 0.3), "learning_rate": 0.2, "trace_decay": 0.9}
+_CONTINUOUS_CAR |= {"initial_q": 12.5, "episodes": 500}
 
 # The first preset of an environment is its own.
 _PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "MountainCar-v0": {"article": _ARTICLE, "solved": _SOLVED},
+    "MountainCarContinuous-v0": {"solved": _CONTINUOUS_CAR},
+    "CartPole-v0": {"tuned": _CART_POLE, "solved": _CART_POLE_SOLVED},
+    "CartPole-v1": {"tuned": _CART_POLE, "solved": _CART_POLE_SOLVED},
+    "Acrobot-v1": {"solved": _ACROBOT},
+    "Pendulum-v1": {"tuned": _PENDULUM},
     "FrozenLake-v1": {"tuned": _LAKE, "solved": _SOLVED_LAKE},
     "FrozenLake8x8-v1": {"tuned": _LARGE_LAKE, "solved": _SOLVED_LARGE_LAKE},
     "CliffWalking-v1": {"tuned": _CLIFF, "book": _CLIFF_BOOK, "solved": _SOLVED_CLIFF},

@@ -2,20 +2,22 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, TypeAlias
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
-from qtab import plan
-from qtab.cells import Cells, cells, components
+from qtab import classic, finite, plan
+from qtab.actions import Actions, actions
+from qtab.bins import Bins, bins
+from qtab.cells import cells, components
 from qtab.config import Config, known_fields
-from qtab.finite import describe
+from qtab.features import Features
 from qtab.models import Model, model_of, spec_of, versioned
 from qtab.options import defaults, stranger, tables
 from qtab.preset import preset
-from qtab.spaces import Grid, grid
+from qtab.spaces import grid
 from qtab.tiling import Tiling, tiling
 from qtab.wrappers import is_own_table, model_of_object
 
@@ -23,20 +25,24 @@ UNLIMITED_MAX_EPISODE_STEPS = 10_000
 """The time limit in training of an environment that has none of its own."""
 
 
+Described: TypeAlias = plan.Control | plan.Process | plan.Rules | plan.Bias
+"""An environment as Rust steps it."""
+
+
 @dataclass(frozen=True)
 class Resolved:
     """A config without gaps, and what it is run on."""
 
     config: Config
-    grid: Grid | Tiling | Cells
+    grid: Features
     model: Model | None
     """The model in Rust; None steps ``env`` in Python."""
     env: gym.Env | None
     """The environment stepped in Python."""
     made: bool
     """Whether the environment was made here, and so is closed here."""
-    process: plan.Process | plan.Rules | plan.Bias | None = None
-    """What a finite model steps by."""
+    described: Described | None = None
+    """What the model steps by."""
     limited: bool = False
     """Whether the time limit is ours, the environment having none."""
 
@@ -45,15 +51,18 @@ class Resolved:
         if self.made and self.env is not None:
             self.env.close()
 
-    def core_environment(self) -> plan.Model | plan.Process | plan.Rules | plan.Bias | plan.PythonEnvironment:
+    def core_environment(self) -> Described | plan.PythonEnvironment:
         """Returns the environment as the extension module takes it."""
-        if self.process is not None:
-            return self.process
-        if self.model is not None:
-            parameters = {name: float(value) for name, value in self.config.env_kwargs.items() if value is not None}
-            return {"model": self.model.name, "parameters": parameters}
+        if self.described is not None:
+            return self.described
         assert self.config.seed is not None  # noqa: S101 - resolved
-        return {"env": self.env, "seed": self.config.seed, "first_action": self.grid.first_action}
+        choices = self.grid.choices
+        return {
+            "env": self.env,
+            "seed": self.config.seed,
+            "first_action": self.grid.first_action,
+            "choices": choices.arrays(),
+        }
 
     def plan(self, record: int = 0) -> plan.Plan:
         """Returns the run's description as the extension module takes it."""
@@ -123,24 +132,20 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
     config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = model_of(spec, config.env_kwargs)
+    if model is None and config.backend == "rust":
+        raise _refused(f"Rust has no {spec.id} with these keyword arguments or wrappers")
     limit: dict[str, Any] = {}
     if config.max_episode_steps is not None:
         limit["max_episode_steps"] = config.max_episode_steps
     made = gym.make(spec, **config.env_kwargs, **limit)
     try:
-        model, process = _finite(model, made, config)
-        backend = _backend(config, model, f"Rust has no {spec.id} with these keyword arguments or wrappers")
-        config = _fitting(made, config, *layers)
-        table = _features(made, config)
-        steps = config.max_episode_steps or spec.max_episode_steps
-        config = _complete(config, table, backend, steps)
+        resolved = _resolved(made, model, config, spec.max_episode_steps, layers, made=True)
     except BaseException:
         made.close()
         raise
-    if backend == "rust":
+    if resolved.model is not None:
         made.close()
-        return Resolved(config, table, model, None, made=True, process=process, limited=steps is None)
-    return Resolved(config, table, None, made, made=True, limited=steps is None)
+    return resolved
 
 
 def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
@@ -149,26 +154,39 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     config = merge(name, {"env_kwargs": kwargs}, *layers)
     if config.backend == "auto":
         config = config.replace(backend="rust" if is_own_table(env) else "gymnasium")
-    model, process = _finite(model_of_object(env) if config.backend == "rust" else None, env, config)
+    model = model_of_object(env) if config.backend == "rust" else None
+    return _resolved(env, model, config, time_limit(env), layers, made=False)
+
+
+def _resolved(
+    env: gym.Env,
+    model: Model | None,
+    config: Config,
+    own_limit: int | None,
+    layers: tuple[Mapping[str, Any], ...],
+    *,
+    made: bool,
+) -> Resolved:
+    """What is run, on the model where Rust can step by what the environment holds and is not kept from it."""
     config = _fitting(env, config, *layers)
-    table = _features(env, config)
-    steps = config.max_episode_steps or time_limit(env)
-    config = _complete(config, table, config.backend, steps)
-    return Resolved(config, table, model, env, made=False, process=process, limited=steps is None)
+    choices = actions(env.action_space, config.actions)
+    described = None
+    if model is not None and config.backend != "gymnasium":
+        try:
+            unwrapped = env.unwrapped
+            described = finite.describe(unwrapped) if model.finite else classic.describe(unwrapped, model.name, choices)
+        except (TypeError, ValueError) as error:
+            if config.backend == "rust":
+                raise _refused(str(error)) from None
+    table = _features(env, config, choices)
+    steps = config.max_episode_steps or own_limit
+    config = _complete(config, table, "gymnasium" if described is None else "rust", steps)
+    model, stepped = (None, env) if described is None else (model, None)
+    return Resolved(config, table, model, stepped, made, described, limited=steps is None)
 
 
-def _finite(
-    model: Model | None, env: gym.Env, config: Config
-) -> tuple[Model | None, plan.Process | plan.Rules | plan.Bias | None]:
-    """The model, if Rust can step by what the environment holds, and that."""
-    if model is None or not model.finite or config.backend == "gymnasium":
-        return model, None
-    try:
-        return model, describe(env.unwrapped)
-    except (TypeError, ValueError) as error:
-        if config.backend == "rust":
-            raise ValueError(f"backend must be 'gymnasium' or 'auto' here, got 'rust': {error}") from None
-        return None, None
+def _refused(why_not: str) -> ValueError:
+    return ValueError(f"backend must be 'gymnasium' or 'auto' here, got 'rust': {why_not}")
 
 
 def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config:
@@ -180,14 +198,6 @@ def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config
     return config
 
 
-def _backend(config: Config, model: Model | None, why_not: str) -> Literal["rust", "gymnasium"]:
-    if config.backend == "rust" and model is None:
-        raise ValueError(f"backend must be 'gymnasium' or 'auto' here, got 'rust': {why_not}")
-    if config.backend == "gymnasium" or model is None:
-        return "gymnasium"
-    return "rust"
-
-
 def time_limit(env: gym.Env) -> int | None:
     """Returns the most steps of an episode, as the environment's own wrapper has it."""
     while isinstance(env, gym.Wrapper):
@@ -197,15 +207,16 @@ def time_limit(env: gym.Env) -> int | None:
     return None
 
 
-def _features(env: gym.Env, config: Config) -> Grid | Tiling | Cells:
+def _features(env: gym.Env, config: Config, choices: Actions) -> Features:
     if config.discretizer == "identity":
-        return cells(env)
-    if config.discretizer == "tiles":
-        return tiling(env, config.replace(**defaults(vars(config))))
-    return grid(env, config.scale)
+        return cells(env, choices)
+    if config.discretizer == "round":
+        return grid(env, config.scale, choices)
+    filled = config.replace(**defaults(vars(config)))
+    return tiling(env, filled, choices) if config.discretizer == "tiles" else bins(env, filled, choices)
 
 
-def _complete(config: Config, table: Grid | Tiling | Cells, backend: str, steps: int | None) -> Config:
+def _complete(config: Config, table: Features, backend: str, steps: int | None) -> Config:
     changes: dict[str, Any] = defaults(vars(config))
     changes |= {"backend": backend, "max_episode_steps": steps or UNLIMITED_MAX_EPISODE_STEPS}
     if config.seed is None:
@@ -213,6 +224,9 @@ def _complete(config: Config, table: Grid | Tiling | Cells, backend: str, steps:
     if isinstance(table, Tiling):
         changes |= {"low": tuple(table.edges[0].tolist()), "high": tuple(table.edges[1].tolist())}
         changes["tiles"] = table.tiles
+    if isinstance(table, Bins) and table.limits is not None:
+        changes |= {name: tuple(limit.tolist()) for name, limit in zip(("low", "high"), table.limits, strict=True)}
+        changes["bins"] = table.shape[:-1]
     if isinstance(config.initial_q, np.ndarray):
         count = tables(config.algorithm)
         shape = table.shape if count == 1 else (count, *table.shape)

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab import checks
-from qtab.cells import Cells
 from qtab.config import Config
-from qtab.spaces import Grid
+from qtab.features import Features
 from qtab.tiling import Tiling
 
 if TYPE_CHECKING:
@@ -32,7 +31,7 @@ class Run:
     """(episodes,): the number of steps of each finished episode."""
     terminated: NDArray[np.bool_]
     """(episodes,): whether each ended in a terminal state, and not by its time limit alone."""
-    grid: Grid | Tiling | Cells
+    grid: Features
     """How observations become rows."""
     completed: bool
     """False after an early stop; the table then holds what was learned up to it, an unfinished episode included."""
@@ -56,14 +55,13 @@ class Run:
         return table
 
     @property
-    def policy(self) -> NDArray[np.int64]:
-        """(*cells,): the greedy action of each cell, the first of equals.
+    def policy(self) -> NDArray[Any]:
+        """(*cells,): the greedy action of each cell, the first of equals; (*cells, d) where actions are continuous.
 
         Raises:
             ValueError: with tile coding, which has no cells; :meth:`predict` works.
         """
-        greedy: NDArray[np.int64] = np.argmax(self.q_table, axis=-1) + self.grid.first_action
-        return greedy
+        return self.grid.choices.greedy(np.argmax(self.q_table, axis=-1))
 
     def q_values(self, observation: ArrayLike) -> NDArray[np.float64]:
         """Returns the (actions,) values of an observation.
@@ -80,9 +78,9 @@ class Run:
         state: Any = None,  # noqa: ARG002 - Stable-Baselines3's signature
         episode_start: Any = None,  # noqa: ARG002
         deterministic: bool = True,  # noqa: ARG002
-    ) -> tuple[int, None]:
-        """Returns the greedy action of an observation, and None, as in Stable-Baselines3."""
-        return int(np.argmax(self.q_values(observation))) + self.grid.first_action, None
+    ) -> tuple[Any, None]:
+        """Returns the greedy action of an observation, for the environment, and None, as in Stable-Baselines3."""
+        return self.grid.choices[int(np.argmax(self.q_values(observation)))], None
 
     def mean_returns(self, block: int = 100) -> NDArray[np.float64]:
         """Returns the average return of each whole block of episodes, as the article plots it.
@@ -117,8 +115,8 @@ class Recording:
     """Its number in the run, from 0."""
     start: Mapping[str, Any]
     """The state of the environment's bit generator before the episode's reset."""
-    actions: tuple[int, ...]
-    """The environment's own actions, a Discrete space's start included."""
+    actions: tuple[Any, ...]
+    """The environment's own actions: integers, a Discrete space's start included, or arrays."""
 
 
 def _sum(parts: Sequence[NDArray[np.float64]] | NDArray[np.float64]) -> NDArray[np.float64]:

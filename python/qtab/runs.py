@@ -8,12 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import checks
-from qtab.cells import Cells
 from qtab.config import Config
+from qtab.features import Features
 from qtab.run import Run
-from qtab.spaces import Grid
 from qtab.summaries import block_means, summarize
-from qtab.tiling import Tiling
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +30,7 @@ class Runs:
     """(runs, episodes): whether each ended in a terminal state, and not by its time limit alone."""
     tables: NDArray[np.float64] | None
     """(runs, k, rows, actions): the raw tables, where they were asked for."""
-    grid: Grid | Tiling | Cells
+    grid: Features
     """How observations become rows."""
     completed: bool
     """False after an interruption; the rows are then those of the runs that were finished."""

@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import math
 import os
 import zipfile
 from pathlib import Path
@@ -9,12 +10,16 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from qtab import bins
+from qtab.actions import FLOATS, Actions
+from qtab.bins import Bins
 from qtab.cells import Cells
 from qtab.config import Config
+from qtab.features import Features
 from qtab.files import check_writable, replacing
 from qtab.options import defaults, tables
 from qtab.run import Run
-from qtab.spaces import FLOATS, Grid
+from qtab.spaces import Grid
 from qtab.tiling import Tiling
 
 FORMAT = "qtab run"
@@ -35,6 +40,8 @@ def save(run: Run, path: Path) -> None:
     arrays |= {"low": run.grid.low, "high": run.grid.high}
     if isinstance(run.grid, Grid):
         arrays["scale"] = run.grid.scale
+    if run.grid.choices.values is not None:
+        arrays["actions"] = run.grid.choices.values
     config = {field.name: getattr(run.config, field.name) for field in dataclasses.fields(Config)}
     if isinstance(run.config.initial_q, np.ndarray):
         arrays["initial_q"] = run.config.initial_q
@@ -90,7 +97,8 @@ def _load(opened: BinaryIO) -> Run:
         if fields["initial_q"] is None:
             fields["initial_q"] = file["initial_q"]
         config = Config(**fields)
-        features = _features(config, file, int(header["actions"]), int(header["first_action"]))
+        choices = Actions(int(header["actions"]), int(header["first_action"]), file.get("actions"))
+        features = _features(config, file, choices, arrays["tables"].shape[1])
     with np.errstate(all="raise"):
         _check_shapes(config, features, arrays)
     completed = len(arrays["episode_returns"]) == config.episodes
@@ -113,37 +121,64 @@ def _array(file: Any, name: str, dtype: "np.dtype[Any]", ndim: int) -> Any:
     return array
 
 
-def _features(config: Config, file: Any, actions: int, first_action: int) -> Grid | Tiling | Cells:
+def _features(config: Config, file: Any, choices: Actions, rows: int) -> Features:
     low, high = file["low"], file["high"]
-    if config.discretizer == "tiles":
-        if config.tiles is None or config.tilings is None or config.low is None or config.high is None:
-            raise ValueError("its config is not that of a run")
-        edges = np.array(config.low), np.array(config.high)
-        return Tiling(low, high, edges, config.tiles, config.tilings, config.hashed_rows, actions, first_action)
     if config.discretizer == "identity":
-        return Cells(low, high, actions, first_action)
-    return Grid(low, high, file["scale"], actions, first_action)
+        return Cells(low, high, choices)
+    if config.discretizer == "round":
+        return Grid(low, high, choices, file["scale"])
+    if config.discretizer == "edges" and config.edges is not None:
+        return bins.of_config(low, high, choices, config)
+    if config.low is not None and config.high is not None:
+        # No more edges are computed than there are rows.
+        if config.discretizer == "bins" and config.bins is not None and math.prod(config.bins) == rows:
+            return bins.of_config(low, high, choices, config)
+        if config.tiles is not None and config.tilings is not None:
+            edges = np.array(config.low), np.array(config.high)
+            return Tiling(low, high, choices, edges, config.tiles, config.tilings, config.hashed_rows)
+    raise ValueError("its config is not that of a run")
 
 
-def _check_shapes(config: Config, features: Grid | Tiling | Cells, arrays: dict[str, Any]) -> None:
+def _are_actions_of(config: Config, choices: Actions) -> bool:
+    values, wanted = choices.values, config.actions
+    if values is None or wanted is None:
+        return values is None and wanted is None
+    if values.dtype not in FLOATS or values.ndim != 2 or len(values) != choices.count or not np.isfinite(values).all():
+        return False
+    return (
+        isinstance(wanted, int)
+        or np.array(wanted, values.dtype).reshape(-1, values.shape[1]).tolist() == values.tolist()
+    )
+
+
+def _check_shapes(config: Config, features: Features, arrays: dict[str, Any]) -> None:
     if config.seed is None or config.max_episode_steps is None or defaults(vars(config)):
         raise ValueError("its config is not that of a run")
+    low, high = features.low, features.high
+    if low.dtype not in ((np.dtype(np.int64),) if isinstance(features, Cells) else FLOATS) or high.dtype != low.dtype:
+        raise ValueError("its bounds are not those of a space")
     if isinstance(features, Grid):
-        bounds = (features.low, features.high, features.scale)
+        bounds = (low, high, features.scale)
         if any(bound.shape != (len(config.scale),) or not np.isfinite(bound).all() for bound in bounds):
             raise ValueError("its bounds do not fit its scale")
         if tuple(features.scale) != config.scale:
             raise ValueError("its bounds are not those of a space")
     elif isinstance(features, Cells):
-        if features.low.shape != features.high.shape or features.low.ndim > 1 or (features.low > features.high).any():
+        if low.shape != high.shape or low.ndim > 1 or (low > high).any():
             raise ValueError("its bounds are not those of a discrete space")
-    elif {edge.shape for edge in (features.low, features.high, *features.edges)} != {(len(features.tiles),)}:
+    elif isinstance(features, Bins):
+        if (
+            low.shape != high.shape
+            or low.shape != (len(features.edges),)
+            or not all(np.isfinite(edges).all() for edges in features.edges)
+        ):
+            raise ValueError("its bounds do not fit its bins")
+    elif isinstance(features, Tiling) and {edge.shape for edge in (low, high, *features.edges)} != {
+        (len(features.tiles),)
+    }:
         raise ValueError("its bounds do not fit its tiles")
-    if (
-        features.low.dtype not in ((np.dtype(np.int64),) if isinstance(features, Cells) else FLOATS)
-        or features.high.dtype != features.low.dtype
-    ):
-        raise ValueError("its bounds are not those of a space")
+    if not _are_actions_of(config, features.choices):
+        raise ValueError("its actions are not those of its config")
     shape, expected = arrays["tables"].shape, (tables(config.algorithm), features.rows, features.actions)
     if shape != expected or features.actions < 1:
         raise ValueError(f"its tables have shape {shape}, which does not fit the grid {features.shape}")

@@ -112,7 +112,7 @@ def _run(resolved: Resolved, trainer: _core.Trainer, began: float) -> Run:
     first = len(returns) - len(kept)
     generators = starts(resolved.config, [start for start, _ in kept])
     recordings = tuple(
-        Recording(first + index, generator, tuple(resolved.grid.first_action + action for action in actions))
+        Recording(first + index, generator, tuple(resolved.grid.choices[action] for action in actions))
         for index, (generator, (_, actions)) in enumerate(zip(generators, kept, strict=True))
     )
     return Run(

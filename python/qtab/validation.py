@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 from typing import Any, get_args
 
 import numpy as np
@@ -12,6 +13,8 @@ from qtab.options import OPTIONS, refuse_strangers
 
 LARGEST_MT19937_SEED = 2**32 - 1
 MOST_TILINGS = 32
+MOST_BINS = 1_000_000
+MOST_ACTIONS = 2**16
 
 
 def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
@@ -112,11 +115,37 @@ def _scale(name: str, value: Any) -> tuple[float, ...]:
     return scale
 
 
-def _tiles(name: str, value: Any) -> tuple[int, ...]:
-    tiles = _each(_integer(1))(name, value if hasattr(value, "__iter__") else (value,))
-    if not tiles:
-        raise ValueError(f"{name} must hold a number for each component of the observation, or one for all, got ()")
-    return tiles
+def _counts(least: int, most: int | None) -> Callable[[str, Any], tuple[int, ...]]:
+    def checked(name: str, value: Any) -> tuple[int, ...]:
+        counts = _each(_integer(least, most))(name, value if hasattr(value, "__iter__") else (value,))
+        if not counts:
+            raise ValueError(f"{name} must hold a number for each component of the observation, or one for all, got ()")
+        return counts
+
+    return checked
+
+
+def _edges(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+        raise TypeError(f"{name} must hold a row of numbers for each component of the observation, got {value!r}")
+    rows = tuple(_each(checks.finite)(name, row) for row in value)
+    if any(left >= right for row in rows for left, right in pairwise(row)):
+        raise ValueError(f"{name} must hold rows of rising numbers, got {value!r}")
+    return rows
+
+
+def _actions(name: str, value: Any) -> Any:
+    if hasattr(value, "__index__") and not np.ndim(value):
+        return checks.integer(name, value, least=2, most=MOST_ACTIONS)
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+        raise TypeError(f"{name} must be an integer, or hold the actions themselves, got {value!r}")
+    listed = tuple(
+        tuple(checks.finite(name, number) for number in action) if np.ndim(action) == 1 else checks.finite(name, action)
+        for action in value
+    )
+    if not listed:
+        raise ValueError(f"{name} must hold at least one action, got {value!r}")
+    return listed
 
 
 def _initial_q(name: str, value: Any) -> float | tuple[float, float] | NDArray[np.float64]:
@@ -171,10 +200,13 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "discretizer": _choice(names.Discretizer),
     "scale": _scale,
     "tilings": _integer(1, MOST_TILINGS),
-    "tiles": _tiles,
+    "tiles": _counts(1, None),
     "hashed_rows": _integer(1, 2**32 - 1),
+    "bins": _counts(1, MOST_BINS),
+    "edges": _edges,
     "low": _each(checks.finite),
     "high": _each(checks.finite),
+    "actions": _actions,
     "initial_q": _initial_q,
     "terminal_update": _choice(names.TerminalUpdate),
     "on_truncation": _choice(names.OnTruncation),
@@ -183,4 +215,4 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "backend": _choice(names.Backend),
     "preset": _text,
 }
-_OPTIONAL = OPTIONS.keys() - {"scale"} | {"max_episode_steps", "preset"}
+_OPTIONAL = OPTIONS.keys() - {"scale"} | {"actions", "max_episode_steps", "preset"}

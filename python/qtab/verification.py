@@ -119,14 +119,14 @@ def _environment(config: Config, env: gym.Env | None) -> gym.Env:
     )
 
 
-def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[np.float64], list[int]]:
+def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[np.float64], list[Any]]:
     """The fast side once more: its table after so many episodes, and the actions of the last of them."""
     resolved = resolve(config.env if env is None else env, _fields(config))
     try:
         trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record=1))
         trainer.advance(episodes)
         (_, actions) = trainer.recordings()[-1]
-        return trainer.tables(), [resolved.grid.first_action + action for action in actions]
+        return trainer.tables(), [resolved.grid.choices[action] for action in actions]
     finally:
         resolved.close()
 
@@ -147,7 +147,7 @@ def _first_step(config: Config, env: gym.Env | None, run: Run, watched: "_Watche
     theirs = watched.actions[episode]
     _, ours = _again(config, env, episode + 1)
     for step, (one, other) in enumerate(zip(theirs, ours, strict=False)):
-        if one != other:
+        if not np.array_equal(one, other):
             return step
     shortest = min(len(theirs), len(ours), int(run.episode_lengths[episode]))
     return shortest if shortest < max(len(theirs), len(ours), int(run.episode_lengths[episode])) else None
@@ -158,7 +158,7 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
 
     def __init__(self, env: gym.Env, total: int, progress: Callable[[int, int], None] | None) -> None:
         super().__init__(env)
-        self.actions: list[list[int]] = []
+        self.actions: list[list[Any]] = []
         self._total = total
         self._progress = progress
 
@@ -168,6 +168,6 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
         self.actions.append([])
         return self.env.reset(**kwargs)
 
-    def step(self, action: int) -> Any:
+    def step(self, action: Any) -> Any:
         self.actions[-1].append(action)
         return self.env.step(action)

@@ -34,7 +34,7 @@ def model_of_object(env: gym.Env) -> Model:
         return TABLE
     spec = inner.spec
     model = known_model(spec.id) if spec is not None else None
-    if model is None or not model.trains or entry_point not in (model.gymnasium, model.qtab):
+    if model is None or entry_point not in (model.gymnasium, model.qtab):
         raise ValueError(f"{refused}Rust has no {type(inner).__qualname__}")
     if model.finite:
         return model  # whose table is taken as it stands
@@ -43,7 +43,7 @@ def model_of_object(env: gym.Env) -> Model:
     untouched = type(inner)(**(spec.kwargs if spec is not None else {}))
     for name in parameter_names(model.name):
         now, then = getattr(inner, name), getattr(untouched, name)
-        if type(now) not in (int, float) or now != then:
+        if type(now) not in (int, float, bool, str, list) or now != then:
             raise ValueError(f"{refused}its attribute {name} was changed from {then!r} to {now!r}")
     return model
 

@@ -15,8 +15,8 @@ from qtab.config import Config, known_fields
 from qtab.models import spec_of, versioned
 from qtab.preset import preset
 from qtab.resolution import merge
-from qtab.spaces import Grid
 from qtab.storage import load
+from qtab.tiling import Tiling
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -68,6 +68,48 @@ _FIRST_VALUES = tyro.constructors.PrimitiveConstructorSpec[tuple[float, float] |
 )
 
 
+def _words(value: Any) -> list[str]:
+    if value is None:
+        return ["None"]
+    return [json.dumps(part) for part in (value if isinstance(value, tuple | list) else (value,))]
+
+
+def _edge_rows(words: list[str]) -> Any:
+    rows = [_value(word) for word in words]
+    if rows == [None]:
+        return None
+    if not all(isinstance(row, list) for row in rows):
+        raise ValueError(f"it takes a row such as [-0.5,0,0.5] for each component, got {' '.join(words)!r}")
+    return tuple(rows)
+
+
+_EDGES = tyro.constructors.PrimitiveConstructorSpec[Any](
+    nargs="*",
+    metavar="[NUMBER,...] ...",
+    instance_from_str=_edge_rows,
+    is_instance=lambda value: value is None or isinstance(value, tuple),
+    str_from_instance=_words,
+)
+
+
+def _chosen_actions(words: list[str]) -> Any:
+    values = [_value(word) for word in words]
+    if values == [None]:
+        return None
+    if any(isinstance(value, str) for value in values):
+        raise ValueError(f"it takes a count or the actions themselves, got {' '.join(words)!r}")
+    return values[0] if len(values) == 1 and isinstance(values[0], int) else tuple(values)
+
+
+_ACTIONS = tyro.constructors.PrimitiveConstructorSpec[Any](
+    nargs="*",
+    metavar="COUNT|ACTION ACTION ...",
+    instance_from_str=_chosen_actions,
+    is_instance=lambda value: value is None or isinstance(value, int | tuple),
+    str_from_instance=_words,
+)
+
+
 @dataclass(frozen=True, eq=False)
 class Settings(Config):
     """The config as it is typed; the checks wait until it is resolved."""
@@ -76,6 +118,11 @@ class Settings(Config):
     """Gymnasium's id of the environment (--env ID does as well)."""
     env_kwargs: Annotated[Mapping[str, Any], PAIRS] = field(default_factory=dict)
     """Keyword arguments of the environment's constructor."""
+    edges: Annotated[Any, _EDGES] = None
+    """For each component of the observation the rising numbers between its bins, such as [-0.5,0,0.5] [0]."""
+    actions: Annotated[Any, _ACTIONS] = None
+    """What to choose from where the action space is a Box: how many equal steps from its low to its high, or the
+    actions themselves, [X,Y] where they have several components."""
     initial_q: Annotated[Any, _FIRST_VALUES] = Config.initial_q
     """The first Q table: drawn uniformly from a range, one value everywhere, or a saved run to go on from."""
 
@@ -98,7 +145,7 @@ class Settings(Config):
         }
         if isinstance(self.initial_q, Path):
             run = load(self.initial_q)
-            values["initial_q"] = run.q_table if isinstance(run.grid, Grid) and len(run.tables) == 1 else run.tables
+            values["initial_q"] = run.tables if isinstance(run.grid, Tiling) or len(run.tables) > 1 else run.q_table
         return values
 
 

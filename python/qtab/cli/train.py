@@ -106,7 +106,7 @@ def _header(resolved: Resolved) -> str:
 
 
 def _quick(resolved: Resolved) -> bool:
-    if resolved.process is None or resolved.config.max_episode_steps is None:
+    if resolved.model is None or not resolved.model.finite or resolved.config.max_episode_steps is None:
         return False
     return resolved.grid.rows * resolved.grid.actions * resolved.config.max_episode_steps <= QUICK
 

@@ -11,6 +11,7 @@ from gymnasium.envs.registration import EnvSpec
 from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core, checks
+from qtab.actions import actions
 from qtab.cells import cells
 from qtab.envs.mountain_car import MountainCarEnv as RustMountainCarEnv
 from qtab.finite import process
@@ -134,7 +135,7 @@ def _solve(name: str, env: gym.Env, limit: int | None, discount: float | None, m
 
 
 def _plan(env: Any, method: str, discount: float, steps: int) -> dict[str, Any]:
-    table = cells(env)
+    table = cells(env, actions(env.action_space, None))
     planner = _core.Planner(process(env))
     solution = solve(planner, method, discount, steps)
     # The first states are those that an observation shows; what follows is hidden behind them.

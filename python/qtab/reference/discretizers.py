@@ -40,6 +40,29 @@ class Rounding:
         return [int(np.ravel_multi_index(tuple(cell), self.shape))]
 
 
+class Bins:
+    """A grid of bins between edges: of equal width, or the user's own."""
+
+    lit = 1
+
+    def __init__(self, space: gym.spaces.Box, config: Config) -> None:
+        self.dtype: Any = space.dtype
+        if config.edges is not None:
+            self.edges = [np.array(edges) for edges in config.edges]
+        else:
+            low, high = np.array(config.low, dtype=self.dtype), np.array(config.high, dtype=self.dtype)
+            self.edges = [np.linspace(*ends) for ends in zip(low, high, np.array(config.bins) + 1, strict=True)]
+            # What lies beyond the limits belongs to the outermost bins.
+            self.edges = [edges[1:-1] for edges in self.edges]
+        self.shape: tuple[int, ...] = tuple(len(edges) + 1 for edges in self.edges)
+
+    def rows(self, observation: ArrayLike) -> list[int]:
+        """Returns one row, the bins counted in C order."""
+        numbers = np.asarray(observation, dtype=self.dtype)
+        bins = [np.digitize(number, edges) for number, edges in zip(numbers, self.edges, strict=True)]
+        return [int(np.ravel_multi_index(tuple(bins), self.shape))]
+
+
 class TileCoding:
     """Tilings shifted by 1, 3, 5, … parts of a tile along the first, second, third … component (section 9.5.4).
 
@@ -97,4 +120,6 @@ def discretizer(env: gym.Env, config: Config) -> Discretizer:
     assert isinstance(env.observation_space, gym.spaces.Box)  # noqa: S101
     if config.discretizer == "tiles":
         return TileCoding(env.observation_space, config)
+    if config.discretizer in ("bins", "edges"):
+        return Bins(env.observation_space, config)
     return Rounding(env.observation_space, config)

@@ -1,6 +1,7 @@
 """What surrounds every learner: the environment as rows, the schedules, the policy, the bookkeeping of episodes."""
 
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import dataclass
 
 import gymnasium as gym
@@ -8,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
+from qtab.reference.actions import actions
 from qtab.reference.discretizers import discretizer
 from qtab.reference.policies import policy
 from qtab.reference.schedules import LearningRate
@@ -37,12 +39,12 @@ class Task:
     """An environment to learn, and everything about it that the algorithms share."""
 
     def __init__(self, env: gym.Env, config: Config, stop_after: int | None = None) -> None:
-        assert isinstance(env.action_space, gym.spaces.Discrete)  # noqa: S101
         assert config.seed is not None  # noqa: S101
         self.env, self.config = env, config
         self.stop_after = stop_after or config.episodes
         self.discount = config.discount
-        self.n_actions, self.first_action = int(env.action_space.n), int(env.action_space.start)
+        self.actions = actions(env, config)
+        self.n_actions = len(self.actions)
         self.rng = agent_stream(config.seed, config.bit_generator)
         self.discretizer = discretizer(env, config)
         self.n_rows = int(np.prod(self.discretizer.shape))
@@ -81,7 +83,7 @@ class Task:
 
     def step(self, action: int) -> Step:
         """Takes a step. A time-out is no terminal state, unless the config makes that mistake."""
-        observation, reward, terminated, truncated, _ = self.env.step(self.first_action + action)
+        observation, reward, terminated, truncated, _ = self.env.step(copy(self.actions[action]))
         self.returns[-1] += float(reward)
         self.lengths[-1] += 1
         terminal = terminated or (truncated and self.config.on_truncation == "terminate")

@@ -1,6 +1,7 @@
 //! From an observation to the rows of the table that it lights.
 
 mod bins;
+mod grid;
 mod hashing;
 mod identity;
 mod real;
@@ -11,6 +12,7 @@ use std::error::Error;
 use std::fmt;
 
 pub use bins::{Bins, Edges};
+pub use grid::Grid;
 pub use identity::{Cells, Identity};
 pub use real::Real;
 pub use rounding::{Axis, Rounding};

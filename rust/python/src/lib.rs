@@ -2,17 +2,22 @@
 
 mod begin;
 mod blackjack;
+mod classic;
+mod discretizer;
 mod dispatch;
 mod door;
 mod failure;
 mod finite;
+mod learning;
 mod many;
 mod model;
+mod native;
 mod numbers;
 mod observation;
 mod physics;
 mod plan;
 mod planning;
+mod play;
 mod python_world;
 mod run;
 mod stream;
@@ -29,6 +34,8 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use super::blackjack::Blackjack;
+    #[pymodule_export]
+    use super::classic::Classic;
     #[pymodule_export]
     use super::many::train_many;
     #[pymodule_export]
@@ -48,7 +55,7 @@ mod _core {
     #[pymodule_export]
     use super::trainer::Trainer;
     #[pymodule_export]
-    use super::trigonometry::numpy_calls_the_platform;
+    use super::trigonometry::{computes_as_numpy, numpy_calls_the_platform};
     #[pymodule_export]
     use super::vector::Vector;
 

@@ -7,8 +7,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
 use crate::blackjack::is_numpys;
-use crate::model::{Habits, Model, Played};
-use crate::numbers::{Values, constant};
+use crate::model::{Habits, Model};
+use crate::numbers::Values;
+use crate::play::{Played, State};
 use crate::toy_text::{generator, watch};
 use crate::trigonometry::numpy_calls_the_platform;
 
@@ -35,16 +36,6 @@ enum Constants {
     },
     /// Rust does not stand for all of them.
     Foreign,
-}
-
-/// The state of an episode.
-pub(crate) enum State {
-    /// Never assigned.
-    Missing,
-    /// As a step in Rust left it, zeros behind: an array of f64 in Gymnasium.
-    Rust([f64; 4]),
-    /// Assigned from Python, or handed out to it. An array can be written to, so it is read anew at each step.
-    Python(Py<PyAny>),
 }
 
 #[pymethods]
@@ -79,7 +70,7 @@ impl Physics {
         }
         {
             let mut this = slf.borrow_mut();
-            this.state = State::Python(begun.state.into_any().unbind());
+            this.state = State::Python(begun.state.unbind());
             this.constants = Constants::Unread;
         }
         watch(slf)?;
@@ -196,18 +187,8 @@ impl Physics {
                 return Ok(None);
             }
         }
-        let constants = model.constants();
-        for &name in constants.names() {
-            let Some(value) = slf.getattr_opt(name)? else { return Ok(None) };
-            let (Some(parameter), Some(number)) = (constants.parameter(name), constant(&value)) else {
-                return Ok(None);
-            };
-            *parameter = number;
-        }
-        for switch in constants.switches() {
-            let Some(value) = slf.getattr_opt(switch.name)? else { return Ok(None) };
-            let Some(on) = constants.switch(switch.name) else { return Ok(None) };
-            *on = switch.word.map_or_else(|| value.is_truthy(), |word| value.eq(word))?;
+        if model.read(slf)?.is_some() {
+            return Ok(None);
         }
         let render_mode = slf.getattr_opt(intern!(py, "render_mode"))?;
         Ok(Some(render_mode.is_some_and(|mode| mode.eq(intern!(py, "human")).unwrap_or(false))))

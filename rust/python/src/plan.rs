@@ -4,10 +4,10 @@ use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::Table;
-use qtab_core::features::{Axis, Real, Rounding, Tiles};
 use qtab_core::learners::{Agent, Behaviour, EpsilonGreedy, Rate, Schedule, TerminalUpdate, Ties, Trace, Traces};
 use qtab_core::random::{Draw, Pcg64, Stream};
 
+use crate::discretizer::Discretizer;
 use crate::stream::{agent_stream, environment_stream};
 
 #[derive(FromPyObject)]
@@ -32,17 +32,6 @@ pub(crate) struct Plan<'py> {
     pub(crate) algorithm: Algorithm,
     /// How many of the last episodes to keep for playing again.
     pub(crate) record: usize,
-}
-
-/// How observations become rows.
-#[derive(FromPyObject)]
-pub(crate) enum Discretizer {
-    #[pyo3(from_item_all)]
-    Rounding { scale: Vec<f64> },
-    #[pyo3(from_item_all)]
-    Tiles { low: Vec<f64>, high: Vec<f64>, tiles: Vec<u32>, tilings: u32, hashed_rows: Option<u32> },
-    #[pyo3(from_item_all)]
-    Cells { first: Vec<i64>, counts: Vec<u32>, scalar: bool },
 }
 
 #[derive(FromPyObject)]
@@ -107,6 +96,10 @@ pub(crate) fn given<T>(name: &str, option: Option<T>) -> PyResult<T> {
 }
 
 impl Course {
+    pub(crate) fn is_constant(&self) -> bool {
+        self.schedule == "constant"
+    }
+
     fn schedule(&self, episodes: u64) -> PyResult<Schedule> {
         match self.schedule.as_str() {
             "constant" => Ok(Schedule::constant(self.value)),
@@ -126,26 +119,13 @@ impl Plan<'_> {
         environment_stream(&self.seed)
     }
 
-    /// The grid over two float32 components.
-    pub(crate) fn plane(&self, scale: &[f64]) -> PyResult<Rounding<f32, [Axis<f32>; 2]>> {
-        <[Axis<f32>; 2]>::try_from(self.axes(scale, |bound| bound as f32))
-            .map(Rounding::new)
-            .map_err(|axes| PyValueError::new_err(format!("scale must hold 2 numbers, got {}", axes.len())))
-    }
-
-    /// The grid's axes, in the dtype of the bounds.
-    pub(crate) fn axes<T: Real>(&self, scale: &[f64], dtype: impl Fn(f64) -> T) -> Vec<Axis<T>> {
-        let bounds = self.low.iter().zip(&self.high);
-        bounds.zip(scale).map(|((&low, &high), &scale)| Axis::new(dtype(low), dtype(high), scale)).collect()
-    }
-
-    /// What the article's learner is made of, if the plan asks for that: an exploration rate that falls linearly from the
-    /// first episode on, a constant learning rate.
+    /// What the article's learner is made of, if the plan asks for its kind: an exploration rate that falls linearly from
+    /// the first episode on, a learning rate that does not look at the visits.
     pub(crate) fn article<const N: usize>(
         &self,
         rows: usize,
         draw: &mut Pcg64,
-    ) -> PyResult<Option<Agent<N, EpsilonGreedy, f64>>> {
+    ) -> PyResult<Option<Agent<N, EpsilonGreedy, Schedule>>> {
         let Choice::EpsilonGreedy { epsilon, ties } = &self.policy else { return Ok(None) };
         let linear = (epsilon.schedule.as_str(), epsilon.warm_up, ties.as_str()) == ("linear", 0, "first");
         if !linear || self.some_missing() {
@@ -154,15 +134,15 @@ impl Plan<'_> {
         self.plain(EpsilonGreedy::linear(epsilon.value, epsilon.least, self.episodes), rows, draw)
     }
 
-    /// The same with any policy: a one-step learner of a single table with a constant learning rate.
+    /// The same with any policy: a one-step learner of a single table whose learning rate does not look at the visits.
     pub(crate) fn plain<const N: usize, P>(
         &self,
         policy: P,
         rows: usize,
         draw: &mut Pcg64,
-    ) -> PyResult<Option<Agent<N, P, f64>>> {
+    ) -> PyResult<Option<Agent<N, P, Schedule>>> {
         let plain = ["q_learning", "sarsa", "expected_sarsa"].contains(&self.algorithm.name.as_str())
-            && self.learning_rate.schedule == "constant"
+            && self.learning_rate.schedule != "visits"
             && self.on_truncation == "bootstrap";
         if !plain {
             return Ok(None);
@@ -170,7 +150,7 @@ impl Plan<'_> {
         Ok(Some(Agent {
             table: self.table((0, 1), rows, draw)?,
             policy,
-            learning_rate: self.learning_rate.value,
+            learning_rate: self.learning_rate.schedule(self.episodes)?,
             discount: self.discount,
             terminal_update: self.terminal_update()?,
         }))
@@ -243,25 +223,11 @@ impl Plan<'_> {
 
     fn terminal_update(&self) -> PyResult<TerminalUpdate> {
         match (self.terminal_update.as_str(), &self.features) {
-            ("assign", Discretizer::Rounding { .. } | Discretizer::Cells { .. }) => Ok(TerminalUpdate::Assign),
+            ("assign", Discretizer::Tiles { .. }) => Err(unknown("terminal_update", "assign")),
+            ("assign", _) => Ok(TerminalUpdate::Assign),
             ("target", _) => Ok(TerminalUpdate::Target),
             (other, _) => Err(unknown("terminal_update", other)),
         }
-    }
-
-    /// Tile coding.
-    pub(crate) fn tiles<T: Real, const M: usize>(&self) -> PyResult<Tiles<T, M>> {
-        let Discretizer::Tiles { low, high, tiles, tilings, hashed_rows } = &self.features else {
-            return Err(PyValueError::new_err("discretizer must be 'tiles'"));
-        };
-        if [low.len(), high.len(), tiles.len()].iter().any(|&length| length != self.low.len()) {
-            return Err(PyValueError::new_err(format!("tiles must hold {} numbers", self.low.len())));
-        }
-        let tiles = Tiles::new(low, high, tiles, *tilings);
-        Ok(match *hashed_rows {
-            Some(rows) => tiles.hashed(rows),
-            None => tiles,
-        })
     }
 }
 

@@ -20,6 +20,18 @@ pub(crate) struct PythonEnvironment {
     seed: Py<PyAny>,
     /// The first action of the space, `Discrete.start`.
     first_action: i64,
+    /// The arrays that stand for the actions of a continuous space; none for a discrete one.
+    choices: Vec<Py<PyAny>>,
+}
+
+impl PythonEnvironment {
+    /// What the environment's step takes. An array is a copy, which the environment may write to.
+    fn action<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+        match self.choices.get(index) {
+            Some(choice) => choice.bind(py).call_method0(intern!(py, "copy")),
+            None => Ok(self.first_action.saturating_add_unsigned(index as u64).into_pyobject(py)?.into_any()),
+        }
+    }
 }
 
 /// An environment whose observations light rows by `R`.
@@ -59,8 +71,7 @@ impl<R: Reader> World for PythonWorld<R> {
     fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<R::Rows>, Failure> {
         Python::attach(|py| {
             let env = self.environment.env.bind(py);
-            let action = self.environment.first_action.saturating_add_unsigned(action as u64);
-            let answer = env.call_method1(intern!(py, "step"), (action,))?;
+            let answer = env.call_method1(intern!(py, "step"), (self.environment.action(py, action)?,))?;
             let (observation, reward, terminated, truncated, _info): (
                 Bound<'_, PyAny>,
                 f64,

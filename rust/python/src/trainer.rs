@@ -10,8 +10,9 @@ use pyo3::prelude::*;
 use qtab_core::Until;
 use qtab_core::worlds::{Recording, Recordings};
 
-use crate::dispatch::{Built, Kept, build};
+use crate::dispatch::build;
 use crate::door;
+use crate::learning::{Built, Kept};
 use crate::plan::Plan;
 
 /// Signals are looked for after this many steps of Rust: a fraction of a millisecond.

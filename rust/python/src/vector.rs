@@ -18,6 +18,7 @@ use qtab_core::vector::Autoreset;
 use crate::finite::{Process, Rules};
 use crate::model::Model;
 use crate::physics::Physics;
+use crate::trigonometry::{of_any_angle, single_precision};
 use actions::Acts;
 use fleet::{Fleet, Steps, Terms};
 use infos::{Masks, Nature, Says};
@@ -202,7 +203,8 @@ fn classics(py: Python<'_>, model: Model, terms: Terms) -> PyResult<Box<dyn Step
             boxed(py, env, Nature { fell: Some("steps_beyond_terminated"), ..nature }, terms)
         }
         Model::Acrobot(env) => {
-            let env = Acrobot { single: numpys_cosine_and_sine, ..env };
+            single_precision(py)?;
+            let env = Acrobot { single: of_any_angle, ..env };
             boxed(py, env, Nature::new(512, portraits::acrobot), terms)
         }
         Model::Pendulum(env) => boxed(py, env, Nature::new(2048, portraits::pendulum), terms),
@@ -229,16 +231,4 @@ fn toys(py: Python<'_>, kind: Kind, masks: Option<Vec<[i8; 6]>>, terms: Terms) -
     let says = Says { probability: |told: &Told<_>| told.probability, whole: false, masks: Some(masks) };
     let nature = Nature { says: Some(says), ..Nature::new(16_384, portraits::taxi) };
     boxed(py, Telling(Taxi { table, fickle }), nature, terms)
-}
-
-/// `NumPy`'s own, in single precision, which are not the platform's.
-fn numpys_cosine_and_sine(angle: f32) -> [f32; 2] {
-    Python::attach(|py| {
-        let ask = |name: &str| -> PyResult<f32> {
-            let numpy = py.import(intern!(py, "numpy"))?;
-            let angle = numpy.call_method1(intern!(py, "float32"), (angle,))?;
-            numpy.call_method1(name, (angle,))?.extract()
-        };
-        ["cos", "sin"].map(|name| ask(name).unwrap_or(f32::NAN))
-    })
 }

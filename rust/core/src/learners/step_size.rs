@@ -27,6 +27,21 @@ impl StepSize for f64 {
     fn end_episode(&mut self) {}
 }
 
+/// The same for every weight, of a lone row each, and another after every episode.
+impl StepSize for Schedule {
+    #[inline]
+    fn visit(&mut self, _weight: usize) {}
+
+    #[inline]
+    fn at(&self, _weight: usize) -> f64 {
+        self.value()
+    }
+
+    fn end_episode(&mut self) {
+        Schedule::end_episode(self);
+    }
+}
+
 /// A learning rate by a schedule, or by the number of visits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rate {

@@ -1,0 +1,51 @@
+"""The presets that solve classic control, by Gymnasium's thresholds."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+
+SOLVED = {
+    "CartPole-v0": ("tuned", 3, 195.0),
+    "CartPole-v1": ("solved", 5, 475.0),
+    "Acrobot-v1": ("solved", 3, -100.0),
+    "MountainCarContinuous-v0": ("solved", 5, 90.0),
+}
+"""For each environment the preset, how many seeds are tried, and what their last 100 episodes come to on average."""
+
+
+def best_average(run: qtab.Run) -> float:
+    """Over 100 consecutive episodes of the training."""
+    return float(np.convolve(run.episode_returns, np.full(100, 0.01), "valid").max())
+
+
+@pytest.mark.filterwarnings("ignore:.*out of date")
+@pytest.mark.parametrize("env", SOLVED)
+def test_every_seed_solves_its_environment_and_together_they_end_above_the_threshold(env: str) -> None:
+    preset, seeds, least = SOLVED[env]
+    runs = [qtab.train(env, preset=preset, seed=seed) for seed in range(seeds)]
+    threshold = gym.spec(env).reward_threshold
+    assert threshold is not None
+    for run in runs:
+        assert best_average(run) >= threshold, run.config.seed
+    assert np.mean([run.mean_returns(100)[-1] for run in runs]) >= least
+
+
+def test_pendulum_learns_to_stand() -> None:
+    # Upright in time costs some 140; hanging down costs 1,200 and more.
+    for seed in range(3):
+        assert qtab.train("Pendulum-v1", seed=seed).mean_returns(100)[-1] > -200
+
+
+def test_cart_poles_own_preset_is_a_grid_that_learns() -> None:
+    run = qtab.train("CartPole-v1", seed=0)
+    assert run.config.preset == "tuned"
+    assert run.q_table.shape == (3, 3, 6, 6, 2)
+    assert best_average(run) >= 475
+
+
+@pytest.mark.parametrize("env", ["CartPole-v1", "MountainCarContinuous-v0"])
+def test_the_presets_are_what_numpy_computes(env: str) -> None:
+    run = qtab.train(env, preset=SOLVED[env][0], seed=0)
+    assert qtab.verify(run, episodes=3).equal
