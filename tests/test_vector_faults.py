@@ -121,7 +121,9 @@ def test_forces_that_gymnasium_takes_are_taken(name):
         np.array([[1], [0], [-3]]),
         np.array([[1], [0], [3]], np.uint8),
         [[0.25], [1], [-7.5]],
-        [np.array([0.3], np.float32)] * 3 if name == "never" else [[0.3]] * 3,
+        [[0.3]] * 3,
+        [np.array([0.3], np.float32)] * 3,
+        (np.array([0.3]), [-0.5], np.array([2.5], np.float32)),
         np.array([[0.5, 9], [0.1, 9], [0.2, 9]], np.float32)[:, :1],
         np.asfortranarray(np.linspace(-1, 1, 6).reshape(3, 2))[:, 1:],
     ):
@@ -209,6 +211,7 @@ def test_bad_options_are_gymnasiums_to_refuse(name, options, error):
         ({"num_envs": 2.0}, TypeError, "num_envs must"),
         ({"num_envs": 2, "threads": 0}, ValueError, "threads must"),
         ({"num_envs": 2, "threads": "many"}, TypeError, "threads must"),
+        ({"num_envs": 2, "threads": 10**25}, ValueError, "threads must be an integer from 1 to 1024, got 1000"),
         ({"num_envs": 2, "goal": 1}, TypeError, "goal"),
         ({"num_envs": 2, "vector_kwargs": {"copy": False}}, gym.error.Error, "vector_kwargs"),
         ({"num_envs": 2, "wrappers": [gym.wrappers.TimeAwareObservation]}, gym.error.Error, "wrappers"),
@@ -217,6 +220,34 @@ def test_bad_options_are_gymnasiums_to_refuse(name, options, error):
 def test_bad_arguments_are_named(arguments, error, match):
     with pytest.raises(error, match=match):
         gym.make_vec("qtab/MountainCar-v0", **arguments)
+
+
+def test_the_longest_limit_is_none():
+    env = ours("CartPole-v1", 2, max_episode_steps=2**70)
+    env.reset(seed=0)
+    assert env.unwrapped.launched
+    assert not env.step(np.zeros(2, np.int64))[3].any()
+
+
+def test_an_array_that_was_given_another_size_is_refused():
+    env = ours("CartPole-v1", 3, copy=False)
+    observations, _ = env.reset(seed=0)
+    observations.resize((2, 4), refcheck=False)
+    with pytest.raises(ValueError, match="the array of observations must keep its 3 rows"):
+        env.step(np.zeros(3, np.int64))
+
+
+def test_there_are_no_others_than_the_sub_environments():
+    env = ours("CartPole-v1", 2).unwrapped
+    env.reset(seed=0)
+    for call in (
+        env.seed_of,
+        env.source,
+        lambda lane: env.draw_from(lane, None),
+        lambda lane: env.begin([lane], [3], None),
+    ):
+        with pytest.raises(IndexError, match="there is no sub-environment 2"):
+            call(2)
 
 
 def test_an_unknown_id_has_no_entry_point():
