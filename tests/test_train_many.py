@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
+from environments import make_brittle
 
 CAR = "MountainCar-v0"
 SHORT = {"episodes": 30}
@@ -244,20 +245,6 @@ def test_ctrl_c_keeps_the_finished_runs():
     )
     assert 0 < int(said[0]) == int(said[1]) < 100_000
     assert said[2] == "True"
-
-
-class Brittle(gym.Wrapper):
-    """Fails in its second episode when its first came from seed 2."""
-
-    def reset(self, *, seed=None, options=None):
-        if seed is None and self.bad:
-            raise RuntimeError("out of order")
-        self.bad = seed == 2
-        return self.env.reset(seed=seed, options=options)
-
-
-def make_brittle():
-    return Brittle(gym.make(CAR))
 
 
 def test_python_environments_run_in_processes_and_are_the_lone_runs():
