@@ -1,6 +1,7 @@
 """What a vector environment refuses, with which words, and that it then stands where it stood."""
 
 import copy
+import threading
 from typing import Any
 
 import gymnasium as gym
@@ -235,6 +236,32 @@ def test_an_array_that_was_given_another_size_is_refused():
     observations.resize((2, 4), refcheck=False)
     with pytest.raises(ValueError, match="the array of observations must keep its 3 rows"):
         env.step(np.zeros(3, np.int64))
+
+
+def test_two_threads_cannot_step_the_same_sub_environments_at_once():
+    env = ours("CartPole-v1", 8, threads=2)
+    env.reset(seed=0)
+    raised = []
+
+    class Meddling(np.random.Generator):
+        """Steps the environment from another thread while it is drawn from."""
+
+        def random(self, *arguments):
+            def meddle():
+                try:
+                    env.step(np.zeros(8, np.int64))
+                except RuntimeError as error:
+                    raised.append(str(error))
+
+            thread = threading.Thread(target=meddle)
+            thread.start()
+            thread.join()
+            return super().random(*arguments)
+
+    env.unwrapped.draw_from(3, Meddling(np.random.PCG64(0)))
+    while not raised:
+        env.step(np.zeros(8, np.int64))
+    assert set(raised) == {"another thread is stepping these sub-environments"}
 
 
 def test_there_are_no_others_than_the_sub_environments():

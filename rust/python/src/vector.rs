@@ -7,7 +7,7 @@ mod observations;
 mod portraits;
 mod source;
 
-use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple, PyType};
@@ -101,7 +101,8 @@ impl Vector {
     /// One step of all sub-environments, with the types that Gymnasium returns.
     fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
-        let mut this = slf.borrow_mut();
+        let busy = |_| PyRuntimeError::new_err("another thread is stepping these sub-environments");
+        let mut this = slf.try_borrow_mut().map_err(busy)?;
         let Self { fleet: Some(fleet), sources, missing, .. } = &mut *this else {
             drop(this);
             return slf.call_method1(intern!(py, "step_in_python"), (actions,));
