@@ -87,3 +87,17 @@ class Calls(gym.Wrapper):
         self.count += 1
         self.before(self.count - 1)
         return self.env.step(action)
+
+
+class Brittle(gym.Wrapper):
+    """Fails in its second episode when its first came from seed 2."""
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, dict[str, Any]]:
+        if seed is None and self.bad:
+            raise RuntimeError("out of order")
+        self.bad = seed == 2
+        return self.env.reset(seed=seed, options=options)
+
+
+def make_brittle() -> Brittle:
+    return Brittle(gym.make("MountainCar-v0"))

@@ -227,7 +227,7 @@ def test_a_number_finds_its_experiment():
         ({"runs": 1.5}, TypeError, "runs must be an integer of at least 1, got 1.5"),
         ({"runs": True}, TypeError, "runs must be"),
         ({"seed": -1}, ValueError, "seed must be an integer of at least 0, got -1"),
-        ({"threads": 0}, ValueError, "threads must be an integer of at least 1, got 0"),
+        ({"threads": 0}, ValueError, "threads must be an integer from 1 to 1024, got 0"),
         ({"progress": 1}, TypeError, "progress must be True, False or None, got 1"),
     ],
 )

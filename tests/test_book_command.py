@@ -44,7 +44,7 @@ def test_a_whole_figure_says_its_count(tmp_path):
         (["8.2", "--runs", "0"], "qtab book: error: runs must be an integer of at least 1, got 0"),
         (["8.2", "--runs", "many"], "many"),
         (["8.2", "--seed", "-1"], "seed must be an integer of at least 0, got -1"),
-        (["8.2", "--threads", "0"], "threads must be an integer of at least 1, got 0"),
+        (["8.2", "--threads", "0"], "threads must be an integer from 1 to 1024, got 0"),
         (["8.2", "--plot", "maze.tex.gz"], "plot must end in one of"),
         (["8.2", "--plot", "nowhere/maze.png"], "plot must be a file that can be written"),
         (["8.2", "--save", "nowhere/maze.csv"], "save must be a file that can be written"),

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import qtab
+from environments import make_brittle
 from qtab.sweeping import store as stores
 from sweeps import CAR, GRID, SMALL, assert_equal
 
@@ -79,20 +80,6 @@ def test_a_full_disk_is_an_error_and_breaks_nothing(tmp_path, small_pieces, monk
     study = qtab.sweep(CAR, GRID, store=path, callback=seen.append, **many)
     assert seen[-1].new < 3600
     assert_equal(study, qtab.sweep(CAR, GRID, **many))
-
-
-class Brittle(gym.Wrapper):
-    """Fails in its second episode when its first came from seed 2."""
-
-    def reset(self, *, seed=None, options=None):
-        if seed is None and self.bad:
-            raise RuntimeError("out of order")
-        self.bad = seed == 2
-        return self.env.reset(seed=seed, options=options)
-
-
-def make_brittle():
-    return Brittle(gym.make(CAR))
 
 
 def test_a_run_that_fails_is_recorded_and_the_others_go_on(tmp_path):

@@ -113,6 +113,28 @@ def test_a_table_too_large_for_its_tiles_is_hashed() -> None:
     assert qtab.verify(run, env=env).equal
 
 
+@pytest.mark.parametrize(
+    ("options", "match"),
+    [
+        ({"low": (0.0,), "high": (5e-324,)}, "high must lie neither so close above low nor so far, got"),
+        ({"low": (-1e308,), "high": (1e308,)}, "high must lie neither so close above low nor so far, got"),
+        ({"tiles": 2**31, "tilings": 2}, "tiles must come to fewer than 2.*32 along a component, times 2 tilings"),
+        ({"tiles": 2**70}, "tiles must come to fewer than 2.*32 along a component"),
+    ],
+)
+def test_tiles_that_cannot_be_told_apart_or_counted_are_refused(options: Any, match: str) -> None:
+    env = Shown(gym.spaces.Box(-np.inf, np.inf, (1,), np.float64), np.zeros(1))
+    with pytest.raises(ValueError, match=match):
+        qtab.train(env, discretizer="tiles", **{"low": (0.0,), "high": (1.0,), **options}, hashed_rows=100, episodes=1)
+
+
+def test_as_many_tiles_as_can_be_counted_are_told_apart() -> None:
+    env = Shown(gym.spaces.Box(0.0, 1.0, (1,), np.float64), np.array([1.0]))
+    options = {"discretizer": "tiles", "tiles": 2**30 - 1, "tilings": 4, "hashed_rows": 1000}
+    run = qtab.train(env, **options, episodes=2, seed=0)
+    assert qtab.verify(run, env=env).equal
+
+
 def test_one_number_of_tiles_is_for_every_component() -> None:
     run = qtab.train("MountainCar-v0", episodes=1, discretizer="tiles", tiles=5)
     assert run.config.tiles == (5, 5)

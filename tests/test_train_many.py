@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
+from environments import make_brittle
 
 CAR = "MountainCar-v0"
 SHORT = {"episodes": 30}
@@ -138,8 +139,9 @@ def test_summaries_have_a_number_a_run():
         ({"seeds": 2.0}, TypeError, "seeds must be an integer or a sequence"),
         ({"seeds": "12"}, TypeError, "seeds must be an integer or a sequence"),
         ({"seeds": [2**32], "bit_generator": "MT19937"}, ValueError, "seed must be an integer from 0 to 4294967295"),
-        ({"threads": 0}, ValueError, "threads must be an integer of at least 1, got 0"),
-        ({"threads": -2}, ValueError, "threads must be an integer of at least 1, got -2"),
+        ({"threads": 0}, ValueError, "threads must be an integer from 1 to 1024, got 0"),
+        ({"threads": -2}, ValueError, "threads must be an integer from 1 to 1024, got -2"),
+        ({"threads": 1025}, ValueError, "threads must be an integer from 1 to 1024, got 1025"),
         ({"threads": 1.5}, TypeError, "threads must be an integer"),
         ({"seed": 3}, TypeError, "seed is what seeds"),
         ({"episode": 3}, TypeError, "'episode' is no setting of a run"),
@@ -244,20 +246,6 @@ def test_ctrl_c_keeps_the_finished_runs():
     )
     assert 0 < int(said[0]) == int(said[1]) < 100_000
     assert said[2] == "True"
-
-
-class Brittle(gym.Wrapper):
-    """Fails in its second episode when its first came from seed 2."""
-
-    def reset(self, *, seed=None, options=None):
-        if seed is None and self.bad:
-            raise RuntimeError("out of order")
-        self.bad = seed == 2
-        return self.env.reset(seed=seed, options=options)
-
-
-def make_brittle():
-    return Brittle(gym.make(CAR))
 
 
 def test_python_environments_run_in_processes_and_are_the_lone_runs():

@@ -1,6 +1,7 @@
 """What a vector environment refuses, with which words, and that it then stands where it stood."""
 
 import copy
+import threading
 from typing import Any
 
 import gymnasium as gym
@@ -121,7 +122,9 @@ def test_forces_that_gymnasium_takes_are_taken(name):
         np.array([[1], [0], [-3]]),
         np.array([[1], [0], [3]], np.uint8),
         [[0.25], [1], [-7.5]],
-        [np.array([0.3], np.float32)] * 3 if name == "never" else [[0.3]] * 3,
+        [[0.3]] * 3,
+        [np.array([0.3], np.float32)] * 3,
+        (np.array([0.3]), [-0.5], np.array([2.5], np.float32)),
         np.array([[0.5, 9], [0.1, 9], [0.2, 9]], np.float32)[:, :1],
         np.asfortranarray(np.linspace(-1, 1, 6).reshape(3, 2))[:, 1:],
     ):
@@ -209,6 +212,7 @@ def test_bad_options_are_gymnasiums_to_refuse(name, options, error):
         ({"num_envs": 2.0}, TypeError, "num_envs must"),
         ({"num_envs": 2, "threads": 0}, ValueError, "threads must"),
         ({"num_envs": 2, "threads": "many"}, TypeError, "threads must"),
+        ({"num_envs": 2, "threads": 10**25}, ValueError, "threads must be an integer from 1 to 1024, got 1000"),
         ({"num_envs": 2, "goal": 1}, TypeError, "goal"),
         ({"num_envs": 2, "vector_kwargs": {"copy": False}}, gym.error.Error, "vector_kwargs"),
         ({"num_envs": 2, "wrappers": [gym.wrappers.TimeAwareObservation]}, gym.error.Error, "wrappers"),
@@ -217,6 +221,60 @@ def test_bad_options_are_gymnasiums_to_refuse(name, options, error):
 def test_bad_arguments_are_named(arguments, error, match):
     with pytest.raises(error, match=match):
         gym.make_vec("qtab/MountainCar-v0", **arguments)
+
+
+def test_the_longest_limit_is_none():
+    env = ours("CartPole-v1", 2, max_episode_steps=2**70)
+    env.reset(seed=0)
+    assert env.unwrapped.launched
+    assert not env.step(np.zeros(2, np.int64))[3].any()
+
+
+def test_an_array_that_was_given_another_size_is_refused():
+    env = ours("CartPole-v1", 3, copy=False)
+    observations, _ = env.reset(seed=0)
+    observations.resize((2, 4), refcheck=False)
+    with pytest.raises(ValueError, match="the array of observations must keep its 3 rows"):
+        env.step(np.zeros(3, np.int64))
+
+
+def test_two_threads_cannot_step_the_same_sub_environments_at_once():
+    env = ours("CartPole-v1", 8, threads=2)
+    env.reset(seed=0)
+    raised = []
+
+    class Meddling(np.random.Generator):
+        """Steps the environment from another thread while it is drawn from."""
+
+        def random(self, *arguments):
+            def meddle():
+                try:
+                    env.step(np.zeros(8, np.int64))
+                except RuntimeError as error:
+                    raised.append(str(error))
+
+            thread = threading.Thread(target=meddle)
+            thread.start()
+            thread.join()
+            return super().random(*arguments)
+
+    env.unwrapped.draw_from(3, Meddling(np.random.PCG64(0)))
+    while not raised:
+        env.step(np.zeros(8, np.int64))
+    assert set(raised) == {"another thread is stepping these sub-environments"}
+
+
+def test_there_are_no_others_than_the_sub_environments():
+    env = ours("CartPole-v1", 2).unwrapped
+    env.reset(seed=0)
+    for call in (
+        env.seed_of,
+        env.source,
+        lambda lane: env.draw_from(lane, None),
+        lambda lane: env.begin([lane], [3], None),
+    ):
+        with pytest.raises(IndexError, match="there is no sub-environment 2"):
+            call(2)
 
 
 def test_an_unknown_id_has_no_entry_point():

@@ -10,6 +10,8 @@ import numpy as np
 
 LARGEST_COUNT = 2**63 - 1
 """Episodes and steps are counted in 64 bits."""
+MOST_THREADS = 1024
+"""Far more than any machine has cores: a system that has no thread left to give ends the process."""
 
 
 def real(name: str, value: Any, low: float, high: float) -> float:
@@ -82,6 +84,16 @@ def count(name: str, value: Any, least: int) -> int:
     if number > LARGEST_COUNT:
         raise ValueError(f"{name} must be less than 2**63, got {value!r}")
     return number
+
+
+def threads(value: Any) -> int:
+    """Returns a number of threads as a Python integer.
+
+    Raises:
+        TypeError: if it is no integer (a boolean is none, 5.0 neither).
+        ValueError: if it is too small or too large.
+    """
+    return integer("threads", value, least=1, most=MOST_THREADS)
 
 
 def choice(name: str, value: Any, choices: Collection[str]) -> str:

@@ -101,10 +101,10 @@ def thread_count(threads: int | None) -> int:
 
     Raises:
         TypeError: if it is no integer.
-        ValueError: if it is less than one.
+        ValueError: if it is less than one, or more than a process can have.
     """
     if threads is not None:
-        return checks.integer("threads", threads, least=1)
+        return checks.threads(threads)
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -145,10 +145,10 @@ def _are_actions_of(config: Config, choices: Actions) -> bool:
         return values is None and wanted is None
     if values.dtype not in FLOATS or values.ndim != 2 or len(values) != choices.count or not np.isfinite(values).all():
         return False
-    return (
-        isinstance(wanted, int)
-        or np.array(wanted, values.dtype).reshape(-1, values.shape[1]).tolist() == values.tolist()
-    )
+    components = values.shape[1]
+    if isinstance(wanted, int):
+        return components > 0 and bool(len(values) == wanted**components)
+    return np.array_equal(np.array(wanted, values.dtype).reshape(-1, components), values)
 
 
 def _check_shapes(config: Config, features: Features, arrays: dict[str, Any]) -> None:

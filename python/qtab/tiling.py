@@ -14,6 +14,9 @@ from qtab.config import Config
 from qtab.features import Features, box, check_size, counts, limits
 from qtab.hashing import hashed_row
 
+MOST_PARTS = 2**32
+"""Each tile has as many parts as there are tilings, and a place is counted in parts."""
+
 
 @dataclass(frozen=True)
 class Tiling(Features):
@@ -26,6 +29,24 @@ class Tiling(Features):
     tilings: int
     hashed_rows: int | None
     """How many rows the tilings share; None gives each tile its own."""
+
+    def __post_init__(self) -> None:
+        """Refuses what no tile can be found in.
+
+        Raises:
+            ValueError: where a tile is narrower than numbers are, or the parts of tiles outnumber 32 bits.
+        """
+        if max(self.tiles) * self.tilings >= MOST_PARTS:
+            raise ValueError(
+                f"tiles must come to fewer than 2**32 along a component, times {self.tilings} tilings, got {self.tiles}"
+            )
+        low, high = self.edges
+        with np.errstate(over="ignore", divide="ignore"):
+            tiles_a_unit = np.array(self.tiles) / (high - low)
+        if not (np.isfinite(tiles_a_unit) & (tiles_a_unit > 0)).all():
+            raise ValueError(
+                f"high must lie neither so close above low nor so far, got {low.tolist()} and {high.tolist()}"
+            )
 
     @property
     def rows(self) -> int:

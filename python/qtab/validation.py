@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import checks, names
+from qtab.actions import MOST_ACTIONS
 from qtab.options import OPTIONS, refuse_strangers
 
 LARGEST_MT19937_SEED = 2**32 - 1
 MOST_TILINGS = 32
 MOST_BINS = 1_000_000
-MOST_ACTIONS = 2**16
 
 
 def validated(fields: Mapping[str, Any]) -> dict[str, Any]:

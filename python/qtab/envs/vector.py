@@ -72,7 +72,7 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._stage: list[gym.Env[Any, Any]] = []
         self._python: SubEnvironments | None = None
-        threads = None if threads is None else checks.integer("threads", threads, least=1)
+        threads = None if threads is None else checks.threads(threads)
         if not self._launched(threads):
             self._leave_rust()
 
@@ -88,12 +88,14 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         except (TypeError, ValueError):  # a table that Gymnasium may take, but Rust does not
             return False
         limited = self._example.has_wrapper_attr("_max_episode_steps")
+        limit = self._example.get_wrapper_attr("_max_episode_steps") if limited else None
         return self.launch(
             env,
             kind,
             [env.action_mask(state).tolist() for state in range(500)] if isinstance(env, TaxiEnv) else None,
             self.num_envs,
-            self._example.get_wrapper_attr("_max_episode_steps") if limited else None,
+            # Gymnasium takes any integer, and nobody lives to see the largest of 64 bits.
+            None if limit is None else min(limit, checks.LARGEST_COUNT),
             self.autoreset_mode.value,
             self.copy,
             threads,

@@ -105,12 +105,15 @@ impl Values {
 
 /// The first number of a continuous action, in the dtype of its array.
 pub(crate) fn force(action: &Bound<'_, PyAny>) -> Option<Scalar> {
-    let force = if let Ok(array) = action.cast::<PyArray1<f32>>() {
-        Scalar::Single(array.get_owned(0)?)
-    } else {
-        Scalar::Double(action.cast::<PyArray1<f64>>().ok()?.get_owned(0)?)
-    };
-    (f64::from(force).abs() <= LARGEST_FORCE).then_some(force)
+    first(action).filter(|&force| f64::from(force).abs() <= LARGEST_FORCE)
+}
+
+/// The same, however large.
+pub(crate) fn first(array: &Bound<'_, PyAny>) -> Option<Scalar> {
+    if let Ok(array) = array.cast::<PyArray1<f32>>() {
+        return array.get_owned(0).map(Scalar::Single);
+    }
+    array.cast::<PyArray1<f64>>().ok()?.get_owned(0).map(Scalar::Double)
 }
 
 /// A number as `NumPy` wraps it; an array's item comes sooner than a call of the type.

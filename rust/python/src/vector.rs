@@ -7,7 +7,7 @@ mod observations;
 mod portraits;
 mod source;
 
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple, PyType};
@@ -101,7 +101,8 @@ impl Vector {
     /// One step of all sub-environments, with the types that Gymnasium returns.
     fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
-        let mut this = slf.borrow_mut();
+        let busy = |_| PyRuntimeError::new_err("another thread is stepping these sub-environments");
+        let mut this = slf.try_borrow_mut().map_err(busy)?;
         let Self { fleet: Some(fleet), sources, missing, .. } = &mut *this else {
             drop(this);
             return slf.call_method1(intern!(py, "step_in_python"), (actions,));
@@ -124,6 +125,9 @@ impl Vector {
         start: Option<[f64; 2]>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyDict>)> {
         let Some(fleet) = &mut self.fleet else { return Err(PyValueError::new_err("no sub-environments")) };
+        if let Some(&lane) = lanes.iter().find(|&&lane| lane >= self.sources.len()) {
+            return Err(nobody(lane));
+        }
         let seeds = seeds.iter().map(|seed| seed.as_ref().map(words).transpose()).collect::<PyResult<Vec<_>>>()?;
         for (&lane, seed) in lanes.iter().zip(seeds) {
             if let Some(seed) = seed {
@@ -155,21 +159,23 @@ impl Vector {
 
     /// What a sub-environment was seeded with.
     fn seed_of<'py>(&self, py: Python<'py>, lane: usize) -> PyResult<Bound<'py, PyAny>> {
-        let bytes: Vec<u8> = self.seeds[lane].iter().flat_map(|word| word.to_le_bytes()).collect();
+        let seed = self.seeds.get(lane).ok_or_else(|| nobody(lane))?;
+        let bytes: Vec<u8> = seed.iter().flat_map(|word| word.to_le_bytes()).collect();
         py.get_type::<pyo3::types::PyInt>().call_method1("from_bytes", (bytes.as_slice(), "little"))
     }
 
     /// Its generator, or how many words it has drawn since it was seeded and its buffered half.
     fn source<'py>(&self, py: Python<'py>, lane: usize) -> PyResult<Bound<'py, PyAny>> {
-        match &self.sources[lane] {
+        match self.sources.get(lane).ok_or_else(|| nobody(lane))? {
             Source::Own(stream) => Ok((stream.drawn(), stream.half()).into_pyobject(py)?.into_any()),
             Source::Python(generator) => Ok(generator.bind(py).clone()),
         }
     }
 
     /// It draws from that `numpy.random.Generator` from now on.
-    fn draw_from(&mut self, lane: usize, generator: Py<PyAny>) {
-        self.sources[lane] = Source::Python(generator);
+    fn draw_from(&mut self, lane: usize, generator: Py<PyAny>) -> PyResult<()> {
+        *self.sources.get_mut(lane).ok_or_else(|| nobody(lane))? = Source::Python(generator);
+        Ok(())
     }
 
     /// The attributes of each, how many steps its episode has had, and whether it is over: all that it takes to step it
@@ -184,6 +190,10 @@ impl Vector {
     fn retire(&mut self) {
         self.fleet = None;
     }
+}
+
+fn nobody(lane: usize) -> PyErr {
+    PyIndexError::new_err(format!("there is no sub-environment {lane}"))
 }
 
 fn boxed<E>(py: Python<'_>, env: E, nature: Nature<E>, terms: Terms) -> PyResult<Box<dyn Steps>>

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 use qtab_core::envs::Scalar;
 
-use crate::numbers::{LARGEST_FORCE, double, index, numpy_scalar};
+use crate::numbers::{LARGEST_FORCE, double, first, index, numpy_scalar};
 
 /// So few are sooner asked for one by one than borrowed.
 const FEW: usize = 8;
@@ -135,12 +135,10 @@ impl Acts for Scalar {
             sized(actions, &shape, into.len())?;
             for (lane, place) in into.iter_mut().enumerate().filter(|(lane, _)| !idle(*lane)) {
                 let row = actions.get_item(lane)?;
-                let force = row.get_item(0).ok().filter(|_| row.len().is_ok_and(|length| length == 1));
-                let force = force
-                    .as_ref()
-                    .and_then(double)
+                let plain = || double(&row.get_item(0).ok()?).map(Self::Python);
+                let force = if row.len().is_ok_and(|length| length == 1) { first(&row).or_else(plain) } else { None };
+                *place = force
                     .ok_or_else(|| PyTypeError::new_err(format!("actions[{lane}] must hold one number, got {row}")))?;
-                *place = Self::Python(force);
             }
         }
         for (lane, place) in into.iter_mut().enumerate() {

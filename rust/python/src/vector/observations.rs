@@ -2,6 +2,7 @@
 
 use numpy::ndarray::aview2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -24,7 +25,13 @@ impl<const N: usize> Shows for [f32; N] {
     }
 
     fn put(all: &[Self], places: &Bound<'_, PyAny>) -> PyResult<()> {
-        places.cast::<PyArray2<f32>>()?.try_readwrite()?.as_slice_mut()?.copy_from_slice(all.as_flattened());
+        let mut places = places.cast::<PyArray2<f32>>()?.try_readwrite()?;
+        let places = places.as_slice_mut()?;
+        // Whoever was handed the array may have given it another size.
+        if places.len() != all.len() * N {
+            return Err(PyValueError::new_err(format!("the array of observations must keep its {} rows", all.len())));
+        }
+        places.copy_from_slice(all.as_flattened());
         Ok(())
     }
 
