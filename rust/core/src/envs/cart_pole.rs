@@ -1,7 +1,7 @@
 //! `CartPole-v1`: a pole on a cart that is pushed left or right (Barto, Sutton & Anderson, 1983; R. V. Florian, "Correct
 //! equations for the dynamics of the cart-pole system", 2005).
 
-use super::wide::{self, Wide};
+use super::wide::{Wide, step_lanes};
 use crate::env::{Env, Parameters, Step, Switch};
 use crate::random::Draw;
 
@@ -197,7 +197,7 @@ impl Env for CartPole {
         terminated: &mut [bool],
         idle: &[bool],
     ) {
-        wide::step_lanes(self, states, actions, rewards, terminated, idle);
+        step_lanes(self, states, actions, rewards, terminated, idle);
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 
 mod wide;
 
-use super::wide as lanes;
+use super::wide::step_lanes;
 use crate::env::{Env, Parameters, Step};
 use crate::hint::seldom;
 use crate::random::Draw;
@@ -123,7 +123,7 @@ impl Env for MountainCar {
         terminated: &mut [bool],
         idle: &[bool],
     ) {
-        lanes::step_lanes(self, states, actions, rewards, terminated, idle);
+        step_lanes(self, states, actions, rewards, terminated, idle);
     }
 
     #[inline]
