@@ -179,3 +179,8 @@ def test_a_settings_sweep_takes_bins_and_edges() -> None:
     rows = [((0.0,), ()), ((), (0.0,))]
     table = qtab.sweep("MountainCar-v0", {"edges": rows}, seeds=2, episodes=5, discretizer="edges")
     assert len(table.columns["seed"]) == 4
+
+
+def test_discrete_observations_take_no_bins() -> None:
+    with pytest.raises(ValueError, match=r"got Discrete\(500\); discretizer must be left out for it$"):
+        qtab.train("Taxi-v4", discretizer="bins")

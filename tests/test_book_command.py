@@ -84,3 +84,7 @@ def test_ctrl_c_ends_it_and_leaves_no_file(tmp_path):
     )
     assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
     assert not (tmp_path / "cliff.png").exists()
+
+
+def test_a_picture_of_no_experiment_is_refused(tmp_path):
+    assert "NAME must be given" in refused("book", "--plot", "maze.png", cwd=tmp_path)

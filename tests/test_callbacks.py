@@ -113,3 +113,8 @@ def test_a_trainer_lists_the_episodes_since_any_other():
     for since in (0, 4, 10, 11):
         for some, all_of_them in zip(trainer.episodes(since=since), every, strict=True):
             assert some.tobytes() == all_of_them[since:].tobytes()
+
+
+def test_a_callback_that_cannot_be_called_is_refused_by_name() -> None:
+    with pytest.raises(TypeError, match=r"^callback must be callable, got 3$"):
+        qtab.train("MountainCar-v0", episodes=1, callback=3)  # type: ignore[arg-type]

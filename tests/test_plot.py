@@ -54,7 +54,7 @@ def test_a_huge_run_is_thinned_but_its_means_are_not() -> None:
     run = qtab.train("MountainCar-v0", episodes=30_000, seed=0, max_episode_steps=2)
     cloud, means = qtab.plot(run).lines
     assert len(cloud.get_xdata()) == 20_000
-    assert len(means.get_xdata()) == 300
+    assert len(means.get_xdata()) == 30  # of 1,000 episodes each: 300 would be a thick band
 
 
 def test_an_ending_that_matplotlib_does_not_write_is_refused() -> None:
@@ -131,3 +131,9 @@ def test_on_a_terminal_the_bar_and_the_lines_share_the_screen(tmp_path: Path) ->
     lines = [line.rpartition("\r")[2] for line in text.split("\r\n")]
     assert [line for line in lines if line.startswith("Episode")][-1].startswith("Episode 200 Average Reward: ")
     assert lines[-2].startswith("Mean return over the last 100 episodes")
+
+
+def test_an_optimum_that_is_none_is_refused_by_name() -> None:
+    run = qtab.train("MountainCar-v0", seed=0, episodes=10)
+    with pytest.raises(TypeError, match=r"^optimum must be a number, or what qtab.optimum returns, got .best."):
+        qtab.plot(run, optimum="best")  # type: ignore[arg-type]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab.summaries import block_of
 
 
 @pytest.fixture(scope="module")
@@ -86,3 +87,23 @@ def test_presets_are_named_per_environment():
 def test_an_explicit_setting_wins_over_the_preset():
     run = qtab.train("MountainCar-v0", preset="article", terminal_update="target", scale=(5, 50), seed=0, episodes=1)
     assert (run.config.terminal_update, run.config.scale) == ("target", (5.0, 50.0))
+
+
+def test_a_run_shows_itself_in_a_line() -> None:
+    run = qtab.train("MountainCar-v0", episodes=150, seed=0)
+    assert repr(run) == "<Run of MountainCar-v0: q_learning, seed 0, 150 episodes, the last 100 at -200.00>"
+    runs = qtab.train_many("MountainCar-v0", seeds=3, episodes=150)
+    assert repr(runs) == "<Runs of MountainCar-v0: q_learning, 3 seeds, 150 episodes each, their last 100 at -200.00>"
+
+
+@pytest.mark.parametrize("use", [qtab.plot, qtab.evaluate, qtab.verify])
+def test_what_is_no_run_is_refused_by_name(use) -> None:
+    with pytest.raises(TypeError, match=r"^run must be a Run, got 3$"):
+        use(3)
+    with pytest.raises(TypeError, match=r"^run must be a Run, got 'run.npz'; qtab.load reads one from a file$"):
+        use("run.npz")
+
+
+@pytest.mark.parametrize(("episodes", "block"), [(5_000, 100), (10_000, 100), (10_001, 1_000), (1_000_000, 10_000)])
+def test_long_runs_are_averaged_over_more_episodes(episodes: int, block: int) -> None:
+    assert block_of(episodes) == block

@@ -3,6 +3,7 @@
 import math
 import operator
 from collections.abc import Collection
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -96,3 +97,14 @@ def choice(name: str, value: Any, choices: Collection[str]) -> str:
     if value not in choices:
         raise ValueError(f"{name} must be one of {listed}, got {value!r}")
     return value
+
+
+def instance(name: str, value: Any, kind: type) -> None:
+    """Refuses what is not of a class of this package.
+
+    Raises:
+        TypeError: if it is not; a file's name most likely wants :func:`qtab.load`.
+    """
+    if not isinstance(value, kind):
+        hint = "; qtab.load reads one from a file" if isinstance(value, str | PathLike) else ""
+        raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}{hint}")

@@ -6,6 +6,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab import checks
 from qtab.models import spec_of
 from qtab.run import Run
 from qtab.training import train
@@ -64,6 +65,7 @@ def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.En
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """
+    checks.instance("run", run, Run)
     config = run.config
     # With α = 0 and ε = 0 training is evaluation: one loop serves both.
     played = train(

@@ -88,7 +88,10 @@ def box(env: gym.Env) -> Bounds:
     """
     space = env.observation_space
     if not isinstance(space, spaces.Box) or len(space.shape) != 1 or space.dtype not in FLOATS:
-        raise ValueError(f"the observation space must be a Box of one float axis, got {space}")
+        hint = (
+            "; discretizer must be left out for it" if isinstance(space, spaces.Discrete | spaces.MultiDiscrete) else ""
+        )
+        raise ValueError(f"the observation space must be a Box of one float axis, got {space}{hint}")
     return cast(Bounds, (space.low, space.high))
 
 

@@ -5,10 +5,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from qtab import checks
 from qtab.extras import missing
 from qtab.files import replacing
 from qtab.plots.axes import mark_optimum
 from qtab.run import Run
+from qtab.summaries import block_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,13 +22,15 @@ LARGEST_CLOUD = 20_000
 """More single episodes than this are thinned out: more dots would only darken the cloud."""
 
 
-def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100, optimum: "Optimum | float | None" = None) -> "Axes":
+def plot(
+    run: Run, ax: "Axes | None" = None, *, block: int | None = None, optimum: "Optimum | float | None" = None
+) -> "Axes":
     """Draws the average return of each block of episodes, as the article does, over the single returns.
 
     Args:
         run: What to draw.
         ax: Where to draw; None makes a figure of its own.
-        block: How many episodes an average is taken over.
+        block: How many episodes an average is taken over; None takes 100, and more in a run of more than 10,000.
         optimum: What :func:`qtab.optimum` found, or a return: a dashed line, its number in the legend.
 
     Returns:
@@ -34,9 +38,12 @@ def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100, optimum: "Opti
 
     Raises:
         ModuleNotFoundError: without matplotlib; it names the ``pip install``.
-        TypeError: if ``block`` is no integer.
-        ValueError: if it is less than one.
+        TypeError: if ``run`` is no :class:`qtab.Run`, ``block`` no integer or ``optimum`` neither of the two.
+        ValueError: if ``block`` is less than one.
     """
+    checks.instance("run", run, Run)
+    if block is None:
+        block = block_of(len(run.episode_returns))
     means = run.mean_returns(block)
     if ax is None:
         ax = _figure().subplots()
@@ -63,7 +70,7 @@ def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100, optimum: "Opti
             color="#0b3c6f",
             linewidth=2.2,
             solid_capstyle="round",
-            label=f"mean of {block} episodes",
+            label=f"mean of {block:,} episodes",
         )
     mark_optimum(ax, optimum)
     ax.set_xlabel("Episode")
@@ -74,9 +81,8 @@ def plot(run: Run, ax: "Axes | None" = None, *, block: int = 100, optimum: "Opti
     ax.xaxis.set_major_formatter("{x:,.0f}")
     ax.grid(alpha=0.25)
     ax.spines[["top", "right"]].set_visible(False)
-    # The optimum is at the top, where the legend would be.
-    below = {"bbox_to_anchor": (0.0, -0.12), "ncols": 3}
-    legend = ax.legend(loc="upper left", frameon=False, markerscale=2, **({} if optimum is None else below))
+    # Below: a curve that learns soon leaves no room above.
+    legend = ax.legend(loc="upper left", bbox_to_anchor=(0.0, -0.12), ncols=3, frameon=False, markerscale=2)
     for handle in legend.legend_handles:
         if handle is not None:
             handle.set_alpha(1)

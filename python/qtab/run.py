@@ -11,13 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 from qtab import checks
 from qtab.config import Config
 from qtab.features import Features
+from qtab.summaries import FINAL_EPISODES
 from qtab.tiling import Tiling
 
 if TYPE_CHECKING:
     import os
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Run:
     """A finished or interrupted run: what it was made from, what it brought, what it learned."""
 
@@ -41,6 +42,14 @@ class Run:
     """Of qtab, Gymnasium, NumPy and Python, and the platform."""
     recordings: tuple["Recording", ...] = field(default=(), repr=False)
     """The last episodes, where they were asked for: what it takes to play them again. Not saved."""
+
+    def __repr__(self) -> str:
+        """One line: a prompt that shows a run should not show its table."""
+        config, finished = self.config, len(self.episode_returns)
+        episodes = f"{finished}" if self.completed else f"{finished} of {config.episodes}"
+        last = self.episode_returns[-FINAL_EPISODES:]
+        mean = f", the last {len(last)} at {last.mean():.2f}" if finished else ""
+        return f"<Run of {config.env}: {config.algorithm}, seed {config.seed}, {episodes} episodes{mean}>"
 
     @property
     def q_table(self) -> NDArray[np.float64]:

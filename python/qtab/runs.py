@@ -11,10 +11,10 @@ from qtab import checks
 from qtab.config import Config
 from qtab.features import Features
 from qtab.run import Run
-from qtab.summaries import block_means, summarize
+from qtab.summaries import FINAL_EPISODES, block_means, summarize
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Runs:
     """Many runs of one config, a row each. ``runs[i]`` is the run of ``seeds[i]``, where the tables were kept."""
 
@@ -38,6 +38,15 @@ class Runs:
     """How long it all took, by the wall clock."""
     versions: Mapping[str, str]
     """Of qtab, Gymnasium, NumPy and Python, and the platform."""
+
+    def __repr__(self) -> str:
+        runs, episodes = self.episode_returns.shape
+        mean = (
+            f", their last {min(episodes, FINAL_EPISODES)} at {self.final_returns().mean():.2f}"
+            if self.episode_returns.size
+            else ""
+        )
+        return f"<Runs of {self.config.env}: {self.config.algorithm}, {runs} seeds, {episodes} episodes each{mean}>"
 
     def __len__(self) -> int:
         return len(self.seeds)

@@ -73,7 +73,7 @@ def grid(env: gym.Env, scale: tuple[float, ...], actions: Actions | None = None)
     if len(scale) != len(low):
         raise ValueError(
             f"scale must hold {len(low)} numbers for this observation space, the cells per unit of each component, "
-            f"got {scale!r}"
+            f"got {scale!r}; or discretizer 'bins' or 'tiles' instead"
         )
     choices = choices_of(env.action_space, None) if actions is None else actions
     table = Grid(low, high, choices, np.array(scale, dtype=np.float64))

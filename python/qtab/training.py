@@ -38,7 +38,8 @@ def train(
         callback_every: How many episodes lie between two calls.
         record: How many of the last episodes to keep for playing again (``run.recordings``).
         progress: Whether to show a progress bar; None shows one on a terminal, to runs of more than a second.
-        **overrides: The fields of :class:`qtab.Config`. An explicit one wins over the preset, the preset over the
+        **overrides: The fields of :class:`qtab.Config`, ``algorithm=``, ``discretizer=`` and ``preset=`` among them;
+            ``qtab train --help`` says what each means. An explicit one wins over the preset, the preset over the
             default.
 
     Returns:
@@ -53,6 +54,8 @@ def train(
             as ``.run``.
     """
     callback_every = checks.integer("callback_every", callback_every, least=1)
+    if callback is not None and not callable(callback):
+        raise TypeError(f"callback must be callable, got {callback!r}")
     record = checks.count("record", record, least=0)
     resolved = resolve(env, overrides)
     say_limit(resolved)

@@ -77,6 +77,7 @@ def verify(
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range, or a run that was interrupted and so has no table to compare.
     """
+    checks.instance("run", run, Run)
     finished = len(run.episode_returns)
     if episodes is None and not run.completed:
         raise ValueError(f"episodes must be given for a run that was stopped early, at most {finished}")

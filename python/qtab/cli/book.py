@@ -8,7 +8,7 @@ import tyro
 
 from qtab import book
 from qtab.cli.parsing import parse
-from qtab.cli.usage import refusing
+from qtab.cli.usage import UsageError, refusing
 from qtab.files import check_writable
 from qtab.plotting import check_format
 from qtab.progress import write
@@ -37,6 +37,8 @@ class Arguments:
 def run(arguments: list[str]) -> int:
     """Runs what the arguments ask for; returns the exit code."""
     asked = parse(Arguments, COMMAND, arguments)
+    if asked.experiment is None and (asked.plot is not None or asked.save is not None):
+        raise UsageError("NAME must be given, of an experiment that qtab book lists")
     if asked.experiment is None:
         for name, experiment in book.EXPERIMENTS.items():
             write(f"{name:14}{experiment.title}")

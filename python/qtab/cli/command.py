@@ -11,11 +11,11 @@ from qtab.cli.usage import UsageError, one_line
 SUBCOMMANDS = {
     "train": "train a tabular agent, plot and save what it learned, show its last episodes",
     "verify": "replay a saved run through Gymnasium and NumPy, and compare byte for byte",
-    "bench": "time this package against Gymnasium and the article's loop",
     "optimum": "compute the best that can be returned: exactly from a table, or the best that is known",
     "sweep": "train many settings over many seeds, as a file says; called again, it goes on",
-    "book": "run an experiment of Sutton & Barto's book: its settings, a table, a figure",
     "report": "turn a sweep's store into tables, pictures and one HTML page",
+    "book": "run an experiment of Sutton & Barto's book: its settings, a table, a figure",
+    "bench": "time this package against Gymnasium and the article's loop",
 }
 """Each is a module of this package with ``run(arguments) -> exit code``."""
 

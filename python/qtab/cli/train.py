@@ -18,13 +18,10 @@ from qtab.planning import Optimum, optimum
 from qtab.progress import write
 from qtab.resolution import Resolved, resolve
 from qtab.run import Run
+from qtab.summaries import FINAL_EPISODES, block_of
 from qtab.training import train_resolved
 
 COMMAND = "qtab train"
-BLOCK = 100
-"""Episodes to an average, as in the article."""
-
-
 QUICK = 10**8
 """So many looks at a state and an action take less than a second: the optimum is computed unasked."""
 
@@ -117,9 +114,10 @@ def _truth(resolved: Resolved) -> Optimum:
 
 
 def _train(resolved: Resolved, outputs: Outputs, truth: Optimum | None) -> None:
-    averages = _averages()
+    block = block_of(resolved.config.episodes)
+    averages = _averages(block)
     try:
-        finished = train_resolved(resolved, averages, BLOCK, record=outputs.shown)
+        finished = train_resolved(resolved, averages, block, record=outputs.shown)
     except BaseException as error:
         partial = getattr(error, "run", None)
         if isinstance(partial, Run):
@@ -140,22 +138,22 @@ def _tell(run: Run, outputs: Outputs, truth: Optimum | None) -> None:
     outputs.keep(run, truth)
 
 
-def _averages() -> Callable[[Progress], None]:
+def _averages(block: int) -> Callable[[Progress], None]:
     """Returns a callback that prints the average return of each block of episodes, as the article does."""
     printed = 0
 
     def callback(progress: Progress) -> None:
         nonlocal printed
-        while printed + BLOCK <= progress.episodes:
-            average = float(progress.returns[printed : printed + BLOCK].mean())
-            write(f"Episode {printed + BLOCK} Average Reward: {average}")
-            printed += BLOCK  # last: a line that Ctrl-C cut off is written again
+        while printed + block <= progress.episodes:
+            average = float(progress.returns[printed : printed + block].mean())
+            write(f"Episode {printed + block} Average Reward: {round(average, 4)}")
+            printed += block  # last: a line that Ctrl-C cut off is written again
 
     return callback
 
 
 def _summary(run: Run) -> str:
-    returns, steps = run.episode_returns[-BLOCK:], int(run.episode_lengths.sum())
+    returns, steps = run.episode_returns[-FINAL_EPISODES:], int(run.episode_lengths.sum())
     if len(returns) == 0:
         return f"No episode was finished in {run.seconds:.3g} s"
     speed = f" ({steps / run.seconds:,.0f} steps/s)" if run.seconds > 0 else ""

@@ -37,6 +37,8 @@ def mark_optimum(ax: "Axes", optimum: "Optimum | float | None") -> None:
     """Draws a dashed line at the optimum, or at a return of one's own, with its number in the legend."""
     if optimum is None:
         return
+    if not hasattr(optimum, "expected_return") and not isinstance(optimum, int | float):
+        raise TypeError(f"optimum must be a number, or what qtab.optimum returns, got {optimum!r}")
     value, label = (
         (float(optimum), "optimum") if isinstance(optimum, int | float) else (optimum.expected_return, optimum.label)
     )

@@ -1,6 +1,8 @@
 //! Eligibility traces, kept only where they are alive: a step costs as many operations as there are traces, however large
 //! the table.
 
+use std::hint::select_unpredictable;
+
 use super::{Rate, StepSize};
 use crate::table::Table;
 
@@ -15,16 +17,21 @@ pub enum Trace {
     Clearing,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Alive {
     weight: u32,
     trace: f64,
 }
 
+/// So many traces are corrected without asking whether they are the last.
+const BLOCK: usize = 16;
+
 /// z, one trace a weight. A trace that falls to the cutoff or below is dropped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traces {
+    /// Those alive are the first `count`.
     alive: Vec<Alive>,
+    count: usize,
     /// Where in `alive` a weight's trace is, counted from 1; 0 where it has none.
     places: Vec<u32>,
     cutoff: f64,
@@ -33,17 +40,17 @@ pub struct Traces {
 impl Traces {
     /// No trace alive, of so many weights.
     pub fn new(weights: usize, cutoff: f64) -> Self {
-        Self { alive: Vec::new(), places: vec![0; weights], cutoff }
+        Self { alive: Vec::new(), count: 0, places: vec![0; weights], cutoff }
     }
 
     /// How many are alive.
     pub fn len(&self) -> usize {
-        self.alive.len()
+        self.count
     }
 
     /// Whether none is alive.
     pub fn is_empty(&self) -> bool {
-        self.alive.is_empty()
+        self.count == 0
     }
 
     /// The trace of a weight.
@@ -58,16 +65,18 @@ impl Traces {
     /// Changes the trace of a weight, which becomes alive.
     #[inline]
     pub fn change(&mut self, weight: usize, change: impl FnOnce(f64) -> f64) {
-        match self.places[weight] {
-            0 => {
-                self.alive.push(Alive { weight: weight as u32, trace: change(0.0) });
-                self.places[weight] = self.alive.len() as u32;
-            }
-            place => {
-                let trace = &mut self.alive[place as usize - 1].trace;
-                *trace = change(*trace);
-            }
+        if self.count == self.alive.len() {
+            self.alive.push(Alive::default());
         }
+        // Without a branch: whether a trace is alive already is hard to foresee.
+        let place = (self.places[weight] as usize).checked_sub(1);
+        let new = place.is_none();
+        let place = place.unwrap_or(self.count);
+        let trace = self.alive[place].trace;
+        let trace = change(select_unpredictable(new, 0.0, trace));
+        self.alive[place] = Alive { weight: weight as u32, trace };
+        self.places[weight] = place as u32 + 1;
+        self.count += usize::from(new);
     }
 
     /// A visit of a pair: its own traces grow, and others may end.
@@ -97,9 +106,10 @@ impl Traces {
     #[cold]
     fn remove(&mut self, place: usize) {
         self.places[self.alive[place].weight as usize] = 0;
-        self.alive.swap_remove(place);
-        if let Some(moved) = self.alive.get(place) {
-            self.places[moved.weight as usize] = place as u32 + 1;
+        self.count -= 1;
+        if place < self.count {
+            self.alive[place] = self.alive[self.count];
+            self.places[self.alive[place].weight as usize] = place as u32 + 1;
         }
     }
 
@@ -108,11 +118,11 @@ impl Traces {
     pub fn correct<const N: usize>(&self, table: &mut Table<N>, rate: &Rate, error: f64) {
         if let Some(step) = rate.shared() {
             let step = step * error;
-            for &Alive { weight, trace } in &self.alive {
+            for &Alive { weight, trace } in &self.alive[..self.count] {
                 *table.weight_mut(weight as usize) += step * trace;
             }
         } else {
-            for &Alive { weight, trace } in &self.alive {
+            for &Alive { weight, trace } in &self.alive[..self.count] {
                 *table.weight_mut(weight as usize) += rate.at(weight as usize) * error * trace;
             }
         }
@@ -122,7 +132,7 @@ impl Traces {
     #[inline]
     pub fn decay(&mut self, factor: f64) {
         let (cutoff, mut ends) = (self.cutoff, false);
-        for Alive { trace, .. } in &mut self.alive {
+        for Alive { trace, .. } in &mut self.alive[..self.count] {
             *trace *= factor;
             ends |= trace.abs() <= cutoff;
         }
@@ -141,10 +151,19 @@ impl Traces {
         };
         let (step, cutoff, mut ends) = (step * error, self.cutoff, false);
         let values = table.values_mut();
-        for Alive { weight, trace } in &mut self.alive {
-            values[*weight as usize] += step * *trace;
-            *trace *= factor;
-            ends |= trace.abs() <= cutoff;
+        let mut pass = |some: &mut [Alive]| {
+            for Alive { weight, trace } in some {
+                values[*weight as usize] += step * *trace;
+                *trace *= factor;
+                ends |= trace.abs() <= cutoff;
+            }
+        };
+        // Their number is hard to foresee, that of whole blocks is not. With the odd ones first, the processor soon knows
+        // where the loop ends, and goes on to the next step meanwhile.
+        let (odd, blocks) = self.alive[..self.count].as_rchunks_mut::<BLOCK>();
+        pass(odd);
+        for block in blocks {
+            pass(block);
         }
         if ends {
             self.forget();
@@ -154,8 +173,8 @@ impl Traces {
     /// Drops the traces at the cutoff or below.
     fn forget(&mut self) {
         let mut place = 0;
-        while let Some(alive) = self.alive.get(place) {
-            if alive.trace.abs() <= self.cutoff {
+        while place < self.count {
+            if self.alive[place].trace.abs() <= self.cutoff {
                 self.remove(place);
             } else {
                 place += 1;
@@ -165,9 +184,10 @@ impl Traces {
 
     /// z ← 0.
     pub fn clear(&mut self) {
-        for alive in self.alive.drain(..) {
+        for alive in &self.alive[..self.count] {
             self.places[alive.weight as usize] = 0;
         }
+        self.count = 0;
     }
 }
 
