@@ -18,6 +18,7 @@ import qtab
 from environments import make_brittle
 
 CAR = "MountainCar-v0"
+POLE = "CartPole-v1"
 SHORT = {"episodes": 30}
 
 
@@ -60,6 +61,34 @@ def test_each_run_is_the_lone_one_for_any_number_of_threads(threads):
 def test_each_run_is_the_lone_one_for_any_config(seeds, threads, episodes, config):
     runs = qtab.train_many(CAR, seeds, threads=threads, tables=True, episodes=episodes, **config)
     assert_equal_to_lone_runs(runs, episodes=episodes, **config)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    seeds=st.lists(st.integers(0, 2**32 - 1), min_size=4, max_size=12, unique=True),
+    episodes=st.integers(2, 25),
+    config=st.fixed_dictionaries(
+        {
+            "learning_rate": st.floats(0.1, 1),
+            "discount": st.floats(0, 1),
+            "epsilon": st.floats(0.1, 1),
+            "terminal_update": st.sampled_from(["assign", "target"]),
+            "max_episode_steps": st.sampled_from([1, 37, 500]),
+            "bins": st.sampled_from([(3, 3, 6, 6), (1, 1, 9, 70)]),
+            "env_kwargs": st.sampled_from([{}, {"sutton_barto_reward": True}]),
+        }
+    ),
+)
+def test_each_run_of_poles_is_the_lone_one_for_any_config(seeds, episodes, config):
+    runs = qtab.train_many(POLE, seeds, threads=1, tables=True, episodes=episodes, **config)
+    assert runs.config.learning_rate_schedule == "linear"
+    assert_equal_to_lone_runs(runs, env=POLE, episodes=episodes, **config)
+
+
+def test_runs_of_poles_are_gymnasiums():
+    runs = qtab.train_many(POLE, 9, threads=1, tables=True, episodes=40)
+    assert runs.config.backend == "rust"
+    assert_equal_to_lone_runs(runs, env=POLE, episodes=40, backend="gymnasium")
 
 
 @pytest.mark.parametrize(

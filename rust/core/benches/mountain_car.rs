@@ -7,7 +7,7 @@ mod valley;
 use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, Throughput};
-use qtab_core::batch::{self, Article, LANES};
+use qtab_core::batch::{Article, Batch, LANES};
 use qtab_core::envs::{MountainCar, MountainCarState};
 use qtab_core::learners::{Agent, Control, EpsilonGreedy, QLearning, TerminalUpdate};
 use qtab_core::random::{Draw, Mt19937, Pcg64, SeedSequence};
@@ -119,7 +119,7 @@ fn batch_of_runs() -> [Article; LANES] {
 
 /// Until the first of them is finished; returns the steps taken by all.
 fn batch(runs: &mut [Article; LANES]) -> u64 {
-    batch::advance(runs, Until { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
+    Article::advance_all(runs, Until { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
     runs.iter().flat_map(|run| &run.episodes().lengths).sum::<i64>() as u64
 }
 

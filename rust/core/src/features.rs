@@ -54,3 +54,9 @@ pub trait Features<O: ?Sized> {
         self.len() == 0
     }
 }
+
+/// A grid that finds the rows of many lanes at once.
+pub trait Lanes<const M: usize>: Features<[f32; M], Rows = [u32; 1]> + Clone + PartialEq {
+    /// The rows of `K` observations, given component by component; none where one of them has no row.
+    fn rows_of_lanes<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]>;
+}

@@ -44,7 +44,7 @@ where
         "sarsa" => Box::new(Trainer::new(world, Control { agent, rule: Sarsa }, draw)),
         "expected_sarsa" => Box::new(Trainer::new(world, Control { agent, rule: ExpectedSarsa }, draw)),
         _ if plan.learning_rate.is_constant() => {
-            // The type that is batched.
+            // The article's type, which is batched.
             let Agent { table, policy, learning_rate, discount, terminal_update } = agent;
             let agent = Agent { table, policy, learning_rate: learning_rate.value(), discount, terminal_update };
             Box::new(Trainer::new(world, Control { agent, rule: QLearning }, draw))

@@ -9,8 +9,8 @@ use std::vec::IntoIter;
 use numpy::{PyReadwriteArray1, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use qtab_core::batch::{self, Article, LANES};
-use qtab_core::{Learner, Until};
+use qtab_core::Until;
+use qtab_core::batch::{Article, Balance, Batch, LANES};
 
 use crate::dispatch::build;
 use crate::door;
@@ -116,23 +116,56 @@ pub(crate) fn train_many(
 }
 
 impl<'a> Work<'a> {
-    /// What one thread does: runs of the article's kind in batches, every other one by itself.
+    /// What one thread does: runs of the kinds that are batched together, every other one by itself.
     fn share(&self, lanes: usize, stop: &AtomicBool) {
+        while let Some((row, run)) = self.next(stop) {
+            let any: &dyn Any = &*run;
+            if any.is::<Article>() {
+                self.train_together::<Article>(row, run, lanes, stop);
+            } else if any.is::<Balance>() {
+                self.train_together::<Balance>(row, run, lanes, stop);
+            } else {
+                self.train(row, run, stop);
+            }
+        }
+    }
+
+    /// The next run that can be begun.
+    fn next(&self, stop: &AtomicBool) -> Option<(Row<'a>, Box<dyn Run>)> {
+        while !self.ends(stop) {
+            let row = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next()?;
+            match self.begin(row.index) {
+                Ok(run) => return Some((row, run)),
+                Err(error) => self.fail(row.index, error),
+            }
+        }
+        None
+    }
+
+    /// This run and those that follow, in batches of their kind; one of another kind is trained on the way.
+    fn train_together<R: Batch + Run>(&self, row: Row<'a>, run: Box<dyn Run>, lanes: usize, stop: &AtomicBool) {
+        let mut first = Some((row, run));
         let (mut rows, mut runs) = (Vec::with_capacity(lanes), Vec::with_capacity(lanes));
         loop {
             while runs.len() < lanes
-                && let Some((row, run)) = self.next_article(stop)
+                && let Some((row, run)) = first.take().or_else(|| self.next(stop))
             {
-                rows.push(row);
-                runs.push(run);
+                match unbox::<R>(run) {
+                    Ok(run) => {
+                        rows.push(row);
+                        runs.push(run);
+                    }
+                    Err(other) => self.train(row, other, stop),
+                }
             }
             if runs.is_empty() || self.ends(stop) {
                 return;
             }
             let episodes = rows[0].returns.len();
             if let Err((lane, failure)) = advance(&mut runs, Until { episodes, steps: STEPS_BETWEEN_LOOKS }) {
-                runs.swap_remove(lane);
-                self.fail(rows.swap_remove(lane).index, failure.into());
+                let mut row = rows.swap_remove(lane);
+                row.fill_episodes(&runs.swap_remove(lane));
+                self.fail(row.index, failure.into());
             }
             for lane in (0..runs.len()).rev() {
                 if runs[lane].episodes().returns.len() >= episodes {
@@ -140,35 +173,6 @@ impl<'a> Work<'a> {
                 }
             }
         }
-    }
-
-    /// The next run of the article's kind; whatever comes before is trained on the way.
-    fn next_article(&self, stop: &AtomicBool) -> Option<(Row<'a>, Article)> {
-        while !self.ends(stop) {
-            let mut row = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next()?;
-            let mut run = match self.begin(row.index) {
-                Ok(run) => run,
-                Err(error) => {
-                    self.fail(row.index, error);
-                    continue;
-                }
-            };
-            let any: Box<dyn Any> = if (&*run as &dyn Any).is::<Article>() {
-                run
-            } else {
-                match self.train(&mut *run, row.returns.len(), stop) {
-                    Ok(true) => self.finish(row, &*run),
-                    Ok(false) => return None,
-                    Err(failure) => {
-                        row.fill_episodes(&*run);
-                        self.fail(row.index, failure.into());
-                    }
-                }
-                continue;
-            };
-            return Some((row, *any.downcast().ok()?));
-        }
-        None
     }
 
     fn begin(&self, index: usize) -> PyResult<Box<dyn Run>> {
@@ -179,15 +183,19 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Returns whether it came to its end.
-    fn train(&self, run: &mut dyn Run, episodes: usize, stop: &AtomicBool) -> Result<bool, Failure> {
+    /// A run by itself.
+    fn train(&self, mut row: Row<'a>, mut run: Box<dyn Run>, stop: &AtomicBool) {
+        let episodes = row.returns.len();
         while run.episodes().returns.len() < episodes {
             if self.ends(stop) {
-                return Ok(false);
+                return;
             }
-            run.advance(Until { episodes, steps: STEPS_BETWEEN_LOOKS })?;
+            if let Err(failure) = run.advance(Until { episodes, steps: STEPS_BETWEEN_LOOKS }) {
+                row.fill_episodes(&*run);
+                return self.fail(row.index, failure.into());
+            }
         }
-        Ok(true)
+        self.finish(row, &*run);
     }
 
     fn finish(&self, row: Row<'a>, run: &dyn Run) {
@@ -207,20 +215,29 @@ impl<'a> Work<'a> {
     }
 }
 
+/// The run itself, where it is of that type.
+fn unbox<R: Run>(run: Box<dyn Run>) -> Result<R, Box<dyn Run>> {
+    if !(&*run as &dyn Any).is::<R>() {
+        return Err(run);
+    }
+    let any: Box<dyn Any> = run;
+    Ok(*any.downcast().expect("it is of that type"))
+}
+
 /// As many as go together at once; of few, one.
-fn advance(runs: &mut [Article], until: Until) -> Result<(), (usize, Failure)> {
+fn advance<R: Batch + Run>(runs: &mut [R], until: Until) -> Result<(), (usize, Failure)> {
     let result = if let Some(runs) = runs.first_chunk_mut::<LANES>() {
-        batch::advance(runs, until)
+        R::advance_all(runs, until)
     } else if let Some(runs) = runs.first_chunk_mut::<HALF>() {
-        batch::advance(runs, until)
+        R::advance_all(runs, until)
     } else if let Some(run) = runs.first_mut() {
         return Run::advance(run, until).map_err(|failure| (0, failure));
     } else {
         return Ok(());
     };
     result.map_err(|(lane, outside)| (lane, outside.into()))?;
-    match runs.iter().position(|run| Learner::<[u32; 1]>::diverged(run.learner())) {
-        Some(lane) => Err((lane, Failure::Diverged(runs[lane].last_episode()))),
+    match runs.iter().enumerate().find_map(|(lane, run)| run.check().err().map(|failure| (lane, failure))) {
+        Some(failed) => Err(failed),
         None => Ok(()),
     }
 }

@@ -7,9 +7,11 @@ use qtab_core::{Episodes, Learner, Trainer, Until, World};
 
 use crate::failure::Failure;
 
-/// `Any`, because runs of the article's kind are taken out of their boxes and batched.
+/// `Any`, because some kinds of runs are taken out of their boxes and batched.
 pub(crate) trait Run: Any + Send {
     fn advance(&mut self, until: Until) -> Result<(), Failure>;
+    /// A failure, where the learner has diverged.
+    fn check(&self) -> Result<(), Failure>;
     fn episodes(&self) -> &Episodes;
     /// The tables' values, one table after the other, rows first.
     fn tables(&self) -> Vec<f64>;
@@ -23,10 +25,11 @@ where
 {
     fn advance(&mut self, until: Until) -> Result<(), Failure> {
         Trainer::advance(self, until).map_err(Into::into)?;
-        if self.learner().diverged() {
-            return Err(Failure::Diverged(self.last_episode()));
-        }
-        Ok(())
+        self.check()
+    }
+
+    fn check(&self) -> Result<(), Failure> {
+        if self.learner().diverged() { Err(Failure::Diverged(self.last_episode())) } else { Ok(()) }
     }
 
     fn episodes(&self) -> &Episodes {

@@ -2,26 +2,31 @@
 
 use std::hint::select_unpredictable;
 
-use super::Article;
+use super::Turned;
 use super::words::Words;
-use crate::envs::MountainCarState;
-use crate::envs::mountain_car::{DIRECTIONS, REWARD, drive_all};
-use crate::features::Outside;
+use crate::Env;
+use crate::envs::Wide;
+use crate::envs::wide::{get, put};
+use crate::features::{self, Outside};
 use crate::hint::seldom;
-use crate::learners::{Agent, TerminalUpdate};
+use crate::learners::{Agent, StepSize, TerminalUpdate};
 use crate::trainer::{Underway, Until};
 use crate::worlds::Position;
 
-const ACTIONS: usize = DIRECTIONS.len();
-
-/// Runs that are alike and never leave their grid, and how far to go; compiled for each instruction set.
-pub(super) struct Turns<'a, const K: usize> {
-    pub(super) runs: &'a mut [Article; K],
+/// Runs that are alike, and how far to go; compiled for each instruction set.
+pub(super) struct Turns<'a, R, const K: usize> {
+    pub(super) runs: &'a mut [R; K],
     pub(super) until: Until,
 }
 
-impl<const K: usize> pulp::NullaryFnOnce for Turns<'_, K> {
-    type Output = Result<(), (usize, Outside)>;
+impl<E, F, A, const N: usize, const M: usize, const K: usize> pulp::NullaryFnOnce for Turns<'_, Turned<E, F, N, A>, K>
+where
+    E: Wide<M> + Env<Observation = [f32; M]>,
+    F: features::Lanes<M>,
+    A: StepSize,
+{
+    /// How many steps are left to be taken alone, because the next leads a run to an observation without a row.
+    type Output = Result<u64, (usize, Outside)>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
@@ -36,55 +41,66 @@ impl<const K: usize> pulp::NullaryFnOnce for Turns<'_, K> {
 }
 
 #[inline(always)]
-fn turns<const K: usize>(
-    runs: &mut [Article; K],
+fn turns<E, F, A, const N: usize, const M: usize, const K: usize>(
+    runs: &mut [Turned<E, F, N, A>; K],
     words: &mut [Words; K],
     until: Until,
-) -> Result<(), (usize, Outside)> {
-    let mut lanes = Lanes::<K>::begin(runs, words)?;
-    let car = runs[0].world.env;
-    let grid = runs[0].world.features.clone();
+) -> Result<u64, (usize, Outside)>
+where
+    E: Wide<M> + Env<Observation = [f32; M]>,
+    F: features::Lanes<M>,
+    A: StepSize,
+{
+    let mut lanes = Lanes::<M, K>::begin(runs, words)?;
+    let env = runs[0].world.env;
+    let features = runs[0].world.features.clone();
     let limit = runs[0].world.max_episode_steps;
-    let Agent { learning_rate, discount, terminal_update, .. } = runs[0].learner.agent;
-    let mut result = Ok(());
+    let Agent { discount, terminal_update, .. } = runs[0].learner.agent;
+    let mut result = Ok(0);
     let mut on = true;
     let mut steps = until.steps;
     while on && steps > 0 {
+        let before = lanes.fields;
+        let terminal = env.step_fields(&mut lanes.fields, &lanes.action);
+        let Some(rows) = features.rows_of_lanes(&lanes.fields.map(|field| field.map(|number| number as f32))) else {
+            lanes.fields = before;
+            result = Ok(steps);
+            break;
+        };
         steps -= 1;
-        drive_all(&car, &mut lanes.position, &mut lanes.velocity, &lanes.action);
-        let mut places = [0; K];
-        let mut terminal = [false; K];
+        let places = rows.map(|row| row * N);
         let mut over = [false; K];
         let mut any = false;
         for lane in 0..K {
-            let (position, velocity) = (lanes.position[lane], lanes.velocity[lane]);
-            places[lane] = grid.row_inside([position as f32, velocity as f32]) as usize * ACTIONS;
-            terminal[lane] = (position >= car.goal_position) & (velocity >= car.goal_velocity);
             lanes.elapsed[lane] += 1;
-            lanes.total[lane] += REWARD;
+            lanes.total[lane] += env.reward(terminal[lane]);
             over[lane] = terminal[lane] | (lanes.elapsed[lane] >= limit);
             any |= over[lane];
         }
         for lane in 0..K {
-            let values = runs[lane].learner.agent.table.values_mut();
+            let agent = &mut runs[lane].learner.agent;
             let (here, there) = (lanes.place[lane] + lanes.action[lane], places[lane]);
+            agent.learning_rate.visit(here);
+            let learning_rate = agent.learning_rate.at(here);
+            let values = agent.table.values_mut();
             let value = values[here];
             if terminal[lane] {
                 seldom();
+                let reward = env.reward(true);
                 values[here] = match terminal_update {
-                    TerminalUpdate::Assign => REWARD,
-                    TerminalUpdate::Target => value + learning_rate * (REWARD - value),
+                    TerminalUpdate::Assign => reward,
+                    TerminalUpdate::Target => value + learning_rate * (reward - value),
                 };
                 continue;
             }
-            let (_, largest) = best(values, there);
-            values[here] = value + learning_rate * ((REWARD + discount * largest) - value);
+            let (_, largest) = best::<N>(values, there);
+            values[here] = value + learning_rate * ((env.reward(false) + discount * largest) - value);
             if over[lane] {
                 seldom();
                 continue;
             }
-            let (greedy, _) = best(values, there);
-            let (explores, any) = words[lane].explore(lanes.greedy[lane], ACTIONS as u32);
+            let (greedy, _) = best::<N>(values, there);
+            let (explores, any) = words[lane].explore(lanes.greedy[lane], N as u32);
             lanes.action[lane] = select_unpredictable(explores, any as usize, greedy);
             lanes.place[lane] = there;
         }
@@ -93,12 +109,12 @@ fn turns<const K: usize>(
                 let run = &mut runs[lane];
                 run.finish(lanes.total[lane], lanes.elapsed[lane].cast_signed(), terminal[lane]);
                 lanes.underway[lane] = false;
-                if run.episodes.returns.len() >= until.episodes {
-                    on = false;
+                on &= run.episodes.returns.len() < until.episodes;
+                if !on {
                     continue;
                 }
                 match run.begin(&mut words[lane]) {
-                    Ok(now) => lanes.put(lane, now, run),
+                    Ok(now) => lanes.put(lane, &now, run),
                     Err(outside) => {
                         result = Err((lane, outside));
                         on = false;
@@ -108,16 +124,15 @@ fn turns<const K: usize>(
         }
     }
     for (lane, run) in runs.iter_mut().enumerate() {
-        run.underway = lanes.get(lane);
+        run.underway = lanes.get::<E::State, N>(lane);
     }
     result
 }
 
 /// Where the episodes of the lanes stand, field by field, as wide registers want it.
-struct Lanes<const K: usize> {
+struct Lanes<const M: usize, const K: usize> {
     underway: [bool; K],
-    position: [f64; K],
-    velocity: [f64; K],
+    fields: [[f64; K]; M],
     elapsed: [u64; K],
     /// Where the current row begins in its table.
     place: [usize; K],
@@ -127,11 +142,19 @@ struct Lanes<const K: usize> {
     greedy: [f64; K],
 }
 
-type Now = Underway<Position<MountainCarState>, [u32; 1]>;
+type Now<S> = Underway<Position<S>, [u32; 1]>;
 
-impl<const K: usize> Lanes<K> {
+impl<const M: usize, const K: usize> Lanes<M, K> {
     /// Goes on with each run's episode, or begins one.
-    fn begin(runs: &mut [Article; K], words: &mut [Words; K]) -> Result<Self, (usize, Outside)> {
+    fn begin<E, F, A, const N: usize>(
+        runs: &mut [Turned<E, F, N, A>; K],
+        words: &mut [Words; K],
+    ) -> Result<Self, (usize, Outside)>
+    where
+        E: Wide<M>,
+        F: features::Lanes<M>,
+        A: StepSize,
+    {
         for (lane, (run, words)) in runs.iter_mut().zip(words).enumerate() {
             if run.underway.is_none() {
                 run.underway = Some(run.begin(words).map_err(|outside| (lane, outside))?);
@@ -139,8 +162,7 @@ impl<const K: usize> Lanes<K> {
         }
         let mut lanes = Self {
             underway: [false; K],
-            position: [0.0; K],
-            velocity: [0.0; K],
+            fields: [[0.0; K]; M],
             elapsed: [0; K],
             place: [0; K],
             action: [0; K],
@@ -149,28 +171,30 @@ impl<const K: usize> Lanes<K> {
         };
         for (lane, run) in runs.iter_mut().enumerate() {
             if let Some(now) = run.underway.take() {
-                lanes.put(lane, now, run);
+                lanes.put(lane, &now, run);
             }
         }
         Ok(lanes)
     }
 
-    fn put(&mut self, lane: usize, now: Now, run: &Article) {
+    fn put<E, F, A, const N: usize>(&mut self, lane: usize, now: &Now<E::State>, run: &Turned<E, F, N, A>)
+    where
+        E: Wide<M>,
+        F: features::Lanes<M>,
+    {
         self.underway[lane] = true;
-        self.position[lane] = now.state.state.position;
-        self.velocity[lane] = now.state.state.velocity;
+        put(&mut self.fields, lane, now.state.state);
         self.elapsed[lane] = now.state.elapsed;
-        self.place[lane] = now.here[0] as usize * ACTIONS;
+        self.place[lane] = now.here[0] as usize * N;
         self.action[lane] = now.action;
         self.total[lane] = now.total;
         self.greedy[lane] = 1.0 - run.learner.agent.policy.epsilon();
     }
 
-    fn get(&self, lane: usize) -> Option<Now> {
-        let state = MountainCarState { position: self.position[lane], velocity: self.velocity[lane] };
-        self.underway[lane].then_some(Underway {
-            state: Position { state, elapsed: self.elapsed[lane] },
-            here: [(self.place[lane] / ACTIONS) as u32],
+    fn get<S: From<[f64; M]>, const N: usize>(&self, lane: usize) -> Option<Now<S>> {
+        self.underway[lane].then(|| Underway {
+            state: Position { state: get(&self.fields, lane), elapsed: self.elapsed[lane] },
+            here: [(self.place[lane] / N) as u32],
             action: self.action[lane],
             total: self.total[lane],
             length: self.elapsed[lane].cast_signed(),
@@ -180,8 +204,8 @@ impl<const K: usize> Lanes<K> {
 
 /// The first of the largest values of a row, and that value, without a branch.
 #[inline(always)]
-fn best(values: &[f64], place: usize) -> (usize, f64) {
-    let row = &values[place..][..ACTIONS];
+fn best<const N: usize>(values: &[f64], place: usize) -> (usize, f64) {
+    let row = &values[place..][..N];
     let (mut best, mut largest) = (0, row[0]);
     for (action, &value) in row.iter().enumerate().skip(1) {
         let larger = value > largest;

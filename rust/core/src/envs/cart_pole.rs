@@ -1,8 +1,7 @@
 //! `CartPole-v1`: a pole on a cart that is pushed left or right (Barto, Sutton & Anderson, 1983; R. V. Florian, "Correct
 //! equations for the dynamics of the cart-pole system", 2005).
 
-mod wide;
-
+use super::wide::{Wide, step_lanes};
 use crate::env::{Env, Parameters, Step, Switch};
 use crate::random::Draw;
 
@@ -127,15 +126,6 @@ impl CartPole {
         if action == 1 { self.force_mag } else { -self.force_mag }
     }
 
-    #[inline]
-    fn reward(&self, terminated: bool) -> f64 {
-        match (self.sutton_barto_reward, terminated) {
-            (false, _) => 1.0,
-            (true, false) => 0.0,
-            (true, true) => -1.0,
-        }
-    }
-
     /// Moves `K` poles under a force each, and says which come to a terminal state.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
@@ -207,15 +197,34 @@ impl Env for CartPole {
         terminated: &mut [bool],
         idle: &[bool],
     ) {
-        wide::step_lanes(self, states, actions, terminated, idle);
-        for (reward, &end) in rewards.iter_mut().zip(&*terminated) {
-            *reward = self.reward(end);
-        }
+        step_lanes(self, states, actions, rewards, terminated, idle);
     }
 
     #[inline]
     fn observe(&self, state: &CartPoleState) -> [f32; 4] {
         [state.x as f32, state.x_dot as f32, state.theta as f32, state.theta_dot as f32]
+    }
+}
+
+/// The platform's sine and cosine one by one, the arithmetic in wide registers.
+impl Wide<4> for CartPole {
+    fn trusted(&self) -> bool {
+        true
+    }
+
+    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    #[inline(always)]
+    fn step_fields<const K: usize>(&self, fields: &mut [[f64; K]; 4], actions: &[usize; K]) -> [bool; K] {
+        self.push(fields, actions.map(|action| self.force(action)))
+    }
+
+    #[inline]
+    fn reward(&self, terminated: bool) -> f64 {
+        match (self.sutton_barto_reward, terminated) {
+            (false, _) => 1.0,
+            (true, false) => 0.0,
+            (true, true) => -1.0,
+        }
     }
 }
 

@@ -12,6 +12,7 @@ mod pendulum;
 mod tabular;
 mod taxi;
 mod telling;
+pub(crate) mod wide;
 
 pub use acrobot::{Acrobot, AcrobotState};
 pub use blackjack::{Blackjack, BlackjackState, DEALER_STICKS, DECK, Dealing, Dealt, Hand};
@@ -25,3 +26,4 @@ pub use pendulum::{Pendulum, PendulumState};
 pub use tabular::{BadTable, Outcome, TOLERANCE, Tabular};
 pub use taxi::{Taxi, TaxiState};
 pub use telling::{Telling, Tells, Told};
+pub use wide::Wide;

@@ -2,17 +2,17 @@
 
 mod wide;
 
+use super::wide::step_lanes;
 use crate::env::{Env, Parameters, Step};
 use crate::hint::seldom;
 use crate::random::Draw;
-pub(crate) use wide::drive_all;
 
 /// The starting position is uniform over these.
 pub(crate) const START: [(&str, f64); 2] = [("low", -0.6), ("high", -0.4)];
 /// Action - 1: left, none, right. Looked up, because turning the action into a float takes longer, and the next step
 /// waits for it.
-pub(crate) const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
-pub(crate) const REWARD: f64 = -1.0;
+const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
+const REWARD: f64 = -1.0;
 
 /// The constants of the dynamics, under Gymnasium's names.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,8 +123,7 @@ impl Env for MountainCar {
         terminated: &mut [bool],
         idle: &[bool],
     ) {
-        wide::step_lanes(self, states, actions, terminated, idle);
-        rewards.fill(REWARD);
+        step_lanes(self, states, actions, rewards, terminated, idle);
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::{Features, Outside, Real};
+use super::{Features, Lanes, Outside, Real};
 
 /// Up to so many edges are counted without a branch, more are searched by halves.
 const FEW: usize = 64;
@@ -42,6 +42,23 @@ impl Edges {
         }
         self.0.partition_point(|&edge| edge <= value) as u32
     }
+
+    /// The same in `K` lanes: edge by edge, as wide registers want it.
+    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    #[inline(always)]
+    fn bins_of_lanes<const K: usize>(&self, values: &[f32; K]) -> [usize; K] {
+        let values = values.map(f64::from);
+        if self.0.len() > FEW {
+            return values.map(|value| self.bin(value) as usize);
+        }
+        let mut bins = [0; K];
+        for &edge in &self.0 {
+            for (bin, &value) in bins.iter_mut().zip(&values) {
+                *bin += usize::from(edge <= value);
+            }
+        }
+        bins
+    }
 }
 
 /// A grid of bins over the axes `A`, rows in C order, for observations of dtype `T`.
@@ -77,6 +94,23 @@ impl<T: Real, A: AsRef<[Edges]>, O: AsRef<[T]> + ?Sized> Features<O> for Bins<T,
 
     fn len(&self) -> usize {
         self.axes.as_ref().iter().map(Edges::bins).product()
+    }
+}
+
+impl<const M: usize> Lanes<M> for Bins<f32, [Edges; M]> {
+    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    #[inline(always)]
+    fn rows_of_lanes<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {
+        let mut rows = [0; K];
+        let mut nan = false;
+        for (edges, values) in self.axes.iter().zip(observations) {
+            let bins = edges.bins_of_lanes(values);
+            for lane in 0..K {
+                rows[lane] = rows[lane] * edges.bins() + bins[lane];
+                nan |= values[lane].is_nan();
+            }
+        }
+        (!nan).then_some(rows)
     }
 }
 

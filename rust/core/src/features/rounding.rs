@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::{Features, Outside, Real};
+use super::{Features, Lanes, Outside, Real};
 
 /// Adding this to |x| < 2⁵¹ leaves round-half-even(x) in the low bits of the sum: `rint` without a call, and the integer
 /// for nothing.
@@ -50,15 +50,6 @@ pub struct Rounding<T, A = Vec<Axis<T>>> {
     dtype: PhantomData<T>,
 }
 
-impl<T: Real> Rounding<T, [Axis<T>; 2]> {
-    /// The row of an observation that lies inside, without looking whether it does.
-    #[inline]
-    pub(crate) fn row_inside(&self, observation: [T; 2]) -> u64 {
-        let [first, second] = &self.axes;
-        first.shifted(observation[0]) * u64::from(second.size) + second.shifted(observation[1])
-    }
-}
-
 impl<T: Real, A: AsRef<[Axis<T>]>> Rounding<T, A> {
     /// The grid over these axes.
     pub fn new(axes: A) -> Self {
@@ -93,6 +84,25 @@ impl<T: Real, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Round
 
     fn len(&self) -> usize {
         self.axes.as_ref().iter().map(Axis::size).product()
+    }
+}
+
+impl<const M: usize> Lanes<M> for Rounding<f32, [Axis<f32>; M]> {
+    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    #[inline(always)]
+    fn rows_of_lanes<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {
+        let mut rows = [0_u64; K];
+        let mut inside = true;
+        for (axis, values) in self.axes.iter().zip(observations) {
+            let size = u64::from(axis.size);
+            for (row, &value) in rows.iter_mut().zip(values) {
+                let cell = axis.shifted(value);
+                inside &= cell < size;
+                // A cell outside may be any number.
+                *row = row.wrapping_mul(size).wrapping_add(cell);
+            }
+        }
+        inside.then_some(rows.map(|row| row as usize))
     }
 }
 
