@@ -67,12 +67,19 @@ impl<const N: usize> Table<N> {
     }
 }
 
-/// The first of the largest values: `np.argmax`. By pairs, so that fewer comparisons wait for each other.
+/// The first of the largest values: `np.argmax`.
 #[inline]
 pub(crate) fn first_maximum(values: &[f64]) -> usize {
     // The largest value is carried along: looked up by index, it would add a load to the chain of comparisons.
     let larger = |one: (usize, f64), other: (usize, f64)| if other.1 > one.1 { other } else { one };
     let mut best = (0, values[0]);
+    if values.len() < 4 {
+        for (action, &value) in values.iter().enumerate().skip(1) {
+            best = larger(best, (action, value));
+        }
+        return best.0;
+    }
+    // By pairs, so that fewer comparisons wait for each other.
     for (pair, values) in values.chunks(2).enumerate() {
         let first = (2 * pair, values[0]);
         let of_pair = if let &[_, second] = values { larger(first, (2 * pair + 1, second)) } else { first };
