@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from qtab.envs.acrobot import AcrobotEnv
 
 from lockstep import CONTINUOUS, EDITS, IDS, MACHINE, Pair, good
 from qtab import _core
+from qtab.envs.classic_control import AcrobotEnv
 
 STEPS = 100_000
 

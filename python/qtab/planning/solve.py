@@ -14,8 +14,8 @@ from qtab import _core
 from qtab._utils import checks
 from qtab.discretizers.actions import actions
 from qtab.discretizers.identity import cells
+from qtab.envs.classic_control import MountainCarEnv as RustMountainCarEnv
 from qtab.envs.matching import foreign_wrapper, time_limit
-from qtab.envs.mountain_car import MountainCarEnv as RustMountainCarEnv
 from qtab.envs.native import toy_text_spec
 from qtab.envs.registry import spec_of, versioned
 from qtab.planning.mountain_car import ValleyTruth, search
