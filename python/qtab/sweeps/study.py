@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 
 from qtab._utils.memory import BYTES_AN_EPISODE, check_memory
-from qtab.config import known_fields
+from qtab.config import DEFAULTS
+from qtab.config.layers import Base, over
+from qtab.config.unknown import check_names
 from qtab.sweeps import designs
 from qtab.training.resolve import Resolved
 from qtab.training.train_many import resolve_one, seed_numbers
@@ -40,7 +42,10 @@ class Study:
     """Run ``i`` is of setting ``i // len(seeds)`` and seed ``i % len(seeds)``: every setting has the same seeds."""
 
     env: Any
+    base: Base
+    """The config that the sweep starts from."""
     fixed: Mapping[str, Any]
+    """What all settings share."""
     settings: Sequence[Mapping[str, Any]]
     seeds: tuple[int, ...]
     resolved: Sequence[Resolved]
@@ -89,6 +94,10 @@ class Study:
         content |= {"pieces": len(self.pieces)}
         return json.dumps(content, sort_keys=True, default=_described)
 
+    def overrides(self, setting: int) -> dict[str, Any]:
+        """Returns what is given for a setting, the shared settings included."""
+        return over(self.base, {**self.fixed, **self.settings[setting]})
+
     def share(self, piece: Piece) -> list[tuple[int, list[int]]]:
         """Returns the settings of a piece, and the seeds of each."""
         count = len(self.seeds)
@@ -99,7 +108,7 @@ class Study:
         return shares
 
 
-def study(env: Any, grid: Any, seeds: Any, block: int, fixed: Mapping[str, Any]) -> Study:
+def study(env: Any, grid: Any, seeds: Any, block: int, fixed: Mapping[str, Any], base: Base | None = None) -> Study:
     """Checks what was asked for, every setting of it.
 
     Raises:
@@ -107,21 +116,22 @@ def study(env: Any, grid: Any, seeds: Any, block: int, fixed: Mapping[str, Any])
         TypeError: for an argument of the wrong type, or an unknown one.
         ValueError: for an argument out of range.
     """
+    base = base or {}
     numbers = seed_numbers(seeds)
     settings = _settings(grid)
     names = list(settings[0])
-    known_fields({**fixed, **settings[0]})
+    check_names(names, DEFAULTS)
     for setting in settings:
         if list(setting) != names:
             raise ValueError(f"grid must give every setting the same names, got {names} and {list(setting)}")
     for name in ("seed", "env"):
-        if name in names or name in fixed:
+        if name in names:
             raise TypeError(f"{name} is no part of a grid: it is given by {name}{'s' * (name == 'seed')}=...")
     twice = set(names) & set(fixed)
     if twice:
         raise TypeError(f"{sorted(twice)[0]} is both in the grid and fixed")
-    resolved = [resolve_one(env, {**fixed, **setting, "seed": max(numbers)}) for setting in settings]
-    return Study(env, dict(fixed), settings, numbers, resolved, block)
+    resolved = [resolve_one(env, {**over(base, {**fixed, **setting}), "seed": max(numbers)}) for setting in settings]
+    return Study(env, base, dict(fixed), settings, numbers, resolved, block)
 
 
 def _settings(grid: Any) -> list[dict[str, Any]]:

@@ -10,8 +10,13 @@ from typing import Any
 
 import cloudpickle
 from gymnasium.envs.registration import EnvSpec
+from typing_extensions import Unpack
 
 from qtab._utils import checks, memory
+from qtab.config import Config
+from qtab.config.layers import collect
+from qtab.config.settings import SharedSettings
+from qtab.config.signature import with_settings
 from qtab.envs.registry import spec_of
 from qtab.sweeps.loading import table
 from qtab.sweeps.results import Sweep
@@ -43,54 +48,58 @@ class SweepProgress:
     """… in how long."""
 
 
+@with_settings
 def sweep(
-    env: str | EnvSpec | MakeEnv,
+    env: str | EnvSpec | MakeEnv | None,
     grid: Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]],
     seeds: int | Iterable[int] = 100,
     *,
+    config: Config | Mapping[str, Any] | None = None,
     store: "str | os.PathLike[str] | None" = None,
     executor: Executor | None = None,
     threads: int | None = None,
     memory_limit: int | None = None,
     block: int = BLOCK,
     callback: Callable[[SweepProgress], None] | None = None,
-    **config: Any,
+    **settings: Unpack[SharedSettings],
 ) -> Sweep:
-    """Trains every setting with the same seeds. Killed and called again, it goes on where its store ends.
+    """Trains every setting of a grid with the same seeds. With a store, an interrupted sweep resumes where it stopped.
 
     Args:
-        env: An environment's id, its EnvSpec, or a function that makes one.
-        grid: Lists of values by name, of which every combination is tried; or a list of settings, such as
-            :func:`qtab.sweeps.designs.sobol` returns. Any field of :class:`qtab.Config` can be a name.
+        env: An environment's id, its EnvSpec, or a function that makes one. None takes the environment of ``config``.
+        grid: Lists of values by the names of settings, of which every combination is trained; or a list of settings,
+            such as :func:`qtab.sweeps.designs.sobol` returns.
         seeds: The seeds of every setting; an integer N means 0 to N - 1.
-        store: An SQLite file to keep the results in; several processes may share it. None keeps them in memory.
-        executor: Where to train: any of :mod:`concurrent.futures`, Dask's ``client.get_executor()``. None trains here,
-            in threads, and what is stepped in Python in processes.
-        threads: How many threads or processes, without an executor; None means one a core.
-        memory_limit: The bytes that a run underway may take; None means half of the machine's memory.
-        block: Learning curves are kept as the mean returns of so many episodes.
-        callback: Called after every piece of work, of about a second.
-        **config: The fields of :class:`qtab.Config` that all settings share.
+        config: The settings to start from, as for :func:`qtab.train`, without the seed.
+        store: An SQLite file for the results, which several processes may share. None keeps the results in memory.
+        executor: Where to train: an executor of :mod:`concurrent.futures` or one like it, such as Dask's
+            ``client.get_executor()``. None trains in threads, and environments stepped in Python in processes.
+        threads: The number of threads or processes without an executor; None means one per core.
+        memory_limit: The number of bytes that a run may take; None means half of the machine's memory.
+        block: The number of episodes that each point of a learning curve averages.
+        callback: Called with a :class:`qtab.SweepProgress` after every chunk of work, about once a second.
+        **settings: The settings that all runs share, explained below.
 
     Returns:
-        A table of a row a run. A run that failed has its error in it.
+        A table with one row per run. The row of a run that failed holds its error.
 
     Raises:
-        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
-        MemoryError: if a run would take more than ``memory_limit``, before anything begins.
+        gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
+        MemoryError: before the first run, if a run would take more than ``memory_limit``.
         OSError: if the store cannot be written.
         StoreError: if the store is damaged, of another version, or of another sweep.
         TypeError: for an argument of the wrong type, or an unknown one.
         ValueError: for an argument out of range.
-        KeyboardInterrupt: on Ctrl-C; it carries the table of the finished runs as ``.run``.
+        KeyboardInterrupt: on Ctrl-C. It carries the table of the finished runs as ``.run``.
     """
     block = checks.integer("block", block, least=1)
     workers = thread_count(threads)
     if executor is not None and not hasattr(executor, "submit"):
         raise TypeError(f"executor must have the method submit, as those of concurrent.futures do, got {executor!r}")
+    env, base = collect(sweep, env, config, settings)
     if isinstance(env, str):
         env = spec_of(env)  # a worker may not have imported what registered it
-    planned = study(env, grid, seeds, block, config)
+    planned = study(env, grid, seeds, block, settings, base)
     for resolved in planned.resolved:
         log_default_limit(resolved)
     planned.check_memory(memory.memory_limit(memory_limit))
@@ -132,7 +141,7 @@ def _here(planned: Study, kept: Store, threads: int, report: _Report) -> None:
         piece = planned.pieces[number]
         rows = []
         for setting, seeds in planned.share(piece):
-            overrides = {**planned.fixed, **planned.settings[setting]}
+            overrides = planned.overrides(setting)
             resolved = planned.resolved[setting]
             rows += train_share(planned.env, overrides, resolved, seeds, planned.block, threads)
         kept.enter(piece, rows)
@@ -165,7 +174,7 @@ def _all_done(planned: Study, kept: Store) -> bool:
 
 
 def _task(planned: Study, piece: Piece) -> bytes:
-    shares = [({**planned.fixed, **planned.settings[setting]}, seeds) for setting, seeds in planned.share(piece)]
+    shares = [(planned.overrides(setting), seeds) for setting, seeds in planned.share(piece)]
     task: bytes = cloudpickle.dumps((planned.env, shares, planned.block))
     return task
 
