@@ -50,7 +50,7 @@ def run(arguments: list[str]) -> int:
             check_writable("plot", asked.plot)
         if asked.save is not None:
             check_writable("save", asked.save)
-        experiment.check(asked.runs, asked.seed, asked.threads)
+        experiment.check_arguments(asked.runs, asked.seed, asked.threads)
     result = experiment.run(asked.runs, asked.seed, threads=asked.threads)
     print_above(str(result))
     if asked.save is not None:

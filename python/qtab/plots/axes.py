@@ -18,7 +18,7 @@ def color(index: int) -> str:
     return COLORS[index % len(COLORS)]
 
 
-def own_axes(ax: "Axes | None") -> "Axes":
+def axes_or_new(ax: "Axes | None") -> "Axes":
     """Returns the axes to draw on; a figure of their own where none are given.
 
     Raises:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qtab.plots.axes import color, finish, own_axes
+from qtab.plots.axes import axes_or_new, color, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,7 +35,7 @@ def distribution(
     """
     named = returns if isinstance(returns, Mapping) else {"": returns}
     samples = {name: np.asarray(values, dtype=np.float64) for name, values in named.items()}
-    ax = own_axes(ax)
+    ax = axes_or_new(ax)
     count = bins or min(40, math.isqrt(max(map(len, samples.values()))) + 1)
     edges = np.histogram_bin_edges(np.concatenate(list(samples.values())), count).tolist()
     for index, (name, values) in enumerate(samples.items()):

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qtab.plots.axes import color, finish, mark_optimum, own_axes
+from qtab.plots.axes import axes_or_new, color, finish, mark_optimum
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,7 +49,7 @@ def learning_curves(
     from qtab import stats
 
     points = stats.curve(returns, block=block, statistic=statistic, confidence=confidence)
-    ax = own_axes(ax)
+    ax = axes_or_new(ax)
     runs = np.atleast_2d(np.asarray(returns, dtype=np.float64))
     x = block * (np.arange(len(points)) + 1)
     means = runs[:, : x[-1]].reshape(len(runs), -1, block).mean(axis=2)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qtab.plots.axes import color, finish, own_axes
+from qtab.plots.axes import axes_or_new, color, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +38,7 @@ def profile(
     tables = {name: _by_environment(values) for name, values in scores.items()}
     every = np.concatenate([np.asarray(row).ravel() for table in tables.values() for row in table.values()])
     levels = np.linspace(every.min(), every.max(), LEVELS) if thresholds is None else np.asarray(thresholds)
-    ax = own_axes(ax)
+    ax = axes_or_new(ax)
     for index, (name, table) in enumerate(tables.items()):
         ax.step(
             levels, stats.performance_profile(table, levels), where="post", color=color(index), linewidth=2, label=name

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.plots.axes import color, finish, own_axes
+from qtab.plots.axes import axes_or_new, color, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,7 +47,7 @@ def sensitivity(
     whole = np.array([error is None for error in sweep.columns["error"]], dtype=np.bool_)
     x, y = sweep.columns[parameter], sweep.columns[column]
     groups: list[Any] = [None] if by is None else sorted(set(sweep.columns[by].tolist()))
-    ax = own_axes(ax)
+    ax = axes_or_new(ax)
     numbers = x.dtype.kind in "if"
     values = sorted(set(x.tolist()))
     for index, group in enumerate(groups):
