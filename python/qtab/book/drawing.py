@@ -6,11 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab._utils.extras import missing
-from qtab._utils.files import replacing
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
-from qtab.plots.axes import axes_or_new, color, finish
+from qtab.plots.axes import axes_or_new, color, finish, new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,11 +47,7 @@ def draw_surfaces(
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
     """
-    try:
-        from matplotlib.figure import Figure
-    except ModuleNotFoundError as error:
-        raise missing(error, "plot") from None
-    figure = Figure(figsize=(9, 5.5), layout="constrained")
+    figure = new_figure(9, 5.5)
     figure.suptitle(title)
     x, y = np.meshgrid(positions, velocities, indexing="ij")
     x_ticks, y_ticks = (positions[0], -0.5, positions[-1]), (velocities[0], 0, velocities[-1])
@@ -78,5 +72,4 @@ def save_plot(result: Result, path: Path) -> None:
         OSError: if the file cannot be written.
     """
     figure: Any = result.plot().figure
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=DOTS_PER_INCH)
+    save_figure(figure, path, DOTS_PER_INCH)

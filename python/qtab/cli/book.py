@@ -11,7 +11,7 @@ from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
 from qtab.cli.usage import UsageError, refusing
-from qtab.plots.run import check_format
+from qtab.plots.axes import check_format
 
 COMMAND = "qtab book"
 
