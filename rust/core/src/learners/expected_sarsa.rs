@@ -28,8 +28,8 @@ where
     ) -> usize {
         match next {
             Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
-                let target =
-                    reward + agent.discount * agent.policy.expected(agent.table.action_values(next_state.as_ref()));
+                let target = reward
+                    + agent.discount * agent.policy.expected_value(agent.table.action_values(next_state.as_ref()));
                 agent.update(state, action, target);
             }
             Next::Terminal => agent.update_terminal(state, action, reward),
