@@ -1,4 +1,4 @@
-//! Expected Sarsa (van Seijen et al., 2009; Sutton & Barto, equation 6.9).
+//! Expected Sarsa (H. van Seijen et al., 2009; Sutton & Barto, equation 6.9).
 
 use super::common::{Agent, UpdateRule};
 use crate::policies::Policy;
