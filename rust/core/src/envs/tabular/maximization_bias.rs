@@ -37,7 +37,7 @@ impl Env for MaximizationBias {
     }
 
     #[inline]
-    fn reset(&self, _draw: &mut impl Rng) -> u32 {
+    fn reset(&self, _rng: &mut impl Rng) -> u32 {
         A
     }
 

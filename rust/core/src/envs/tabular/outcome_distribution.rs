@@ -33,7 +33,7 @@ impl OutcomeDistribution {
 
     /// The outcome that a draw takes, among those of all rows, whose `bounds` these are: the first of the row where it
     /// passes all.
-    #[expect(clippy::inline_always, reason = "a call a step costs a fifth of it")]
+    #[expect(clippy::inline_always, reason = "a call per step would take a fifth of its time")]
     #[inline(always)]
     pub(super) fn sample(&self, bounds: &[u64], u53: u64) -> usize {
         let (first, outcomes) = (self.first as usize, self.outcomes as usize);
