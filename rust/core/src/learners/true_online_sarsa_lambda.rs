@@ -9,8 +9,8 @@ use crate::tasks::Next;
 ///
 /// - δ = R + γ Q′ - Q
 /// - z ← γλ z + (1 - αγλ zᵀx) x
-/// - w ← w + α (δ + Q - Q_old) z - α (Q - Q_old) x
-/// - Q_old ← Q′
+/// - w ← w + α (δ + Q - Qₒ) z - α (Q - Qₒ) x
+/// - Qₒ ← Q′
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrueOnlineSarsaLambda {
     /// The dutch traces z.

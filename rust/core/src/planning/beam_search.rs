@@ -49,12 +49,12 @@ pub fn beam_search(
         next_layer.clear();
         for (index, node) in layer.iter().enumerate() {
             for action in 0..car.num_actions() {
-                let step = car.transition(node.state, action);
+                let next = car.transition(node.state, action);
                 let parent = (index as u32, action as u8);
-                if step.terminated {
+                if next.terminated {
                     return Ok(Some(backtrack(&parents, parent)));
                 }
-                let (state, steps_to_go) = (step.state, heuristic.steps(step.state));
+                let (state, steps_to_go) = (next.state, heuristic.steps(next.state));
                 next_layer.push(Node { state, steps_to_go, cell: cell(car, state), parent });
             }
         }
@@ -88,11 +88,11 @@ pub fn greedy_rollout(
             return Err(PlanningError::Stopped);
         }
         let [position, velocity] = car.observe(&state).map(f64::from);
-        let step = car.transition(state, heuristic.best_action(MountainCarState { position, velocity }));
-        if step.terminated {
+        let next = car.transition(state, heuristic.best_action(MountainCarState { position, velocity }));
+        if next.terminated {
             return Ok(taken);
         }
-        state = step.state;
+        state = next.state;
     }
     Ok(max_steps)
 }

@@ -65,20 +65,20 @@ impl CostToGo {
 
     /// Value iteration in place: steps(s) ← minₐ 1 + steps(s′).
     fn converge(&mut self, stop: &AtomicBool) -> Result<(), PlanningError> {
-        let next: Vec<[GridPosition; NUM_ACTIONS]> = (0..self.steps.len())
+        let next_positions: Vec<[GridPosition; NUM_ACTIONS]> = (0..self.steps.len())
             .map(|point| {
                 std::array::from_fn(|action| {
-                    let step = self.car.transition(self.state(point), action);
-                    if step.terminated { GOAL } else { self.grid_position(step.state) }
+                    let next = self.car.transition(self.state(point), action);
+                    if next.terminated { GOAL } else { self.grid_position(next.state) }
                 })
             })
             .collect();
-        let last = next.len() - 1;
+        let last = next_positions.len() - 1;
         loop {
             let mut change = 0.0_f64;
             // Forwards and backwards, so that changes spread in both directions.
             for point in (0..=last).chain((0..=last).rev()) {
-                let steps = next[point].iter().map(|&position| 1.0 + self.interpolate(position));
+                let steps = next_positions[point].iter().map(|&position| 1.0 + self.interpolate(position));
                 let fewest = steps.fold(self.horizon, f64::min);
                 change = change.max((fewest - self.steps[point]).abs());
                 self.steps[point] = fewest;

@@ -1,6 +1,6 @@
 //! Backward induction over the time limit, which is exact: the best action with one step to go, with two steps, …
 //!
-//! V_k(s) = maxₐ Σ p (r + γ V_{k-1}(s′)) with V_0 = 0 (M. Puterman, *Markov Decision Processes*, 1994, section 4.5).
+//! Vₖ(s) = maxₐ Σ p (r + γ Vₖ₋₁(s′)) with V₀ = 0 (M. Puterman, *Markov Decision Processes*, 1994, section 4.5).
 
 use std::mem::swap;
 use std::sync::atomic::{AtomicBool, Ordering};

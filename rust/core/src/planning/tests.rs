@@ -29,7 +29,9 @@ fn table(num_actions: usize, pairs: &[Vec<Outcome>]) -> TabularMdp {
 
 /// A corridor of three states: actions left and right, a reward of -1 per step, the end to the right of the last state.
 fn corridor() -> TabularMdp {
-    let row = |state: i64| [deterministic((state - 1).max(0), -1.0, false), deterministic((state + 1).min(2), -1.0, state == 2)];
+    let row = |state: i64| {
+        [deterministic((state - 1).max(0), -1.0, false), deterministic((state + 1).min(2), -1.0, state == 2)]
+    };
     table(2, &(0..3).flat_map(row).collect::<Vec<_>>())
 }
 
@@ -54,8 +56,9 @@ fn a_corridor_costs_its_length() {
 #[test]
 fn values_are_discounted_by_the_steps_to_a_reward() {
     // A reward of 1 at the third step to the right.
-    let row =
-        |state: i64| [deterministic(0, 0.0, false), deterministic((state + 1).min(2), f64::from(u8::from(state == 2)), state == 2)];
+    let row = |state: i64| {
+        [deterministic(0, 0.0, false), deterministic((state + 1).min(2), f64::from(u8::from(state == 2)), state == 2)]
+    };
     let table = table(2, &(0..3).flat_map(row).collect::<Vec<_>>());
     for solve in [value_iteration, policy_iteration] {
         let solution = solve(&table, 0.5, &NO_STOP).expect("a solution");
@@ -103,7 +106,12 @@ fn walls_have_a_value_of_zero() {
 #[test]
 fn the_best_action_depends_on_the_steps_to_go() {
     // A reward of 1 now, or 3 at the third step.
-    let rows = [deterministic(0, 1.0, true), deterministic(1, 0.0, false), deterministic(1, 0.0, true), deterministic(2, 0.0, false)];
+    let rows = [
+        deterministic(0, 1.0, true),
+        deterministic(1, 0.0, false),
+        deterministic(1, 0.0, true),
+        deterministic(2, 0.0, false),
+    ];
     let table = table(2, &[rows.to_vec(), vec![deterministic(2, 3.0, true), deterministic(2, 3.0, true)]].concat());
     for (steps, expected, action) in [(1, 1.0, 0), (2, 1.0, 0), (3, 3.0, 1), (9, 3.0, 1)] {
         let horizon = finite_horizon(&table, 1.0, steps, &NO_STOP).expect("a solution");
@@ -122,7 +130,12 @@ fn the_best_action_depends_on_the_steps_to_go() {
 #[test]
 fn the_expected_return_is_undiscounted() {
     // A reward of 1 now is better than 3 in the next step with a discount of 0.25, and worse with 0.5.
-    let rows = [deterministic(0, 1.0, true), deterministic(1, 0.0, false), deterministic(1, 3.0, true), deterministic(1, 3.0, true)];
+    let rows = [
+        deterministic(0, 1.0, true),
+        deterministic(1, 0.0, false),
+        deterministic(1, 3.0, true),
+        deterministic(1, 3.0, true),
+    ];
     let horizon = finite_horizon(&table(2, &rows), 0.25, 2, &NO_STOP).expect("a solution");
     assert_eq!((horizon.values[0], horizon.expected_return), (1.0, 1.0));
     let patient = finite_horizon(&table(2, &rows), 0.5, 2, &NO_STOP).expect("a solution");

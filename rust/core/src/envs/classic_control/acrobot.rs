@@ -149,16 +149,16 @@ impl Acrobot {
         let (m1, m2, l1, lc1, lc2) =
             (self.link_mass_1, self.link_mass_2, self.link_length_1, self.link_com_pos_1, self.link_com_pos_2);
         let (i1, i2, g, nips) = (self.link_moi, self.link_moi, GRAVITY, self.nips);
-        let [l1_squared, lc1_squared, lc2_squared] = [l1, lc1, lc2].map(squared);
+        let [link_squared, com1_squared, com2_squared] = [l1, lc1, lc2].map(squared);
         move |[theta1, theta2, dtheta1, dtheta2]| {
             let (sine, cosine) = (theta2.sin(), theta2.cos());
-            let d1 = m1 * lc1_squared + m2 * (l1_squared + lc2_squared + 2.0 * l1 * lc2 * cosine) + i1 + i2;
-            let d2 = m2 * (lc2_squared + l1 * lc2 * cosine) + i2;
+            let d1 = m1 * com1_squared + m2 * (link_squared + com2_squared + 2.0 * l1 * lc2 * cosine) + i1 + i2;
+            let d2 = m2 * (com2_squared + l1 * lc2 * cosine) + i2;
             let phi2 = m2 * lc2 * g * (theta1 + theta2 - FRAC_PI_2).cos();
             let phi1 = -m2 * l1 * lc2 * squared(dtheta2) * sine - 2.0 * m2 * l1 * lc2 * dtheta2 * dtheta1 * sine
                 + (m1 * lc1 + m2 * l1) * g * (theta1 - FRAC_PI_2).cos()
                 + phi2;
-            let inertia = m2 * lc2_squared + i2 - squared(d2) / d1;
+            let inertia = m2 * com2_squared + i2 - squared(d2) / d1;
             let ddtheta2 = if nips {
                 (a + d2 / d1 * phi1 - phi2) / inertia
             } else {

@@ -14,8 +14,8 @@ pub(super) const REWARD: f64 = -1.0;
 
 /// The parameters, with Gymnasium's names:
 ///
-/// - velocity ← clip(velocity + force (action - 1) - gravity cos(3 position), ±max_speed)
-/// - position ← clip(position + velocity, min_position, max_position)
+/// - `velocity ← clip(velocity + force (action - 1) - gravity cos(3 position), -max_speed, max_speed)`
+/// - `position ← clip(position + velocity, min_position, max_position)`
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MountainCar {
     /// The position of the left wall, which absorbs the car's speed.
