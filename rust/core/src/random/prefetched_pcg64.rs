@@ -70,9 +70,9 @@ impl PrefetchedPcg64 {
             self.used += 1;
             return (true, self.integers(below));
         }
-        let draws = explores & !self.has_uint32;
-        self.used += 1 + usize::from(draws);
-        self.buffered_u32 = std::hint::select_unpredictable(draws, (word >> 32) as u32, self.buffered_u32);
+        let uses_word = explores & !self.has_uint32;
+        self.used += 1 + usize::from(uses_word);
+        self.buffered_u32 = std::hint::select_unpredictable(uses_word, (word >> 32) as u32, self.buffered_u32);
         self.has_uint32 ^= explores;
         (explores, (product >> 32) as u32)
     }

@@ -88,7 +88,7 @@ fn draw_card(rng: &mut impl Rng) -> u32 {
 impl Env for Blackjack {
     type State = BlackjackState;
     type Action = usize;
-    /// The player's sum, the dealer's open card, whether the player has a usable ace.
+    /// The player's sum, the dealer's face-up card, whether the player has a usable ace.
     type Observation = [u32; 3];
 
     #[inline]

@@ -1,4 +1,4 @@
-//! Blackjack with a record of the cards history, for rendering and for Python's view of the state.
+//! Blackjack with a record of the cards dealt, for rendering and for Python's view of the state.
 
 use crate::envs::toy_text::{Blackjack, BlackjackState};
 use crate::envs::{Env, Step};

@@ -18,6 +18,6 @@ pub trait Learner<R> {
     /// The values of its tables, row by row. The greedy policy is over their sum.
     fn tables(&self) -> Vec<&[f64]>;
 
-    /// Whether a value has overflowed, so that training on would be meaningless.
+    /// Whether a value has overflowed, so that further training is meaningless.
     fn diverged(&self) -> bool;
 }
