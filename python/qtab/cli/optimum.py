@@ -6,12 +6,12 @@ from typing import Annotated, Any
 
 import tyro
 
+from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
 from qtab.cli.settings import PAIRS
 from qtab.cli.usage import refusing
 from qtab.config import Config
 from qtab.planning import optimum
-from qtab.progress import write
 
 COMMAND = "qtab optimum"
 
@@ -43,5 +43,5 @@ def run(arguments: list[str]) -> int:
             method=asked.method,
             env_kwargs=asked.env_kwargs,
         )
-    write(str(found))
+    print_above(str(found))
     return 0

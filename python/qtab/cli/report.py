@@ -5,11 +5,11 @@ from pathlib import Path
 
 import tyro
 
+from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
 from qtab.cli.usage import refusing
-from qtab.progress import write
-from qtab.sweeping.loading import load_sweep
-from qtab.sweeping.report import report
+from qtab.sweeps import load_sweep
+from qtab.sweeps.report import report
 
 COMMAND = "qtab report"
 
@@ -30,5 +30,5 @@ def run(arguments: list[str]) -> int:
     with refusing():
         folder = asked.out or asked.store.with_name(f"{asked.store.stem}-report")
         written = report(load_sweep(asked.store), folder)
-    write(f"{len(written)} files in {folder}; open {written[-1]}")
+    print_above(f"{len(written)} files in {folder}; open {written[-1]}")
     return 0

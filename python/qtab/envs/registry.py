@@ -1,0 +1,134 @@
+"""The environments that Rust implements: one entry for each Gymnasium id, and the lookup of entries."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any
+
+import gymnasium as gym
+from gymnasium.envs.registration import EnvSpec, find_highest_version, get_env_id, parse_env_id
+
+PACKAGE = "qtab"
+PREFIX = "qtab/"
+
+
+@dataclass(frozen=True)
+class EnvEntry:
+    """An environment that Rust implements, and the Python classes whose numbers it reproduces."""
+
+    name: str
+    """The name of the environment in the extension module."""
+    gymnasium_entry_point: str
+    """Gymnasium's class as ``"module:Class"``; empty where Gymnasium has none."""
+    entry_point: str
+    """This package's class as ``"module:Class"``."""
+    supported_kwargs: frozenset[str] = field(default_factory=frozenset)
+    """Constructor arguments that set constants Rust computes with. With any other argument Python steps."""
+    has_table: bool = False
+    """Whether Rust reads a transition table or the rules from the environment object, whatever its arguments were."""
+
+
+def _classic_control(name: str, gymnasium_class: str, *supported_kwargs: str) -> EnvEntry:
+    return EnvEntry(
+        name=name,
+        gymnasium_entry_point=f"gymnasium.envs.classic_control.{gymnasium_class}",
+        entry_point=f"qtab.envs.classic_control:{name}Env",
+        supported_kwargs=frozenset(supported_kwargs),
+    )
+
+
+def _toy_text(name: str, gymnasium_class: str) -> EnvEntry:
+    return EnvEntry(
+        name=name,
+        gymnasium_entry_point=f"gymnasium.envs.toy_text.{gymnasium_class}",
+        entry_point=f"qtab.envs.toy_text:{name}Env",
+        has_table=True,
+    )
+
+
+ENTRIES: Mapping[str, EnvEntry] = {
+    "MountainCar-v0": _classic_control("MountainCar", "mountain_car:MountainCarEnv", "goal_velocity"),
+    "MountainCarContinuous-v0": _classic_control(
+        "ContinuousMountainCar", "continuous_mountain_car:Continuous_MountainCarEnv", "goal_velocity"
+    ),
+    "CartPole-v0": _classic_control("CartPole", "cartpole:CartPoleEnv", "sutton_barto_reward"),
+    "CartPole-v1": _classic_control("CartPole", "cartpole:CartPoleEnv", "sutton_barto_reward"),
+    "Acrobot-v1": _classic_control("Acrobot", "acrobot:AcrobotEnv"),
+    "Pendulum-v1": _classic_control("Pendulum", "pendulum:PendulumEnv", "g"),
+    "FrozenLake-v1": _toy_text("FrozenLake", "frozen_lake:FrozenLakeEnv"),
+    "FrozenLake8x8-v1": _toy_text("FrozenLake", "frozen_lake:FrozenLakeEnv"),
+    "CliffWalking-v1": _toy_text("CliffWalking", "cliffwalking:CliffWalkingEnv"),
+    "CliffWalkingSlippery-v1": _toy_text("CliffWalking", "cliffwalking:CliffWalkingEnv"),
+    "Taxi-v4": _toy_text("Taxi", "taxi:TaxiEnv"),
+    "Blackjack-v1": _toy_text("Blackjack", "blackjack:BlackjackEnv"),
+}
+"""Gymnasium's environments, by Gymnasium's id."""
+
+EXTRA: Mapping[str, EnvEntry] = {
+    f"{PREFIX}MaximizationBias-v0": EnvEntry(
+        "MaximizationBias", "", "qtab.envs.maximization_bias:MaximizationBiasEnv", has_table=True
+    ),
+}
+"""Environments that Gymnasium does not have, by their id."""
+
+TABULAR = EnvEntry("Table", "", "qtab.envs.tabular:TabularEnv", has_table=True)
+""":class:`qtab.TabularEnv`, which has no id."""
+
+
+def gymnasium_id(env: str) -> str:
+    """Returns the Gymnasium id that a ``qtab/`` id is the twin of; any other id unchanged."""
+    return env.removeprefix(f"{PACKAGE}:").removeprefix(PREFIX)
+
+
+def entry_for_id(env: str) -> EnvEntry | None:
+    """Returns the entry of an id, Gymnasium's or this package's; None if Rust does not implement it."""
+    return ENTRIES.get(gymnasium_id(env)) or EXTRA.get(env.removeprefix(f"{PACKAGE}:"))
+
+
+def entry_for_spec(spec: EnvSpec, kwargs: Mapping[str, Any]) -> EnvEntry | None:
+    """Returns the entry that computes the numbers of ``gymnasium.make(spec, **kwargs)``; None if there is none."""
+    entry = entry_for_id(spec.id)
+    if entry is None or spec.additional_wrappers:
+        return None
+    if spec.entry_point not in (entry.gymnasium_entry_point, entry.entry_point):
+        return None
+    # With a render mode the user wants to see the environment itself, which Python steps.
+    arguments = {
+        name: value for name, value in {**spec.kwargs, **kwargs}.items() if (name, value) != ("render_mode", None)
+    }
+    if entry.has_table:
+        return None if "render_mode" in arguments else entry
+    # NumPy scalars would promote to other dtypes than Python numbers do.
+    are_python_numbers = all(type(value) in (int, float, bool) for value in arguments.values())
+    return entry if are_python_numbers and arguments.keys() <= entry.supported_kwargs else None
+
+
+def versioned(env: str) -> str:
+    """Returns an id with a version, the newest if it names none, with the warning that ``gymnasium.make`` gives.
+
+    Raises:
+        gymnasium.error.Error: from Gymnasium, for a malformed id.
+        ModuleNotFoundError: if the id names a package (``"package:id"``) that is not installed.
+    """
+    package, colon, name = env.rpartition(":")
+    if package:
+        import_module(package)
+    namespace, bare_name, version = parse_env_id(name)
+    newest = find_highest_version(namespace, bare_name)
+    if version is not None or newest is None:
+        return env
+    full_name = get_env_id(namespace, bare_name, newest)
+    gym.logger.warn(
+        f"Using the latest versioned environment `{full_name}` instead of the unversioned environment `{name}`."
+    )
+    return f"{package}{colon}{full_name}"
+
+
+def spec_of(env: str) -> EnvSpec:
+    """Returns the spec of an id, after importing the package that the id names (``"package:id"``).
+
+    Raises:
+        gymnasium.error.Error: from Gymnasium, for an unknown id.
+        ModuleNotFoundError: if the package is not installed.
+    """
+    return gym.spec(versioned(env).rpartition(":")[2])

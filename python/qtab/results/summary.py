@@ -1,0 +1,47 @@
+"""Runs in a few numbers."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FINAL_EPISODES = 100
+"""How many of the last episodes the final return is the mean of."""
+
+MAX_BLOCKS = 100
+"""More averages than this are neither read in a terminal nor told apart in a picture."""
+
+
+def default_block(episodes: int) -> int:
+    """Returns how many episodes to average over where nobody says: the article's 100, ten times more in long runs."""
+    block = 100
+    while episodes > MAX_BLOCKS * block:
+        block *= 10
+    return block
+
+
+def summarize(
+    returns: NDArray[np.float64], lengths: NDArray[np.int64], terminated: NDArray[np.bool_]
+) -> dict[str, NDArray[Any]]:
+    """Returns what runs of (runs, episodes) come to, a number a run.
+
+    ``final_return`` is the mean of the last 100 returns (of all where there are fewer), ``mean_return`` that of all:
+    the area under the learning curve, an episode's width being one over their number.
+    """
+    runs, episodes = returns.shape
+    return {
+        "episodes": np.full(runs, episodes),
+        "steps": lengths.sum(axis=1),
+        "mean_return": returns.mean(axis=1),
+        "final_return": returns[:, -FINAL_EPISODES:].mean(axis=1),
+        "best_return": returns.max(axis=1),
+        "terminated_rate": terminated.mean(axis=1),
+    }
+
+
+def block_means(returns: NDArray[np.float64], block: int) -> NDArray[np.float64]:
+    """Returns (runs, blocks): the average return of each whole block of episodes, run by run."""
+    runs, episodes = returns.shape
+    whole = episodes // block * block
+    means: NDArray[np.float64] = returns[:, :whole].reshape(runs, whole // block, block).mean(axis=2)
+    return means

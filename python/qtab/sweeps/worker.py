@@ -1,0 +1,73 @@
+"""Training of the chunks of a sweep, in this process or in a worker; the results are stored by the caller."""
+
+import pickle
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from qtab import _core
+from qtab.results.summary import block_means, summarize
+from qtab.sweeps.database import RunRecord
+from qtab.training.process_pool import train_to_the_end
+from qtab.training.resolve import Resolved, resolve
+from qtab.training.train_many import allocate, resolve_one, train_in_threads
+
+
+def train_chunk(task: bytes) -> list[RunRecord]:
+    """Trains the runs of a chunk on one thread.
+
+    Args:
+        task: ``(env, [(overrides, seeds), ...], block)``, pickled by cloudpickle.
+    """
+    env, parts, block = pickle.loads(task)  # noqa: S301 - from the process that submitted it
+    records: list[RunRecord] = []
+    for overrides, seeds in parts:
+        try:
+            resolved = resolve_one(env, {**overrides, "seed": seeds[0]})
+        except Exception as error:
+            records += [_failure(seed, error) for seed in seeds]
+        else:
+            records += train_setting(env, overrides, resolved, seeds, block, threads=1)
+    return records
+
+
+def train_setting(
+    env: Any, overrides: dict[str, Any], resolved: Resolved, seeds: Sequence[int], block: int, threads: int
+) -> list[RunRecord]:
+    """Trains one setting with each seed. The error of a run that fails is recorded, and the other runs continue."""
+    if resolved.model is None:
+        return [_train_in_python(env, overrides, seed, block) for seed in seeds]
+    results = allocate(resolved, len(seeds), threads, tables=False, limit=2**63)
+    failed = dict(train_in_threads(resolved, tuple(seeds), results, threads, go_on=True))
+    records = _records(seeds, block, results["returns"], results["lengths"], results["terminated"])
+    return [_failure(record.seed, failed[index]) if index in failed else record for index, record in enumerate(records)]
+
+
+def _train_in_python(env: Any, overrides: dict[str, Any], seed: int, block: int) -> RunRecord:
+    made = env() if callable(env) else env
+    try:
+        resolved = resolve(made, {**overrides, "seed": seed})
+        try:
+            trainer = _core.Trainer(resolved.core_environment(), resolved.plan())
+            train_to_the_end(trainer, resolved.config.episodes)
+            returns, lengths, terminated = (column[np.newaxis] for column in trainer.episodes())
+            return _records([seed], block, returns, lengths, terminated)[0]
+        finally:
+            if resolved.env is not None:
+                resolved.env.close()
+    except Exception as error:
+        return _failure(seed, error)
+
+
+def _records(seeds: Sequence[int], block: int, returns: Any, lengths: Any, terminated: Any) -> list[RunRecord]:
+    columns = {name: column.tolist() for name, column in summarize(returns, lengths, terminated).items()}
+    curves = block_means(returns, block)
+    return [
+        RunRecord(seed, {name: column[index] for name, column in columns.items()}, curves[index].tobytes())
+        for index, seed in enumerate(seeds)
+    ]
+
+
+def _failure(seed: int, error: Exception) -> RunRecord:
+    return RunRecord(seed, None, b"", f"{type(error).__name__}: {error}")

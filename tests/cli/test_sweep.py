@@ -1,0 +1,80 @@
+"""``qtab sweep`` and ``qtab report``."""
+
+import csv
+import re
+
+import numpy as np
+import pytest
+
+import qtab
+from qtab.cli import main
+
+STUDY = """
+env = "MountainCar-v0"
+seeds = 4
+block = 10
+[grid]
+learning_rate = [0.1, 0.5]
+scale = [[5, 50], [10, 100]]
+[config]
+episodes = 30
+"""
+
+
+def test_a_study_is_swept_goes_on_and_is_reported(tmp_path, capsys):
+    study = tmp_path / "study.toml"
+    study.write_text(STUDY)
+    assert main(["sweep", str(study)]) == 0
+    assert "16 runs of 4 settings" in capsys.readouterr().out
+    assert main(["sweep", str(study)]) == 0
+    loaded = qtab.load_sweep(tmp_path / "study.db")
+    grid = {"learning_rate": [0.1, 0.5], "scale": [(5, 50), (10, 100)]}
+    direct = qtab.sweep("MountainCar-v0", grid, 4, block=10, episodes=30)
+    for name, column in direct.columns.items():
+        np.testing.assert_array_equal(loaded.columns[name], column, strict=True)
+
+    assert main(["report", str(tmp_path / "study.db"), "--out", str(tmp_path / "report")]) == 0
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert page.count("data:image/png;base64,") == 5
+    assert not re.search(r'(src|href)="(?!data:)', page)
+    with (tmp_path / "report" / "runs.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["mean_return"]) for row in rows] == direct.columns["mean_return"].tolist()
+    with (tmp_path / "report" / "settings.csv").open() as file:
+        means = [float(row["mean"]) for row in csv.DictReader(file)]
+    assert means == sorted(means, reverse=True)
+
+
+def test_a_design_can_be_swept(tmp_path, capsys):
+    study = tmp_path / "study.toml"
+    design = 'kind = "sobol"\npoints = 4\nspace.learning_rate = {low = 0.01, high = 1.0, log = true}'
+    study.write_text(f"seeds = [3, 5]\n[design]\n{design}\n[config]\nepisodes = 5\n")
+    assert main(["sweep", str(study), "--store", str(tmp_path / "other.db"), "--threads", "1"]) == 0
+    assert len(qtab.load_sweep(tmp_path / "other.db")) == 8
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("seeds = 3", "either a [grid] or a [design]"),
+        ("nonsense = 3", "no use for 'nonsense'"),
+        ("[grid", "study must be a TOML file"),
+        ("[grid]\nepsilon = 0.3", "grid['epsilon'] must be a list of values"),
+        ("[grid]\nepsilom = [0.3]", "'epsilom' is no setting"),
+        ("[design]\nkind = 'spiral'\npoints = 3", "[design] must have kind"),
+    ],
+)
+def test_a_bad_study_is_refused_in_one_line(tmp_path, capsys, text, message):
+    study = tmp_path / "study.toml"
+    study.write_text(text)
+    assert main(["sweep", str(study)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert message in said
+
+
+def test_what_is_no_store_is_refused(tmp_path, capsys):
+    assert main(["report", str(tmp_path / "none.db")]) == 2
+    (tmp_path / "x.db").write_text("x" * 5000)
+    assert main(["report", str(tmp_path / "x.db")]) == 2
+    assert "not a sweep store" in capsys.readouterr().err
