@@ -72,7 +72,7 @@ class Sweep:
         try:
             import pandas as pd
         except ModuleNotFoundError as error:
-            raise missing(error, "stats") from None
+            raise missing(error) from None
         return pd.DataFrame(dict(self.columns))
 
     def to_arrow(self) -> "pa.Table":
@@ -84,7 +84,7 @@ class Sweep:
         try:
             import pyarrow as pa
         except ModuleNotFoundError as error:
-            raise missing(error, "stats") from None
+            raise missing(error) from None
         texts = {"error": pa.string()}
         return pa.table({name: pa.array(column, texts.get(name)) for name, column in self.columns.items()})
 
