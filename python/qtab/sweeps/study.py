@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
-from qtab.config import known_fields
+from qtab.config import DEFAULTS
+from qtab.config.layers import Base, over
+from qtab.config.unknown import check_names
 from qtab.sweeps import designs
 from qtab.training.resolve import Resolved
 from qtab.training.train_many import resolve_one, seed_numbers
@@ -45,10 +47,10 @@ class Study:
     """All runs of a sweep. Run ``i`` has setting ``i // len(seeds)`` and seed ``seeds[i % len(seeds)]``."""
 
     env: Any
-    base_config: Mapping[str, Any]
-    """The config fields that all settings share."""
     settings: Sequence[Mapping[str, Any]]
-    """The config fields that each setting adds."""
+    """The points of the grid: the config fields by which the settings differ."""
+    overrides: Sequence[Mapping[str, Any]]
+    """All that is given for each setting, the fields that all of them share included."""
     seeds: tuple[int, ...]
     """The seeds of every setting."""
     resolved: Sequence[Resolved]
@@ -107,7 +109,9 @@ class Study:
         return parts
 
 
-def plan_study(env: Any, grid: Any, seeds: Any, block: int, base_config: Mapping[str, Any]) -> Study:
+def plan_study(
+    env: Any, grid: Any, seeds: Any, block: int, shared: Mapping[str, Any], base: Base | None = None
+) -> Study:
     """Returns the study of a grid of settings, after resolving the config of each.
 
     Raises:
@@ -118,18 +122,19 @@ def plan_study(env: Any, grid: Any, seeds: Any, block: int, base_config: Mapping
     numbers = seed_numbers(seeds)
     settings = _settings_of(grid)
     names = list(settings[0])
-    known_fields({**base_config, **settings[0]})
+    check_names({**shared, **settings[0]}, DEFAULTS)
     for setting in settings:
         if list(setting) != names:
             raise ValueError(f"every setting in grid must have the same names, got {names} and {list(setting)}")
     for name, argument in (("seed", "seeds"), ("env", "env")):
-        if name in names or name in base_config:
+        if name in names or name in shared:
             raise TypeError(f"{name} cannot be a setting of a sweep; use the argument {argument}")
-    in_both = sorted(set(names) & set(base_config))
+    in_both = sorted(set(names) & set(shared))
     if in_both:
         raise TypeError(f"{in_both[0]} must be either in the grid or shared by all settings, got both")
-    resolved = [resolve_one(env, {**base_config, **setting, "seed": max(numbers)}) for setting in settings]
-    return Study(env, dict(base_config), settings, numbers, resolved, block)
+    overrides = [over(base or {}, {**shared, **setting}) for setting in settings]
+    resolved = [resolve_one(env, {**given, "seed": max(numbers)}) for given in overrides]
+    return Study(env, settings, overrides, numbers, resolved, block)
 
 
 def _settings_of(grid: Any) -> list[dict[str, Any]]:

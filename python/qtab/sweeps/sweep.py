@@ -10,8 +10,13 @@ from typing import Any
 
 import cloudpickle
 from gymnasium.envs.registration import EnvSpec
+from typing_extensions import Unpack
 
 from qtab._utils import checks, memory
+from qtab.config import Config
+from qtab.config.layers import collect
+from qtab.config.settings import SharedSettings
+from qtab.config.signature import with_settings
 from qtab.envs.registry import spec_of
 from qtab.sweeps.results import Sweep, build_sweep
 from qtab.sweeps.store import Store
@@ -42,28 +47,31 @@ class SweepProgress:
     """The wall-clock time since this call began."""
 
 
+@with_settings
 def sweep(
-    env: str | EnvSpec | MakeEnv,
+    env: str | EnvSpec | MakeEnv | None,
     grid: Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]],
     seeds: int | Iterable[int] = 100,
     *,
+    config: Config | Mapping[str, Any] | None = None,
     store: "str | os.PathLike[str] | None" = None,
     executor: Executor | None = None,
     threads: int | None = None,
     memory_limit: int | None = None,
     block: int = BLOCK,
     callback: Callable[[SweepProgress], None] | None = None,
-    **config: Any,
+    **settings: Unpack[SharedSettings],
 ) -> Sweep:
     """Trains every setting of a grid with the same seeds.
 
     With a ``store`` an interrupted sweep resumes when it is called again.
 
     Args:
-        env: An environment's id, its EnvSpec, or a function that creates one.
+        env: An environment's id, its EnvSpec, or a function that creates one. None takes that of ``config``.
         grid: Lists of values by name, to train every combination of them; or a list of settings, such as
-            :func:`qtab.designs.sobol` returns. The names are fields of :class:`qtab.Config`.
+            :func:`qtab.designs.sobol` returns. The names are those of settings.
         seeds: The seeds of every setting; an integer N means 0 to N - 1.
+        config: The settings to start from, as for :func:`qtab.train`, without the seed.
         store: An SQLite file for the results, which several processes may share. None keeps the results in memory.
         executor: Trains the runs: any :class:`concurrent.futures.Executor`, such as Dask's ``client.get_executor()``.
             None trains on threads of this process, or in worker processes if Python steps the environment.
@@ -71,7 +79,7 @@ def sweep(
         memory_limit: The most memory that a single run may need, in bytes; None means half of the machine's memory.
         block: The number of episodes that each point of a stored learning curve averages.
         callback: Called with a :class:`SweepProgress` after each chunk of runs, which takes one core about a second.
-        **config: The fields of :class:`qtab.Config` that all settings share.
+        **settings: The settings that all runs share, explained below.
 
     Returns:
         A table with one row per run. A run that failed has its error in the column ``error``.
@@ -89,9 +97,10 @@ def sweep(
     workers = thread_count(threads)
     if executor is not None and not hasattr(executor, "submit"):
         raise TypeError(f"executor must have a method submit, as in concurrent.futures, got {executor!r}")
+    env, base = collect(sweep, env, config, settings)
     if isinstance(env, str):
         env = spec_of(env)  # a worker process may not have imported the package that registers the id
-    study = plan_study(env, grid, seeds, block, config)
+    study = plan_study(env, grid, seeds, block, settings, base)
     for resolved in study.resolved:
         log_default_limit(resolved)
     study.check_memory(memory.memory_limit(memory_limit))
@@ -135,8 +144,8 @@ def _train_in_threads(study: Study, store: Store, threads: int, report_progress:
         chunk = study.chunks[number]
         records = []
         for setting, seeds in study.split(chunk):
-            overrides = {**study.base_config, **study.settings[setting]}
-            records += train_setting(study.env, overrides, study.resolved[setting], seeds, study.block, threads)
+            resolved = study.resolved[setting]
+            records += train_setting(study.env, study.overrides[setting], resolved, seeds, study.block, threads)
         store.commit(chunk, records)
         report_progress()
 
@@ -171,7 +180,7 @@ def _is_finished(study: Study, store: Store) -> bool:
 
 
 def _task(study: Study, chunk: Chunk) -> bytes:
-    parts = [({**study.base_config, **study.settings[setting]}, seeds) for setting, seeds in study.split(chunk)]
+    parts = [(study.overrides[setting], seeds) for setting, seeds in study.split(chunk)]
     task: bytes = cloudpickle.dumps((study.env, parts, study.block))
     return task
 

@@ -1,7 +1,7 @@
 """Training of the chunks of a sweep, in this process or in a worker; the results are stored by the caller."""
 
 import pickle
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -33,7 +33,7 @@ def train_chunk(task: bytes) -> list[RunRecord]:
 
 
 def train_setting(
-    env: Any, overrides: dict[str, Any], resolved: Resolved, seeds: Sequence[int], block: int, threads: int
+    env: Any, overrides: Mapping[str, Any], resolved: Resolved, seeds: Sequence[int], block: int, threads: int
 ) -> list[RunRecord]:
     """Trains one setting with each seed. The error of a run that fails is recorded, and the other runs continue."""
     if resolved.model is None:
@@ -44,7 +44,7 @@ def train_setting(
     return [_failure(record.seed, failed[index]) if index in failed else record for index, record in enumerate(records)]
 
 
-def _train_in_python(env: Any, overrides: dict[str, Any], seed: int, block: int) -> RunRecord:
+def _train_in_python(env: Any, overrides: Mapping[str, Any], seed: int, block: int) -> RunRecord:
     made = env() if callable(env) else env
     try:
         resolved = resolve(made, {**overrides, "seed": seed})
