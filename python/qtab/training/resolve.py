@@ -10,16 +10,17 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from qtab import _spec as plan
-from qtab.config import Config, known_fields
-from qtab.config.options import defaults, stranger, tables
+from qtab.config import DEFAULTS, Config
+from qtab.config.options import defaults, mismatch, n_tables
 from qtab.config.presets import preset
+from qtab.config.unknown import check_names
 from qtab.discretizers.actions import Actions, actions
 from qtab.discretizers.base import Features
 from qtab.discretizers.bins import Bins, bins
 from qtab.discretizers.identity import cells, components
 from qtab.discretizers.rounding import grid
 from qtab.discretizers.tile_coding import Tiling, tiling
-from qtab.envs.matching import entry_for_env, is_tabular_env, time_limit
+from qtab.envs.matching import entry_for_env, is_tabular_env, rust_unavailable, time_limit
 from qtab.envs.native import classic_spec, native_spec
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
 
@@ -103,15 +104,15 @@ def merge(env: str, *layers: Mapping[str, Any]) -> Config:
     """
     explicit: dict[str, Any] = {}
     for layer in layers:
-        known_fields(layer)
+        check_names(layer, DEFAULTS)
         explicit.update(layer)
     name = explicit.pop("preset", None)
     if name is not None and not isinstance(name, str):
         raise TypeError(f"preset must be a name, got {name!r}")
     name, values = preset(env, name)
     # A preset is a start: of what it says, that falls away which has no meaning beside what was asked for.
-    wanted = {**vars(Config()), **values, **explicit}
-    values = {field: value for field, value in values.items() if not stranger(field, value, wanted)}
+    wanted = {**DEFAULTS, **values, **explicit}
+    values = {field: value for field, value in values.items() if not mismatch(field, value, wanted)}
     return Config(**{**values, **explicit, "env": env, "preset": name})
 
 
@@ -138,7 +139,7 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
     config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = entry_for_spec(spec, config.env_kwargs)
     if model is None and config.backend == "rust":
-        raise _refused(f"Rust has no {spec.id} with these keyword arguments or wrappers")
+        raise rust_unavailable(f"Rust does not implement {spec.id} with these keyword arguments and wrappers")
     limit: dict[str, Any] = {}
     if config.max_episode_steps is not None:
         limit["max_episode_steps"] = config.max_episode_steps
@@ -182,16 +183,12 @@ def _resolved(
             described = native_spec(unwrapped) if model.has_table else classic_spec(unwrapped, model.name, choices)
         except (TypeError, ValueError) as error:
             if config.backend == "rust":
-                raise _refused(str(error)) from None
+                raise rust_unavailable(str(error)) from None
     table = _features(env, config, choices)
     steps = config.max_episode_steps or own_limit
     config = _complete(config, table, "gymnasium" if described is None else "rust", steps)
     model, stepped = (None, env) if described is None else (model, None)
     return Resolved(config, table, model, stepped, made, described, limited=steps is None)
-
-
-def _refused(why_not: str) -> ValueError:
-    return ValueError(f"backend must be 'gymnasium' or 'auto' here, got 'rust': {why_not}")
 
 
 def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config:
@@ -224,7 +221,7 @@ def _complete(config: Config, table: Features, backend: str, steps: int | None) 
         changes |= {name: tuple(limit.tolist()) for name, limit in zip(("low", "high"), table.limits, strict=True)}
         changes["bins"] = table.shape[:-1]
     if isinstance(config.initial_q, np.ndarray):
-        count = tables(config.algorithm)
+        count = n_tables(config.algorithm)
         shape = table.shape if count == 1 else (count, *table.shape)
         if config.initial_q.shape == table.shape and count > 1:
             changes["initial_q"] = np.stack([config.initial_q] * count)

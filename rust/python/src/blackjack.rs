@@ -46,7 +46,7 @@ impl Blackjack {
         };
         let (reward, terminated) = if action == 1 {
             player = draw(&cards, player)?;
-            (if player.bust() { -1.0 } else { 0.0 }, player.bust())
+            (if player.is_bust() { -1.0 } else { 0.0 }, player.is_bust())
         } else {
             while dealer.sum() < DEALER_STICKS {
                 dealer = draw(&dealers, dealer)?;

@@ -40,7 +40,8 @@ pub(crate) struct Bias {
 impl Process {
     pub(crate) fn build(self, py: Python<'_>, plan: &Plan<'_>) -> PyResult<Built> {
         let table = self.table.bind(py).get().0.clone();
-        let states = u32::try_from(table.states()).map_err(|_| PyValueError::new_err("P must have fewer states"))?;
+        let states =
+            u32::try_from(table.num_states()).map_err(|_| PyValueError::new_err("P must have fewer states"))?;
         match self.fickle {
             None if table.num_actions() == 4 => hot::<_, _, 4>(table, Identity(states), plan),
             None => hot::<_, _, 6>(table, Identity(states), plan),
@@ -63,7 +64,7 @@ impl Rules {
 impl Bias {
     pub(crate) fn build(self, plan: &Plan<'_>) -> PyResult<Built> {
         let Self { actions, mean, deviation } = self;
-        let env = MaximizationBias { actions, mean, deviation };
+        let env = MaximizationBias { num_actions: actions, mean, standard_deviation: deviation };
         cold(env, Identity(MAXIMIZATION_BIAS_STATES), 1, plan)
     }
 }

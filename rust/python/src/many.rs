@@ -10,7 +10,10 @@ use numpy::{PyReadwriteArray1, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::Budget;
-use qtab_core::batch::{Article, Balance, BatchedRun, LANES};
+use qtab_core::batch::{BatchedRun, LANES, SimdTrainer};
+use qtab_core::envs::classic_control::{CartPole, MountainCar};
+use qtab_core::features::{Axis, Bins, Edges, Rounding};
+use qtab_core::schedules::Schedule;
 
 use crate::dispatch::build;
 use crate::door;
@@ -18,6 +21,9 @@ use crate::failure::Failure;
 use crate::plan::Plan;
 use crate::run::Run;
 use crate::trainer::STEPS_BETWEEN_LOOKS;
+
+type Article = SimdTrainer<MountainCar, Rounding<f32, [Axis<f32>; 2]>, 3, f64>;
+type Balance = SimdTrainer<CartPole, Bins<f32, [Edges; 4]>, 2, Schedule>;
 
 /// What is worth a batch where there are fewer than `LANES`.
 const HALF: usize = LANES / 2;

@@ -81,7 +81,7 @@ impl Transitions {
 
     #[getter]
     fn states(&self) -> usize {
-        self.0.states()
+        self.0.num_states()
     }
 
     #[getter]
