@@ -152,3 +152,17 @@ def known_fields(names: Mapping[str, Any]) -> None:
     for name in names:
         if name not in fields:
             raise TypeError(f"{name!r} is no setting of a run; there are {', '.join(fields)}")
+
+
+DEFAULTS: Mapping[str, Any] = {
+    field.name: field.default_factory() if callable(field.default_factory) else field.default
+    for field in dataclasses.fields(Config)
+}
+"""The default of each field."""
+
+
+def replace_checked(config: Config, **changes: Any) -> Config:
+    """Returns a copy with some fields changed, for values that are known to be valid: they are not checked again."""
+    changed = object.__new__(Config)
+    vars(changed).update(vars(config), **changes)
+    return changed

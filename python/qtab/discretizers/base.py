@@ -10,7 +10,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab import _spec as plan
+from qtab import _old_spec as plan
 from qtab.discretizers.actions import FLOATS, Actions
 
 LARGEST_TABLE = 2**32

@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab import _spec as plan
+from qtab import _old_spec as plan
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.actions import actions as choices_of
 from qtab.discretizers.base import Features, box, check_size

@@ -6,7 +6,7 @@ import numpy as np
 from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core
-from qtab import _spec as plan
+from qtab import _old_spec as plan
 from qtab.discretizers.actions import Actions
 from qtab.envs.maximization_bias import MaximizationBiasEnv
 

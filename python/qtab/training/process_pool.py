@@ -15,7 +15,7 @@ from typing import Any
 import cloudpickle
 
 from qtab import _core
-from qtab import _spec as plan
+from qtab import _old_spec as plan
 from qtab.envs.registry import spec_of
 from qtab.training.resolve import resolve
 

@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
-from qtab import _spec as plan
+from qtab import _old_spec as plan
 from qtab.config import Config, known_fields
 from qtab.config.options import defaults, stranger, tables
 from qtab.config.presets import preset

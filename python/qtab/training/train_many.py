@@ -10,7 +10,7 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from qtab import _core
-from qtab import _spec as plan
+from qtab import _old_spec as plan
 from qtab._utils import checks
 from qtab._utils.memory import BYTES_AN_EPISODE, check_memory, memory_limit
 from qtab._utils.versions import versions
