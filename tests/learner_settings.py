@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from lockstep import MACHINE
 from qtab import _core
 from qtab.config.options import ONE_STEP, TABLES_ONLY
-from qtab.envs.registry import MODELS
+from qtab.envs.registry import ENTRIES
 
 CAR = "MountainCar-v0"
 LIMITS: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
@@ -31,7 +31,7 @@ TRAINED = [
     pytest.param(
         env,
         marks=pytest.mark.skipif(
-            not _core.computes_as_numpy(MODELS[env].name), reason=f"Rust does not compute as NumPy here: {MACHINE}"
+            not _core.computes_as_numpy(ENTRIES[env].name), reason=f"Rust does not compute as NumPy here: {MACHINE}"
         ),
     )
     for env in LIMITS

@@ -9,7 +9,7 @@ import pytest
 import qtab
 from gridworld import SHORTEST
 from parity import assert_same_run
-from qtab.rendering.replay import play
+from qtab.rendering.replay import replay_episode
 
 gym.register("qtab-tests/Room-v0", "gridworld:Room", max_episode_steps=100)
 ROOM: dict[str, Any] = {"episodes": 250, "learning_rate": 0.5, "discount": 0.95, "epsilon": 0.5, "initial_q": 0.0}
@@ -47,7 +47,7 @@ def test_a_slippery_room_is_learned_saved_loaded_and_verified(algorithm: str, tm
 def test_the_last_episodes_in_the_room_are_played_again() -> None:
     run = qtab.train("qtab-tests/Room-v0", env_kwargs={"slip": 0.1}, record=5, **ROOM)
     env = gym.make("qtab-tests/Room-v0", slip=0.1, render_mode="ansi")
-    returns = [play(env, recording) for recording in run.recordings]
+    returns = [replay_episode(env, recording) for recording in run.recordings]
     assert returns == run.episode_returns[-5:].tolist()
     assert all(returns)
 

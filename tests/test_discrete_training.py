@@ -198,13 +198,13 @@ def test_what_does_not_fit_is_refused(env, settings, text):
 
 @pytest.mark.parametrize("name", IDS)
 def test_recorded_episodes_can_be_played_again(name):
-    from qtab.rendering.replay import play_all, stage
+    from qtab.rendering.replay import make_render_env, replay_all
 
     run = qtab.train(name, record=40, **SETTINGS)
     assert len(run.recordings) == 40
     mode = "ansi" if name != "Blackjack-v1" else "rgb_array"
-    env = stage(run.config, mode)
-    assert play_all(env, run, progress=False) == 0
+    env = make_render_env(run.config, mode)
+    assert replay_all(env, run, progress=False) == 0
     env.close()
 
 

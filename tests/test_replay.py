@@ -8,7 +8,7 @@ import pytest
 
 import qtab as package
 from command import qtab, refused
-from qtab.rendering.replay import play, play_all, stage
+from qtab.rendering.replay import make_render_env, replay_all, replay_episode
 
 
 @pytest.mark.parametrize("backend", ["rust", "gymnasium"])
@@ -21,8 +21,8 @@ def test_recordings_play_the_same_returns_and_lengths_in_gymnasium(backend: str,
     env = gym.make("MountainCar-v0")
     for recording in run.recordings:
         assert len(recording.actions) == run.episode_lengths[recording.episode]
-        assert play(env, recording) == run.episode_returns[recording.episode]
-    assert play_all(env, run) == 0
+        assert replay_episode(env, recording) == run.episode_returns[recording.episode]
+    assert replay_all(env, run) == 0
 
 
 def test_a_recording_from_the_first_episode_starts_where_the_seed_starts() -> None:
@@ -38,7 +38,7 @@ def test_a_recording_from_the_first_episode_starts_where_the_seed_starts() -> No
         return start
 
     env.unwrapped.reset = watched  # type: ignore[method-assign, assignment]
-    play_all(env, run)
+    replay_all(env, run)
     assert starts[0].tobytes() == seeded.tobytes()
 
 
@@ -49,15 +49,15 @@ def test_more_recordings_than_episodes_are_all_episodes() -> None:
 def test_episodes_that_go_another_way_are_counted() -> None:
     run = package.train("MountainCar-v0", episodes=3, seed=0, record=3)
     run.episode_returns[1] -= 1
-    assert play_all(gym.make("MountainCar-v0"), run) == 1
+    assert replay_all(gym.make("MountainCar-v0"), run) == 1
 
 
 def test_the_stage_has_the_limits_and_constants_of_the_run() -> None:
     config = package.train("MountainCar-v0", episodes=1, max_episode_steps=7, env_kwargs={"goal_velocity": 0.01}).config
-    env = stage(config, "rgb_array")
+    env = make_render_env(config, "rgb_array")
     assert env.unwrapped.goal_velocity == 0.01  # type: ignore[attr-defined]
     run = package.train("MountainCar-v0", episodes=2, seed=0, record=2, max_episode_steps=7)
-    assert play_all(env, run) == 0
+    assert replay_all(env, run) == 0
 
 
 def test_an_environment_without_pictures_is_refused_before_training(tmp_path: Path) -> None:
@@ -91,8 +91,8 @@ def test_watch_is_refused_before_training_without_a_display(tmp_path: Path) -> N
 def test_a_window_shows_the_same_episodes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     run = package.train("MountainCar-v0", episodes=5, seed=0, record=2, max_episode_steps=10)
-    env = stage(run.config, "human")
+    env = make_render_env(run.config, "human")
     env.metadata["render_fps"] = 1000
-    assert play_all(env, run) == 0
+    assert replay_all(env, run) == 0
     env.close()
     assert np.isfinite(run.q_table).all()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.results.summary import block_of
+from qtab.results.summary import default_block
 
 
 @pytest.fixture(scope="module")
@@ -106,4 +106,4 @@ def test_what_is_no_run_is_refused_by_name(use) -> None:
 
 @pytest.mark.parametrize(("episodes", "block"), [(5_000, 100), (10_000, 100), (10_001, 1_000), (1_000_000, 10_000)])
 def test_long_runs_are_averaged_over_more_episodes(episodes: int, block: int) -> None:
-    assert block_of(episodes) == block
+    assert default_block(episodes) == block
