@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.memory import memory_limit
-from qtab.training.train_many import allocate, resolve_one, train_in_threads
+from qtab.training.train_many import allocate_results, resolve_template, train_in_threads
 
 Environment: TypeAlias = str | Callable[[], gym.Env]
 
@@ -34,12 +34,13 @@ def train(env: Environment, config: Mapping[str, Any], seeds: Sequence[int], thr
     Where the values of a run overflow, which :func:`qtab.train` raises, the episodes that it did not finish count as
     capped, -1 a step.
     """
-    resolved = resolve_one(env, {**config, "seed": seeds[0]})
-    cap = resolved.config.max_episode_steps
-    assert cap is not None  # noqa: S101 - resolved
-    results = allocate(resolved, len(seeds), min(threads, len(seeds)), tables=False, limit=memory_limit(None))
+    resolved = resolve_template(env, {**config, "seed": seeds[0]})
+    cap = resolved.max_episode_steps
+    results = allocate_results(
+        resolved, len(seeds), min(threads, len(seeds)), keep_tables=False, limit=memory_limit(None)
+    )
     diverged = np.zeros(len(seeds), np.bool_)
-    for index, error in train_in_threads(resolved, tuple(seeds), results, threads, go_on=True):
+    for index, error in train_in_threads(resolved, seeds, results, threads, keep_going=True):
         if not isinstance(error, OverflowError):
             raise error
         diverged[index] = True

@@ -12,11 +12,10 @@ import numpy as np
 import tyro
 
 from qtab.config import Config, known_fields
+from qtab.config.merge import merge
 from qtab.config.presets import preset
-from qtab.discretizers.tile_coding import Tiling
 from qtab.envs.registry import spec_of, versioned
 from qtab.results.storage import load
-from qtab.training.resolve import merge
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -145,7 +144,8 @@ class Settings(Config):
         }
         if isinstance(self.initial_q, Path):
             run = load(self.initial_q)
-            values["initial_q"] = run.tables if isinstance(run.grid, Tiling) or len(run.tables) > 1 else run.q_table
+            one_table_of_cells = run.discretizer.has_cells and len(run.tables) == 1
+            values["initial_q"] = run.q_table if one_table_of_cells else run.tables
         return values
 
 

@@ -12,8 +12,8 @@ from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core
 from qtab._utils import checks
-from qtab.discretizers.actions import actions
-from qtab.discretizers.identity import cells
+from qtab.discretizers import Identity
+from qtab.discretizers.actions import choose_actions
 from qtab.envs.classic_control import MountainCarEnv as RustMountainCarEnv
 from qtab.envs.matching import time_limit, unknown_wrapper
 from qtab.envs.native import toy_text_spec
@@ -136,20 +136,20 @@ def _solve(name: str, env: gym.Env, limit: int | None, discount: float | None, m
 
 
 def _plan(env: Any, method: str, discount: float, steps: int) -> dict[str, Any]:
-    table = cells(env, actions(env.action_space, None))
+    actions = choose_actions(env.action_space, None)
+    cells = Identity.of_space(env.observation_space, len(actions))
     planner = _core.Planner(toy_text_spec(env))
     solution = solve(planner, method, discount, steps)
     # The first states are those that an observation shows; what follows is hidden behind them.
-    if len(solution.values) < table.rows or solution.q_values.shape[1] != table.actions:
-        raise ValueError(f"P must have {table.rows} states of {table.actions} actions, as the spaces of env have")
-    shape = table.shape[:-1]
+    if len(solution.values) < cells.n_rows or solution.q_values.shape[1] != len(actions):
+        raise ValueError(f"P must have {cells.n_rows} states of {len(actions)} actions, as the spaces of env have")
     return {
-        "values": solution.values[: table.rows].reshape(shape),
-        "q_values": solution.q_values[: table.rows].reshape(table.shape),
-        "policy": solution.policy[: table.rows].reshape(shape) + table.first_action,
+        "values": solution.values[: cells.n_rows].reshape(cells.shape),
+        "q_values": solution.q_values[: cells.n_rows].reshape(*cells.shape, len(actions)),
+        "policy": solution.policy[: cells.n_rows].reshape(cells.shape) + actions.first,
         "expected_return": solution.expected_return,
         "search": None,
-        "truth": TableTruth(planner, table, solution, steps),
+        "truth": TableTruth(planner, cells, actions, solution, steps),
     }
 
 

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
-from qtab.discretizers.identity import Cells
+from qtab.discretizers import Identity
+from qtab.discretizers.actions import Actions
 from qtab.results.run import Run
 
 METHODS = ("finite_horizon", "value_iteration", "policy_iteration")
@@ -45,8 +46,11 @@ def solve(planner: _core.Planner, method: str, discount: float, steps: int) -> S
 class TableTruth:
     """Decides by a solved table."""
 
-    def __init__(self, planner: _core.Planner, cells: Cells, solution: Solution, steps: int) -> None:
-        self._planner, self._cells, self._solution, self._steps = planner, cells, solution, steps
+    def __init__(
+        self, planner: _core.Planner, cells: Identity, actions: Actions, solution: Solution, steps: int
+    ) -> None:
+        self._planner, self._cells, self._actions = planner, cells, actions
+        self._solution, self._steps = solution, steps
         self.remembers = solution.changes is not None
 
     def action(self, observation: ArrayLike, taken: int) -> int:
@@ -55,11 +59,11 @@ class TableTruth:
         Raises:
             ValueError: for an observation outside the space, or one that hides what the best action depends on.
         """
-        [row] = self._cells.lit(np.asarray(observation))
+        row = self._cells.row(observation)
         best = {self._best(int(state), taken) for state in np.flatnonzero(self._planner.rows == row)}
         if len(best) > 1:
             raise ValueError(f"the best action depends on what the observation {observation!r} does not show")
-        return best.pop() + self._cells.first_action
+        return best.pop() + self._actions.first
 
     def _best(self, state: int, taken: int) -> int:
         if self._solution.changes is None:
@@ -75,7 +79,9 @@ class TableTruth:
         Raises:
             ValueError: if the run's table is another.
         """
-        if not isinstance(run.grid, Cells) or run.grid.shape != self._cells.shape:
-            raise ValueError(f"run must have a table of shape {self._cells.shape}, got {run.grid.shape!r}")
-        policy: Any = np.ascontiguousarray(run.policy.ravel() - run.grid.first_action)
+        shape, actions = self._cells.shape, len(self._actions)
+        if not run.discretizer.has_cells or run.q_table.shape != (*shape, actions):
+            found = (*run.discretizer.shape, len(run.actions))
+            raise ValueError(f"run must have a table of shape {(*shape, actions)}, got {found}")
+        policy: Any = np.ascontiguousarray(run.policy.ravel() - run.actions.first)
         return self._planner.policy_return(policy, self._steps), 0.0

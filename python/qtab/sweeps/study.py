@@ -13,8 +13,8 @@ import numpy as np
 from qtab._utils.memory import BYTES_AN_EPISODE, check_memory
 from qtab.config import known_fields
 from qtab.sweeps import designs
-from qtab.training.resolve import Resolved
-from qtab.training.train_many import resolve_one, seed_numbers
+from qtab.training.resolved_run import ResolvedRun
+from qtab.training.train_many import resolve_template, seed_numbers
 
 PIECE_STEPS = 2**26
 """A piece is about so many steps, a second of Rust on one core …"""
@@ -43,7 +43,7 @@ class Study:
     fixed: Mapping[str, Any]
     settings: Sequence[Mapping[str, Any]]
     seeds: tuple[int, ...]
-    resolved: Sequence[Resolved]
+    resolved: Sequence[ResolvedRun]
     """What each setting comes to."""
     block: int
     """Learning curves are kept as the means of so many episodes."""
@@ -74,7 +74,8 @@ class Study:
         for resolved in self.resolved:
             episodes = resolved.config.episodes
             # The trainer's own lists, and the arrays that they are copied to.
-            needed = 2 * episodes * BYTES_AN_EPISODE + 8 * math.prod(resolved.grid.shape)
+            values = resolved.discretizer.n_rows * len(resolved.actions)
+            needed = 2 * episodes * BYTES_AN_EPISODE + 8 * values
             check_memory(f"runs of {episodes} episodes", needed, limit)
 
     @cached_property
@@ -120,7 +121,7 @@ def study(env: Any, grid: Any, seeds: Any, block: int, fixed: Mapping[str, Any])
     twice = set(names) & set(fixed)
     if twice:
         raise TypeError(f"{sorted(twice)[0]} is both in the grid and fixed")
-    resolved = [resolve_one(env, {**fixed, **setting, "seed": max(numbers)}) for setting in settings]
+    resolved = [resolve_template(env, {**fixed, **setting, "seed": max(numbers)}) for setting in settings]
     return Study(env, dict(fixed), settings, numbers, resolved, block)
 
 
@@ -139,11 +140,10 @@ def _settings(grid: Any) -> list[dict[str, Any]]:
     return [dict(setting) for setting in grid]
 
 
-def _load(resolved: Resolved) -> float:
+def _load(resolved: ResolvedRun) -> float:
     """The share of a piece that a run makes up."""
-    config = resolved.config
-    steps = config.episodes * min(config.max_episode_steps or LIKELY_STEPS, LIKELY_STEPS)
-    return steps / (PYTHON_PIECE_STEPS if resolved.model is None else PIECE_STEPS)
+    steps = resolved.config.episodes * min(resolved.max_episode_steps, LIKELY_STEPS)
+    return steps / (PYTHON_PIECE_STEPS if not resolved.is_native else PIECE_STEPS)
 
 
 def _described(value: Any) -> Any:

@@ -18,7 +18,7 @@ from qtab.sweeps.results import Sweep
 from qtab.sweeps.store import Store
 from qtab.sweeps.study import Piece, Study, study
 from qtab.sweeps.worker import train_piece, train_share
-from qtab.training.process_pool import pool
+from qtab.training.process_pool import process_pool
 from qtab.training.resolve import log_default_limit
 from qtab.training.train_many import MakeEnv, thread_count
 
@@ -99,10 +99,10 @@ def sweep(
         try:
             if executor is not None:
                 _with_executor(planned, kept, executor, report)
-            elif all(resolved.model is not None for resolved in planned.resolved):
+            elif all(resolved.is_native for resolved in planned.resolved):
                 _here(planned, kept, workers, report)
             else:
-                with pool(workers) as own:
+                with process_pool(workers) as own:
                     _with_executor(planned, kept, own, report, in_flight=2 * workers)
         except KeyboardInterrupt as error:
             error.run = _table(planned, kept)  # type: ignore[attr-defined]
