@@ -77,4 +77,4 @@ def test_what_is_no_store_is_refused(tmp_path, capsys):
     assert main(["report", str(tmp_path / "none.db")]) == 2
     (tmp_path / "x.db").write_text("x" * 5000)
     assert main(["report", str(tmp_path / "x.db")]) == 2
-    assert "no store" in capsys.readouterr().err
+    assert "not a sweep store" in capsys.readouterr().err

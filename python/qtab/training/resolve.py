@@ -19,7 +19,7 @@ from qtab.config.schedules import learning_rate
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions, choose_actions
 from qtab.discretizers.identity import integer_bounds
-from qtab.envs.matching import entry_for_env, is_tabular_env, time_limit
+from qtab.envs.matching import entry_for_env, is_tabular_env, rust_unavailable, time_limit
 from qtab.envs.native import native_env
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
 from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun
@@ -61,7 +61,7 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> Res
     config = config_of(name, asked)
     entry = entry_for_spec(spec, config.env_kwargs)
     if entry is None and config.backend == "rust":
-        raise _no_rust(f"Rust has no {spec.id} with these keyword arguments or wrappers")
+        raise rust_unavailable(f"Rust does not implement {spec.id} with these keyword arguments and wrappers")
     limit: dict[str, Any] = {} if config.max_episode_steps is None else {"max_episode_steps": config.max_episode_steps}
     made = gym.make(spec, **config.env_kwargs, **limit)
     return _resolve(made, entry, config, asked, spec.max_episode_steps, owns_env=True)
@@ -160,12 +160,8 @@ def _environment(env: gym.Env, entry: EnvEntry | None, config: Config, actions: 
             return NativeEnvironment(entry, native_env(entry, env.unwrapped, actions))
         except (TypeError, ValueError) as error:
             if config.backend == "rust":
-                raise _no_rust(str(error)) from None
+                raise rust_unavailable(str(error)) from None
     return PythonEnvironment(env, actions, owns_env)
-
-
-def _no_rust(reason: str) -> ValueError:
-    return ValueError(f"backend must be 'gymnasium' or 'auto' here, got 'rust': {reason}")
 
 
 def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> Any:
