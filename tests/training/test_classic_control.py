@@ -148,5 +148,5 @@ def test_acrobots_first_observations_are_numpys_single_precision(name: str) -> N
             discount=0.0,
             learning_rate=1.0,
         )
-        assert run.tables[0, run.grid.lit(observation)[0], 0] == -1.0
-        assert run.grid.cell(observation) == (2,) * 6
+        assert run.tables[0, run.discretizer.row(observation), 0] == -1.0
+        assert run.discretizer.cell(observation) == (2,) * 6

@@ -15,7 +15,8 @@ Cell = Callable[[Any], Any]
 
 def q_learning(name: str, episodes: int, seed: int) -> tuple[NDArray[np.float64], int]:
     """Returns the Q table of so many episodes with the settings of an environment's own preset, and the steps taken."""
-    env, (_, settings) = gym.make(name), preset(name, None)
+    env = gym.make(name)
+    settings: Any = preset(name, None)[1]
     shape, cell = _cells(env, settings)
     rng, actions = agent_stream(seed, "PCG64"), int(env.action_space.n)  # type: ignore[attr-defined]
     q = np.full((*shape, actions), settings["initial_q"])
@@ -25,20 +26,20 @@ def q_learning(name: str, episodes: int, seed: int) -> tuple[NDArray[np.float64]
     steps = 0
     for episode in range(episodes):
         observation, _ = env.reset(seed=seed if episode == 0 else None)
-        here = cell(observation)
+        state = cell(observation)
         done = truncated = False
         while not (done or truncated):
             if rng.random() < 1.0 - epsilon:
-                action = int(np.argmax(q[here]))
+                action = int(np.argmax(q[state]))
             else:
                 action = int(rng.integers(0, actions))
             observation, reward, done, truncated, _ = env.step(action)
-            there = cell(observation)
+            next_state = cell(observation)
             if done:
-                q[here][action] += learning * (reward - q[here][action])
+                q[state][action] += learning * (reward - q[state][action])
             else:
-                q[here][action] += learning * (reward + discount * np.max(q[there]) - q[here][action])
-            here = there
+                q[state][action] += learning * (reward + discount * np.max(q[next_state]) - q[state][action])
+            state = next_state
             steps += 1
         if epsilon > 0:
             epsilon -= reduction

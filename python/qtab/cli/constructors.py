@@ -4,12 +4,13 @@ import ast
 import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, TypeVar
 
 import tyro
 
 from qtab._utils.suggestions import did_you_mean
 
+Number = TypeVar("Number", int, float)
 Words: TypeAlias = list[str]
 """What follows a flag on the command line."""
 
@@ -111,7 +112,7 @@ def read_actions(words: Words) -> int | tuple[Any, ...]:
     return values[0] if len(values) == 1 and isinstance(values[0], int) else values
 
 
-def _number(type_: Callable[[str], Any], kind: str, words: Words) -> Any:
+def _number(type_: Callable[[str], Number], kind: str, words: Words) -> Number:
     try:
         return type_(words[0])
     except ValueError:

@@ -6,9 +6,24 @@ import numpy as np
 from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core
-from qtab import _spec as plan
+from qtab import _old_spec as plan
 from qtab.discretizers.actions import Actions
 from qtab.envs.maximization_bias import MaximizationBiasEnv
+from qtab.envs.registry import EnvEntry
+
+
+def native_env(entry: EnvEntry, env: Any, actions: Actions) -> _core.NativeEnv:
+    """Returns an unwrapped environment as Rust steps it, with the actions of a continuous one.
+
+    Raises:
+        TypeError: for an attribute or a table that Rust does not compute with as NumPy does.
+        ValueError: for an attribute, a table, an action space or a machine that Rust does not support.
+    """
+    if actions.values is None:
+        return _core.NativeEnv(entry.name, env, [])
+    if actions.values.dtype != np.float32:
+        raise ValueError(f"Rust computes with actions of float32, got {actions.values.dtype}")
+    return _core.NativeEnv(entry.name, env, actions.values[:, 0].tolist())
 
 
 def native_spec(env: Any) -> plan.Process | plan.Rules | plan.Bias:
