@@ -1,0 +1,263 @@
+"""What the extension module takes: the description of a run, complete and checked, every union tagged by ``type``.
+
+The extension parses it once into its own enums. The words of each union stand there a second time (``_core.ALGORITHMS``
+and its like); a test holds the two lists together.
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.names import BitGenerator, OnTruncation, TerminalUpdate, Ties, Traces
+
+if TYPE_CHECKING:
+    from qtab._core import NativeEnv
+
+# Environments
+
+
+class NativeEnvSpec(TypedDict):
+    """An environment that Rust steps."""
+
+    type: Literal["native"]
+    env: "NativeEnv"
+
+
+class PythonEnvSpec(TypedDict):
+    """An environment that is stepped in Python."""
+
+    type: Literal["python"]
+    env: Any
+    first_action: int
+    """The environment's number of the first action, where its space is Discrete."""
+    actions: Sequence[NDArray[np.floating]]
+    """The actions themselves, where its space is a Box; empty for a Discrete space."""
+
+
+EnvironmentSpec: TypeAlias = NativeEnvSpec | PythonEnvSpec
+
+# Discretizers
+
+FloatType: TypeAlias = Literal["float32", "float64"]
+
+
+class RoundSpec(TypedDict):
+    """A grid: each component rounded to the nearest multiple of 1 / ``scale``."""
+
+    type: Literal["round"]
+    dtype: FloatType
+    """Of the observations, and of the arithmetic."""
+    low: Sequence[float]
+    """The bounds of the observation space."""
+    high: Sequence[float]
+    scale: Sequence[float]
+    """Cells per unit of each component."""
+
+
+class BinsSpec(TypedDict):
+    """A grid of bins between edges, as ``numpy.digitize`` numbers them; ``bins`` and ``edges`` of the config."""
+
+    type: Literal["bins"]
+    dtype: FloatType
+    edges: Sequence[Sequence[float]]
+    """For each component the inner edges, ascending."""
+
+
+class TilesSpec(TypedDict):
+    """Tile coding."""
+
+    type: Literal["tiles"]
+    dtype: FloatType
+    low: Sequence[float]
+    """What the tilings span."""
+    high: Sequence[float]
+    tiles: Sequence[int]
+    """Along each component."""
+    tilings: int
+    hashed_rows: int | None
+    """The rows that all tilings share; None gives each tile its own."""
+
+
+class IdentitySpec(TypedDict):
+    """Integers, each combination a row in C order."""
+
+    type: Literal["identity"]
+    first: Sequence[int]
+    """The first integer of each component."""
+    counts: Sequence[int]
+    """How many integers each component takes."""
+    scalar: bool
+    """Whether an observation is one integer (a Discrete space), not a sequence of them."""
+
+
+DiscretizerSpec: TypeAlias = RoundSpec | BinsSpec | TilesSpec | IdentitySpec
+
+# The agent
+
+
+class ConstantSpec(TypedDict):
+    """The same in every episode."""
+
+    type: Literal["constant"]
+    value: float
+
+
+class LinearSpec(TypedDict):
+    """Falls by equal amounts, from episode ``warm_up`` on, to reach ``minimum`` at the end of the run."""
+
+    type: Literal["linear"]
+    value: float
+    minimum: float
+    warm_up: int
+
+
+class ExponentialSpec(TypedDict):
+    """Falls by the factor ``decay`` after each episode, from episode ``warm_up`` on, but not below ``minimum``."""
+
+    type: Literal["exponential"]
+    value: float
+    minimum: float
+    decay: float
+    warm_up: int
+
+
+class VisitsSpec(TypedDict):
+    """``value`` / n at the n-th visit of a state and action, but not below ``minimum``."""
+
+    type: Literal["visits"]
+    value: float
+    minimum: float
+
+
+ScheduleSpec: TypeAlias = ConstantSpec | LinearSpec | ExponentialSpec
+LearningRateSpec: TypeAlias = ScheduleSpec | VisitsSpec
+
+
+class EpsilonGreedySpec(TypedDict):
+    """Explores with probability epsilon."""
+
+    type: Literal["epsilon_greedy"]
+    epsilon: ScheduleSpec
+    ties: Ties
+
+
+class SoftmaxSpec(TypedDict):
+    """Chooses an action with probability proportional to exp(Q / temperature)."""
+
+    type: Literal["softmax"]
+    temperature: float
+
+
+PolicySpec: TypeAlias = EpsilonGreedySpec | SoftmaxSpec
+
+
+class TableSpec(TypedDict):
+    """Given values: (tables, rows, actions) in C order, in any shape. -inf: the state does not have that action."""
+
+    type: Literal["table"]
+    values: NDArray[np.float64]
+
+
+class UniformSpec(TypedDict):
+    """Values drawn uniformly from [low, high) by the agent's generator."""
+
+    type: Literal["uniform"]
+    low: float
+    high: float
+
+
+InitialQSpec: TypeAlias = TableSpec | UniformSpec | ConstantSpec
+
+
+class OneStepSpec(TypedDict):
+    """An algorithm without options."""
+
+    type: Literal["q_learning", "sarsa", "expected_sarsa", "double_q_learning"]
+
+
+class NStepSarsaSpec(TypedDict):
+    """n-step Sarsa."""
+
+    type: Literal["n_step_sarsa"]
+    n_steps: int
+
+
+class TraceSpec(TypedDict):
+    """An algorithm with eligibility traces of a kind."""
+
+    type: Literal["sarsa_lambda", "watkins_q_lambda"]
+    trace_decay: float
+    traces: Traces
+    trace_cutoff: float
+
+
+class TrueOnlineSarsaLambdaSpec(TypedDict):
+    """True online Sarsa(lambda), whose traces are of its own kind."""
+
+    type: Literal["true_online_sarsa_lambda"]
+    trace_decay: float
+    trace_cutoff: float
+
+
+class DynaQSpec(TypedDict):
+    """Dyna-Q."""
+
+    type: Literal["dyna_q"]
+    planning_steps: int
+
+
+class DynaQPlusSpec(TypedDict):
+    """Dyna-Q+."""
+
+    type: Literal["dyna_q_plus"]
+    planning_steps: int
+    time_weight: float
+
+
+AlgorithmSpec: TypeAlias = (
+    OneStepSpec | NStepSarsaSpec | TraceSpec | TrueOnlineSarsaLambdaSpec | DynaQSpec | DynaQPlusSpec
+)
+
+
+class RunSpec(TypedDict):
+    """A run, but for its seed."""
+
+    env: EnvironmentSpec
+    discretizer: DiscretizerSpec
+    num_actions: int
+    max_episode_steps: int
+    algorithm: AlgorithmSpec
+    policy: PolicySpec
+    learning_rate: LearningRateSpec
+    discount: float
+    initial_q: InitialQSpec
+    terminal_update: TerminalUpdate
+    on_truncation: OnTruncation
+    episodes: int
+    bit_generator: BitGenerator
+
+
+# Results
+
+
+class Results(TypedDict):
+    """The arrays into which many runs write their results: a row for each run."""
+
+    returns: NDArray[np.float64]
+    """(runs, episodes)"""
+    lengths: NDArray[np.int64]
+    """(runs, episodes)"""
+    terminated: NDArray[np.bool_]
+    """(runs, episodes)"""
+    tables: NDArray[np.float64]
+    """(runs, values), or (runs, 0) where tables are not kept."""
+    finished: NDArray[np.bool_]
+    """(runs,)"""
+
+
+Solution: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]
+"""State values, action values and the policy."""
+PolicyChanges: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
+"""From how many remaining steps on, in which state, which action is best."""
