@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 import qtab
-from qtab.models import MODELS
+from qtab.envs.registry import MODELS
 
 SEEDS = 100
 GREEDY_EPISODES = 1_000

@@ -22,7 +22,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 @pytest.fixture
 def small_pieces(monkeypatch):
     """Some three runs a piece."""
-    from qtab.sweeping import study as studies
+    from qtab.sweeps import study as studies
 
     monkeypatch.setattr(studies, "PIECE_STEPS", 2 * 40 * 200 + 1)
     monkeypatch.setattr(studies, "PYTHON_PIECE_STEPS", 1)

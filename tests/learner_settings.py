@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from lockstep import MACHINE
 from qtab import _core
-from qtab.models import MODELS
-from qtab.options import ONE_STEP, TABLES_ONLY
+from qtab.config.options import ONE_STEP, TABLES_ONLY
+from qtab.envs.registry import MODELS
 
 CAR = "MountainCar-v0"
 LIMITS: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {

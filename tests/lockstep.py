@@ -12,7 +12,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab import _core
-from qtab.versions import versions
+from qtab._utils.versions import versions
 
 IDS = ["MountainCar-v0", "MountainCarContinuous-v0", "CartPole-v1", "Acrobot-v1", "Pendulum-v1"]
 CONTINUOUS = ["MountainCarContinuous-v0", "Pendulum-v1"]

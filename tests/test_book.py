@@ -8,7 +8,7 @@ import pytest
 
 import qtab
 from qtab.book import trials
-from qtab.book.table import COLUMNS
+from qtab.book.result import COLUMNS
 
 NAMES = list(qtab.book.EXPERIMENTS)
 
@@ -244,7 +244,8 @@ def outcome(*lengths):
 
 
 def test_what_is_measured():
-    from qtab.book import example_6_5, figure_6_5, measures
+    from qtab.book import measures
+    from qtab.book.figures import example_6_5, figure_6_5
 
     several = outcome([2, 1, 1], [1, 2, 3])
     assert measures.mean_length(several).tolist() == [[4 / 3], [2.0]]

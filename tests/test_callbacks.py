@@ -10,7 +10,7 @@ import qtab
 from parity import assert_same_run
 from qtab import _core
 from qtab.reference import q_learning
-from qtab.resolution import resolve
+from qtab.training.resolve import resolve
 
 BACKENDS = ["rust", "gymnasium"]
 

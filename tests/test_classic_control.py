@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from lockstep import CONTINUOUS, EDITS, IDS, MACHINE, Pair, good
 from qtab import _core
-from qtab.envs.acrobot import AcrobotEnv
+from qtab.envs.classic_control import AcrobotEnv
 
 STEPS = 100_000
 
@@ -26,7 +26,9 @@ def test_a_hundred_thousand_steps_are_gymnasiums(name, policy, record_property):
 
 def test_the_steps_are_rusts_where_numpy_calls_the_platform(monkeypatch):
     stepped = []
-    monkeypatch.setattr("qtab.envs.physics.RustPhysics.step_in_python", lambda env, action: stepped.append(env))
+    monkeypatch.setattr(
+        "qtab.envs.classic_control.ClassicControlMixin.step_in_python", lambda env, action: stepped.append(env)
+    )
     for name in IDS:
         env = gym.make(f"qtab/{name}").unwrapped
         env.reset(seed=0)

@@ -94,7 +94,7 @@ def fresh(code: str) -> str:
 
 def test_an_id_brings_its_own_import():
     code = "import gymnasium as g; e = g.make('qtab:qtab/CartPole-v1'); e.reset(); print(type(e.unwrapped).__module__)"
-    assert fresh(code).strip() == "qtab.envs.cart_pole"
+    assert fresh(code).strip() == "qtab.envs.classic_control"
 
 
 def test_another_numpys_sine_is_still_gymnasiums():

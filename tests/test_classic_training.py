@@ -11,8 +11,8 @@ from learner_settings import CAR, KEYWORDS, LIMITS, TRAINED
 from lockstep import MACHINE
 from parity import assert_same_run
 from qtab import _core
-from qtab.names import Algorithm
-from qtab.options import TABLES_ONLY
+from qtab.config.choices import Algorithm
+from qtab.config.options import TABLES_ONLY
 
 ALGORITHMS = get_args(Algorithm)
 OTHERS = [env for env in TRAINED if env.values != (CAR,)]

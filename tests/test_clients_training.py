@@ -9,7 +9,7 @@ import pytest
 import qtab
 from gridworld import SHORTEST
 from parity import assert_same_run
-from qtab.replay import play
+from qtab.rendering.replay import play
 
 gym.register("qtab-tests/Room-v0", "gridworld:Room", max_episode_steps=100)
 ROOM: dict[str, Any] = {"episodes": 250, "learning_rate": 0.5, "discount": 0.95, "epsilon": 0.5, "initial_q": 0.0}

@@ -9,6 +9,7 @@ import pytest
 import qtab
 from environments import Told
 from parity import assert_same_run
+from qtab.rendering.replay import play
 
 BINS = {"discretizer": "bins", "bins": 6}
 
@@ -111,7 +112,7 @@ def test_a_run_predicts_and_is_saved_evaluated_replayed_and_verified(env: str, t
     assert run.policy[run.grid.cell(observation)].tolist() == run.predict(observation)[0].tolist()
     for recording in run.recordings:
         assert all(space.contains(step) for step in recording.actions)
-        assert qtab.replay.play(made.unwrapped, recording) != 0.0
+        assert play(made.unwrapped, recording) != 0.0
     run.save(tmp_path / "run.npz")
     loaded = qtab.load(tmp_path / "run.npz")
     assert loaded.predict(observation)[0].tobytes() == run.predict(observation)[0].tobytes()
@@ -121,7 +122,7 @@ def test_a_run_predicts_and_is_saved_evaluated_replayed_and_verified(env: str, t
 
 
 def test_recorded_episodes_play_again() -> None:
-    from qtab.replay import play_all, stage
+    from qtab.rendering.replay import play_all, stage
 
     run = qtab.train("Pendulum-v1", seed=2, episodes=5, actions=3, record=3, **BINS)
     env = stage(run.config, "rgb_array")

@@ -9,7 +9,7 @@ from gymnasium.spaces import Box, Discrete, MultiDiscrete, Tuple
 
 import qtab
 from parity import assert_same_run
-from qtab.options import tables
+from qtab.config.options import tables
 from qtab.reference import LEARNERS
 from toys import IDS
 
@@ -198,7 +198,7 @@ def test_what_does_not_fit_is_refused(env, settings, text):
 
 @pytest.mark.parametrize("name", IDS)
 def test_recorded_episodes_can_be_played_again(name):
-    from qtab.replay import play_all, stage
+    from qtab.rendering.replay import play_all, stage
 
     run = qtab.train(name, record=40, **SETTINGS)
     assert len(run.recordings) == 40

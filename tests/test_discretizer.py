@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import qtab
 from environments import Told
-from qtab.spaces import grid
+from qtab.discretizers.rounding import grid
 
 DTYPES = [np.float32, np.float64]
 

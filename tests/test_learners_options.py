@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.options import OPTIONS
+from qtab.config.options import OPTIONS
 
 TILES = {"discretizer": "tiles"}
 VALUES: dict[str, Any] = {

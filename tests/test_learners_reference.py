@@ -9,7 +9,7 @@ from hypothesis import given, settings
 
 import qtab
 from learner_settings import CAR, TRAINED, run_settings
-from qtab.names import Algorithm
+from qtab.config.choices import Algorithm
 from qtab.reference import LEARNERS
 
 ALGORITHMS = get_args(Algorithm)

@@ -114,7 +114,7 @@ def test_gym_make_imports_the_package_by_its_name_in_a_fresh_process():
         "print(type(env.unwrapped).__module__, env.step(1)[1])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["qtab.envs.mountain_car", "-1.0"]
+    assert done.stdout.split() == ["qtab.envs.classic_control", "-1.0"]
 
 
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
@@ -132,7 +132,7 @@ def test_a_synchronous_vector_of_ours_is_gymnasiums(mode):
 
 
 def test_an_unwrapped_class_can_be_made_without_the_registry():
-    from qtab.envs.mountain_car import MountainCarEnv
+    from qtab.envs.classic_control import MountainCarEnv
 
     ours, theirs = MountainCarEnv(goal_velocity=0.02), gym.make("MountainCar-v0", goal_velocity=0.02).unwrapped
     assert_same_step(ours.reset(seed=1), theirs.reset(seed=1))

@@ -8,7 +8,7 @@ import pytest
 
 import qtab
 from command import QTAB, environment
-from qtab.plotting import check_format, save_plot
+from qtab.plots.run import check_format, save_plot
 
 
 def curve(run: qtab.Run, block: int = 100) -> tuple[list[float], list[float]]:

@@ -8,7 +8,7 @@ import pytest
 
 import qtab as package
 from command import qtab, refused
-from qtab.replay import play, play_all, stage
+from qtab.rendering.replay import play, play_all, stage
 
 
 @pytest.mark.parametrize("backend", ["rust", "gymnasium"])

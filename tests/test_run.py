@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.summaries import block_of
+from qtab.results.summary import block_of
 
 
 @pytest.fixture(scope="module")

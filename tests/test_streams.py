@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from qtab._core import Stream
-from qtab.plan import seed_words
+from qtab._spec import seed_words
 
 EDGES = [0, 1, 2**31, 2**32 - 1, 2**32, 2**64 - 1, 2**64, 2**64 + 1, 2**96, 2**128 - 1, 2**128, 2**128 + 1, 2**200 + 3]
 PCG64_SEEDS = st.sampled_from(EDGES) | st.integers(0, 2**160)

@@ -10,8 +10,8 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 import pytest
 
 import qtab
-from qtab.sweeping import store as stores
-from qtab.sweeping import study as studies
+from qtab.sweeps import store as stores
+from qtab.sweeps import study as studies
 from sweeps import CAR, GRID, SMALL, assert_equal
 
 
@@ -81,7 +81,7 @@ def test_a_finished_store_is_read_and_nothing_trained_again(tmp_path, small_piec
 
 SCRIPT = """
 import sys, qtab
-from qtab.sweeping import study
+from qtab.sweeps import study
 study.PIECE_STEPS = 2 * 40 * 200 + 1
 qtab.sweep("MountainCar-v0", {grid}, seeds={seeds}, episodes=40, store=sys.argv[1],
            callback=lambda progress: print(progress.runs, progress.new, flush=True))

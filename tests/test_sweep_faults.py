@@ -11,7 +11,7 @@ import pytest
 
 import qtab
 from environments import make_brittle
-from qtab.sweeping import store as stores
+from qtab.sweeps import store as stores
 from sweeps import CAR, GRID, SMALL, assert_equal
 
 

@@ -10,8 +10,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.wrappers import RecordEpisodeStatistics
 
-from qtab.envs.frozen_lake import FrozenLakeEnv
-from qtab.envs.taxi import TaxiEnv
+from qtab.envs.toy_text import FrozenLakeEnv, TaxiEnv
 from toys import IDS, TABLES, Toys, flat
 
 

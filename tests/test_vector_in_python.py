@@ -56,7 +56,7 @@ def test_what_is_assigned_counts():
         env.set_attr("gravity", 20.0)
     vectors.reset(seed=0)
     vectors.run(30)
-    assert [type(env.unwrapped).__module__ for env in vectors.ours.envs] == ["qtab.envs.cart_pole"] * 2
+    assert [type(env.unwrapped).__module__ for env in vectors.ours.envs] == ["qtab.envs.classic_control"] * 2
     taxis = Vectors("Taxi-v4", 2)
     taxis.reset(seed=3)
     mine, gymnasiums = (env.call("action_mask", 7) for env in (taxis.ours, taxis.theirs))

@@ -15,20 +15,27 @@ from typing import TYPE_CHECKING, Any
 from qtab.envs import register as _register
 
 if TYPE_CHECKING:
-    from qtab import book, designs, plots, stats
+    from qtab import book, plots, stats
     from qtab.config import Config
+    from qtab.config.presets import presets
     from qtab.envs.tabular import TabularEnv
-    from qtab.evaluation import Evaluation, evaluate
-    from qtab.many import train_many
-    from qtab.planning import Gap, Optimum, optimum
-    from qtab.plotting import plot
-    from qtab.preset import presets
-    from qtab.run import Recording, Run
-    from qtab.runs import Runs
-    from qtab.storage import load
-    from qtab.sweeping import StoreError, Sweep, SweepProgress, load_sweep, sweep
-    from qtab.training import train
-    from qtab.verification import Verification, verify
+    from qtab.planning.gap import Gap
+    from qtab.planning.optimum import Optimum
+    from qtab.planning.solve import optimum
+    from qtab.plots.run import plot
+    from qtab.results.run import Recording, Run
+    from qtab.results.runs import Runs
+    from qtab.results.storage import load
+    from qtab.sweeps import designs
+    from qtab.sweeps.loading import load_sweep
+    from qtab.sweeps.results import Sweep
+    from qtab.sweeps.store import StoreError
+    from qtab.sweeps.sweep import SweepProgress, sweep
+    from qtab.training.callbacks import Progress
+    from qtab.training.evaluate import Evaluation, evaluate
+    from qtab.training.train import train
+    from qtab.training.train_many import train_many
+    from qtab.training.verify import Verification, verify
 
     __version__: str
 
@@ -62,33 +69,33 @@ __all__ = [
     "verify",
 ]
 
-_HOME = {
+_PUBLIC = {
     "Config": "config",
-    "Evaluation": "evaluation",
-    "Gap": "planning",
-    "Optimum": "planning",
-    "Progress": "callbacks",
-    "Recording": "run",
-    "Run": "run",
-    "Runs": "runs",
-    "StoreError": "sweeping",
-    "Sweep": "sweeping",
-    "SweepProgress": "sweeping",
+    "Evaluation": "training.evaluate",
+    "Gap": "planning.gap",
+    "Optimum": "planning.optimum",
+    "Progress": "training.callbacks",
+    "Recording": "results.run",
+    "Run": "results.run",
+    "Runs": "results.runs",
+    "StoreError": "sweeps.store",
+    "Sweep": "sweeps.results",
+    "SweepProgress": "sweeps.sweep",
     "TabularEnv": "envs.tabular",
-    "Verification": "verification",
-    "evaluate": "evaluation",
-    "load": "storage",
-    "load_sweep": "sweeping",
-    "optimum": "planning",
-    "plot": "plotting",
-    "presets": "preset",
-    "sweep": "sweeping",
-    "train": "training",
-    "train_many": "many",
-    "verify": "verification",
+    "Verification": "training.verify",
+    "evaluate": "training.evaluate",
+    "load": "results.storage",
+    "load_sweep": "sweeps.loading",
+    "optimum": "planning.solve",
+    "plot": "plots.run",
+    "presets": "config.presets",
+    "sweep": "sweeps.sweep",
+    "train": "training.train",
+    "train_many": "training.train_many",
+    "verify": "training.verify",
 }
 
-_MODULES = ("book", "designs", "plots", "stats")
+_MODULES = {"book": "book", "designs": "sweeps.designs", "plots": "plots", "stats": "stats"}
 
 
 def __getattr__(name: str) -> Any:
@@ -97,10 +104,10 @@ def __getattr__(name: str) -> Any:
 
         return version("qtab")
     if name in _MODULES:
-        return import_module(f"qtab.{name}")
-    if name not in _HOME:
+        return import_module(f"qtab.{_MODULES[name]}")
+    if name not in _PUBLIC:
         raise AttributeError(f"module 'qtab' has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(f"qtab.{_HOME[name]}"), name)
+    value = globals()[name] = getattr(import_module(f"qtab.{_PUBLIC[name]}"), name)
     return value
 
 

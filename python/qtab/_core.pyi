@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import disjoint_base
 
-from qtab.plan import Bias, Changes, Control, Plan, Process, PythonEnvironment, Results, Rules, Solved
+from qtab._spec import Bias, Changes, Control, Plan, Process, PythonEnvironment, Results, Rules, Solved
 
 __all__ = [
     "BUILD_PROFILE",

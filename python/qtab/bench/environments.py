@@ -2,9 +2,9 @@
 
 from qtab.bench.plain import q_learning
 from qtab.bench.rounds import Subject, Timings
-from qtab.many import train_many
-from qtab.preset import presets
-from qtab.training import train
+from qtab.config.presets import presets
+from qtab.training.train import train
+from qtab.training.train_many import train_many
 
 EPISODES = {"FrozenLake-v1": 400, "Taxi-v4": 40, "CartPole-v1": 100}
 """A round of the plain loop: the whole schedule in so many episodes."""

@@ -4,7 +4,7 @@ from typing import Any
 
 from qtab.bench.rounds import Subject, Timings
 from qtab.bench.sarsa_numba import EPISODES, TILES, TILINGS, compiled
-from qtab.training import train
+from qtab.training.train import train
 
 ENV = "MountainCar-v0"
 TITLE = "Learners on MountainCar-v0"

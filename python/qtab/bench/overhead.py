@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.bench.rounds import Subject, Timings
-from qtab.training import train
+from qtab.training.train import train
 
 EPISODES, EPISODE_STEPS = 100, 200
 

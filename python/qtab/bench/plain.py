@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.preset import preset
+from qtab.config.presets import preset
 from qtab.reference import agent_stream
 
 Cell = Callable[[Any], Any]

@@ -3,11 +3,11 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from qtab import checks
+from qtab._utils import checks
+from qtab._utils.versions import versions
 from qtab.bench import environments, learners, overhead, subjects, vectors
 from qtab.bench.footprint import Footprint, footprint
 from qtab.bench.rounds import Subject, Timings, measure
-from qtab.versions import versions
 
 DEFAULT_SECONDS = 25.0
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.progress import Bar
+from qtab._utils.progress import Bar
 
 Subject = Callable[[int], int]
 """Works through one round, whose number it is given, and returns the number of steps that it took."""

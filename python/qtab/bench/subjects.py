@@ -8,8 +8,8 @@ import numpy as np
 from qtab.bench.article import q_learning
 from qtab.bench.article_numba import compiled
 from qtab.bench.rounds import Subject
-from qtab.many import train_many
-from qtab.training import train
+from qtab.training.train import train
+from qtab.training.train_many import train_many
 
 ENV = "MountainCar-v0"
 ARTICLE_EPISODES = 10

@@ -9,9 +9,9 @@
 Each experiment is a module of this package that says its settings, and what the book leaves open.
 """
 
-from qtab.book.catalogue import EXPERIMENTS, find, run
 from qtab.book.experiment import Experiment, Line, Result, Setting
-from qtab.book.grid_worlds import dyna_maze, windy_grid_world
+from qtab.book.registry import EXPERIMENTS, find, run
+from qtab.envs.grid_worlds import dyna_maze, windy_grid_world
 
 __all__ = [
     "EXPERIMENTS",

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from qtab._utils.extras import missing
+from qtab._utils.files import replacing
 from qtab.book.experiment import Numbers, Result
-from qtab.extras import missing
-from qtab.files import replacing
 from qtab.plots.axes import color, finish, own_axes
 
 if TYPE_CHECKING:

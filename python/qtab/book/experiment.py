@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab import checks
+from qtab._utils import checks
+from qtab._utils.progress import Bar
 from qtab.book import trials
 from qtab.book.trials import Environment, Outcome
-from qtab.many import thread_count
-from qtab.progress import Bar
+from qtab.training.train_many import thread_count
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,7 +79,7 @@ class Result:
 
     def __str__(self) -> str:
         """The table, with the settings above it."""
-        from qtab.book.table import table
+        from qtab.book.result import table
 
         return table(self)
 
@@ -89,7 +89,7 @@ class Result:
         Raises:
             OSError: if it cannot be written.
         """
-        from qtab.book.table import save
+        from qtab.book.result import save
 
         save(self, Path(path))
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from qtab.book.experiment import Measure, Numbers
 from qtab.book.trials import Outcome
-from qtab.summaries import FINAL_EPISODES
+from qtab.results.summary import FINAL_EPISODES
 
 
 def lengths(outcome: Outcome) -> Numbers:

@@ -8,8 +8,8 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.many import allocate, resolve_one, train_in_threads
-from qtab.memory import memory_limit
+from qtab._utils.memory import memory_limit
+from qtab.training.train_many import allocate, resolve_one, train_in_threads
 
 Environment: TypeAlias = str | Callable[[], gym.Env]
 

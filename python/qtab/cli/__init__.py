@@ -17,7 +17,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ModuleNotFoundError as error:
         if error.name != "tyro":
             raise
-        from qtab.extras import missing
+        from qtab._utils.extras import missing
 
         sys.stderr.write(f"qtab: error: {missing(error, 'cli')}\n")
         return 1

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
+from qtab._utils.progress import write
 from qtab.bench import bench
 from qtab.bench.report import DEFAULT_SECONDS
 from qtab.cli.parsing import parse
 from qtab.cli.usage import UsageError
-from qtab.progress import write
 
 COMMAND = "qtab bench"
 

@@ -7,11 +7,11 @@ from typing import Annotated
 import tyro
 
 from qtab import book
+from qtab._utils.files import check_writable
+from qtab._utils.progress import write
 from qtab.cli.parsing import parse
 from qtab.cli.usage import UsageError, refusing
-from qtab.files import check_writable
-from qtab.plotting import check_format
-from qtab.progress import write
+from qtab.plots.run import check_format
 
 COMMAND = "qtab book"
 

@@ -6,12 +6,12 @@ from typing import Annotated, Any
 
 import tyro
 
+from qtab._utils.progress import write
 from qtab.cli.parsing import parse
 from qtab.cli.settings import PAIRS
 from qtab.cli.usage import refusing
 from qtab.config import Config
 from qtab.planning import optimum
-from qtab.progress import write
 
 COMMAND = "qtab optimum"
 

@@ -4,16 +4,16 @@ from contextlib import ExitStack, closing
 from pathlib import Path
 from types import TracebackType
 
-from qtab import checks
+from qtab._utils import checks
+from qtab._utils.files import check_writable
+from qtab._utils.progress import write
 from qtab.config import Config
-from qtab.files import check_writable
 from qtab.planning import Optimum
-from qtab.plotting import check_format, save_plot
-from qtab.progress import write
-from qtab.replay import play_all
-from qtab.run import Run
-from qtab.video import Recorder
-from qtab.window import window
+from qtab.plots.run import check_format, save_plot
+from qtab.rendering.replay import play_all
+from qtab.rendering.video import Recorder
+from qtab.rendering.window import window
+from qtab.results.run import Run
 
 DEFAULT_SHOWN = 20
 """As many episodes as the article's code shows."""

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import tyro
 
+from qtab._utils.progress import write
 from qtab.cli.parsing import parse
 from qtab.cli.usage import refusing
-from qtab.progress import write
-from qtab.sweeping.loading import load_sweep
-from qtab.sweeping.report import report
+from qtab.sweeps.loading import load_sweep
+from qtab.sweeps.report import report
 
 COMMAND = "qtab report"
 

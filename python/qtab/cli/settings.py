@@ -12,11 +12,11 @@ import numpy as np
 import tyro
 
 from qtab.config import Config, known_fields
-from qtab.models import spec_of, versioned
-from qtab.preset import preset
-from qtab.resolution import merge
-from qtab.storage import load
-from qtab.tiling import Tiling
+from qtab.config.presets import preset
+from qtab.discretizers.tile_coding import Tiling
+from qtab.envs.registry import spec_of, versioned
+from qtab.results.storage import load
+from qtab.training.resolve import merge
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -130,7 +130,7 @@ class Settings(Config):
         """Checks nothing yet: these may be the defaults of another environment."""
 
     def overrides(self) -> dict[str, Any]:
-        """Returns all settings but the environment, for :func:`qtab.resolution.resolve`.
+        """Returns all settings but the environment, for :func:`qtab.training.resolve.resolve`.
 
         Raises:
             OSError: if the run to go on from cannot be read.

@@ -8,11 +8,10 @@ from typing import Any
 
 import tyro
 
-from qtab import designs
+from qtab._utils.progress import Bar, write
 from qtab.cli.parsing import parse
 from qtab.cli.usage import UsageError, refusing
-from qtab.progress import Bar, write
-from qtab.sweeping import SweepProgress, sweep
+from qtab.sweeps import SweepProgress, designs, sweep
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -7,19 +7,18 @@ from typing import Annotated
 
 import tyro
 
-from qtab.callbacks import Progress
+from qtab._utils.progress import write
 from qtab.cli.outputs import Outputs
 from qtab.cli.parsing import parse
 from qtab.cli.settings import Settings, defaults, last_value
 from qtab.cli.usage import refusing
-from qtab.models import versioned
-from qtab.notices import limit
+from qtab.envs.registry import versioned
 from qtab.planning import Optimum, optimum
-from qtab.progress import write
-from qtab.resolution import Resolved, resolve
-from qtab.run import Run
-from qtab.summaries import FINAL_EPISODES, block_of
-from qtab.training import train_resolved
+from qtab.results.run import Run
+from qtab.results.summary import FINAL_EPISODES, block_of
+from qtab.training.callbacks import Progress
+from qtab.training.resolve import Resolved, limit, resolve
+from qtab.training.train import train_resolved
 
 COMMAND = "qtab train"
 QUICK = 10**8

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import tyro
 
+from qtab._utils.progress import Bar, write
 from qtab.cli.parsing import parse
 from qtab.cli.usage import refusing
-from qtab.progress import Bar, write
-from qtab.storage import load
-from qtab.verification import verify
+from qtab.results.storage import load
+from qtab.training.verify import verify
 
 COMMAND = "qtab verify"
 

@@ -2,7 +2,7 @@
 
 import gymnasium as gym
 
-from qtab.models import MODELS, OWN, PREFIX
+from qtab.envs.registry import MODELS, OWN, PREFIX
 
 
 def register() -> None:

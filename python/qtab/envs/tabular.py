@@ -10,7 +10,7 @@ from gymnasium.envs.toy_text.utils import categorical_sample
 from numpy.typing import ArrayLike
 
 from qtab import _core
-from qtab.envs.toy_text import RustReset
+from qtab.envs.toy_text import ToyTextMixin
 
 Outcome: TypeAlias = tuple[float, int, float, bool]
 """Probability, next state, reward, terminated."""
@@ -19,7 +19,7 @@ Table: TypeAlias = Mapping[int, Mapping[int, Outcomes]] | Sequence[Sequence[Outc
 """``P[state][action]`` lists the outcomes, as in Gymnasium's toy text."""
 
 
-class TabularEnv(_core.Table, RustReset, gym.Env[Any, Any]):
+class TabularEnv(_core.Table, ToyTextMixin, gym.Env[Any, Any]):
     """A finite Markov decision process of one's own: states and actions numbered from 0, everything else in a table.
 
     It draws as Gymnasium's toy text does, one ``random()`` for each reset and each step, so that

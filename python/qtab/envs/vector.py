@@ -12,10 +12,11 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from qtab import _core, checks
-from qtab.envs.sub_environments import SubEnvironments, paint
-from qtab.finite import process
-from qtab.models import PREFIX
+from qtab import _core
+from qtab._utils import checks
+from qtab.envs.native import toy_text_spec
+from qtab.envs.python_vector import SubEnvironments, paint
+from qtab.envs.registry import PREFIX
 
 _FAR = 1e6
 """First states so far out may overflow, which is left to Gymnasium's code."""
@@ -84,7 +85,7 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         if self.render_mode is not None and not painted:
             return False
         try:
-            kind = None if isinstance(env, _core.Physics) else process(env)
+            kind = None if isinstance(env, _core.Physics) else toy_text_spec(env)
         except (TypeError, ValueError):  # a table that Gymnasium may take, but Rust does not
             return False
         limited = self._example.has_wrapper_attr("_max_episode_steps")

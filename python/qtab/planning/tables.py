@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
-from qtab.cells import Cells
-from qtab.run import Run
+from qtab.discretizers.identity import Cells
+from qtab.results.run import Run
 
 METHODS = ("finite_horizon", "value_iteration", "policy_iteration")
 

@@ -4,7 +4,7 @@ Needs the extras ``plot`` and, for the intervals, ``stats``.
 """
 
 from qtab.plots.distribution import distribution
-from qtab.plots.learning import learning_curves
+from qtab.plots.learning_curves import learning_curves
 from qtab.plots.profile import profile
 from qtab.plots.sensitivity import sensitivity
 

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from qtab.extras import missing
+from qtab._utils.extras import missing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

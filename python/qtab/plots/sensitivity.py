@@ -9,7 +9,7 @@ from qtab.plots.axes import color, finish, own_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from qtab.sweeping import Sweep
+    from qtab.sweeps import Sweep
 
 RESAMPLES = 999
 

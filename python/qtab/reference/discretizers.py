@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab.config import Config
-from qtab.hashing import hashed_row
+from qtab.discretizers.hashing import hashed_row
 
 
 class Discretizer(Protocol):

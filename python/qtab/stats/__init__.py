@@ -3,7 +3,7 @@
 Needs the extra ``stats``.
 """
 
-from qtab.extras import missing
+from qtab._utils.extras import missing
 
 try:
     import scipy  # noqa: F401

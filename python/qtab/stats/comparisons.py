@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
-from qtab import checks
+from qtab._utils import checks
 from qtab.stats.intervals import CONFIDENCE, RESAMPLES, Interval, mean, sample
 
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab import checks
+from qtab._utils import checks
 from qtab.stats.intervals import CONFIDENCE, Interval, bootstrap, interquartile_mean
 
 CURVE_RESAMPLES = 999

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
-from qtab import checks
+from qtab._utils import checks
 
 CONFIDENCE = 0.95
 RESAMPLES = 9999

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from qtab import checks
+from qtab._utils import checks
 from qtab.stats.intervals import CONFIDENCE, Interval, sample
 
 

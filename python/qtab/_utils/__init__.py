@@ -1,0 +1,1 @@
+"""Helpers that every folder uses: argument checks, files, extras, versions, progress, memory."""

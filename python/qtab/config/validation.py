@@ -1,0 +1,219 @@
+"""The checks of the config's fields: bad values are refused, NumPy's numbers become Python's."""
+
+import math
+from collections.abc import Callable, Mapping
+from itertools import pairwise
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils import checks
+from qtab.config import choices as names
+from qtab.config.options import OPTIONS, refuse_strangers
+
+LARGEST_MT19937_SEED = 2**32 - 1
+MAX_TILINGS = 32
+MAX_BINS = 1_000_000
+MAX_ACTIONS = 2**16
+
+
+def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the fields of a config, checked; None stays None where it means "not given".
+
+    Raises:
+        TypeError: for a value of the wrong type.
+        ValueError: for a value that is out of range, or does not go with another.
+    """
+    checked = dict(fields)
+    for name, check in _CHECKS.items():
+        if fields[name] is not None or name not in _OPTIONAL:
+            checked[name] = check(name, fields[name])
+    if checked["seed"] is not None:
+        most = LARGEST_MT19937_SEED if checked["bit_generator"] == "MT19937" else None
+        checked["seed"] = checks.integer("seed", checked["seed"], least=0, most=most)
+    refuse_strangers(checked)
+    if isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any():
+        for name, bad in (("algorithm", "dyna_q_plus"), ("exploration", "softmax"), ("discretizer", "tiles")):
+            if checked[name] == bad:
+                raise ValueError(f"{name} must be another for an initial_q with -inf in it, got {bad!r}")
+    most_rate = 2 if checked["discretizer"] == "tiles" else 1
+    checks.real("learning_rate", checked["learning_rate"], 0, most_rate)
+    _at_most(checked, "min_epsilon", "epsilon", OPTIONS["epsilon"].default)
+    _at_most(checked, "min_learning_rate", "learning_rate", None)
+    for name in ("epsilon_warm_up", "learning_rate_warm_up"):
+        if checked[name] is not None and checked[name] >= checked["episodes"]:
+            raise ValueError(f"{name} must be less than episodes = {checked['episodes']}, got {checked[name]!r}")
+    if checked["low"] is not None and checked["high"] is not None:
+        if len(checked["low"]) != len(checked["high"]):
+            raise ValueError(f"high must hold as many numbers as low, got {checked['high']!r}")
+        if not all(low < high for low, high in zip(checked["low"], checked["high"], strict=True)):
+            raise ValueError(f"high must lie above low = {checked['low']!r}, got {checked['high']!r}")
+    return checked
+
+
+def _at_most(fields: Mapping[str, Any], name: str, limit: str, default: float | None) -> None:
+    most = default if fields[limit] is None else fields[limit]
+    if fields[name] is not None and fields[name] > most:
+        raise ValueError(f"{name} must lie in [0, {limit} = {most:g}], got {fields[name]!r}")
+
+
+def _text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be {'an environment id' if name == 'env' else 'a name'}, got {value!r}")
+    return value
+
+
+def _real(low: float, high: float) -> Callable[[str, Any], float]:
+    return lambda name, value: checks.real(name, value, low, high)
+
+
+def _above_zero(name: str, value: Any) -> float:
+    number = checks.finite(name, value)
+    if number <= 0:
+        raise ValueError(f"{name} must be above zero, got {value!r}")
+    return number
+
+
+def _not_negative(name: str, value: Any) -> float:
+    number = checks.finite(name, value)
+    if number < 0:
+        raise ValueError(f"{name} must not be negative, got {value!r}")
+    return number
+
+
+def _integer(least: int, most: int | None = None) -> Callable[[str, Any], int]:
+    return lambda name, value: checks.integer(name, value, least, most)
+
+
+def _count(name: str, value: Any) -> int:
+    return checks.count(name, value, least=1)
+
+
+def _choice(choices: Any) -> Callable[[str, Any], str]:
+    return lambda name, value: checks.choice(name, value, get_args(choices))
+
+
+def _keywords(name: str, value: Any) -> dict[str, Any]:
+    if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
+        raise TypeError(f"{name} must map names to values, got {value!r}")
+    return dict(value)
+
+
+def _each(check: Callable[[str, Any], Any]) -> Callable[[str, Any], tuple[Any, ...]]:
+    def checked(name: str, value: Any) -> tuple[Any, ...]:
+        if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+            raise TypeError(f"{name} must hold a number for each component of the observation, got {value!r}")
+        return tuple(check(name, number) for number in value)
+
+    return checked
+
+
+def _scale(name: str, value: Any) -> tuple[float, ...]:
+    scale = _each(checks.finite)(name, value)
+    if any(number <= 0 for number in scale):
+        raise ValueError(f"{name} must hold positive numbers, got {value!r}")
+    return scale
+
+
+def _counts(least: int, most: int | None) -> Callable[[str, Any], tuple[int, ...]]:
+    def checked(name: str, value: Any) -> tuple[int, ...]:
+        counts = _each(_integer(least, most))(name, value if hasattr(value, "__iter__") else (value,))
+        if not counts:
+            raise ValueError(f"{name} must hold a number for each component of the observation, or one for all, got ()")
+        return counts
+
+    return checked
+
+
+def _edges(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+        raise TypeError(f"{name} must hold a row of numbers for each component of the observation, got {value!r}")
+    rows = tuple(_each(checks.finite)(name, row) for row in value)
+    if any(left >= right for row in rows for left, right in pairwise(row)):
+        raise ValueError(f"{name} must hold rows of rising numbers, got {value!r}")
+    return rows
+
+
+def _actions(name: str, value: Any) -> Any:
+    if hasattr(value, "__index__") and not np.ndim(value):
+        return checks.integer(name, value, least=2, most=MAX_ACTIONS)
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+        raise TypeError(f"{name} must be an integer, or hold the actions themselves, got {value!r}")
+    listed = tuple(
+        tuple(checks.finite(name, number) for number in action) if np.ndim(action) == 1 else checks.finite(name, action)
+        for action in value
+    )
+    if not listed:
+        raise ValueError(f"{name} must hold at least one action, got {value!r}")
+    return listed
+
+
+def _initial_q(name: str, value: Any) -> float | tuple[float, float] | NDArray[np.float64]:
+    if isinstance(value, tuple | list) and len(value) == 2 and not any(hasattr(part, "__len__") for part in value):
+        low, high = (checks.finite(name, bound) for bound in value)
+        if low > high:
+            raise ValueError(f"{name} must be a range (low, high) with low <= high, got {value!r}")
+        if not math.isfinite(high - low):
+            raise ValueError(f"{name} must be a range (low, high) with a finite width, got {value!r}")
+        return low, high
+    if hasattr(value, "__float__") and not isinstance(value, bool) and np.ndim(value) == 0:
+        return checks.finite(name, value)
+    if not isinstance(value, np.ndarray | list):
+        raise TypeError(f"{name} must be a range (low, high), a number or a table, got {value!r}")
+    try:
+        table = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} must be a range (low, high) or a table of numbers, got {value!r}") from None
+    if not (np.isfinite(table) | np.isneginf(table)).all():
+        raise ValueError(f"{name} must hold finite numbers (or -inf: no such action), got a table with nan or infinity")
+    if table.size and table.ndim and np.isneginf(table).all(axis=-1).any():
+        raise ValueError(f"{name} must leave an action to every state, got a row of -inf alone")
+    table.flags.writeable = False
+    return table
+
+
+_CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
+    "env": _text,
+    "env_kwargs": _keywords,
+    "episodes": _count,
+    "algorithm": _choice(names.Algorithm),
+    "learning_rate": _real(0, 2),
+    "discount": _real(0, 1),
+    "learning_rate_schedule": _choice(names.LearningRateSchedule),
+    "min_learning_rate": _real(0, 2),
+    "learning_rate_decay": _real(0, 1),
+    "learning_rate_warm_up": _integer(0, checks.LARGEST_COUNT),
+    "exploration": _choice(names.Exploration),
+    "epsilon": _real(0, 1),
+    "epsilon_schedule": _choice(names.EpsilonSchedule),
+    "min_epsilon": _real(0, 1),
+    "epsilon_decay": _real(0, 1),
+    "epsilon_warm_up": _integer(0, checks.LARGEST_COUNT),
+    "ties": _choice(names.Ties),
+    "temperature": _above_zero,
+    "trace_decay": _real(0, 1),
+    "traces": _choice(names.Traces),
+    "trace_cutoff": _real(0, 1),
+    "n_steps": _integer(1, 1_000_000),
+    "planning_steps": _integer(0, 1_000_000),
+    "time_weight": _not_negative,
+    "discretizer": _choice(names.Discretizer),
+    "scale": _scale,
+    "tilings": _integer(1, MAX_TILINGS),
+    "tiles": _counts(1, None),
+    "hashed_rows": _integer(1, 2**32 - 1),
+    "bins": _counts(1, MAX_BINS),
+    "edges": _edges,
+    "low": _each(checks.finite),
+    "high": _each(checks.finite),
+    "actions": _actions,
+    "initial_q": _initial_q,
+    "terminal_update": _choice(names.TerminalUpdate),
+    "on_truncation": _choice(names.OnTruncation),
+    "max_episode_steps": _count,
+    "bit_generator": _choice(names.BitGenerator),
+    "backend": _choice(names.Backend),
+    "preset": _text,
+}
+_OPTIONAL = OPTIONS.keys() - {"scale"} | {"actions", "max_episode_steps", "preset"}

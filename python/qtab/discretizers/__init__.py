@@ -1,0 +1,1 @@
+"""From an observation to the active rows of the table: one discretizer a file."""

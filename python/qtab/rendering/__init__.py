@@ -1,0 +1,1 @@
+"""Recorded episodes replayed: in a window, or as videos."""

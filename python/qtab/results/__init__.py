@@ -1,0 +1,1 @@
+"""What training returns: runs, their summaries, and how a run is saved."""

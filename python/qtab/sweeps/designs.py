@@ -1,0 +1,95 @@
+"""Which settings a sweep tries: a full grid, random points, or Sobol's well-spread ones."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils import checks
+from qtab._utils.extras import missing
+
+Setting = dict[str, Any]
+Space = Mapping[str, Any]
+
+
+def grid(values: Mapping[str, Sequence[Any]]) -> list[Setting]:
+    """Returns every combination of the values, the last name changing fastest.
+
+    Raises:
+        TypeError: if a name has no list of values.
+        ValueError: if there is no name, or a name has no value, or one twice.
+    """
+    if not values:
+        raise ValueError("grid must name at least one setting to vary, got none")
+    for name, choices in values.items():
+        if isinstance(choices, (str, bytes)) or not hasattr(choices, "__iter__"):
+            raise TypeError(f"grid[{name!r}] must be a list of values, got {choices!r}")
+    lists = {name: list(choices) for name, choices in values.items()}
+    for name, choices in lists.items():
+        if not choices:
+            raise ValueError(f"grid[{name!r}] must hold at least one value")
+        if len({repr(choice) for choice in choices}) < len(choices):
+            raise ValueError(f"grid[{name!r}] must hold different values, got {choices!r}")
+    return [dict(zip(lists, point, strict=True)) for point in itertools.product(*lists.values())]
+
+
+def random(space: Space, points: int, seed: int = 0) -> list[Setting]:
+    """Returns independent uniform points of a space.
+
+    Args:
+        space: For each name ``(low, high)``, ``(low, high, "log")``, ``range(...)`` or a list of choices.
+        points: How many.
+        seed: Seeds the draws.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+    points = checks.integer("points", points, least=1)
+    rng = np.random.default_rng(checks.integer("seed", seed, least=0))
+    return _settings(space, rng.random((points, len(space))))
+
+
+def sobol(space: Space, points: int, seed: int = 0) -> list[Setting]:
+    """Returns the scrambled Sobol points of a space, which cover it more evenly than random ones; see :func:`random`.
+
+    Raises:
+        ModuleNotFoundError: without scipy; it names the ``pip install``.
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range; Sobol's balance asks for a power of two.
+    """
+    try:
+        from scipy.stats import qmc
+    except ModuleNotFoundError as error:
+        raise missing(error, "stats") from None
+    points = checks.integer("points", points, least=1)
+    if points & (points - 1):
+        raise ValueError(f"points must be a power of two for a Sobol design, got {points}")
+    rng = np.random.default_rng(checks.integer("seed", seed, least=0))
+    return _settings(space, qmc.Sobol(max(len(space), 1), rng=rng).random(points)[:, : len(space)])
+
+
+def _settings(space: Space, points: NDArray[np.float64]) -> list[Setting]:
+    if not isinstance(space, Mapping) or not space:
+        raise ValueError(f"space must map at least one name to a range or choices, got {space!r}")
+    return [{name: _value(name, space[name], u) for name, u in zip(space, point, strict=True)} for point in points]
+
+
+def _value(name: str, axis: Any, u: float) -> Any:
+    """The value at ``u`` in [0, 1) along an axis."""
+    if isinstance(axis, list | range):
+        if not axis:
+            raise ValueError(f"space[{name!r}] must hold at least one choice")
+        return axis[int(u * len(axis))]
+    if isinstance(axis, tuple) and len(axis) in (2, 3):
+        low, high = checks.finite(f"space[{name!r}]", axis[0]), checks.finite(f"space[{name!r}]", axis[1])
+        if low < high and len(axis) == 2:
+            return float(low + (high - low) * u)
+        if 0 < low < high and axis[2:] == ("log",):
+            return float(low * (high / low) ** u)
+    raise ValueError(
+        f"space[{name!r}] must be (low, high) with low < high, (low, high, 'log') with 0 < low < high, a range or a "
+        f"list of choices, got {axis!r}"
+    )

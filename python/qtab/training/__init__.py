@@ -1,0 +1,1 @@
+"""Training, evaluation and verification of agents."""

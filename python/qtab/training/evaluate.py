@@ -1,0 +1,99 @@
+"""How good a greedy policy is."""
+
+from dataclasses import dataclass
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils import checks
+from qtab.envs.registry import spec_of
+from qtab.results.run import Run
+from qtab.training.train import train
+
+DISCRETIZERS = ("discretizer", "scale", "tilings", "tiles", "hashed_rows", "bins", "edges", "low", "high")
+"""What a table is to be read by."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """The episodes of a greedy policy that learns no more."""
+
+    returns: NDArray[np.float64]
+    """(episodes,): the sum of rewards of each."""
+    lengths: NDArray[np.int64]
+    """(episodes,): the steps of each."""
+    terminated: NDArray[np.bool_]
+    """(episodes,): whether each ended in a terminal state."""
+    seed: int
+    """What the environment was seeded with."""
+    reward_threshold: float | None
+    """The return from which Gymnasium calls the environment solved, where it says so."""
+
+    @property
+    def mean_return(self) -> float:
+        """The average return."""
+        return float(np.mean(self.returns))
+
+    @property
+    def standard_error(self) -> float:
+        """Of the average return; NaN for a single episode."""
+        count = len(self.returns)
+        return float(np.std(self.returns, ddof=1) / np.sqrt(count)) if count > 1 else float("nan")
+
+    @property
+    def terminated_rate(self) -> float:
+        """The share of episodes that ended in a terminal state."""
+        return float(np.mean(self.terminated))
+
+    @property
+    def success_rate(self) -> float | None:
+        """The share of returns at or above the threshold; None where there is none."""
+        return None if self.reward_threshold is None else float(np.mean(self.returns >= self.reward_threshold))
+
+
+def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.Env | None = None) -> Evaluation:
+    """Plays episodes with a run's greedy policy: the first maximum of the Q table, no exploration, no learning.
+
+    Args:
+        run: What to evaluate.
+        episodes: How many episodes.
+        seed: Seeds the environment; None draws one and records it.
+        env: The environment, for a run that was trained on an object that no id names.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+    checks.instance("run", run, Run)
+    config = run.config
+    # With α = 0 and ε = 0 training is evaluation: one loop serves both.
+    played = train(
+        config.env if env is None else env,
+        episodes=episodes,
+        seed=seed,
+        algorithm="q_learning",
+        learning_rate=0.0,
+        epsilon=0.0,
+        terminal_update="target",
+        initial_q=_greedy_table(run),
+        **{name: getattr(config, name) for name in (*DISCRETIZERS, "actions")},
+        env_kwargs=config.env_kwargs,
+        max_episode_steps=config.max_episode_steps,
+        backend=config.backend if env is None else "auto",
+    )
+    spec = spec_of(config.env) if env is None else env.spec
+    assert played.config.seed is not None  # noqa: S101 - resolved
+    return Evaluation(
+        played.episode_returns,
+        played.episode_lengths,
+        played.terminated,
+        played.config.seed,
+        None if spec is None else spec.reward_threshold,
+    )
+
+
+def _greedy_table(run: Run) -> NDArray[np.float64]:
+    """What the greedy policy reads, with tile coding too: values add up over the tables as over the rows."""
+    table: NDArray[np.float64] = run.tables[0] if len(run.tables) == 1 else run.tables[0] + run.tables[1]
+    return table[np.newaxis]

@@ -1,0 +1,248 @@
+"""From what a user asked for to what will be run: the environment found, every default filled in."""
+
+import logging
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.envs.registration import EnvSpec
+
+from qtab import _spec as plan
+from qtab.config import Config, known_fields
+from qtab.config.options import defaults, stranger, tables
+from qtab.config.presets import preset
+from qtab.discretizers.actions import Actions, actions
+from qtab.discretizers.base import Features
+from qtab.discretizers.bins import Bins, bins
+from qtab.discretizers.identity import cells, components
+from qtab.discretizers.rounding import grid
+from qtab.discretizers.tile_coding import Tiling, tiling
+from qtab.envs.matching import is_own_table, model_of_object, time_limit
+from qtab.envs.native import classic_spec, native_spec
+from qtab.envs.registry import Model, model_of, spec_of, versioned
+
+_LOGGER = logging.getLogger("qtab")
+_limited: set[str] = set()
+"""The environments whose want of a time limit was said in this process."""
+UNLIMITED_MAX_EPISODE_STEPS = 10_000
+"""The time limit in training of an environment that has none of its own."""
+
+
+Described: TypeAlias = plan.Control | plan.Process | plan.Rules | plan.Bias
+"""An environment as Rust steps it."""
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """A config without gaps, and what it is run on."""
+
+    config: Config
+    grid: Features
+    model: Model | None
+    """The model in Rust; None steps ``env`` in Python."""
+    env: gym.Env | None
+    """The environment stepped in Python."""
+    made: bool
+    """Whether the environment was made here, and so is closed here."""
+    described: Described | None = None
+    """What the model steps by."""
+    limited: bool = False
+    """Whether the time limit is ours, the environment having none."""
+
+    def close(self) -> None:
+        """Closes the environment if it was made here."""
+        if self.made and self.env is not None:
+            self.env.close()
+
+    def core_environment(self) -> Described | plan.PythonEnvironment:
+        """Returns the environment as the extension module takes it."""
+        if self.described is not None:
+            return self.described
+        assert self.config.seed is not None  # noqa: S101 - resolved
+        choices = self.grid.choices
+        return {
+            "env": self.env,
+            "seed": self.config.seed,
+            "first_action": self.grid.first_action,
+            "choices": choices.arrays(),
+        }
+
+    def plan(self, record: int = 0) -> plan.Plan:
+        """Returns the run's description as the extension module takes it."""
+        config = self.config
+        assert config.seed is not None  # noqa: S101 - resolved
+        return {
+            "low": np.ravel(self.grid.low).astype(np.float64).tolist(),
+            "high": np.ravel(self.grid.high).astype(np.float64).tolist(),
+            "single": self.grid.low.dtype == np.float32,
+            "features": self.grid.plan(),
+            "actions": self.grid.actions,
+            "max_episode_steps": config.max_episode_steps,
+            "seed": plan.seed_words(config.seed),
+            "bit_generator": config.bit_generator,
+            "initial_q": config.initial_q,
+            "learning_rate": plan.learning_rate(config),
+            "discount": config.discount,
+            "policy": plan.policy(config),
+            "episodes": config.episodes,
+            "terminal_update": config.terminal_update,
+            "on_truncation": config.on_truncation,
+            "algorithm": plan.algorithm(config),
+            "record": record,
+        }
+
+
+def merge(env: str, *layers: Mapping[str, Any]) -> Config:
+    """Returns the config of an environment: its preset, then each layer over the one before.
+
+    Raises:
+        TypeError: for an unknown or mistyped setting.
+        ValueError: for a setting out of range, or an unknown preset.
+    """
+    explicit: dict[str, Any] = {}
+    for layer in layers:
+        known_fields(layer)
+        explicit.update(layer)
+    name = explicit.pop("preset", None)
+    if name is not None and not isinstance(name, str):
+        raise TypeError(f"preset must be a name, got {name!r}")
+    name, values = preset(env, name)
+    # A preset is a start: of what it says, that falls away which has no meaning beside what was asked for.
+    wanted = {**vars(Config()), **values, **explicit}
+    values = {field: value for field, value in values.items() if not stranger(field, value, wanted)}
+    return Config(**{**values, **explicit, "env": env, "preset": name})
+
+
+def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolved:
+    """Finds the environment and fills in what is left open.
+
+    Raises:
+        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
+        TypeError: for what is no environment.
+        ValueError: if the backend or the spaces do not fit the environment.
+    """
+    if isinstance(env, str | EnvSpec):
+        return _from_spec(env, *layers)
+    if isinstance(env, gym.Env):
+        return _from_object(env, *layers)
+    raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {env!r}")
+
+
+def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
+    # An id keeps the package that it names, so that the config makes the environment anywhere.
+    if isinstance(env, str):
+        env = versioned(env)
+    name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
+    config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
+    model = model_of(spec, config.env_kwargs)
+    if model is None and config.backend == "rust":
+        raise _refused(f"Rust has no {spec.id} with these keyword arguments or wrappers")
+    limit: dict[str, Any] = {}
+    if config.max_episode_steps is not None:
+        limit["max_episode_steps"] = config.max_episode_steps
+    made = gym.make(spec, **config.env_kwargs, **limit)
+    try:
+        resolved = _resolved(made, model, config, spec.max_episode_steps, layers, made=True)
+    except BaseException:
+        made.close()
+        raise
+    if resolved.model is not None:
+        made.close()
+    return resolved
+
+
+def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
+    name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
+    kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
+    config = merge(name, {"env_kwargs": kwargs}, *layers)
+    if config.backend == "auto":
+        config = config.replace(backend="rust" if is_own_table(env) else "gymnasium")
+    model = model_of_object(env) if config.backend == "rust" else None
+    return _resolved(env, model, config, time_limit(env), layers, made=False)
+
+
+def _resolved(
+    env: gym.Env,
+    model: Model | None,
+    config: Config,
+    own_limit: int | None,
+    layers: tuple[Mapping[str, Any], ...],
+    *,
+    made: bool,
+) -> Resolved:
+    """What is run, on the model where Rust can step by what the environment holds and is not kept from it."""
+    config = _fitting(env, config, *layers)
+    choices = actions(env.action_space, config.actions)
+    described = None
+    if model is not None and config.backend != "gymnasium":
+        try:
+            unwrapped = env.unwrapped
+            described = native_spec(unwrapped) if model.finite else classic_spec(unwrapped, model.name, choices)
+        except (TypeError, ValueError) as error:
+            if config.backend == "rust":
+                raise _refused(str(error)) from None
+    table = _features(env, config, choices)
+    steps = config.max_episode_steps or own_limit
+    config = _complete(config, table, "gymnasium" if described is None else "rust", steps)
+    model, stepped = (None, env) if described is None else (model, None)
+    return Resolved(config, table, model, stepped, made, described, limited=steps is None)
+
+
+def _refused(why_not: str) -> ValueError:
+    return ValueError(f"backend must be 'gymnasium' or 'auto' here, got 'rust': {why_not}")
+
+
+def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config:
+    """The config with the discretizer that a discrete space has, where none was asked for."""
+    if config.discretizer == "round" and components(env.observation_space) is not None:
+        # A wrapper may have made a box discrete, for which the preset's scale means nothing; one asked for is refused.
+        asked = any("scale" in layer for layer in layers)
+        return config.replace(discretizer="identity", scale=config.scale if asked else ())
+    return config
+
+
+def _features(env: gym.Env, config: Config, choices: Actions) -> Features:
+    if config.discretizer == "identity":
+        return cells(env, choices)
+    if config.discretizer == "round":
+        return grid(env, config.scale, choices)
+    filled = config.replace(**defaults(vars(config)))
+    return tiling(env, filled, choices) if config.discretizer == "tiles" else bins(env, filled, choices)
+
+
+def _complete(config: Config, table: Features, backend: str, steps: int | None) -> Config:
+    changes: dict[str, Any] = defaults(vars(config))
+    changes |= {"backend": backend, "max_episode_steps": steps or UNLIMITED_MAX_EPISODE_STEPS}
+    if config.seed is None:
+        changes["seed"] = int(np.random.SeedSequence().generate_state(1)[0])
+    if isinstance(table, Tiling):
+        changes |= {"low": tuple(table.edges[0].tolist()), "high": tuple(table.edges[1].tolist())}
+        changes["tiles"] = table.tiles
+    if isinstance(table, Bins) and table.limits is not None:
+        changes |= {name: tuple(limit.tolist()) for name, limit in zip(("low", "high"), table.limits, strict=True)}
+        changes["bins"] = table.shape[:-1]
+    if isinstance(config.initial_q, np.ndarray):
+        count = tables(config.algorithm)
+        shape = table.shape if count == 1 else (count, *table.shape)
+        if config.initial_q.shape == table.shape and count > 1:
+            changes["initial_q"] = np.stack([config.initial_q] * count)
+        elif config.initial_q.shape not in (shape, (count, table.rows, table.actions)):
+            raise ValueError(f"initial_q must have the table's shape {shape}, got {config.initial_q.shape}")
+        elif len(np.unique(np.isneginf(config.initial_q.reshape(count, -1)), axis=0)) > 1:
+            raise ValueError("initial_q must have -inf in both tables or in none, got it in one")
+    return config.replace(**changes)
+
+
+def limit(resolved: Resolved) -> str:
+    """Returns what there is to say where the time limit is ours (``resolved.limited``)."""
+    config = resolved.config
+    return f"{config.env} has no time limit of its own: an episode ends after {config.max_episode_steps:,} steps"
+
+
+def log_default_limit(resolved: Resolved) -> None:
+    """Says that the time limit is ours, where it is: once a process for each environment."""
+    if resolved.limited and resolved.config.env not in _limited:
+        _limited.add(resolved.config.env)
+        _LOGGER.warning("%s; max_episode_steps= sets another", limit(resolved))
