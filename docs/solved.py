@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 import qtab
-from qtab.envs.registry import MODELS
+from qtab.envs.registry import ENTRIES
 
 SEEDS = 100
 GREEDY_EPISODES = 1_000
@@ -61,7 +61,7 @@ def known_optimum(env: str) -> qtab.Optimum | None:
 
 print("| " + " | ".join(COLUMNS) + " |")
 print("|---" * len(COLUMNS) + "|")
-for env in MODELS:
+for env in ENTRIES:
     if presets := qtab.presets(env):
         optimum = known_optimum(env)
         for preset in presets:

@@ -17,7 +17,7 @@ _open: list[Any] = []
 """The tqdm bars in use, which lines are written around."""
 
 
-class Bar:
+class ProgressBar:
     """How far a long call is, on standard error. A context; without a bar to show, it does nothing.
 
     Args:
@@ -36,7 +36,7 @@ class Bar:
         self._stride = 1
 
     # Not a generator: contextlib writes to the exceptions that pass through one, and a frozen one refuses.
-    def __enter__(self) -> "Bar":
+    def __enter__(self) -> "ProgressBar":
         if self._shown is not None:
             _open.append(self._shown)
         return self
@@ -46,7 +46,7 @@ class Bar:
             _open.remove(self._shown)
             self._shown.close()
 
-    def stops(self, done: int, target: int) -> Iterator[int]:
+    def chunks(self, done: int, target: int) -> Iterator[int]:
         """Yields where to pause on the way to ``target``: nowhere, or about ten times a second to move the bar."""
         if self._shown is None:
             yield target
@@ -87,7 +87,7 @@ def on_terminal(stream: Any) -> bool:
     return stream is not None and stream.isatty()
 
 
-def write(line: str) -> None:
+def print_above(line: str) -> None:
     """Prints a line on standard output, above the bar where there is one."""
     # tqdm.write draws a bar anew even if it still waits to appear, and would leave it there.
     drawn = [shown for shown in _open if shown.delay == 0 or shown.last_print_t > shown.start_t]

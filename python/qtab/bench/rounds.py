@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils.progress import Bar
+from qtab._utils.progress import ProgressBar
 
 Subject = Callable[[int], int]
 """Works through one round, whose number it is given, and returns the number of steps that it took."""
@@ -43,7 +43,7 @@ def measure(
     """
     _round(subjects, 0)
     count = rounds if rounds is not None else max(LEAST_ROUNDS, int(seconds / _seconds_of_a_round(subjects)))
-    with Bar(count, "round", progress) as shown:
+    with ProgressBar(count, "round", progress) as shown:
         table = []
         for index in range(count):
             table.append(_round(subjects, index + 1))

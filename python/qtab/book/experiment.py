@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
-from qtab._utils.progress import Bar
+from qtab._utils.progress import ProgressBar
 from qtab.book import trials
 from qtab.book.trials import Environment, Outcome
 from qtab.training.train_many import thread_count
@@ -138,7 +138,7 @@ class Experiment:
         began = time.perf_counter()
         counts = [min(count, setting.most_runs or count) for setting in self.settings]
         parts: dict[str, list[Line]] = {}
-        with Bar(sum(counts), "run", progress, self.name) as shown:
+        with ProgressBar(sum(counts), "run", progress, self.name) as shown:
             done = 0
             for setting, own in zip(self.settings, counts, strict=True):
                 point = _Point(setting)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from qtab._utils.progress import write
+from qtab._utils.progress import print_above
 from qtab.bench import bench
 from qtab.bench.report import DEFAULT_SECONDS
 from qtab.cli.parsing import parse
@@ -30,5 +30,5 @@ def run(arguments: list[str]) -> int:
         report = bench(asked.seconds, asked.rounds, part=asked.part)
     except ValueError as error:
         raise UsageError(str(error)) from None
-    write(str(report))
+    print_above(str(report))
     return 0

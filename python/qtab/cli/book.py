@@ -8,7 +8,7 @@ import tyro
 
 from qtab import book
 from qtab._utils.files import check_writable
-from qtab._utils.progress import write
+from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
 from qtab.cli.usage import UsageError, refusing
 from qtab.plots.run import check_format
@@ -41,7 +41,7 @@ def run(arguments: list[str]) -> int:
         raise UsageError("NAME must be given, of an experiment that qtab book lists")
     if asked.experiment is None:
         for name, experiment in book.EXPERIMENTS.items():
-            write(f"{name:14}{experiment.title}")
+            print_above(f"{name:14}{experiment.title}")
         return 0
     with refusing():
         experiment = book.find(asked.experiment)
@@ -52,13 +52,13 @@ def run(arguments: list[str]) -> int:
             check_writable("save", asked.save)
         experiment.check(asked.runs, asked.seed, asked.threads)
     result = experiment.run(asked.runs, asked.seed, threads=asked.threads)
-    write(str(result))
+    print_above(str(result))
     if asked.save is not None:
         result.save(asked.save)
-        write(f"Saved the points to {asked.save}")
+        print_above(f"Saved the points to {asked.save}")
     if asked.plot is not None:
         from qtab.book.drawing import save_plot
 
         save_plot(result, asked.plot)
-        write(f"Saved the plot to {asked.plot}")
+        print_above(f"Saved the plot to {asked.plot}")
     return 0

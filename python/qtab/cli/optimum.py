@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import tyro
 
-from qtab._utils.progress import write
+from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
 from qtab.cli.settings import PAIRS
 from qtab.cli.usage import refusing
@@ -43,5 +43,5 @@ def run(arguments: list[str]) -> int:
             method=asked.method,
             env_kwargs=asked.env_kwargs,
         )
-    write(str(found))
+    print_above(str(found))
     return 0

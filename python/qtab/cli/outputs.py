@@ -6,13 +6,13 @@ from types import TracebackType
 
 from qtab._utils import checks
 from qtab._utils.files import check_writable
-from qtab._utils.progress import write
+from qtab._utils.progress import print_above
 from qtab.config import Config
 from qtab.planning import Optimum
 from qtab.plots.run import check_format, save_plot
-from qtab.rendering.replay import play_all
+from qtab.rendering.replay import replay_all
 from qtab.rendering.video import Recorder
-from qtab.rendering.window import window
+from qtab.rendering.window import open_window
 from qtab.results.run import Run
 
 DEFAULT_SHOWN = 20
@@ -49,7 +49,7 @@ class Outputs:
         self.shown = watch or (DEFAULT_SHOWN if record is not None else 0)
         """How many of the last episodes are played again."""
         with ExitStack() as opened:
-            self._screen = None if watch is None else opened.enter_context(closing(window(config)))
+            self._screen = None if watch is None else opened.enter_context(closing(open_window(config)))
             self._recorder = None if record is None else opened.enter_context(closing(Recorder(config, record)))
             self._opened = opened.pop_all()
 
@@ -69,19 +69,21 @@ class Outputs:
         """
         if self._save is not None:
             run.save(self._save)
-            write(f"Saved the run to {self._save}")
+            print_above(f"Saved the run to {self._save}")
         if self._plot is not None:
             save_plot(run, self._plot, optimum)
-            write(f"Saved the plot to {self._plot}")
+            print_above(f"Saved the plot to {self._plot}")
 
     def show(self, run: Run) -> None:
         """Plays the recorded episodes to videos and on the screen."""
         different = 0
         if self._recorder is not None:
             different = self._recorder.record(run)
-            write(f"Saved {len(run.recordings)} videos to {self._record}")
+            print_above(f"Saved {len(run.recordings)} videos to {self._record}")
         if self._screen is not None:
-            write(f"Showing the last {len(run.recordings)} episodes")
-            different = play_all(self._screen, run)
+            print_above(f"Showing the last {len(run.recordings)} episodes")
+            different = replay_all(self._screen, run)
         if different:
-            write(f"{different} of them went another way than in training: the environment keeps more than its random")
+            print_above(
+                f"{different} of them went another way than in training: the environment keeps more than its random"
+            )

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import tyro
 
-from qtab._utils.progress import write
+from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
 from qtab.cli.usage import refusing
 from qtab.sweeps.loading import load_sweep
@@ -30,5 +30,5 @@ def run(arguments: list[str]) -> int:
     with refusing():
         folder = asked.out or asked.store.with_name(f"{asked.store.stem}-report")
         written = report(load_sweep(asked.store), folder)
-    write(f"{len(written)} files in {folder}; open {written[-1]}")
+    print_above(f"{len(written)} files in {folder}; open {written[-1]}")
     return 0

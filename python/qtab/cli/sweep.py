@@ -8,7 +8,7 @@ from typing import Any
 
 import tyro
 
-from qtab._utils.progress import Bar, write
+from qtab._utils.progress import ProgressBar, print_above
 from qtab.cli.parsing import parse
 from qtab.cli.usage import UsageError, refusing
 from qtab.sweeps import SweepProgress, designs, sweep
@@ -47,7 +47,7 @@ def run(arguments: list[str]) -> int:
         config = study.get("config", {})
         # tqdm tells rate and time left.
         seeds = study.get("seeds", 100)
-        with Bar(len(grid) * _count(seeds), "run", None, asked.study.stem) as shown:
+        with ProgressBar(len(grid) * _count(seeds), "run", None, asked.study.stem) as shown:
 
             def show(progress: SweepProgress) -> None:
                 shown.move_to(progress.runs)
@@ -55,7 +55,7 @@ def run(arguments: list[str]) -> int:
             env, block = study.get("env", "MountainCar-v0"), study.get("block", 100)
             options = {"store": store, "threads": asked.threads, "block": block, "callback": show}
             result = sweep(env, grid, seeds, **options, **config)
-    write(f"{len(result)} runs of {len(result.settings)} settings in {store}, {result.failed} failed")
+    print_above(f"{len(result)} runs of {len(result.settings)} settings in {store}, {result.failed} failed")
     return 0
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import tyro
 
-from qtab._utils.progress import write
+from qtab._utils.progress import print_above
 from qtab.cli.outputs import Outputs
 from qtab.cli.parsing import parse
 from qtab.cli.settings import Settings, defaults, last_value
@@ -15,7 +15,7 @@ from qtab.cli.usage import refusing
 from qtab.envs.registry import versioned
 from qtab.planning import Optimum, optimum
 from qtab.results.run import Run
-from qtab.results.summary import FINAL_EPISODES, block_of
+from qtab.results.summary import FINAL_EPISODES, default_block
 from qtab.training.callbacks import Progress
 from qtab.training.resolve import Resolved, limit, resolve
 from qtab.training.train import train_resolved
@@ -54,7 +54,7 @@ def run(arguments: list[str]) -> int:
             outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record)
             truth = _truth(resolved) if asked.optimum or _quick(resolved) else None
         with outputs:
-            write(_header(resolved))
+            print_above(_header(resolved))
             _train(resolved, outputs, truth)
     finally:
         resolved.close()
@@ -102,7 +102,7 @@ def _header(resolved: Resolved) -> str:
 
 
 def _quick(resolved: Resolved) -> bool:
-    if resolved.model is None or not resolved.model.finite or resolved.config.max_episode_steps is None:
+    if resolved.model is None or not resolved.model.has_table or resolved.config.max_episode_steps is None:
         return False
     return resolved.grid.rows * resolved.grid.actions * resolved.config.max_episode_steps <= QUICK
 
@@ -113,7 +113,7 @@ def _truth(resolved: Resolved) -> Optimum:
 
 
 def _train(resolved: Resolved, outputs: Outputs, truth: Optimum | None) -> None:
-    block = block_of(resolved.config.episodes)
+    block = default_block(resolved.config.episodes)
     averages = _averages(block)
     try:
         finished = train_resolved(resolved, averages, block, record=outputs.shown)
@@ -122,7 +122,7 @@ def _train(resolved: Resolved, outputs: Outputs, truth: Optimum | None) -> None:
         if isinstance(partial, Run):
             done, total = len(partial.episode_returns), partial.config.episodes
             averages(Progress(done, total, partial.episode_returns, partial.episode_lengths))
-            write(f"Stopped after {done:,} of {total:,} episodes; what was learned so far:")
+            print_above(f"Stopped after {done:,} of {total:,} episodes; what was learned so far:")
             _tell(partial, outputs, truth)
         raise
     _tell(finished, outputs, truth)
@@ -130,10 +130,10 @@ def _train(resolved: Resolved, outputs: Outputs, truth: Optimum | None) -> None:
 
 
 def _tell(run: Run, outputs: Outputs, truth: Optimum | None) -> None:
-    write(_summary(run))
+    print_above(_summary(run))
     if truth is not None:
         gap = str(truth.gap(run))
-        write(gap[0].upper() + gap[1:])
+        print_above(gap[0].upper() + gap[1:])
     outputs.keep(run, truth)
 
 
@@ -145,7 +145,7 @@ def _averages(block: int) -> Callable[[Progress], None]:
         nonlocal printed
         while printed + block <= progress.episodes:
             average = float(progress.returns[printed : printed + block].mean())
-            write(f"Episode {printed + block} Average Reward: {round(average, 4)}")
+            print_above(f"Episode {printed + block} Average Reward: {round(average, 4)}")
             printed += block  # last: a line that Ctrl-C cut off is written again
 
     return callback

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import tyro
 
-from qtab._utils.progress import Bar, write
+from qtab._utils.progress import ProgressBar, print_above
 from qtab.cli.parsing import parse
 from qtab.cli.usage import refusing
 from qtab.results.storage import load
@@ -30,7 +30,7 @@ def run(arguments: list[str]) -> int:
     with refusing():
         saved = load(asked.run)
         total = asked.episodes if asked.episodes is not None else len(saved.episode_returns)
-        with Bar(total, "episode", None, "Gymnasium") as shown:
+        with ProgressBar(total, "episode", None, "Gymnasium") as shown:
             verification = verify(saved, asked.episodes, progress=lambda done, _: shown.move_to(done))
-    write(str(verification))
+    print_above(str(verification))
     return 0 if verification.equal else 1

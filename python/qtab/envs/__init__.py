@@ -2,12 +2,12 @@
 
 import gymnasium as gym
 
-from qtab.envs.registry import MODELS, OWN, PREFIX
+from qtab.envs.registry import ENTRIES, EXTRA, PREFIX
 
 
 def register() -> None:
     """Registers ``qtab/…`` beside each of Gymnasium's environments that Rust knows, with its limit and threshold."""
-    for name, model in MODELS.items():
+    for name, model in ENTRIES.items():
         theirs = gym.registry.get(name)
         if theirs is None:  # an old version that this Gymnasium no longer has
             continue
@@ -20,5 +20,5 @@ def register() -> None:
             nondeterministic=theirs.nondeterministic,
             kwargs=dict(theirs.kwargs),
         )
-    for name, model in OWN.items():
+    for name, model in EXTRA.items():
         gym.register(id=name, entry_point=model.qtab)

@@ -3,13 +3,13 @@
 import gymnasium as gym
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
-from qtab.envs.registry import TABLE, Model, known_model
+from qtab.envs.registry import TABULAR, EnvEntry, entry_for_id
 
 # What gymnasium.make puts around an environment; none of it changes a number.
 _HARMLESS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
 
 
-def foreign_wrapper(env: gym.Env) -> str | None:
+def unknown_wrapper(env: gym.Env) -> str | None:
     """Returns the name of the outermost wrapper that may change a number; None where there is none."""
     while isinstance(env, gym.Wrapper):
         if type(env) not in _HARMLESS:
@@ -18,7 +18,7 @@ def foreign_wrapper(env: gym.Env) -> str | None:
     return None
 
 
-def model_of_object(env: gym.Env) -> Model:
+def entry_for_env(env: gym.Env) -> EnvEntry:
     """Returns the model that computes what an environment object would.
 
     Raises:
@@ -26,17 +26,17 @@ def model_of_object(env: gym.Env) -> Model:
     """
     refused = "backend must be 'gymnasium' or 'auto' for this environment, got 'rust': "
     inner = env.unwrapped
-    wrapper = foreign_wrapper(env)
+    wrapper = unknown_wrapper(env)
     if wrapper is not None:
         raise ValueError(f"{refused}Rust does not know its wrapper {wrapper}")
     entry_point = f"{type(inner).__module__}:{type(inner).__qualname__}"
-    if entry_point == TABLE.qtab:
-        return TABLE
+    if entry_point == TABULAR.qtab:
+        return TABULAR
     spec = inner.spec
-    model = known_model(spec.id) if spec is not None else None
+    model = entry_for_id(spec.id) if spec is not None else None
     if model is None or entry_point not in (model.gymnasium, model.qtab):
         raise ValueError(f"{refused}Rust has no {type(inner).__qualname__}")
-    if model.finite:
+    if model.has_table:
         return model  # whose table is taken as it stands
     from qtab._core import parameter_names
 
@@ -48,10 +48,10 @@ def model_of_object(env: gym.Env) -> Model:
     return model
 
 
-def is_own_table(env: gym.Env) -> bool:
+def is_tabular_env(env: gym.Env) -> bool:
     """Whether this is a :class:`qtab.TabularEnv`, with no more around it than ``gymnasium.make`` puts there."""
     try:
-        return model_of_object(env) is TABLE
+        return entry_for_env(env) is TABULAR
     except ValueError:
         return False
 
@@ -65,4 +65,4 @@ def time_limit(env: gym.Env) -> int | None:
     return None
 
 
-__all__ = ["foreign_wrapper", "is_own_table", "model_of_object", "time_limit"]
+__all__ = ["entry_for_env", "is_tabular_env", "time_limit", "unknown_wrapper"]

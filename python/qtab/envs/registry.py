@@ -13,7 +13,7 @@ PREFIX = "qtab/"
 
 
 @dataclass(frozen=True)
-class Model:
+class EnvEntry:
     """An environment in Rust, and where it stands in Gymnasium."""
 
     name: str
@@ -24,35 +24,35 @@ class Model:
     """This package's entry point."""
     arguments: frozenset[str] = field(default_factory=frozenset)
     """The constructor's keyword arguments that make constants of the model, and nothing else."""
-    finite: bool = False
+    has_table: bool = False
     """Whether Rust takes its table, or its rules, from Gymnasium's environment, whatever its arguments were."""
 
 
 _CLASSIC = "gymnasium.envs.classic_control"
 _TOYS = "gymnasium.envs.toy_text"
-TABLE = Model("Table", "", "qtab.envs.tabular:TabularEnv", finite=True)
+TABULAR = EnvEntry("Table", "", "qtab.envs.tabular:TabularEnv", has_table=True)
 """A table of one's own, which has no id."""
-_FROZEN_LAKE = Model(
-    "FrozenLake", f"{_TOYS}.frozen_lake:FrozenLakeEnv", "qtab.envs.toy_text:FrozenLakeEnv", finite=True
+_FROZEN_LAKE = EnvEntry(
+    "FrozenLake", f"{_TOYS}.frozen_lake:FrozenLakeEnv", "qtab.envs.toy_text:FrozenLakeEnv", has_table=True
 )
-_CLIFF = Model(
-    "CliffWalking", f"{_TOYS}.cliffwalking:CliffWalkingEnv", "qtab.envs.toy_text:CliffWalkingEnv", finite=True
+_CLIFF = EnvEntry(
+    "CliffWalking", f"{_TOYS}.cliffwalking:CliffWalkingEnv", "qtab.envs.toy_text:CliffWalkingEnv", has_table=True
 )
-_CART_POLE = Model(
+_CART_POLE = EnvEntry(
     name="CartPole",
     gymnasium=f"{_CLASSIC}.cartpole:CartPoleEnv",
     qtab="qtab.envs.classic_control:CartPoleEnv",
     arguments=frozenset({"sutton_barto_reward"}),
 )
 
-MODELS: Mapping[str, Model] = {
-    "MountainCar-v0": Model(
+ENTRIES: Mapping[str, EnvEntry] = {
+    "MountainCar-v0": EnvEntry(
         name="MountainCar",
         gymnasium=f"{_CLASSIC}.mountain_car:MountainCarEnv",
         qtab="qtab.envs.classic_control:MountainCarEnv",
         arguments=frozenset({"goal_velocity"}),
     ),
-    "MountainCarContinuous-v0": Model(
+    "MountainCarContinuous-v0": EnvEntry(
         name="ContinuousMountainCar",
         gymnasium=f"{_CLASSIC}.continuous_mountain_car:Continuous_MountainCarEnv",
         qtab="qtab.envs.classic_control:ContinuousMountainCarEnv",
@@ -60,8 +60,8 @@ MODELS: Mapping[str, Model] = {
     ),
     "CartPole-v0": _CART_POLE,
     "CartPole-v1": _CART_POLE,
-    "Acrobot-v1": Model("Acrobot", f"{_CLASSIC}.acrobot:AcrobotEnv", "qtab.envs.classic_control:AcrobotEnv"),
-    "Pendulum-v1": Model(
+    "Acrobot-v1": EnvEntry("Acrobot", f"{_CLASSIC}.acrobot:AcrobotEnv", "qtab.envs.classic_control:AcrobotEnv"),
+    "Pendulum-v1": EnvEntry(
         name="Pendulum",
         gymnasium=f"{_CLASSIC}.pendulum:PendulumEnv",
         qtab="qtab.envs.classic_control:PendulumEnv",
@@ -71,15 +71,15 @@ MODELS: Mapping[str, Model] = {
     "FrozenLake8x8-v1": _FROZEN_LAKE,
     "CliffWalking-v1": _CLIFF,
     "CliffWalkingSlippery-v1": _CLIFF,
-    "Taxi-v4": Model("Taxi", f"{_TOYS}.taxi:TaxiEnv", "qtab.envs.toy_text:TaxiEnv", finite=True),
-    "Blackjack-v1": Model(
-        "Blackjack", f"{_TOYS}.blackjack:BlackjackEnv", "qtab.envs.toy_text:BlackjackEnv", finite=True
+    "Taxi-v4": EnvEntry("Taxi", f"{_TOYS}.taxi:TaxiEnv", "qtab.envs.toy_text:TaxiEnv", has_table=True),
+    "Blackjack-v1": EnvEntry(
+        "Blackjack", f"{_TOYS}.blackjack:BlackjackEnv", "qtab.envs.toy_text:BlackjackEnv", has_table=True
     ),
 }
 
-OWN: Mapping[str, Model] = {
-    f"{PREFIX}MaximizationBias-v0": Model(
-        "MaximizationBias", "", "qtab.envs.maximization_bias:MaximizationBiasEnv", finite=True
+EXTRA: Mapping[str, EnvEntry] = {
+    f"{PREFIX}MaximizationBias-v0": EnvEntry(
+        "MaximizationBias", "", "qtab.envs.maximization_bias:MaximizationBiasEnv", has_table=True
     ),
 }
 """Those that Gymnasium does not have."""
@@ -90,9 +90,9 @@ def gymnasium_id(env: str) -> str:
     return env.removeprefix(f"{PACKAGE}:").removeprefix(PREFIX)
 
 
-def known_model(env: str) -> Model | None:
+def entry_for_id(env: str) -> EnvEntry | None:
     """Returns the model that an id names, ours or Gymnasium's."""
-    return MODELS.get(gymnasium_id(env)) or OWN.get(env.removeprefix(f"{PACKAGE}:"))
+    return ENTRIES.get(gymnasium_id(env)) or EXTRA.get(env.removeprefix(f"{PACKAGE}:"))
 
 
 def versioned(env: str) -> str:
@@ -126,9 +126,9 @@ def spec_of(env: str) -> EnvSpec:
     return gym.spec(versioned(env).rpartition(":")[2])
 
 
-def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:
+def entry_for_spec(spec: EnvSpec, kwargs: Mapping[str, Any]) -> EnvEntry | None:
     """Returns the model that computes what ``gymnasium.make(spec, **kwargs)`` would, or None if Rust has none."""
-    model = known_model(spec.id)
+    model = entry_for_id(spec.id)
     if model is None or spec.additional_wrappers:
         return None
     if spec.entry_point not in (model.gymnasium, model.qtab):
@@ -137,7 +137,7 @@ def model_of(spec: EnvSpec, kwargs: Mapping[str, Any]) -> Model | None:
     arguments = {
         name: value for name, value in {**spec.kwargs, **kwargs}.items() if (name, value) != ("render_mode", None)
     }
-    if model.finite:
+    if model.has_table:
         return None if "render_mode" in arguments else model
     # A number of another width than Python's would promote differently.
     plain = all(type(value) in (int, float, bool) for value in arguments.values())

@@ -15,7 +15,7 @@ from qtab._utils import checks
 from qtab.discretizers.actions import actions
 from qtab.discretizers.identity import cells
 from qtab.envs.classic_control import MountainCarEnv as RustMountainCarEnv
-from qtab.envs.matching import foreign_wrapper, time_limit
+from qtab.envs.matching import time_limit, unknown_wrapper
 from qtab.envs.native import toy_text_spec
 from qtab.envs.registry import spec_of, versioned
 from qtab.planning.mountain_car import ValleyTruth, search
@@ -107,7 +107,7 @@ def _of_run(
 def _solve(name: str, env: gym.Env, limit: int | None, discount: float | None, method: str | None) -> Optimum:
     began = time.perf_counter()
     inner: Any = env.unwrapped
-    wrapper = foreign_wrapper(env)
+    wrapper = unknown_wrapper(env)
     if wrapper is not None:
         raise ValueError(f"env must have no wrapper that may change it, got {wrapper}")
     discount = 1.0 if discount is None else checks.real("discount", discount, 0.0, 1.0)

@@ -10,7 +10,7 @@ from qtab._utils.extras import missing
 from qtab._utils.files import replacing
 from qtab.plots.axes import mark_optimum
 from qtab.results.run import Run
-from qtab.results.summary import block_of
+from qtab.results.summary import default_block
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,7 +43,7 @@ def plot(
     """
     checks.instance("run", run, Run)
     if block is None:
-        block = block_of(len(run.episode_returns))
+        block = default_block(len(run.episode_returns))
     means = run.mean_returns(block)
     if ax is None:
         ax = _figure().subplots()

@@ -7,7 +7,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-from qtab._utils.progress import Bar
+from qtab._utils.progress import ProgressBar
 from qtab.config import Config
 from qtab.results.run import Recording, Run
 
@@ -33,7 +33,7 @@ def _generator_state(seed: int | None, start: Any) -> dict[str, Any]:
     return dict(generator.state)
 
 
-def stage(config: Config, render_mode: str) -> gym.Env:
+def make_render_env(config: Config, render_mode: str) -> gym.Env:
     """Makes the environment of a run once more, to be looked at.
 
     Raises:
@@ -47,7 +47,7 @@ def stage(config: Config, render_mode: str) -> gym.Env:
     return gym.make(config.env, max_episode_steps=config.max_episode_steps, **kwargs)
 
 
-def play(env: gym.Env, recording: Recording) -> float:
+def replay_episode(env: gym.Env, recording: Recording) -> float:
     """Plays a recorded episode in ``env`` and returns its return.
 
     The environment draws from its ``np_random`` alone, as every environment of Gymnasium's does.
@@ -65,14 +65,14 @@ def play(env: gym.Env, recording: Recording) -> float:
     return total
 
 
-def play_all(env: gym.Env, run: Run, progress: bool | None = None) -> int:
+def replay_all(env: gym.Env, run: Run, progress: bool | None = None) -> int:
     """Plays all recorded episodes of a run in ``env``, and returns how many had another return than in training.
 
     An environment that carries more from episode to episode than its ``np_random`` can differ.
     """
     different = 0
-    with Bar(len(run.recordings), "episode", progress, "replay") as shown:
+    with ProgressBar(len(run.recordings), "episode", progress, "replay") as shown:
         for index, recording in enumerate(run.recordings):
-            different += play(env, recording) != run.episode_returns[recording.episode]
+            different += replay_episode(env, recording) != run.episode_returns[recording.episode]
             shown.move_to(index + 1)
     return different

@@ -9,7 +9,7 @@ from typing import Any
 from qtab._utils.extras import missing
 from qtab._utils.files import check_writable
 from qtab.config import Config
-from qtab.rendering.replay import play_all, stage
+from qtab.rendering.replay import make_render_env, replay_all
 from qtab.rendering.window import headless
 from qtab.results.run import Run
 
@@ -33,7 +33,7 @@ class Recorder:
 
         if headless():
             os.environ["SDL_VIDEODRIVER"] = "dummy"  # SDL would look for a display all the same, and complain
-        env = stage(config, "rgb_array")
+        env = make_render_env(config, "rgb_array")
         try:
             env.reset()
             env.render()
@@ -51,7 +51,7 @@ class Recorder:
         """Writes a video for each recorded episode, numbered from 1; returns how many differ from training."""
         if run.recordings:
             self._env.episode_id = run.recordings[0].episode
-        return play_all(self._env, run)
+        return replay_all(self._env, run)
 
     def close(self) -> None:
         """Writes what is unwritten and closes the environment."""

@@ -8,12 +8,12 @@ import gymnasium as gym
 
 from qtab._utils.extras import missing
 from qtab.config import Config
-from qtab.rendering.replay import stage
+from qtab.rendering.replay import make_render_env
 
 _SAYS_WHERE = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
 
 
-def window(config: Config) -> gym.Env:
+def open_window(config: Config) -> gym.Env:
     """Returns the environment with its window, which opens with the first episode.
 
     Raises:
@@ -23,7 +23,7 @@ def window(config: Config) -> gym.Env:
     why_not = no_display()
     if why_not is not None:
         raise ValueError(f"watch needs a display ({why_not}); --record DIR makes videos without one")
-    return stage(config, "human")
+    return make_render_env(config, "human")
 
 
 def headless() -> bool:

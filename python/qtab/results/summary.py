@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 FINAL_EPISODES = 100
 """How many of the last episodes the final return is the mean of."""
 
-MOST_BLOCKS = 100
+MAX_BLOCKS = 100
 """More averages than this are neither read in a terminal nor told apart in a picture."""
 
 
-def block_of(episodes: int) -> int:
+def default_block(episodes: int) -> int:
     """Returns how many episodes to average over where nobody says: the article's 100, ten times more in long runs."""
     block = 100
-    while episodes > MOST_BLOCKS * block:
+    while episodes > MAX_BLOCKS * block:
         block *= 10
     return block
 

@@ -19,9 +19,9 @@ from qtab.discretizers.bins import Bins, bins
 from qtab.discretizers.identity import cells, components
 from qtab.discretizers.rounding import grid
 from qtab.discretizers.tile_coding import Tiling, tiling
-from qtab.envs.matching import is_own_table, model_of_object, time_limit
+from qtab.envs.matching import entry_for_env, is_tabular_env, time_limit
 from qtab.envs.native import classic_spec, native_spec
-from qtab.envs.registry import Model, model_of, spec_of, versioned
+from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
 
 _LOGGER = logging.getLogger("qtab")
 _limited: set[str] = set()
@@ -40,7 +40,7 @@ class Resolved:
 
     config: Config
     grid: Features
-    model: Model | None
+    model: EnvEntry | None
     """The model in Rust; None steps ``env`` in Python."""
     env: gym.Env | None
     """The environment stepped in Python."""
@@ -136,7 +136,7 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
         env = versioned(env)
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
     config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
-    model = model_of(spec, config.env_kwargs)
+    model = entry_for_spec(spec, config.env_kwargs)
     if model is None and config.backend == "rust":
         raise _refused(f"Rust has no {spec.id} with these keyword arguments or wrappers")
     limit: dict[str, Any] = {}
@@ -158,14 +158,14 @@ def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
     kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
     config = merge(name, {"env_kwargs": kwargs}, *layers)
     if config.backend == "auto":
-        config = config.replace(backend="rust" if is_own_table(env) else "gymnasium")
-    model = model_of_object(env) if config.backend == "rust" else None
+        config = config.replace(backend="rust" if is_tabular_env(env) else "gymnasium")
+    model = entry_for_env(env) if config.backend == "rust" else None
     return _resolved(env, model, config, time_limit(env), layers, made=False)
 
 
 def _resolved(
     env: gym.Env,
-    model: Model | None,
+    model: EnvEntry | None,
     config: Config,
     own_limit: int | None,
     layers: tuple[Mapping[str, Any], ...],
@@ -179,7 +179,7 @@ def _resolved(
     if model is not None and config.backend != "gymnasium":
         try:
             unwrapped = env.unwrapped
-            described = native_spec(unwrapped) if model.finite else classic_spec(unwrapped, model.name, choices)
+            described = native_spec(unwrapped) if model.has_table else classic_spec(unwrapped, model.name, choices)
         except (TypeError, ValueError) as error:
             if config.backend == "rust":
                 raise _refused(str(error)) from None

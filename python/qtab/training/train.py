@@ -10,7 +10,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import _core
 from qtab._utils import checks
-from qtab._utils.progress import Bar
+from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.rendering.replay import starts
@@ -79,10 +79,10 @@ def train_resolved(
     finished = Finished(trainer, total)
     done = 0
     try:
-        with Bar(total, "episode", progress) as shown:
+        with ProgressBar(total, "episode", progress) as shown:
             while done < total:
                 target = min(done + callback_every, total) if callback is not None else total
-                for stop in shown.stops(done, target):
+                for stop in shown.chunks(done, target):
                     trainer.advance(stop)
                 done = target
                 if callback is not None:

@@ -12,7 +12,7 @@ from qtab import _core
 from qtab._utils import checks
 from qtab._utils.versions import versions
 from qtab.config import Config
-from qtab.envs.registry import MODELS, gymnasium_id
+from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.reference import LEARNERS
 from qtab.results.run import Run
 from qtab.training.resolve import resolve
@@ -117,7 +117,7 @@ def _environment(config: Config, env: gym.Env | None) -> gym.Env:
         return gym.wrappers.TimeLimit(env, config.max_episode_steps)
     name = gymnasium_id(config.env)
     return gym.make(
-        name if name in MODELS else config.env, max_episode_steps=config.max_episode_steps, **config.env_kwargs
+        name if name in ENTRIES else config.env, max_episode_steps=config.max_episode_steps, **config.env_kwargs
     )
 
 

@@ -3,19 +3,22 @@
 //! `cargo bench --bench learners`, or with `-- tilings` for the tilings alone. Policies and rates are those chosen at run
 //! time, the same for all.
 
-mod valley;
+mod mountain_car_task;
 
 use std::fmt::Debug;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput};
-use qtab_core::features::{Features, Tiles};
+use mountain_car_task::{INSIDE, MountainCarTask, rounding, task};
+use qtab_core::features::{Features, TileCoding};
 use qtab_core::learners::{
-    Agent, Behaviour, Control, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Rate,
-    Rule, Sarsa, SarsaLambda, Schedule, TerminalUpdate, Ties, Trace, Traces, TrueOnlineSarsaLambda, WatkinsQLambda,
+    Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
+    TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
 };
-use qtab_core::{Learner, Table, Trainer, Until, World};
-use valley::{INSIDE, Valley, rounding, world};
+use qtab_core::policies::{AnyPolicy, TieBreaking};
+use qtab_core::q_table::TerminalUpdate;
+use qtab_core::schedules::{LearningRate, Schedule};
+use qtab_core::{Budget, Learner, QTable, Task, Trainer};
 
 const EPISODES: usize = 100;
 const ACTIONS: usize = 3;
@@ -24,11 +27,11 @@ const TRACE_DECAY: f64 = 0.9;
 const CUTOFF: f64 = 1e-3;
 
 /// Sutton & Barto's setting for the valley: values of zero are optimistic there, so that nothing need be explored.
-fn agent(rows: usize, lit: usize) -> Agent {
+fn agent(rows: usize, n_active: usize) -> Agent {
     Agent {
-        table: Table::new(vec![0.0; rows * ACTIONS], ACTIONS),
-        policy: Behaviour::EpsilonGreedy { epsilon: Schedule::constant(0.0), ties: Ties::First },
-        learning_rate: Rate::scheduled(Schedule::constant(0.3), lit),
+        table: QTable::new(vec![0.0; rows * ACTIONS], ACTIONS),
+        policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.0), ties: TieBreaking::First },
+        learning_rate: LearningRate::scheduled(Schedule::constant(0.3), n_active),
         discount: 1.0,
         terminal_update: TerminalUpdate::Target,
     }
@@ -38,24 +41,24 @@ fn agent(rows: usize, lit: usize) -> Agent {
 struct Bench<'a, F> {
     group: BenchmarkGroup<'a, WallTime>,
     features: F,
-    lit: usize,
+    n_active: usize,
 }
 
 impl<F> Bench<'_, F>
 where
     F: Features<[f32; 2]> + Clone,
-    Valley<F>: World<Rows = F::Rows, Error: Debug>,
+    MountainCarTask<F>: Task<Active = F::Active, Error: Debug>,
 {
-    fn rule<U: Rule<F::Rows, Agent>>(&mut self, name: &str, rule: impl Fn(&Agent) -> U) {
-        self.learner(name, |agent| Control { rule: rule(&agent), agent });
+    fn rule<U: UpdateRule<F::Active, Agent>>(&mut self, name: &str, rule: impl Fn(&Agent) -> U) {
+        self.learner(name, |agent| TdLearner { rule: rule(&agent), agent });
     }
 
-    fn learner<L: Learner<F::Rows>>(&mut self, name: &str, learner: impl Fn(Agent) -> L) {
-        let (features, lit) = (&self.features, self.lit);
+    fn learner<L: Learner<F::Active>>(&mut self, name: &str, learner: impl Fn(Agent) -> L) {
+        let (features, n_active) = (&self.features, self.n_active);
         let run = || {
-            let learner = learner(agent(features.len(), lit));
-            let mut trainer = Trainer::new(world(features.clone()), learner, valley::agent());
-            trainer.advance(Until { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
+            let learner = learner(agent(features.len(), n_active));
+            let mut trainer = Trainer::new(task(features.clone()), learner, mountain_car_task::agent_rng());
+            trainer.advance(Budget { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
             trainer.episodes().lengths.iter().sum::<i64>() as u64
         };
         self.group.throughput(Throughput::Elements(run()));
@@ -64,7 +67,7 @@ where
 
     fn all(&mut self) {
         let traces = |agent: &Agent, cutoff| Traces::new(agent.table.values().len(), cutoff);
-        let (kind, trace_decay) = (Trace::Replacing, TRACE_DECAY);
+        let (kind, trace_decay) = (TraceKind::Replacing, TRACE_DECAY);
         self.rule("Q-learning", |_| QLearning);
         self.rule("Sarsa", |_| Sarsa);
         self.rule("Expected Sarsa", |_| ExpectedSarsa);
@@ -81,7 +84,7 @@ where
 }
 
 fn grid(criterion: &mut Criterion) {
-    let mut grid = Bench { group: criterion.benchmark_group("grid"), features: rounding(), lit: 1 };
+    let mut grid = Bench { group: criterion.benchmark_group("grid"), features: rounding(), n_active: 1 };
     grid.all();
     let model = |agent: &Agent| Model::new(agent.table.values().len() / ACTIONS, ACTIONS);
     grid.rule("Dyna-Q, 10 steps planned", |agent| DynaQ { model: model(agent), planning_steps: 10 });
@@ -91,8 +94,8 @@ fn grid(criterion: &mut Criterion) {
 
 fn tilings(criterion: &mut Criterion) {
     let bounds = [[-1.2_f32, -0.07], [0.6, 0.07]].map(|bound| bound.map(f64::from));
-    let tiles = Tiles::<f32, TILINGS>::new(&bounds[0], &bounds[1], &[8, 8], TILINGS as u32);
-    let mut tilings = Bench { group: criterion.benchmark_group("tilings"), features: tiles, lit: TILINGS };
+    let tiles = TileCoding::<f32, TILINGS>::new(&bounds[0], &bounds[1], &[8, 8], TILINGS as u32);
+    let mut tilings = Bench { group: criterion.benchmark_group("tilings"), features: tiles, n_active: TILINGS };
     tilings.all();
     tilings.group.finish();
 }

@@ -2,53 +2,55 @@
 //!
 //! `cargo bench`, or `cargo bench -- run` for the run alone.
 
-mod valley;
+mod mountain_car_task;
 
 use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, Throughput};
-use qtab_core::batch::{Article, Batch, LANES};
-use qtab_core::envs::{MountainCar, MountainCarState};
-use qtab_core::learners::{Agent, Control, EpsilonGreedy, QLearning, TerminalUpdate};
-use qtab_core::random::{Draw, Mt19937, Pcg64, SeedSequence};
-use qtab_core::world::{Next, World};
-use qtab_core::{Env, Features, Learner, Table, Trainer, Until};
-use valley::{INSIDE, LIMIT, Valley, agent, rounding, world};
+use mountain_car_task::{INSIDE, LIMIT, MountainCarTask, agent_rng, rounding, task};
+use qtab_core::batch::{Article, BatchedRun, LANES};
+use qtab_core::envs::classic_control::{MountainCar, MountainCarState};
+use qtab_core::learners::{Agent, QLearning, TdLearner};
+use qtab_core::policies::EpsilonGreedy;
+use qtab_core::q_table::TerminalUpdate;
+use qtab_core::random::{Mt19937, Pcg64, Rng, SeedSequence};
+use qtab_core::tasks::{Next, Task};
+use qtab_core::{Budget, Env, Features, Learner, QTable, Trainer};
 
 const EPISODES: usize = 500;
 /// Small enough to stay in the first cache, large enough to train no branch predictor by heart.
 const BATCH: usize = 4096;
 
-type QLearner = Control<QLearning, Agent<3, EpsilonGreedy, f64>>;
+type QLearner = TdLearner<QLearning, Agent<3, EpsilonGreedy, f64>>;
 
-fn learner(draw: &mut impl Draw) -> QLearner {
+fn learner(rng: &mut impl Rng) -> QLearner {
     let agent = Agent {
-        table: Table::uniform(Features::<[f32; 2]>::len(&rounding()), 3, -1.0, 1.0, draw),
+        table: QTable::uniform(Features::<[f32; 2]>::len(&rounding()), 3, -1.0, 1.0, rng),
         policy: EpsilonGreedy::linear(0.8, 0.0, EPISODES as u64),
         learning_rate: 0.2,
         discount: 0.9,
         terminal_update: TerminalUpdate::Assign,
     };
-    Control { agent, rule: QLearning }
+    TdLearner { agent, rule: QLearning }
 }
 
 /// States all over the valley, an action for each.
-fn states(draw: &mut Pcg64) -> Vec<(MountainCarState, usize)> {
+fn states(rng: &mut Pcg64) -> Vec<(MountainCarState, usize)> {
     let state =
-        |draw: &mut Pcg64| MountainCarState { position: draw.uniform(-1.2, 0.6), velocity: draw.uniform(-0.07, 0.07) };
-    (0..BATCH).map(|_| (state(draw), draw.integers(3) as usize)).collect()
+        |rng: &mut Pcg64| MountainCarState { position: rng.uniform(-1.2, 0.6), velocity: rng.uniform(-0.07, 0.07) };
+    (0..BATCH).map(|_| (state(rng), rng.integers(3) as usize)).collect()
 }
 
 /// One step of each of many cars: nothing waits for anything.
 fn physics(criterion: &mut Criterion) {
-    let mut draw = agent();
-    let (car, states) = (MountainCar::default(), states(&mut draw));
+    let mut rng = agent_rng();
+    let (car, states) = (MountainCar::default(), states(&mut rng));
     let mut group = criterion.benchmark_group("physics");
     group.throughput(Throughput::Elements(BATCH as u64));
     group.bench_function("step", |bencher| {
         bencher.iter(|| {
             for &(state, action) in &states {
-                black_box(car.step(state, action, &mut draw));
+                black_box(car.step(state, action, &mut rng));
             }
         });
     });
@@ -58,13 +60,13 @@ fn physics(criterion: &mut Criterion) {
 /// Observations into rows.
 fn discretizer(criterion: &mut Criterion) {
     let (car, rounding) = (MountainCar::default(), rounding());
-    let observations: Vec<_> = states(&mut agent()).iter().map(|(state, _)| car.observe(state)).collect();
+    let observations: Vec<_> = states(&mut agent_rng()).iter().map(|(state, _)| car.observe(state)).collect();
     let mut group = criterion.benchmark_group("discretizer");
     group.throughput(Throughput::Elements(BATCH as u64));
     group.bench_function("rows", |bencher| {
         bencher.iter(|| {
             for observation in &observations {
-                let _ = black_box(rounding.rows(observation));
+                let _ = black_box(rounding.active_rows(observation));
             }
         });
     });
@@ -73,63 +75,63 @@ fn discretizer(criterion: &mut Criterion) {
 
 /// The update and the choice of the next action, along the rows of a random walk through the valley.
 fn update(criterion: &mut Criterion) {
-    let mut draw = agent();
-    let (mut world, mut learner) = (world(rounding()), learner(&mut draw));
-    let (mut state, mut here) = world.reset().expect(INSIDE);
+    let mut rng = agent_rng();
+    let (mut task, mut learner) = (task(rounding()), learner(&mut rng));
+    let (mut state, mut active) = task.reset().expect(INSIDE);
     let mut walk = Vec::with_capacity(BATCH);
     while walk.len() < BATCH {
-        let action = draw.integers(3) as usize;
-        let transition = world.step(&mut state, action).expect(INSIDE);
-        walk.push((here, action, transition));
-        if let Next::Goes(there) = transition.next {
-            here = there;
+        let action = rng.integers(3) as usize;
+        let transition = task.step(&mut state, action).expect(INSIDE);
+        walk.push((active, action, transition));
+        if let Next::NonTerminal(next_active) = transition.next {
+            active = next_active;
         } else {
-            (state, here) = world.reset().expect(INSIDE);
+            (state, active) = task.reset().expect(INSIDE);
         }
     }
     let mut group = criterion.benchmark_group("update");
     group.throughput(Throughput::Elements(BATCH as u64));
     group.bench_function("learn", |bencher| {
         bencher.iter(|| {
-            for &(here, action, transition) in &walk {
-                black_box(learner.learn(here, action, transition.reward, transition.next, &mut draw));
+            for &(active, action, transition) in &walk {
+                black_box(learner.learn(active, action, transition.reward, transition.next, &mut rng));
             }
         });
     });
     group.finish();
 }
 
-fn trainer<D: Draw + Clone>(mut draw: D) -> Trainer<Valley, QLearner, D> {
-    let learner = learner(&mut draw);
-    Trainer::new(world(rounding()), learner, draw)
+fn trainer<D: Rng + Clone>(mut rng: D) -> Trainer<MountainCarTask, QLearner, D> {
+    let learner = learner(&mut rng);
+    Trainer::new(task(rounding()), learner, rng)
 }
 
-fn train<D: Draw + Clone>(mut trainer: Trainer<Valley, QLearner, D>) -> u64 {
-    trainer.advance(Until { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
+fn train<D: Rng + Clone>(mut trainer: Trainer<MountainCarTask, QLearner, D>) -> u64 {
+    trainer.advance(Budget { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
     trainer.episodes().lengths.iter().sum::<i64>() as u64
 }
 
 fn batch_of_runs() -> [Article; LANES] {
     std::array::from_fn(|seed| {
-        let mut draw = Pcg64::new(&SeedSequence::new(&[seed as u32]).child(0));
-        let learner = learner(&mut draw);
-        Trainer::new(world(rounding()), learner, draw)
+        let mut rng = Pcg64::new(&SeedSequence::new(&[seed as u32]).child(0));
+        let learner = learner(&mut rng);
+        Trainer::new(task(rounding()), learner, rng)
     })
 }
 
-/// Until the first of them is finished; returns the steps taken by all.
+/// Budget the first of them is finished; returns the steps taken by all.
 fn batch(runs: &mut [Article; LANES]) -> u64 {
-    Article::advance_all(runs, Until { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
+    Article::advance_all(runs, Budget { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
     runs.iter().flat_map(|run| &run.episodes().lengths).sum::<i64>() as u64
 }
 
 /// The same physics with the actions known beforehand and nobody learning: what no run can be faster than.
-fn chain(steps: u64, actions: &[usize], draw: &mut Pcg64) -> f64 {
+fn chain(steps: u64, actions: &[usize], rng: &mut Pcg64) -> f64 {
     let car = black_box(MountainCar::default());
     let start = MountainCarState { position: -0.5, velocity: 0.0 };
     let (mut state, mut travelled) = (start, 0.0);
     for step in 0..steps {
-        state = car.step(state, actions[step as usize % BATCH], draw).state;
+        state = car.step(state, actions[step as usize % BATCH], rng).state;
         travelled += state.velocity;
         if step % LIMIT == LIMIT - 1 {
             state = start;
@@ -140,13 +142,13 @@ fn chain(steps: u64, actions: &[usize], draw: &mut Pcg64) -> f64 {
 
 /// The article's run, and its floor over as many steps.
 fn run(criterion: &mut Criterion) {
-    let steps = train(trainer(agent()));
-    let mut draw = agent();
-    let actions: Vec<_> = (0..BATCH).map(|_| draw.integers(3) as usize).collect();
+    let steps = train(trainer(agent_rng()));
+    let mut rng = agent_rng();
+    let actions: Vec<_> = (0..BATCH).map(|_| rng.integers(3) as usize).collect();
     let mut group = criterion.benchmark_group("run");
     group.throughput(Throughput::Elements(steps));
-    group.bench_function("article, PCG64", |bencher| bencher.iter(|| train(trainer(agent()))));
-    group.bench_function("floor", |bencher| bencher.iter(|| chain(steps, &actions, &mut draw)));
+    group.bench_function("article, PCG64", |bencher| bencher.iter(|| train(trainer(agent_rng()))));
+    group.bench_function("floor", |bencher| bencher.iter(|| chain(steps, &actions, &mut rng)));
     let steps = batch(&mut batch_of_runs());
     group.throughput(Throughput::Elements(steps));
     group.bench_function("article, a batch of 8 on one core", |bencher| {

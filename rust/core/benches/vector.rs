@@ -1,12 +1,12 @@
 //! What a step of a sub-environment costs, where many are stepped together on one thread.
 //!
-//! `cargo bench --bench vector`. Episodes that end begin anew in the same step.
+//! `cargo bench --bench vector`. Finished episodes are reset in the same step.
 
 use criterion::{Criterion, Throughput};
 use qtab_core::Env;
-use qtab_core::envs::{CartPole, MountainCar};
-use qtab_core::random::{Draw, Pcg64, SeedSequence};
-use qtab_core::vector::{Autoreset, Batch, Vector};
+use qtab_core::envs::classic_control::{CartPole, MountainCar};
+use qtab_core::random::{Pcg64, Rng, SeedSequence};
+use qtab_core::vector::{Autoreset, StepBuffers, VectorEnv};
 
 const LANES: usize = 4096;
 const LIMIT: u64 = 200;
@@ -15,23 +15,23 @@ fn step<E>(criterion: &mut Criterion, name: &str, env: E)
 where
     E: Env<Action = usize, Observation: Copy + Default + Send, State: Send> + Sync,
 {
-    let mut draws: Vec<_> = (0..LANES as u32).map(|seed| Pcg64::new(&SeedSequence::new(&[seed]))).collect();
-    let actions: Vec<_> = draws.iter_mut().map(|draw| draw.integers(env.actions() as u32) as usize).collect();
-    let mut vector = Vector::new(env, LANES, Some(LIMIT), Autoreset::SameStep, 1);
-    draws.iter_mut().enumerate().for_each(|(lane, draw)| vector.reset(lane, None, draw));
+    let mut rngs: Vec<_> = (0..LANES as u32).map(|seed| Pcg64::new(&SeedSequence::new(&[seed]))).collect();
+    let actions: Vec<_> = rngs.iter_mut().map(|rng| rng.integers(env.num_actions() as u32) as usize).collect();
+    let mut vector = VectorEnv::new(env, LANES, Some(LIMIT), Autoreset::SameStep, 1);
+    rngs.iter_mut().enumerate().for_each(|(lane, rng)| vector.reset(lane, None, rng));
     let (mut observations, mut rewards) = (vec![E::Observation::default(); LANES], vec![0.0; LANES]);
     let (mut terminated, mut truncated) = (vec![false; LANES], vec![false; LANES]);
     let mut group = criterion.benchmark_group("vector");
     group.throughput(Throughput::Elements(LANES as u64));
     group.bench_function(name, |bencher| {
         bencher.iter(|| {
-            let batch = Batch {
+            let batch = StepBuffers {
                 observations: &mut observations,
                 rewards: &mut rewards,
                 terminated: &mut terminated,
                 truncated: &mut truncated,
             };
-            vector.step(&actions, &mut draws, batch);
+            vector.step(&actions, &mut rngs, batch);
         });
     });
     group.finish();

@@ -1,54 +1,56 @@
 //! Tabular reinforcement learning with the numbers of Gymnasium and `NumPy`, bit for bit.
 //!
-//! An [`Env`] is physics: frozen parameters, and a state passed by value. [`Features`] turn an observation into rows of
-//! a table. A [`World`] is what a learner meets: both together, with a time limit. A [`Learner`] owns its table, its
-//! policy and its schedules. A [`Trainer`] holds a world, a learner and a stream, and [`Trainer::advance`] is the only
-//! loop there is.
+//! An [`Env`] holds frozen parameters and passes its state by value. [`Features`] turn an observation into the active
+//! rows of a Q table. A [`Task`] combines both with a time limit; it is what a learner interacts with. A [`Learner`]
+//! owns its table, its policy and its schedules. A [`Trainer`] holds a task, a learner and a random generator, and
+//! [`Trainer::advance`] is the only training loop.
 //!
 //! ```
-//! use qtab_core::envs::MountainCar;
+//! use qtab_core::envs::classic_control::MountainCar;
 //! use qtab_core::features::{Axis, Rounding};
-//! use qtab_core::learners::{Agent, Control, EpsilonGreedy, QLearning, TerminalUpdate};
-//! use qtab_core::random::{Pcg64, SeedSequence, Stream};
-//! use qtab_core::worlds::Native;
-//! use qtab_core::{Table, Trainer, Until};
+//! use qtab_core::learners::{Agent, QLearning, TdLearner};
+//! use qtab_core::policies::EpsilonGreedy;
+//! use qtab_core::q_table::TerminalUpdate;
+//! use qtab_core::random::{AgentRng, Pcg64, SeedSequence};
+//! use qtab_core::tasks::NativeTask;
+//! use qtab_core::{Budget, QTable, Trainer};
 //!
 //! let seed = SeedSequence::new(&[0]);
-//! let mut draw = Stream::pcg64(&seed);
+//! let mut rng = AgentRng::pcg64(&seed);
 //! let rounding = Rounding::new([Axis::new(-1.2_f32, 0.6, 10.0), Axis::new(-0.07_f32, 0.07, 100.0)]);
-//! let world = Native::new(MountainCar::default(), rounding, Some(200), Pcg64::new(&seed));
+//! let task = NativeTask::new(MountainCar::default(), rounding, Some(200), Pcg64::new(&seed));
 //! let agent = Agent {
-//!     table: Table::<3>::uniform(19 * 15, 3, -1.0, 1.0, &mut draw),
+//!     table: QTable::<3>::uniform(19 * 15, 3, -1.0, 1.0, &mut rng),
 //!     policy: EpsilonGreedy::linear(0.8, 0.0, 5000),
 //!     learning_rate: 0.2,
 //!     discount: 0.9,
 //!     terminal_update: TerminalUpdate::Assign,
 //! };
-//! let mut trainer = Trainer::new(world, Control { agent, rule: QLearning }, draw);
-//! trainer.advance(Until { episodes: 100, steps: u64::MAX }).unwrap();
+//! let mut trainer = Trainer::new(task, TdLearner { agent, rule: QLearning }, rng);
+//! trainer.advance(Budget { episodes: 100, steps: u64::MAX }).unwrap();
 //! assert_eq!(trainer.episodes().returns.len(), 100);
 //! ```
 
+#![forbid(unsafe_code)]
+
 pub mod batch;
-mod cosine;
-pub mod env;
 pub mod envs;
 pub mod features;
-mod hint;
-pub mod learner;
 pub mod learners;
+pub mod numeric;
 pub mod planning;
+pub mod policies;
+pub mod q_table;
 pub mod random;
-mod table;
+pub mod schedules;
+pub mod tasks;
 mod trainer;
 pub mod vector;
-pub mod world;
-pub mod worlds;
 
-pub use env::Env;
+pub use envs::Env;
 pub use features::Features;
-pub use learner::Learner;
-pub use table::Table;
-pub use trainer::{Episodes, Trainer, Until};
-pub use vector::Vector;
-pub use world::World;
+pub use learners::Learner;
+pub use q_table::QTable;
+pub use tasks::Task;
+pub use trainer::{Budget, EpisodeLog, Trainer};
+pub use vector::VectorEnv;

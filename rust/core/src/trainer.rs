@@ -1,58 +1,60 @@
-//! A run as a value: all that it needs to go on, and the only training loop.
+//! A training run as a value, and the only training loop.
 
-use crate::learner::Learner;
-use crate::random::Draw;
-use crate::world::{Next, World};
+use crate::learners::Learner;
+use crate::random::Rng;
+use crate::tasks::{Next, Task};
 
-/// Where `advance` stops, whichever comes first.
+/// How far `advance` goes: it stops at whichever limit it reaches first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Until {
-    /// This many episodes are finished, counted from the run's beginning.
+pub struct Budget {
+    /// The number of finished episodes, counted from the start of the run.
     pub episodes: usize,
-    /// This many steps have been taken, counted from the call.
+    /// The number of steps, counted from the call.
     pub steps: u64,
 }
 
-/// What the finished episodes brought.
+/// The results of the finished episodes.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Episodes {
-    /// The sum of rewards of each episode.
+pub struct EpisodeLog {
+    /// The return of each episode: the undiscounted sum of its rewards.
     pub returns: Vec<f64>,
     /// The number of steps of each episode.
     pub lengths: Vec<i64>,
-    /// Whether each ended in a terminal state, and not by its time limit alone.
+    /// Whether each episode reached a terminal state, rather than only its time limit.
     pub terminated: Vec<bool>,
 }
 
-/// The unfinished episode.
+/// An unfinished episode.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Underway<S, R> {
+pub(crate) struct EpisodeState<S, R> {
     pub(crate) state: S,
-    pub(crate) here: R,
+    /// The active rows of the state.
+    pub(crate) active: R,
+    /// The action to take next.
     pub(crate) action: usize,
-    pub(crate) total: f64,
+    pub(crate) episode_return: f64,
     pub(crate) length: i64,
 }
 
-/// A world, a learner and the agent's stream.
+/// A task, a learner and the agent's random generator.
 #[derive(Clone, Debug)]
-pub struct Trainer<W: World, L, D> {
-    pub(crate) world: W,
+pub struct Trainer<T: Task, L, R> {
+    pub(crate) task: T,
     pub(crate) learner: L,
-    pub(crate) draw: D,
-    pub(crate) episodes: Episodes,
-    pub(crate) underway: Option<Underway<W::State, W::Rows>>,
+    pub(crate) rng: R,
+    pub(crate) episodes: EpisodeLog,
+    pub(crate) episode: Option<EpisodeState<T::State, T::Active>>,
 }
 
-impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
-    /// A run that has not begun.
-    pub fn new(world: W, learner: L, draw: D) -> Self {
-        Self { world, learner, draw, episodes: Episodes::default(), underway: None }
+impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
+    /// A run before its first step.
+    pub fn new(task: T, learner: L, rng: R) -> Self {
+        Self { task, learner, rng, episodes: EpisodeLog::default(), episode: None }
     }
 
-    /// The world.
-    pub fn world(&self) -> &W {
-        &self.world
+    /// The task.
+    pub fn task(&self) -> &T {
+        &self.task
     }
 
     /// The learner.
@@ -61,57 +63,57 @@ impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
     }
 
     /// The finished episodes.
-    pub fn episodes(&self) -> &Episodes {
+    pub fn episodes(&self) -> &EpisodeLog {
         &self.episodes
     }
 
-    /// The number, from 0, of the episode underway, or else of the last one finished.
+    /// The index, from 0, of the unfinished episode, or of the last finished one if there is none.
     pub fn last_episode(&self) -> usize {
         let finished = self.episodes.returns.len();
-        if self.underway.is_some() { finished } else { finished.saturating_sub(1) }
+        if self.episode.is_some() { finished } else { finished.saturating_sub(1) }
     }
 
-    /// Goes on until `until`; called again, it goes on as if it had not stopped. A learner that has diverged goes on no
-    /// more: it stops after that episode.
+    /// Trains until the budget is used up. The next call resumes exactly where this one stopped. A learner that has
+    /// diverged stops after that episode.
     ///
     /// # Errors
-    /// The world's. What was learned before stays; the episode in which it happened is not counted.
-    pub fn advance(&mut self, until: Until) -> Result<(), W::Error> {
-        // The stream and the episode are locals here: behind `self` they would go through memory at every step.
-        let mut draw = self.draw.clone();
-        let result = self.advance_with(&mut draw, until);
-        self.draw = draw;
+    /// The task's error. What was learned before is kept; the episode in which it happened is not counted.
+    pub fn advance(&mut self, budget: Budget) -> Result<(), T::Error> {
+        // The generator and the episode are local variables: behind `self` each step would load and store them.
+        let mut rng = self.rng.clone();
+        let result = self.advance_with(&mut rng, budget);
+        self.rng = rng;
         result
     }
 
     #[inline]
-    fn advance_with(&mut self, draw: &mut D, until: Until) -> Result<(), W::Error> {
-        let mut steps = until.steps;
-        while steps > 0 && self.episodes.returns.len() < until.episodes && !self.learner.diverged() {
-            let now = match self.underway.take() {
-                Some(now) => now,
-                None => self.begin(draw)?,
+    fn advance_with(&mut self, rng: &mut R, budget: Budget) -> Result<(), T::Error> {
+        let mut steps = budget.steps;
+        while steps > 0 && self.episodes.returns.len() < budget.episodes && !self.learner.diverged() {
+            let episode = match self.episode.take() {
+                Some(episode) => episode,
+                None => self.begin_episode(rng)?,
             };
-            let Underway { mut state, mut here, mut action, mut total, mut length } = now;
+            let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length } = episode;
             loop {
-                let transition = self.world.step(&mut state, action)?;
-                total += transition.reward;
+                let transition = self.task.step(&mut state, action)?;
+                episode_return += transition.reward;
                 length += 1;
                 steps -= 1;
-                action = self.learner.learn(here, action, transition.reward, transition.next, draw);
+                action = self.learner.learn(active, action, transition.reward, transition.next, rng);
                 match transition.next {
-                    Next::Goes(there) => here = there,
-                    Next::TimedOut(_) => {
-                        self.finish(total, length, false);
+                    Next::NonTerminal(next_active) => active = next_active,
+                    Next::Truncated(_) => {
+                        self.finish_episode(episode_return, length, false);
                         break;
                     }
                     Next::Terminal => {
-                        self.finish(total, length, true);
+                        self.finish_episode(episode_return, length, true);
                         break;
                     }
                 }
                 if steps == 0 {
-                    self.underway = Some(Underway { state, here, action, total, length });
+                    self.episode = Some(EpisodeState { state, active, action, episode_return, length });
                     break;
                 }
             }
@@ -119,14 +121,15 @@ impl<W: World, L: Learner<W::Rows>, D: Draw + Clone> Trainer<W, L, D> {
         Ok(())
     }
 
-    pub(crate) fn begin(&mut self, draw: &mut impl Draw) -> Result<Underway<W::State, W::Rows>, W::Error> {
-        let (state, here) = self.world.reset()?;
-        Ok(Underway { state, here, action: self.learner.begin(here, draw), total: 0.0, length: 0 })
+    pub(crate) fn begin_episode(&mut self, rng: &mut impl Rng) -> Result<EpisodeState<T::State, T::Active>, T::Error> {
+        let (state, active) = self.task.reset()?;
+        let action = self.learner.first_action(active, rng);
+        Ok(EpisodeState { state, active, action, episode_return: 0.0, length: 0 })
     }
 
-    pub(crate) fn finish(&mut self, total: f64, length: i64, terminated: bool) {
+    pub(crate) fn finish_episode(&mut self, episode_return: f64, length: i64, terminated: bool) {
         self.learner.end_episode();
-        self.episodes.returns.push(total);
+        self.episodes.returns.push(episode_return);
         self.episodes.lengths.push(length);
         self.episodes.terminated.push(terminated);
     }

@@ -3,9 +3,9 @@
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
-use qtab_core::env::Env;
-use qtab_core::envs::Acrobot;
-use qtab_core::random::Draw;
+use qtab_core::Env;
+use qtab_core::envs::classic_control::Acrobot;
+use qtab_core::random::Rng;
 
 use crate::model::Model;
 use crate::trigonometry::single_precision;
@@ -26,7 +26,7 @@ impl Model {
             Self::ContinuousMountainCar(env) => begun(env, 1, generator).map(Some),
             Self::Acrobot(env) => {
                 let Some(single) = single_precision(generator.py())? else { return Ok(None) };
-                let (state, observation) = drawn(&Acrobot { single, ..*env }, 4, generator)?;
+                let (state, observation) = drawn(&Acrobot { f32_cos_sin: single, ..*env }, 4, generator)?;
                 // Its first state is float32.
                 let state = PyArray1::from_iter(generator.py(), <[f64; 4]>::from(state).map(|angle| angle as f32));
                 Ok(Some(Begun { state: state.into_any(), observation }))
@@ -66,7 +66,7 @@ where
 /// As many numbers as the model's reset takes.
 struct Drawn(std::vec::IntoIter<f64>);
 
-impl Draw for Drawn {
+impl Rng for Drawn {
     fn random(&mut self) -> f64 {
         self.0.next().unwrap_or_default()
     }

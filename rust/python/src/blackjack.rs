@@ -6,7 +6,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyInt, PyList, PyTuple, PyType};
-use qtab_core::envs::{Blackjack as Rules, DEALER_STICKS, DECK, Hand};
+use qtab_core::envs::toy_text::{Blackjack as Rules, DEALER_STICKS, DECK, Hand};
 
 use crate::numbers::index;
 use crate::toy_text::{generator, in_python, reset, watch};
@@ -53,7 +53,7 @@ impl Blackjack {
             }
             let natural = slf.getattr(intern!(py, "natural"))?.is_truthy()?;
             let sab = slf.getattr(intern!(py, "sab"))?.is_truthy()?;
-            (Rules { natural, sab }.settle(&player, &dealer), true)
+            (Rules { natural, sab }.payoff(&player, &dealer), true)
         };
         watch(slf)?;
         let observation = (player.sum(), dealers.get_item(0)?, u32::from(player.usable_ace()));

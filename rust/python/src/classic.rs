@@ -3,8 +3,10 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::Env;
-use qtab_core::envs::{Acrobot, FewActions, Scalar};
-use qtab_core::features::MOST_TILINGS;
+use qtab_core::envs::classic_control::Acrobot;
+use qtab_core::envs::wrappers::DiscreteActions;
+use qtab_core::features::MAX_TILINGS;
+use qtab_core::numeric::Scalar;
 
 use crate::discretizer::Discretizer;
 use crate::learning::Built;
@@ -55,15 +57,15 @@ impl Control {
             },
             Model::Acrobot(env) => {
                 let foreign = || PyValueError::new_err("NumPy's single-precision sine and cosine are not known");
-                train(Acrobot { single: single_precision(py)?.ok_or_else(foreign)?, ..env }, plan)
+                train(Acrobot { f32_cos_sin: single_precision(py)?.ok_or_else(foreign)?, ..env }, plan)
             }
             Model::Pendulum(env) => train(self.few(env), plan),
             Model::ContinuousMountainCar(env) => train(self.few(env), plan),
         }
     }
 
-    fn few<E: Env<Action = Scalar>>(&self, env: E) -> FewActions<E> {
-        FewActions { env, actions: self.forces.iter().copied().map(Scalar::Single).collect() }
+    fn few<E: Env<Action = Scalar>>(&self, env: E) -> DiscreteActions<E> {
+        DiscreteActions { env, actions: self.forces.iter().copied().map(Scalar::Single).collect() }
     }
 }
 
@@ -78,7 +80,7 @@ where
     match &plan.features {
         // Eight tilings are the usual number.
         Discretizer::Tiles { tilings: lit @ ..=8, .. } => cold(env, plan.tiles::<f32, 8>()?, *lit, plan),
-        Discretizer::Tiles { tilings: lit, .. } => cold(env, plan.tiles::<f32, MOST_TILINGS>()?, *lit, plan),
+        Discretizer::Tiles { tilings: lit, .. } => cold(env, plan.tiles::<f32, MAX_TILINGS>()?, *lit, plan),
         _ => cold(env, plan.grid(|bound| bound as f32)?, 1, plan),
     }
 }

@@ -2,7 +2,8 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use qtab_core::features::{Axis, Bins, Edges, Grid, Real, Rounding, Tiles};
+use qtab_core::features::{AnyGrid, Axis, Bins, Edges, Rounding, TileCoding};
+use qtab_core::numeric::Float;
 
 use crate::plan::{Plan, unknown};
 
@@ -28,16 +29,16 @@ impl Plan<'_> {
     }
 
     /// The grid of either kind, in the dtype of the bounds.
-    pub(crate) fn grid<T: Real>(&self, dtype: impl Fn(f64) -> T) -> PyResult<Grid<T>> {
+    pub(crate) fn grid<T: Float>(&self, dtype: impl Fn(f64) -> T) -> PyResult<AnyGrid<T>> {
         match &self.features {
-            Discretizer::Rounding { scale } => Ok(Grid::Rounding(Rounding::new(self.axes(scale, dtype)))),
-            Discretizer::Bins { edges } => Ok(Grid::Bins(Bins::new(self.axes_of(edges)?))),
+            Discretizer::Rounding { scale } => Ok(AnyGrid::Rounding(Rounding::new(self.axes(scale, dtype)))),
+            Discretizer::Bins { edges } => Ok(AnyGrid::Bins(Bins::new(self.axes_of(edges)?))),
             Discretizer::Tiles { .. } | Discretizer::Cells { .. } => Err(unknown("discretizer", "identity")),
         }
     }
 
     /// The axes of the article's grid.
-    fn axes<T: Real>(&self, scale: &[f64], dtype: impl Fn(f64) -> T) -> Vec<Axis<T>> {
+    fn axes<T: Float>(&self, scale: &[f64], dtype: impl Fn(f64) -> T) -> Vec<Axis<T>> {
         let bounds = self.low.iter().zip(&self.high);
         bounds.zip(scale).map(|((&low, &high), &scale)| Axis::new(dtype(low), dtype(high), scale)).collect()
     }
@@ -60,14 +61,14 @@ impl Plan<'_> {
     }
 
     /// Tile coding.
-    pub(crate) fn tiles<T: Real, const M: usize>(&self) -> PyResult<Tiles<T, M>> {
+    pub(crate) fn tiles<T: Float, const M: usize>(&self) -> PyResult<TileCoding<T, M>> {
         let Discretizer::Tiles { low, high, tiles, tilings, hashed_rows } = &self.features else {
             return Err(PyValueError::new_err("discretizer must be 'tiles'"));
         };
         if [low.len(), high.len(), tiles.len()].iter().any(|&length| length != self.low.len()) {
             return Err(PyValueError::new_err(format!("tiles must hold {} numbers", self.low.len())));
         }
-        let tiles = Tiles::new(low, high, tiles, *tilings);
+        let tiles = TileCoding::new(low, high, tiles, *tilings);
         Ok(match *hashed_rows {
             Some(rows) => tiles.hashed(rows),
             None => tiles,

@@ -2,7 +2,9 @@
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use qtab_core::features::{Features, MOST_TILINGS, Real};
+use qtab_core::Features;
+use qtab_core::features::MAX_TILINGS;
+use qtab_core::numeric::Float;
 
 use crate::classic::Control;
 use crate::discretizer::Discretizer;
@@ -48,10 +50,10 @@ fn python(environment: PythonEnvironment, plan: &Plan<'_>) -> PyResult<Built> {
 
 fn python_of<T>(environment: PythonEnvironment, plan: &Plan<'_>, dtype: impl Fn(f64) -> T) -> PyResult<Built>
 where
-    T: Real + numpy::Element + 'static,
+    T: Float + numpy::Element + 'static,
 {
     if let Discretizer::Tiles { tilings: lit, .. } = &plan.features {
-        let tiles = plan.tiles::<T, MOST_TILINGS>()?;
+        let tiles = plan.tiles::<T, MAX_TILINGS>()?;
         let rows = Features::<[T]>::len(&tiles);
         return attached(environment, Floats::new(tiles, plan.low.len()), rows, *lit, plan);
     }

@@ -2,18 +2,18 @@
 
 use pyo3::PyErr;
 use pyo3::exceptions::{PyOverflowError, PyValueError};
-use qtab_core::features::Outside;
+use qtab_core::features::OutOfBounds;
 
 pub(crate) enum Failure {
-    Outside(Outside),
+    OutOfBounds(OutOfBounds),
     Python(PyErr),
     /// The values overflowed in this episode.
     Diverged(usize),
 }
 
-impl From<Outside> for Failure {
-    fn from(outside: Outside) -> Self {
-        Self::Outside(outside)
+impl From<OutOfBounds> for Failure {
+    fn from(outside: OutOfBounds) -> Self {
+        Self::OutOfBounds(outside)
     }
 }
 
@@ -26,7 +26,7 @@ impl From<PyErr> for Failure {
 impl From<Failure> for PyErr {
     fn from(failure: Failure) -> Self {
         match failure {
-            Failure::Outside(outside) => PyValueError::new_err(outside.to_string()),
+            Failure::OutOfBounds(outside) => PyValueError::new_err(outside.to_string()),
             Failure::Python(error) => error,
             Failure::Diverged(episode) => PyOverflowError::new_err(format!(
                 "the action values overflowed in episode {episode} (counted from 0): the updates grow instead of \

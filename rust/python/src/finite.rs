@@ -3,8 +3,9 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::Env;
-use qtab_core::envs::{Blackjack, MAXIMIZATION_BIAS_STATES, MaximizationBias, Taxi};
-use qtab_core::features::{Cells, Identity};
+use qtab_core::envs::tabular::{MAXIMIZATION_BIAS_STATES, MaximizationBias};
+use qtab_core::envs::toy_text::{Blackjack, Taxi};
+use qtab_core::features::{Identity, MultiDiscreteIndex};
 
 use crate::learning::Built;
 use crate::native::{cold, hot};
@@ -41,7 +42,7 @@ impl Process {
         let table = self.table.bind(py).get().0.clone();
         let states = u32::try_from(table.states()).map_err(|_| PyValueError::new_err("P must have fewer states"))?;
         match self.fickle {
-            None if table.actions() == 4 => hot::<_, _, 4>(table, Identity(states), plan),
+            None if table.num_actions() == 4 => hot::<_, _, 4>(table, Identity(states), plan),
             None => hot::<_, _, 6>(table, Identity(states), plan),
             fickle => cold(Taxi { table, fickle }, Identity(states), 1, plan),
         }
@@ -51,7 +52,11 @@ impl Process {
 impl Rules {
     pub(crate) fn build(self, plan: &Plan<'_>) -> PyResult<Built> {
         let Self { natural, sab } = self;
-        hot::<_, _, 2>(Blackjack { natural, sab }, Cells(Blackjack::CELLS.map(|count| count as u32)), plan)
+        hot::<_, _, 2>(
+            Blackjack { natural, sab },
+            MultiDiscreteIndex(Blackjack::OBSERVATION_SHAPE.map(|count| count as u32)),
+            plan,
+        )
     }
 }
 

@@ -1,13 +1,16 @@
 //! The choice of a learner, on a world that was chosen before: the hot combinations whole, every other one boxed.
 
 use pyo3::prelude::*;
+use qtab_core::learners;
 use qtab_core::learners::{
-    self, Agent, Control, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, NStepSarsa, Policy, QLearning, Rule, Sarsa,
-    SarsaLambda, Schedule, TimeOuts, TrueOnlineSarsaLambda, WatkinsQLambda,
+    Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, NStepSarsa, QLearning, Sarsa, SarsaLambda, TdLearner,
+    TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
 };
-use qtab_core::random::{Pcg64, Stream};
-use qtab_core::worlds::{Boxed, Recorded, Recordings, Start};
-use qtab_core::{Learner, Trainer, World};
+use qtab_core::policies::Policy;
+use qtab_core::random::{AgentRng, Pcg64};
+use qtab_core::schedules::Schedule;
+use qtab_core::tasks::{BoxedTask, EpisodeRecorder, Recordings, RngSnapshot};
+use qtab_core::{Learner, Task, Trainer};
 
 use crate::failure::Failure;
 use crate::plan::{Plan, given, unknown};
@@ -37,19 +40,19 @@ pub(crate) fn whole<W, P, const N: usize>(
     plan: &Plan<'_>,
 ) -> Box<dyn Run>
 where
-    W: World<Rows = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
+    W: Task<Active = [u32; 1], State: Send, Error: Into<Failure>> + Send + 'static,
     P: Policy + Send + 'static,
 {
     match plan.algorithm.name.as_str() {
-        "sarsa" => Box::new(Trainer::new(world, Control { agent, rule: Sarsa }, draw)),
-        "expected_sarsa" => Box::new(Trainer::new(world, Control { agent, rule: ExpectedSarsa }, draw)),
+        "sarsa" => Box::new(Trainer::new(world, TdLearner { agent, rule: Sarsa }, draw)),
+        "expected_sarsa" => Box::new(Trainer::new(world, TdLearner { agent, rule: ExpectedSarsa }, draw)),
         _ if plan.learning_rate.is_constant() => {
             // The article's type, which is batched.
             let Agent { table, policy, learning_rate, discount, terminal_update } = agent;
             let agent = Agent { table, policy, learning_rate: learning_rate.value(), discount, terminal_update };
-            Box::new(Trainer::new(world, Control { agent, rule: QLearning }, draw))
+            Box::new(Trainer::new(world, TdLearner { agent, rule: QLearning }, draw))
         }
-        _ => Box::new(Trainer::new(world, Control { agent, rule: QLearning }, draw)),
+        _ => Box::new(Trainer::new(world, TdLearner { agent, rule: QLearning }, draw)),
     }
 }
 
@@ -58,31 +61,31 @@ pub(crate) fn boxed<W>(
     world: W,
     rows: usize,
     lit: usize,
-    draw: Stream,
+    draw: AgentRng,
     plan: &Plan<'_>,
-    kept: impl FnOnce(Recordings<W::Start>) -> Kept,
+    kept: impl FnOnce(Recordings<W::Snapshot>) -> Kept,
     attached: bool,
 ) -> PyResult<Built>
 where
-    W: Start + World<Rows: Send, State: Send, Error: Into<Failure>> + Send + 'static,
-    W::Start: Send,
+    W: RngSnapshot + Task<Active: Send, State: Send, Error: Into<Failure>> + Send + 'static,
+    W::Snapshot: Send,
     Failure: From<W::Error>,
 {
     let (world, kept) = if plan.record == 0 {
-        (Boxed::<W::Rows, Failure>::new(world), Kept::Nothing)
+        (BoxedTask::<W::Active, Failure>::new(world), Kept::Nothing)
     } else {
-        let (world, recordings) = Recorded::new(world, plan.record);
-        (Boxed::new(world), kept(recordings))
+        let (world, recordings) = EpisodeRecorder::new(world, plan.record);
+        (BoxedTask::new(world), kept(recordings))
     };
     Ok(Built { run: learning(world, rows, lit, draw, plan)?, kept, attached })
 }
 
 /// Any learner in a boxed world, with a stream chosen at run time: compiled once for each kind of rows.
 fn learning<R>(
-    world: Boxed<R, Failure>,
+    world: BoxedTask<R, Failure>,
     rows: usize,
     lit: usize,
-    mut draw: Stream,
+    mut draw: AgentRng,
     plan: &Plan<'_>,
 ) -> PyResult<Box<dyn Run>>
 where
@@ -127,19 +130,19 @@ where
     })
 }
 
-fn control<R, U>(world: Boxed<R, Failure>, agent: Agent, rule: U, draw: Stream, plan: &Plan<'_>) -> Box<dyn Run>
+fn control<R, U>(world: BoxedTask<R, Failure>, agent: Agent, rule: U, draw: AgentRng, plan: &Plan<'_>) -> Box<dyn Run>
 where
     R: Copy + AsRef<[u32]> + Send + 'static,
-    U: Rule<R, Agent> + Send + 'static,
+    U: UpdateRule<R, Agent> + Send + 'static,
 {
-    start(world, Control { agent, rule }, draw, plan)
+    start(world, TdLearner { agent, rule }, draw, plan)
 }
 
-fn start<R, L>(world: Boxed<R, Failure>, learner: L, draw: Stream, plan: &Plan<'_>) -> Box<dyn Run>
+fn start<R, L>(world: BoxedTask<R, Failure>, learner: L, draw: AgentRng, plan: &Plan<'_>) -> Box<dyn Run>
 where
     R: Copy + AsRef<[u32]> + Send + 'static,
     L: Learner<R> + Send + 'static,
 {
-    let learner = TimeOuts { learner, terminate: plan.on_truncation == "terminate" };
+    let learner = TruncationHandling { learner, terminate: plan.on_truncation == "terminate" };
     Box::new(Trainer::new(world, learner, draw))
 }

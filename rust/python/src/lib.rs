@@ -1,5 +1,7 @@
 //! `qtab._core`: what Python calls. Convert, dispatch, return; nothing else.
 
+#![allow(clippy::needless_pass_by_value, reason = "pyo3 passes arguments by value")]
+
 mod begin;
 mod blackjack;
 mod classic;

@@ -9,8 +9,8 @@ use std::vec::IntoIter;
 use numpy::{PyReadwriteArray1, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use qtab_core::Until;
-use qtab_core::batch::{Article, Balance, Batch, LANES};
+use qtab_core::Budget;
+use qtab_core::batch::{Article, Balance, BatchedRun, LANES};
 
 use crate::dispatch::build;
 use crate::door;
@@ -143,7 +143,7 @@ impl<'a> Work<'a> {
     }
 
     /// This run and those that follow, in batches of their kind; one of another kind is trained on the way.
-    fn train_together<R: Batch + Run>(&self, row: Row<'a>, run: Box<dyn Run>, lanes: usize, stop: &AtomicBool) {
+    fn train_together<R: BatchedRun + Run>(&self, row: Row<'a>, run: Box<dyn Run>, lanes: usize, stop: &AtomicBool) {
         let mut first = Some((row, run));
         let (mut rows, mut runs) = (Vec::with_capacity(lanes), Vec::with_capacity(lanes));
         loop {
@@ -162,7 +162,7 @@ impl<'a> Work<'a> {
                 return;
             }
             let episodes = rows[0].returns.len();
-            if let Err((lane, failure)) = advance(&mut runs, Until { episodes, steps: STEPS_BETWEEN_LOOKS }) {
+            if let Err((lane, failure)) = advance(&mut runs, Budget { episodes, steps: STEPS_BETWEEN_LOOKS }) {
                 let mut row = rows.swap_remove(lane);
                 row.fill_episodes(&runs.swap_remove(lane));
                 self.fail(row.index, failure.into());
@@ -190,7 +190,7 @@ impl<'a> Work<'a> {
             if self.ends(stop) {
                 return;
             }
-            if let Err(failure) = run.advance(Until { episodes, steps: STEPS_BETWEEN_LOOKS }) {
+            if let Err(failure) = run.advance(Budget { episodes, steps: STEPS_BETWEEN_LOOKS }) {
                 row.fill_episodes(&*run);
                 return self.fail(row.index, failure.into());
             }
@@ -225,7 +225,7 @@ fn unbox<R: Run>(run: Box<dyn Run>) -> Result<R, Box<dyn Run>> {
 }
 
 /// As many as go together at once; of few, one.
-fn advance<R: Batch + Run>(runs: &mut [R], until: Until) -> Result<(), (usize, Failure)> {
+fn advance<R: BatchedRun + Run>(runs: &mut [R], until: Budget) -> Result<(), (usize, Failure)> {
     let result = if let Some(runs) = runs.first_chunk_mut::<LANES>() {
         R::advance_all(runs, until)
     } else if let Some(runs) = runs.first_chunk_mut::<HALF>() {

@@ -2,8 +2,9 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use qtab_core::env::{Env, Parameters, Switch};
-use qtab_core::envs::{Acrobot, CartPole, ContinuousMountainCar, MountainCar, Pendulum};
+use qtab_core::Env;
+use qtab_core::envs::classic_control::{Acrobot, CartPole, ContinuousMountainCar, MountainCar, Pendulum};
+use qtab_core::envs::{Flag, Parameters};
 
 use crate::numbers::constant;
 
@@ -34,7 +35,7 @@ pub(crate) struct Habits {
 /// The constants of a model, whatever its type.
 pub(crate) trait Constants {
     fn names(&self) -> &'static [&'static str];
-    fn switches(&self) -> &'static [Switch];
+    fn switches(&self) -> &'static [Flag];
     fn parameter(&mut self, name: &str) -> Option<&mut f64>;
     fn switch(&mut self, name: &str) -> Option<&mut bool>;
 }
@@ -43,14 +44,14 @@ impl<P: Parameters> Constants for P {
     fn names(&self) -> &'static [&'static str] {
         P::NAMES
     }
-    fn switches(&self) -> &'static [Switch] {
-        P::SWITCHES
+    fn switches(&self) -> &'static [Flag] {
+        P::FLAGS
     }
     fn parameter(&mut self, name: &str) -> Option<&mut f64> {
         Parameters::parameter(self, name)
     }
     fn switch(&mut self, name: &str) -> Option<&mut bool> {
-        Parameters::switch(self, name)
+        Parameters::flag(self, name)
     }
 }
 
@@ -93,7 +94,7 @@ impl Model {
         for switch in constants.switches() {
             let value = environment.getattr_opt(switch.name)?;
             let (Some(on), Some(value)) = (constants.switch(switch.name), value) else { return Ok(Some(switch.name)) };
-            *on = switch.word.map_or_else(|| value.is_truthy(), |word| value.eq(word))?;
+            *on = switch.true_value.map_or_else(|| value.is_truthy(), |word| value.eq(word))?;
         }
         Ok(None)
     }
@@ -102,10 +103,10 @@ impl Model {
         let habits = Habits { state: 2, tuple: false, actions: None, trigonometry: true, none: None };
         match self {
             Self::MountainCar(env) => {
-                Habits { tuple: true, actions: Some(env.actions()), trigonometry: false, ..habits }
+                Habits { tuple: true, actions: Some(env.num_actions()), trigonometry: false, ..habits }
             }
             Self::CartPole(env) => {
-                Habits { state: 4, actions: Some(env.actions()), none: Some("steps_beyond_terminated"), ..habits }
+                Habits { state: 4, actions: Some(env.num_actions()), none: Some("steps_beyond_terminated"), ..habits }
             }
             Self::Acrobot(_) => Habits { state: 4, ..habits },
             Self::Pendulum(_) => habits,

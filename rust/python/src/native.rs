@@ -2,9 +2,11 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use qtab_core::learners::{Agent, Policy, Schedule};
-use qtab_core::random::{Pcg64, Stream};
-use qtab_core::worlds::Native;
+use qtab_core::learners::Agent;
+use qtab_core::policies::Policy;
+use qtab_core::random::{AgentRng, Pcg64};
+use qtab_core::schedules::Schedule;
+use qtab_core::tasks::NativeTask;
 use qtab_core::{Env, Features};
 
 use crate::learning::{Built, Kept, boxed, whole};
@@ -14,9 +16,11 @@ use crate::plan::Plan;
 pub(crate) fn hot<E, F, const N: usize>(env: E, features: F, plan: &Plan<'_>) -> PyResult<Built>
 where
     E: Env<Action = usize, State: Send> + Send + 'static,
-    F: Features<E::Observation, Rows = [u32; 1]> + Send + 'static,
+    F: Features<E::Observation, Active = [u32; 1]> + Send + 'static,
 {
-    if let (true, 0, Stream::Pcg64(mut draw)) = (plan.actions == N && N == env.actions(), plan.record, plan.stream()?) {
+    if let (true, 0, AgentRng::Pcg64(mut draw)) =
+        (plan.actions == N && N == env.num_actions(), plan.record, plan.stream()?)
+    {
         let rows = features.len();
         if let Some(agent) = plan.article::<N>(rows, &mut draw)? {
             return Ok(alone(env, features, agent, draw, plan));
@@ -37,10 +41,10 @@ fn alone<E, F, P, const N: usize>(
 ) -> Built
 where
     E: Env<Action = usize, State: Send> + Send + 'static,
-    F: Features<E::Observation, Rows = [u32; 1]> + Send + 'static,
+    F: Features<E::Observation, Active = [u32; 1]> + Send + 'static,
     P: Policy + Send + 'static,
 {
-    let world = Native::new(env, features, plan.max_episode_steps, plan.environment_stream());
+    let world = NativeTask::new(env, features, plan.max_episode_steps, plan.environment_stream());
     Built { run: whole(world, agent, draw, plan), kept: Kept::Nothing, attached: false }
 }
 
@@ -48,12 +52,12 @@ where
 pub(crate) fn cold<E, F>(env: E, features: F, lit: u32, plan: &Plan<'_>) -> PyResult<Built>
 where
     E: Env<Action = usize, State: Send> + Send + 'static,
-    F: Features<E::Observation, Rows: Send> + Send + 'static,
+    F: Features<E::Observation, Active: Send> + Send + 'static,
 {
-    if plan.actions != env.actions() {
-        return Err(PyValueError::new_err(format!("the environment has {} actions", env.actions())));
+    if plan.actions != env.num_actions() {
+        return Err(PyValueError::new_err(format!("the environment has {} actions", env.num_actions())));
     }
     let rows = features.len();
-    let world = Native::new(env, features, plan.max_episode_steps, plan.environment_stream());
+    let world = NativeTask::new(env, features, plan.max_episode_steps, plan.environment_stream());
     boxed(world, rows, lit as usize, plan.stream()?, plan, Kept::Native, false)
 }

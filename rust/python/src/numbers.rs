@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyFloat, PyInt, PyTuple, PyType};
-use qtab_core::envs::Scalar;
+use qtab_core::numeric::Scalar;
 
 /// `NumPy` warns where a constant is too large for f32, Python raises where its square is too large for f64.
 const LARGEST_FLOAT: f64 = 1e30;

@@ -6,7 +6,9 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use qtab_core::features::{Features, Outside, Real};
+use qtab_core::Features;
+use qtab_core::features::OutOfBounds;
+use qtab_core::numeric::Float;
 
 use crate::failure::Failure;
 
@@ -40,10 +42,10 @@ impl<T, F> Floats<T, F> {
     }
 }
 
-impl<T: Real + numpy::Element, F: Features<[T]>> Reader for Floats<T, F> {
-    type Rows = F::Rows;
+impl<T: Float + numpy::Element, F: Features<[T]>> Reader for Floats<T, F> {
+    type Rows = F::Active;
 
-    fn rows(&self, observation: &Bound<'_, PyAny>) -> Result<F::Rows, Failure> {
+    fn rows(&self, observation: &Bound<'_, PyAny>) -> Result<F::Active, Failure> {
         let py = observation.py();
         let converted;
         let array = if let Ok(array) = observation.cast::<PyArray1<T>>() {
@@ -60,8 +62,8 @@ impl<T: Real + numpy::Element, F: Features<[T]>> Reader for Floats<T, F> {
         }
         let values = array.readonly();
         match values.as_slice() {
-            Ok(values) => Ok(self.features.rows(values)?),
-            Err(_) => Ok(self.features.rows(&values.as_array().to_vec())?),
+            Ok(values) => Ok(self.features.active_rows(values)?),
+            Err(_) => Ok(self.features.active_rows(&values.as_array().to_vec())?),
         }
     }
 }
@@ -86,11 +88,11 @@ impl Integers {
     }
 
     /// The row with one more component.
-    fn extend(&self, row: u32, axis: usize, number: i64) -> Result<u32, Outside> {
+    fn extend(&self, row: u32, axis: usize, number: i64) -> Result<u32, OutOfBounds> {
         let (first, count) = self.axes[axis];
         match number.checked_sub(first).and_then(|offset| u32::try_from(offset).ok()) {
             Some(offset) if offset < count => Ok(row * count + offset),
-            _ => Err(Outside { axis, value: number as f64 }),
+            _ => Err(OutOfBounds { axis, value: number as f64 }),
         }
     }
 }

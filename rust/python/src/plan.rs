@@ -3,9 +3,12 @@
 use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use qtab_core::Table;
-use qtab_core::learners::{Agent, Behaviour, EpsilonGreedy, Rate, Schedule, TerminalUpdate, Ties, Trace, Traces};
-use qtab_core::random::{Draw, Pcg64, Stream};
+use qtab_core::QTable;
+use qtab_core::learners::{Agent, TraceKind, Traces};
+use qtab_core::policies::{AnyPolicy, EpsilonGreedy, TieBreaking};
+use qtab_core::q_table::TerminalUpdate;
+use qtab_core::random::{AgentRng, Pcg64, Rng};
+use qtab_core::schedules::{LearningRate, Schedule};
 
 use crate::discretizer::Discretizer;
 use crate::stream::{agent_stream, environment_stream};
@@ -80,11 +83,11 @@ impl Algorithm {
         Ok(Traces::new(agent.table.values().len(), given("trace_cutoff", self.trace_cutoff)?))
     }
 
-    pub(crate) fn trace(&self) -> PyResult<Trace> {
+    pub(crate) fn trace(&self) -> PyResult<TraceKind> {
         match self.traces.as_deref() {
-            Some("accumulating") => Ok(Trace::Accumulating),
-            Some("replacing") => Ok(Trace::Replacing),
-            Some("clearing") => Ok(Trace::Clearing),
+            Some("accumulating") => Ok(TraceKind::Accumulating),
+            Some("replacing") => Ok(TraceKind::Replacing),
+            Some("clearing") => Ok(TraceKind::Clearing),
             other => Err(unknown("traces", other.unwrap_or_default())),
         }
     }
@@ -111,7 +114,7 @@ impl Course {
 }
 
 impl Plan<'_> {
-    pub(crate) fn stream(&self) -> PyResult<Stream> {
+    pub(crate) fn stream(&self) -> PyResult<AgentRng> {
         agent_stream(&self.bit_generator, &self.seed)
     }
 
@@ -157,7 +160,7 @@ impl Plan<'_> {
     }
 
     /// What any learner is made of: the first of so many `tables`; an observation lights `lit` rows.
-    pub(crate) fn agent(&self, tables: usize, rows: usize, lit: usize, draw: &mut Stream) -> PyResult<Agent> {
+    pub(crate) fn agent(&self, tables: usize, rows: usize, lit: usize, draw: &mut AgentRng) -> PyResult<Agent> {
         Ok(Agent {
             table: self.table((0, tables), rows, draw)?,
             policy: self.policy()?,
@@ -172,8 +175,8 @@ impl Plan<'_> {
         &self,
         (index, tables): (usize, usize),
         rows: usize,
-        draw: &mut impl Draw,
-    ) -> PyResult<Table<N>> {
+        draw: &mut impl Rng,
+    ) -> PyResult<QTable<N>> {
         let size = rows * self.actions;
         let values = match &self.initial_q {
             InitialQ::Table(values) => {
@@ -186,25 +189,25 @@ impl Plan<'_> {
             InitialQ::Constant(value) => vec![*value; size],
             InitialQ::Range((low, high)) => (0..size).map(|_| draw.uniform(*low, *high)).collect(),
         };
-        Ok(Table::new(values, self.actions))
+        Ok(QTable::new(values, self.actions))
     }
 
-    pub(crate) fn policy(&self) -> PyResult<Behaviour> {
+    pub(crate) fn policy(&self) -> PyResult<AnyPolicy> {
         match &self.policy {
             Choice::EpsilonGreedy { epsilon, ties } => {
                 let epsilon = epsilon.schedule(self.episodes)?;
                 let ties = match ties.as_str() {
-                    "first" => Ties::First,
-                    "random" => Ties::Random,
+                    "first" => TieBreaking::First,
+                    "random" => TieBreaking::Random,
                     other => return Err(unknown("ties", other)),
                 };
                 Ok(if self.some_missing() {
-                    Behaviour::EpsilonGreedyAmongSome { epsilon, ties }
+                    AnyPolicy::MaskedEpsilonGreedy { epsilon, ties }
                 } else {
-                    Behaviour::EpsilonGreedy { epsilon, ties }
+                    AnyPolicy::EpsilonGreedy { epsilon, ties }
                 })
             }
-            Choice::Softmax { temperature } => Ok(Behaviour::softmax(*temperature, self.actions)),
+            Choice::Softmax { temperature } => Ok(AnyPolicy::softmax(*temperature, self.actions)),
         }
     }
 
@@ -213,12 +216,12 @@ impl Plan<'_> {
         matches!(&self.initial_q, InitialQ::Table(values) if values.as_array().iter().any(|&q| q == f64::NEG_INFINITY))
     }
 
-    fn rate(&self, weights: usize, lit: usize) -> PyResult<Rate> {
+    fn rate(&self, weights: usize, lit: usize) -> PyResult<LearningRate> {
         let course = &self.learning_rate;
         if course.schedule == "visits" {
-            return Ok(Rate::by_visits(course.value, course.least, weights, lit));
+            return Ok(LearningRate::by_visit_count(course.value, course.least, weights, lit));
         }
-        Ok(Rate::scheduled(course.schedule(self.episodes)?, lit))
+        Ok(LearningRate::scheduled(course.schedule(self.episodes)?, lit))
     }
 
     fn terminal_update(&self) -> PyResult<TerminalUpdate> {

@@ -6,10 +6,12 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use qtab_core::Env;
-use qtab_core::env::Parameters;
-use qtab_core::envs::{Blackjack, MountainCar, MountainCarState, Taxi};
+use qtab_core::envs::Parameters;
+use qtab_core::envs::classic_control::{MountainCar, MountainCarState};
+use qtab_core::envs::toy_text::{Blackjack, Taxi};
+use qtab_core::planning;
 use qtab_core::planning::{
-    self, BEAM, CostToGo, FiniteHorizon, Process, STARTS, Solution, Unsolved, finite_horizon, policy_iteration,
+    BEAM, CostToGo, FiniteHorizon, Mdp, PlanningError, STARTS, Solution, finite_horizon, policy_iteration,
     policy_return, value_iteration,
 };
 
@@ -26,7 +28,7 @@ type Changes<'py> = (Array<'py, i64>, Array<'py, i64>, Array<'py, i64>);
 
 /// A table to plan on.
 #[pyclass(frozen, module = "qtab._core")]
-pub(crate) struct Planner(Process);
+pub(crate) struct Planner(Mdp);
 
 #[derive(FromPyObject)]
 enum Described {
@@ -40,9 +42,9 @@ impl Planner {
     fn new(py: Python<'_>, process: Described) -> PyResult<Self> {
         let process = match process {
             Described::Process(finite::Process { table, fickle }) => {
-                Process::try_from(&Taxi { table: table.bind(py).get().0.clone(), fickle })
+                Mdp::try_from(&Taxi { table: table.bind(py).get().0.clone(), fickle })
             }
-            Described::Rules(finite::Rules { natural, sab }) => Process::try_from(&Blackjack { natural, sab }),
+            Described::Rules(finite::Rules { natural, sab }) => Mdp::try_from(&Blackjack { natural, sab }),
         };
         process.map(Self).map_err(|bad| PyValueError::new_err(bad.to_string()))
     }
@@ -72,7 +74,7 @@ impl Planner {
         let FiniteHorizon { values, q_values, policy, changes, expected_return, .. } =
             horizon.map_err(|unsolved| refused(unsolved, discount))?;
         let changes = (
-            PyArray1::from_iter(py, changes.iter().map(|change| change.left.cast_signed())),
+            PyArray1::from_iter(py, changes.iter().map(|change| change.steps_to_go.cast_signed())),
             numbers(py, changes.iter().map(|change| &change.state)),
             numbers(py, changes.iter().map(|change| &change.action)),
         );
@@ -86,7 +88,7 @@ impl Planner {
         let action = |(state, &row): (usize, &usize)| {
             let action =
                 policy.get(if by_state { state } else { row }).and_then(|&action| usize::try_from(action).ok());
-            action.filter(|&action| action < self.0.table.actions())
+            action.filter(|&action| action < self.0.table.num_actions())
         };
         let policy: Option<Vec<usize>> = self.0.rows.iter().enumerate().map(action).collect();
         let policy = policy.ok_or_else(|| PyValueError::new_err("policy must have an action for each row"))?;
@@ -100,7 +102,7 @@ impl Planner {
         &self,
         py: Python<'py>,
         discount: f64,
-        method: fn(&qtab_core::envs::Tabular, f64, &AtomicBool) -> Result<Solution, Unsolved>,
+        method: fn(&qtab_core::envs::tabular::TabularMdp, f64, &AtomicBool) -> Result<Solution, PlanningError>,
     ) -> PyResult<Solved<'py>> {
         let solution = door::detached(py, |stop| method(&self.0.table, discount, stop))?;
         let Solution { values, q_values, policy, .. } = solution.map_err(|unsolved| refused(unsolved, discount))?;
@@ -147,7 +149,7 @@ impl Valley {
     fn routes<'py>(&self, py: Python<'py>) -> PyResult<Routes<'py>> {
         let starts = planning::starts(STARTS);
         let routes = door::detached(py, |stop| {
-            let route = |&position: &f64| planning::route(&self.guide, position, self.limit, BEAM, stop);
+            let route = |&position: &f64| planning::beam_search(&self.guide, position, self.limit, BEAM, stop);
             starts.iter().map(route).collect::<Result<Vec<_>, _>>()
         })?;
         let routes = routes.map_err(|unsolved| refused(unsolved, 1.0))?;
@@ -159,7 +161,8 @@ impl Valley {
     fn followed<'py>(&self, py: Python<'py>) -> PyResult<Array<'py, i64>> {
         let lengths = door::detached(py, |stop| {
             let starts = planning::starts(STARTS);
-            let follow = |&start: &f64| planning::follow(&self.guide, start, self.limit, stop).map(u64::cast_signed);
+            let follow =
+                |&start: &f64| planning::greedy_rollout(&self.guide, start, self.limit, stop).map(u64::cast_signed);
             starts.iter().map(follow).collect::<Result<Vec<_>, _>>()
         })?;
         Ok(PyArray1::from_vec(py, lengths.map_err(|unsolved| refused(unsolved, 1.0))?))
@@ -174,8 +177,8 @@ fn numbers<'a, 'py>(py: Python<'py>, numbers: impl IntoIterator<Item = &'a usize
     PyArray1::from_vec(py, numbers.into_iter().map(|&number| (number as u64).cast_signed()).collect())
 }
 
-fn refused(unsolved: Unsolved, discount: f64) -> PyErr {
-    if unsolved == Unsolved::Stopped {
+fn refused(unsolved: PlanningError, discount: f64) -> PyErr {
+    if unsolved == PlanningError::Stopped {
         return PyKeyboardInterrupt::new_err(());
     }
     PyValueError::new_err(format!(

@@ -4,9 +4,10 @@ use numpy::PyArray1;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat};
-use qtab_core::env::{Env, Step};
-use qtab_core::envs::Scalar;
-use qtab_core::random::NoDraw;
+use qtab_core::Env;
+use qtab_core::envs::Step;
+use qtab_core::numeric::Scalar;
+use qtab_core::random::NoRng;
 
 use crate::model::Model;
 use crate::numbers::{Values, double, force, index, numpy_scalar};
@@ -42,13 +43,17 @@ impl Model {
         let py = face.py();
         match self {
             Self::MountainCar(env) => {
-                let Some((state, action)) = values.doubles().zip(index(action, env.actions())) else { return Ok(None) };
-                let step = env.step(<[f64; 2]>::into(state), action, &mut NoDraw);
+                let Some((state, action)) = values.doubles().zip(index(action, env.num_actions())) else {
+                    return Ok(None);
+                };
+                let step = env.step(<[f64; 2]>::into(state), action, &mut NoRng);
                 Ok(played(py, env, step).if_finite())
             }
             Self::CartPole(env) => {
-                let Some((state, action)) = values.doubles().zip(index(action, env.actions())) else { return Ok(None) };
-                let step = env.step(<[f64; 4]>::into(state), action, &mut NoDraw);
+                let Some((state, action)) = values.doubles().zip(index(action, env.num_actions())) else {
+                    return Ok(None);
+                };
+                let step = env.step(<[f64; 4]>::into(state), action, &mut NoRng);
                 let played = played(py, env, step).if_finite();
                 if played.is_some() && step.terminated {
                     face.setattr(intern!(py, "steps_beyond_terminated"), 0)?;
@@ -64,13 +69,13 @@ impl Model {
                     let generator = face.getattr(intern!(py, "np_random"))?;
                     torque += generator.call_method1(intern!(py, "uniform"), (-most, most))?.extract::<f64>()?;
                     // What was drawn is drawn: no second try in Python.
-                    return Ok(Some(played(py, env, env.swing(state, torque))));
+                    return Ok(Some(played(py, env, env.transition(state, torque))));
                 }
-                Ok(played(py, env, env.swing(state, torque)).if_finite())
+                Ok(played(py, env, env.transition(state, torque)).if_finite())
             }
             Self::Pendulum(env) => {
                 let Some((state, u)) = values.double_array().zip(force(action)) else { return Ok(None) };
-                let step = env.step(<[f64; 2]>::into(state), u, &mut NoDraw);
+                let step = env.step(<[f64; 2]>::into(state), u, &mut NoRng);
                 let Some(mut played) = played(py, env, step).if_finite() else { return Ok(None) };
                 played.reward = numpy_scalar(py, Scalar::Double(step.reward))?;
                 // For rendering. Straight to its place, since no constant changes.
@@ -80,7 +85,7 @@ impl Model {
             }
             Self::ContinuousMountainCar(env) => {
                 let Some((state, action)) = values.scalars().zip(force(action)) else { return Ok(None) };
-                let step = env.step(<[Scalar; 2]>::into(state), action, &mut NoDraw);
+                let step = env.step(<[Scalar; 2]>::into(state), action, &mut NoRng);
                 let mut played = played::<_, 2, 2>(py, env, step);
                 // Gymnasium hands out its state itself.
                 played.state = State::Python(played.observation.clone().unbind());

@@ -4,8 +4,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use qtab_core::world::{Next, Transition, World};
-use qtab_core::worlds::Start;
+use qtab_core::Task;
+use qtab_core::tasks::RngSnapshot;
+use qtab_core::tasks::{Next, Transition};
 
 use crate::failure::Failure;
 use crate::observation::Reader;
@@ -49,10 +50,10 @@ impl<R> PythonWorld<R> {
     }
 }
 
-impl<R: Reader> World for PythonWorld<R> {
+impl<R: Reader> Task for PythonWorld<R> {
     /// The steps taken since the reset.
     type State = u64;
-    type Rows = R::Rows;
+    type Active = R::Rows;
     type Error = Failure;
 
     fn reset(&mut self) -> Result<(u64, R::Rows), Failure> {
@@ -88,9 +89,9 @@ impl<R: Reader> World for PythonWorld<R> {
             let next = if terminated.is_truthy()? {
                 Next::Terminal
             } else if truncated.is_truthy()? || *elapsed >= self.max_episode_steps {
-                Next::TimedOut(rows)
+                Next::Truncated(rows)
             } else {
-                Next::Goes(rows)
+                Next::NonTerminal(rows)
             };
             Ok(Transition { reward, next })
         })
@@ -98,10 +99,10 @@ impl<R: Reader> World for PythonWorld<R> {
 }
 
 /// The state of the environment's own bit generator, a dict.
-impl<R: Reader> Start for PythonWorld<R> {
-    type Start = Py<PyAny>;
+impl<R: Reader> RngSnapshot for PythonWorld<R> {
+    type Snapshot = Py<PyAny>;
 
-    fn start(&self) -> Result<Py<PyAny>, Failure> {
+    fn rng_snapshot(&self) -> Result<Py<PyAny>, Failure> {
         Python::attach(|py| {
             let env = self.environment.env.bind(py);
             if !self.seeded {

@@ -4,17 +4,18 @@ use std::sync::{Mutex, PoisonError};
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use qtab_core::random::{self, Draw, Pcg64, SeedSequence};
+use qtab_core::random;
+use qtab_core::random::{Pcg64, Rng, SeedSequence};
 
 /// The agent's stream: `NumPy`'s generator of that name, with the draws that learners make.
 #[pyclass(frozen, module = "qtab._core")]
-pub(crate) struct Stream(Mutex<random::Stream>);
+pub(crate) struct Stream(Mutex<random::AgentRng>);
 
 /// `seed` comes as 32-bit words, least significant first.
-pub(crate) fn agent_stream(bit_generator: &str, seed: &[u32]) -> PyResult<random::Stream> {
+pub(crate) fn agent_stream(bit_generator: &str, seed: &[u32]) -> PyResult<random::AgentRng> {
     match (bit_generator, seed) {
-        ("PCG64", _) => Ok(random::Stream::pcg64(&SeedSequence::new(seed))),
-        ("MT19937", &[seed]) => Ok(random::Stream::mt19937(seed)),
+        ("PCG64", _) => Ok(random::AgentRng::pcg64(&SeedSequence::new(seed))),
+        ("MT19937", &[seed]) => Ok(random::AgentRng::mt19937(seed)),
         ("MT19937", _) => Err(PyValueError::new_err("seed must lie in 0 to 2**32 - 1 for MT19937")),
         _ => Err(PyValueError::new_err(format!("bit_generator must be 'PCG64' or 'MT19937', got {bit_generator:?}"))),
     }
@@ -26,7 +27,7 @@ pub(crate) fn environment_stream(seed: &[u32]) -> Pcg64 {
 }
 
 impl Stream {
-    fn with<T>(&self, draw: impl FnOnce(&mut random::Stream) -> T) -> T {
+    fn with<T>(&self, draw: impl FnOnce(&mut random::AgentRng) -> T) -> T {
         draw(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
@@ -39,7 +40,7 @@ impl Stream {
     }
 
     fn random(&self) -> f64 {
-        self.with(Draw::random)
+        self.with(Rng::random)
     }
 
     fn integers(&self, below: u32) -> u32 {

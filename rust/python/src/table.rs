@@ -3,12 +3,12 @@
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use qtab_core::Env;
-use qtab_core::envs::{Outcome, Tabular};
+use qtab_core::envs::tabular::{Outcome, TabularMdp};
 
 use crate::numbers::double;
 
 /// `P[state][action]` lists (probability, state, reward, terminated); `start` is `initial_state_distrib`.
-fn compile(table: &Bound<'_, PyAny>, start: &[f64], exact: bool) -> PyResult<Tabular> {
+fn compile(table: &Bound<'_, PyAny>, start: &[f64], exact: bool) -> PyResult<TabularMdp> {
     let shape = |_| PyTypeError::new_err("P must hold for each state and action a list of outcomes");
     let states = table.len().map_err(shape)?;
     if states != start.len() {
@@ -50,7 +50,7 @@ fn compile(table: &Bound<'_, PyAny>, start: &[f64], exact: bool) -> PyResult<Tab
             );
         }
     }
-    Tabular::new(actions, start, &rows).map_err(|bad| PyValueError::new_err(bad.to_string()))
+    TabularMdp::new(actions, start, &rows).map_err(|bad| PyValueError::new_err(bad.to_string()))
 }
 
 fn outcome(place: impl Fn() -> String, index: usize, entry: &Bound<'_, PyAny>, exact: bool) -> PyResult<Outcome> {
@@ -69,7 +69,7 @@ fn outcome(place: impl Fn() -> String, index: usize, entry: &Bound<'_, PyAny>, e
 
 /// A table in Rust, checked.
 #[pyclass(frozen, module = "qtab._core")]
-pub(crate) struct Transitions(pub(crate) Tabular);
+pub(crate) struct Transitions(pub(crate) TabularMdp);
 
 #[pymethods]
 impl Transitions {
@@ -86,6 +86,6 @@ impl Transitions {
 
     #[getter]
     fn actions(&self) -> usize {
-        self.0.actions()
+        self.0.num_actions()
     }
 }

@@ -7,8 +7,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use numpy::PyArray1;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use qtab_core::Until;
-use qtab_core::worlds::{Recording, Recordings};
+use qtab_core::Budget;
+use qtab_core::tasks::{Recording, Recordings};
 
 use crate::dispatch::build;
 use crate::door;
@@ -39,14 +39,14 @@ impl Trainer {
         let mut guard = self.lock()?;
         let built = &mut *guard;
         if built.attached {
-            let until = Until { episodes, steps: PYTHON_STEPS_BETWEEN_LOOKS };
+            let until = Budget { episodes, steps: PYTHON_STEPS_BETWEEN_LOOKS };
             while built.run.episodes().returns.len() < episodes {
                 built.run.advance(until)?;
                 py.check_signals()?;
             }
             return Ok(());
         }
-        let until = Until { episodes, steps: STEPS_BETWEEN_LOOKS };
+        let until = Budget { episodes, steps: STEPS_BETWEEN_LOOKS };
         let run = &mut built.run;
         door::detached(py, |stop| {
             while run.episodes().returns.len() < episodes && !stop.load(Ordering::Acquire) {
@@ -82,11 +82,13 @@ impl Trainer {
             Kept::Nothing => Ok(Vec::new()),
             Kept::Native(recordings) => list(recordings)
                 .iter()
-                .map(|Recording { start, actions }| Ok((start.into_pyobject(py)?.into_any().unbind(), actions.clone())))
+                .map(|Recording { snapshot: start, actions }| {
+                    Ok((start.into_pyobject(py)?.into_any().unbind(), actions.clone()))
+                })
                 .collect(),
             Kept::Python(recordings) => Ok(list(recordings)
                 .iter()
-                .map(|Recording { start, actions }| (start.clone_ref(py), actions.clone()))
+                .map(|Recording { snapshot: start, actions }| (start.clone_ref(py), actions.clone()))
                 .collect()),
         }
     }

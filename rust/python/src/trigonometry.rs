@@ -11,7 +11,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use qtab_core::envs::small_cosine_and_sine;
+use qtab_core::numeric::numpy_f32_cos_sin;
 
 use crate::model::Model;
 
@@ -60,7 +60,7 @@ pub(crate) fn single_precision(py: Python<'_>) -> PyResult<Option<CosineAndSine>
     }
     let angles: Vec<f32> = spread(WIDTH).map(|angle| angle as f32).collect();
     let expected = ask::<f32>(py, &angles)?;
-    let known: [CosineAndSine; 2] = [small_cosine_and_sine, |angle| [angle.cos(), angle.sin()]];
+    let known: [CosineAndSine; 2] = [numpy_f32_cos_sin, |angle| [angle.cos(), angle.sin()]];
     let answer = known.into_iter().find(|compute| angles.iter().copied().map(compute).eq(expected.iter().copied()));
     // Computed before, since asking NumPy may let another thread go on, which must not find a lock held.
     Ok(*SINGLE.get_or_init(|| answer))

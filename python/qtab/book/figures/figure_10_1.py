@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab._utils.progress import Bar
+from qtab._utils.progress import ProgressBar
 from qtab.book.experiment import Experiment, Line, Numbers, Result, Setting, line
 from qtab.book.measures import mean_length
 from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
@@ -49,7 +49,7 @@ class CostToGo(Experiment):
         began = time.perf_counter()
         lines: list[Line] = []
         first: dict[str, Numbers] = {}
-        with Bar(count * len(self.settings), "surface", progress, self.name) as shown:
+        with ProgressBar(count * len(self.settings), "surface", progress, self.name) as shown:
             for setting in self.settings:
                 samples, capped = [], 0
                 for number in range(count):

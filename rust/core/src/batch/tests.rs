@@ -1,11 +1,29 @@
 //! Every run of a batch is the lone run, whatever the setting, and wherever the batch pauses.
 
+use crate::envs::Env;
+use crate::envs::SimdEnv;
+use crate::envs::classic_control::CartPole;
+use crate::envs::classic_control::MountainCar;
+use crate::features::Axis;
+use crate::features::BatchFeatures;
+use crate::features::Bins;
+use crate::features::Edges;
+use crate::features::Rounding;
+use crate::learners::Agent;
+use crate::learners::QLearning;
+use crate::learners::TdLearner;
+use crate::policies::EpsilonGreedy;
+use crate::random::Pcg64;
+use crate::schedules::Schedule;
+use crate::schedules::StepSize;
+use crate::tasks::NativeTask;
+use crate::trainer::Budget;
+use crate::trainer::Trainer;
 use proptest::prelude::*;
 
-use super::*;
-use crate::learners::TerminalUpdate;
+use super::{Article, Balance, BatchedRun, LANES, SimdTrainer};
+use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::SeedSequence;
-use crate::table::Table;
 
 /// What the runs of either kind have in common.
 #[derive(Clone, Copy, Debug)]
@@ -33,23 +51,23 @@ fn run<E, F, A, const N: usize, const M: usize>(
     learning_rate: A,
     setting: Setting,
     seed: u32,
-) -> Turned<E, F, N, A>
+) -> SimdTrainer<E, F, N, A>
 where
-    E: Wide<M> + Env<Observation = [f32; M]>,
-    F: Lanes<M>,
+    E: SimdEnv<M> + Env<Observation = [f32; M]>,
+    F: BatchFeatures<M>,
     A: StepSize,
 {
     let seed = SeedSequence::new(&[seed]);
-    let mut draw = Pcg64::new(&seed.child(0));
+    let mut rng = Pcg64::new(&seed.child(0));
     let agent = Agent {
-        table: Table::uniform(features.len(), N, -1.0, 1.0, &mut draw),
+        table: QTable::uniform(features.len(), N, -1.0, 1.0, &mut rng),
         policy: EpsilonGreedy::linear(setting.epsilon, 0.0, setting.episodes as u64),
         learning_rate,
         discount: setting.discount,
         terminal_update: setting.terminal_update,
     };
-    let world = Native::new(env, features, Some(setting.max_episode_steps), Pcg64::new(&seed));
-    Trainer::new(world, Control { agent, rule: QLearning }, draw)
+    let task = NativeTask::new(env, features, Some(setting.max_episode_steps), Pcg64::new(&seed));
+    Trainer::new(task, TdLearner { agent, rule: QLearning }, rng)
 }
 
 fn car(env: MountainCar, setting: Setting, seed: u32) -> Article {
@@ -67,17 +85,18 @@ fn pole(env: CartPole, setting: Setting, seed: u32) -> Balance {
 /// Batches, then alone to the end, or to where it fails: everything is as if each had been alone all the time.
 fn check<E, F, A, const N: usize, const M: usize, const K: usize>(
     seeds: [u32; K],
-    make: impl Fn(u32) -> Turned<E, F, N, A>,
+    make: impl Fn(u32) -> SimdTrainer<E, F, N, A>,
     episodes: usize,
     chunks: &[u64],
 ) where
-    E: Wide<M> + Env<Observation = [f32; M]>,
-    F: Lanes<M>,
+    E: SimdEnv<M> + Env<Observation = [f32; M]>,
+    F: BatchFeatures<M>,
     A: StepSize,
 {
     let mut together = seeds.map(&make);
-    let failed = chunks.iter().find_map(|&steps| Turned::advance_all(&mut together, Until { episodes, steps }).err());
-    let end = Until { episodes, steps: u64::MAX };
+    let failed =
+        chunks.iter().find_map(|&steps| SimdTrainer::advance_all(&mut together, Budget { episodes, steps }).err());
+    let end = Budget { episodes, steps: u64::MAX };
     for (lane, (mut one, seed)) in together.into_iter().zip(seeds).enumerate() {
         let outcome = match failed {
             Some((failed, outside)) if failed == lane => Err(outside),
@@ -87,9 +106,9 @@ fn check<E, F, A, const N: usize, const M: usize, const K: usize>(
         // Spelled out, because NaN is not equal to itself.
         assert_eq!(format!("{outcome:?}"), format!("{:?}", alone.advance(end)));
         assert_eq!(one.episodes(), alone.episodes());
-        assert_eq!(one.draw, alone.draw);
-        assert_eq!(one.world.draw(), alone.world.draw());
-        let bits = |run: &Turned<E, F, N, A>| {
+        assert_eq!(one.rng, alone.rng);
+        assert_eq!(one.task.rng(), alone.task.rng());
+        let bits = |run: &SimdTrainer<E, F, N, A>| {
             run.learner.agent.table.values().iter().map(|value| value.to_bits()).collect::<Vec<_>>()
         };
         assert_eq!(bits(&one), bits(&alone));
@@ -125,10 +144,10 @@ fn each_run_has_a_learning_rate_of_its_own() {
 fn what_has_no_row_fails_as_it_does_alone() {
     let fast = MountainCar { max_speed: 1.0, force: 0.1, ..MountainCar::default() };
     let setting = Setting { epsilon: 0.0, ..USUAL };
-    assert!(car(fast, setting, 0).advance(Until { episodes: 20, steps: u64::MAX }).is_err());
+    assert!(car(fast, setting, 0).advance(Budget { episodes: 20, steps: u64::MAX }).is_err());
     check([0, 1, 2, 3], |seed| car(fast, setting, seed), 20, &[9, u64::MAX]);
     let weightless = CartPole { total_mass: 0.0, ..CartPole::default() };
-    assert!(pole(weightless, setting, 0).advance(Until { episodes: 20, steps: u64::MAX }).is_err());
+    assert!(pole(weightless, setting, 0).advance(Budget { episodes: 20, steps: u64::MAX }).is_err());
     check([0, 1, 2, 3], |seed| pole(weightless, setting, seed), 20, &[9, u64::MAX]);
 }
 

@@ -2,10 +2,11 @@
 
 use std::marker::PhantomData;
 
-use super::{Features, Lanes, Outside, Real};
+use super::{BatchFeatures, Features, OutOfBounds};
+use crate::numeric::Float;
 
 /// Up to so many edges are counted without a branch, more are searched by halves.
-const FEW: usize = 64;
+const LINEAR_SCAN_MAX: usize = 64;
 
 /// The inner edges of one component's bins. A single-precision edge is a double-precision one, and lies between the
 /// same numbers.
@@ -24,9 +25,9 @@ impl Edges {
 
     /// `np.linspace(low, high, bins + 1)[1:-1]`, computed in the dtype of the bounds: the edges of Gymnasium's
     /// `DiscretizeObservation`.
-    pub fn equal_width<T: Real>(low: T, high: T, bins: u32) -> Self {
-        let width = (high - low) / T::of(bins);
-        Self::new((1..bins).map(|edge| (T::of(edge) * width + low).into()).collect())
+    pub fn equal_width<T: Float>(low: T, high: T, bins: u32) -> Self {
+        let width = (high - low) / T::from_count(bins);
+        Self::new((1..bins).map(|edge| (T::from_count(edge) * width + low).into()).collect())
     }
 
     /// How many bins lie between and beyond the edges.
@@ -37,7 +38,7 @@ impl Edges {
     /// `np.digitize(value, edges)`: an edge belongs to the bin above it.
     #[inline]
     fn bin(&self, value: f64) -> u32 {
-        if self.0.len() <= FEW {
+        if self.0.len() <= LINEAR_SCAN_MAX {
             return self.0.iter().map(|&edge| u32::from(edge <= value)).sum();
         }
         self.0.partition_point(|&edge| edge <= value) as u32
@@ -48,7 +49,7 @@ impl Edges {
     #[inline(always)]
     fn bins_of_lanes<const K: usize>(&self, values: &[f32; K]) -> [usize; K] {
         let values = values.map(f64::from);
-        if self.0.len() > FEW {
+        if self.0.len() > LINEAR_SCAN_MAX {
             return values.map(|value| self.bin(value) as usize);
         }
         let mut bins = [0; K];
@@ -68,24 +69,24 @@ pub struct Bins<T, A = Vec<Edges>> {
     dtype: PhantomData<T>,
 }
 
-impl<T: Real, A: AsRef<[Edges]>> Bins<T, A> {
+impl<T: Float, A: AsRef<[Edges]>> Bins<T, A> {
     /// The grid over these axes.
     pub fn new(axes: A) -> Self {
         Self { axes, dtype: PhantomData }
     }
 }
 
-impl<T: Real, A: AsRef<[Edges]>, O: AsRef<[T]> + ?Sized> Features<O> for Bins<T, A> {
-    type Rows = [u32; 1];
+impl<T: Float, A: AsRef<[Edges]>, O: AsRef<[T]> + ?Sized> Features<O> for Bins<T, A> {
+    type Active = [u32; 1];
 
     #[expect(clippy::inline_always, reason = "a call a step costs a tenth of it")]
     #[inline(always)]
-    fn rows(&self, observation: &O) -> Result<[u32; 1], Outside> {
+    fn active_rows(&self, observation: &O) -> Result<[u32; 1], OutOfBounds> {
         let mut row = 0;
         for (axis, (edges, &value)) in self.axes.as_ref().iter().zip(observation.as_ref()).enumerate() {
             let value = value.into();
             if value.is_nan() {
-                return Err(Outside { axis, value });
+                return Err(OutOfBounds { axis, value });
             }
             row = row * edges.bins() as u32 + edges.bin(value);
         }
@@ -97,10 +98,10 @@ impl<T: Real, A: AsRef<[Edges]>, O: AsRef<[T]> + ?Sized> Features<O> for Bins<T,
     }
 }
 
-impl<const M: usize> Lanes<M> for Bins<f32, [Edges; M]> {
+impl<const M: usize> BatchFeatures<M> for Bins<f32, [Edges; M]> {
     #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
     #[inline(always)]
-    fn rows_of_lanes<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {
+    fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {
         let mut rows = [0; K];
         let mut nan = false;
         for (edges, values) in self.axes.iter().zip(observations) {
@@ -127,8 +128,8 @@ mod tests {
     #[test]
     fn what_lies_beyond_the_limits_falls_into_the_outermost_bins() {
         let grid = Bins::new([Edges::equal_width(-1.0_f32, 1.0, 4)]);
-        assert_eq!(grid.rows(&[-9.0_f32]), Ok([0]));
-        assert_eq!(grid.rows(&[f32::INFINITY]), Ok([3]));
+        assert_eq!(grid.active_rows(&[-9.0_f32]), Ok([0]));
+        assert_eq!(grid.active_rows(&[f32::INFINITY]), Ok([3]));
     }
 
     #[test]
@@ -141,7 +142,7 @@ mod tests {
 
     #[test]
     fn nan_has_no_bin() {
-        assert!(Bins::new([Edges::equal_width(-1.0_f32, 1.0, 4)]).rows(&[f32::NAN]).is_err());
+        assert!(Bins::new([Edges::equal_width(-1.0_f32, 1.0, 4)]).active_rows(&[f32::NAN]).is_err());
     }
 
     #[test]

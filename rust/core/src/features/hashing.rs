@@ -18,7 +18,7 @@ impl Hashed {
 /// One number more into a hash that begins with 0: a step of `SplitMix64` from the sum of both (G. Steele, D. Lea and
 /// C. Flood, "Fast splittable pseudorandom number generators", 2014, with the constants of Vigna's version).
 #[inline]
-pub(super) fn stir(hash: u64, number: u32) -> u64 {
+pub(super) fn mix(hash: u64, number: u32) -> u64 {
     let mut hash = hash.wrapping_add(u64::from(number)).wrapping_add(0x9E37_79B9_7F4A_7C15);
     hash = (hash ^ (hash >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     hash = (hash ^ (hash >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -32,8 +32,8 @@ mod tests {
     #[test]
     fn a_stir_is_a_step_of_splitmix64() {
         // The first numbers of Vigna's splitmix64.c from the seeds 0 and 1234567.
-        assert_eq!(stir(0, 0), 0xE220_A839_7B1D_CDAF);
-        assert_eq!(stir(0, 1_234_567), 6_457_827_717_110_365_317);
+        assert_eq!(mix(0, 0), 0xE220_A839_7B1D_CDAF);
+        assert_eq!(mix(0, 1_234_567), 6_457_827_717_110_365_317);
     }
 
     #[test]

@@ -2,7 +2,8 @@
 
 use std::marker::PhantomData;
 
-use super::{Features, Lanes, Outside, Real};
+use super::{BatchFeatures, Features, OutOfBounds};
+use crate::numeric::Float;
 
 /// Adding this to |x| < 2⁵¹ leaves round-half-even(x) in the low bits of the sum: `rint` without a call, and the integer
 /// for nothing.
@@ -16,7 +17,7 @@ pub struct Axis<T> {
     size: u32,
 }
 
-impl<T: Real> Axis<T> {
+impl<T: Float> Axis<T> {
     /// An axis from `low` to `high`, both included, with `scale` cells a unit.
     pub fn new(low: T, high: T, scale: f64) -> Self {
         let last = ((high - low).into() * scale).round_ties_even();
@@ -50,7 +51,7 @@ pub struct Rounding<T, A = Vec<Axis<T>>> {
     dtype: PhantomData<T>,
 }
 
-impl<T: Real, A: AsRef<[Axis<T>]>> Rounding<T, A> {
+impl<T: Float, A: AsRef<[Axis<T>]>> Rounding<T, A> {
     /// The grid over these axes.
     pub fn new(axes: A) -> Self {
         Self { axes, dtype: PhantomData }
@@ -67,15 +68,15 @@ impl<T: Real, A: AsRef<[Axis<T>]>> Rounding<T, A> {
     }
 }
 
-impl<T: Real, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Rounding<T, A> {
-    type Rows = [u32; 1];
+impl<T: Float, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Rounding<T, A> {
+    type Active = [u32; 1];
 
     #[inline]
-    fn rows(&self, observation: &O) -> Result<[u32; 1], Outside> {
+    fn active_rows(&self, observation: &O) -> Result<[u32; 1], OutOfBounds> {
         let mut row = 0;
         for (index, (axis, &value)) in self.axes.as_ref().iter().zip(observation.as_ref()).enumerate() {
             let Some(cell) = axis.cell(value) else {
-                return Err(Outside { axis: index, value: value.into() });
+                return Err(OutOfBounds { axis: index, value: value.into() });
             };
             row = row * axis.size + cell;
         }
@@ -87,10 +88,10 @@ impl<T: Real, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Round
     }
 }
 
-impl<const M: usize> Lanes<M> for Rounding<f32, [Axis<f32>; M]> {
+impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
     #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
     #[inline(always)]
-    fn rows_of_lanes<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {
+    fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {
         let mut rows = [0_u64; K];
         let mut inside = true;
         for (axis, values) in self.axes.iter().zip(observations) {
@@ -124,22 +125,22 @@ mod tests {
 
     #[test]
     fn the_corners_are_the_first_and_the_last_row() {
-        assert_eq!(article().rows(&[-1.2, -0.07]), Ok([0]));
-        assert_eq!(article().rows(&[0.6, 0.07]), Ok([284]));
+        assert_eq!(article().active_rows(&[-1.2, -0.07]), Ok([0]));
+        assert_eq!(article().active_rows(&[0.6, 0.07]), Ok([284]));
     }
 
     #[test]
     fn halves_go_to_the_even_cell() {
         let halves = Rounding::new([Axis::new(0.0_f64, 10.0, 1.0)]);
         for (value, row) in [(0.5, 0), (1.5, 2), (2.5, 2), (3.5, 4)] {
-            assert_eq!(halves.rows(&[value]), Ok([row]));
+            assert_eq!(halves.active_rows(&[value]), Ok([row]));
         }
     }
 
     #[test]
     fn what_lies_outside_is_refused_and_named() {
         for value in [-1.4_f32, 0.8, 1e30, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-            assert!(matches!(article().rows(&[value, 0.0]), Err(Outside { axis: 0, .. })));
+            assert!(matches!(article().active_rows(&[value, 0.0]), Err(OutOfBounds { axis: 0, .. })));
         }
     }
 

@@ -1,9 +1,10 @@
 //! Dyna-Q: Q-learning that also learns from what it remembers (Sutton, 1990; Sutton & Barto, the box in section 8.2).
 
-use super::{Agent, Model, Outcome, Rule};
-use crate::random::Draw;
-use crate::table::maximum;
-use crate::world::Next;
+use super::common::single_row;
+use super::common::{Agent, Model, ModelEntry, UpdateRule};
+use crate::random::Rng;
+
+use crate::tasks::Next;
 
 /// After every step: Q-learning's update, the model, then the same update for pairs drawn from the model. A state is one
 /// row of a table.
@@ -15,76 +16,42 @@ pub struct DynaQ {
     pub planning_steps: u32,
 }
 
-impl Agent {
-    /// Q(S, A) ← Q(S, A) + α [R + γ maxₐ Q(S′, a) - Q(S, A)] of a lone row.
-    pub(crate) fn learn_outcome(&mut self, row: u32, action: usize, outcome: Outcome) {
-        match outcome.next {
-            Some(next) => {
-                let target = outcome.reward + self.discount * maximum(self.table.row(next));
-                self.move_towards([row], action, target);
-            }
-            None => self.end([row], action, outcome.reward),
-        }
-    }
-}
-
-impl Outcome {
-    /// What a step has brought; a time-out leads on.
-    ///
-    /// # Panics
-    /// If a state is not one row.
-    pub(crate) fn new<R: AsRef<[u32]>>(reward: f64, next: &Next<R>) -> Self {
-        let next = match next {
-            Next::Goes(there) | Next::TimedOut(there) => Some(lone(there)),
-            Next::Terminal => None,
-        };
-        Self { reward, next }
-    }
-}
-
-/// The row of a state that is one row.
-pub(crate) fn lone(rows: &impl AsRef<[u32]>) -> u32 {
-    let &[row] = rows.as_ref() else { unreachable!("a model of pairs needs a table, not tile coding") };
-    row
-}
-
-impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for DynaQ {
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
     #[inline]
     fn learn(
         &mut self,
         agent: &mut Agent,
-        here: R,
+        state: R,
         action: usize,
         reward: f64,
         next: Next<R>,
-        draw: &mut impl Draw,
+        rng: &mut impl Rng,
     ) -> usize {
-        let (row, outcome) = (lone(&here), Outcome::new(reward, &next));
-        agent.learn_outcome(row, action, outcome);
+        let (row, outcome) = (single_row(&state), ModelEntry::new(reward, &next));
+        agent.update_from_entry(row, action, outcome);
         self.model.remember(row, action, outcome);
         for _ in 0..self.planning_steps {
-            let row = self.model.any_row(draw);
-            let action = self.model.any_action(row, draw);
+            let row = self.model.sample_state(rng);
+            let action = self.model.sample_action(row, rng);
             if let Some(outcome) = self.model.outcome(row, action) {
-                agent.learn_outcome(row, action, outcome);
+                agent.update_from_entry(row, action, outcome);
             }
         }
-        agent.go_on(next, draw)
+        agent.next_action(next, rng)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Learner;
-    use crate::learners::Control;
-    use crate::learners::example::{agent, draw};
+    use crate::learners::common::test_support::{agent, rng};
+    use crate::learners::common::{Learner, TdLearner};
 
     #[test]
     fn planning_repeats_the_only_thing_that_happened() {
         let rule = DynaQ { model: Model::new(2, 2), planning_steps: 2 };
-        let mut learner = Control { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
-        learner.learn([0], 0, -1.0, Next::Goes([1]), &mut draw());
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
+        learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng());
         // Three times half the way to -1 + 0.5 · 3: 0.75, 0.625, 0.5625
         assert_eq!(learner.agent.table.values(), [0.5625, 0.0, 2.0, 3.0]);
     }

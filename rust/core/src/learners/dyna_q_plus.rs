@@ -1,9 +1,9 @@
 //! Dyna-Q+: Dyna-Q that grows curious of what it has not tried for long (Sutton, 1990; Sutton & Barto, section 8.3).
 
-use super::dyna_q::lone;
-use super::{Agent, Model, Outcome, Rule};
-use crate::random::Draw;
-use crate::world::Next;
+use super::common::single_row;
+use super::common::{Agent, Model, ModelEntry, UpdateRule};
+use crate::random::Rng;
+use crate::tasks::Next;
 
 /// Dyna-Q, whose planning adds κ √τ to a reward, τ being the steps since the pair was last tried. Actions that were
 /// never tried are considered as well: they are taken to lead back with a reward of zero (the book's footnote), and τ
@@ -28,47 +28,46 @@ impl DynaQPlus {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for DynaQPlus {
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
     #[inline]
     fn learn(
         &mut self,
         agent: &mut Agent,
-        here: R,
+        state: R,
         action: usize,
         reward: f64,
         next: Next<R>,
-        draw: &mut impl Draw,
+        rng: &mut impl Rng,
     ) -> usize {
-        let (row, outcome) = (lone(&here), Outcome::new(reward, &next));
+        let (row, outcome) = (single_row(&state), ModelEntry::new(reward, &next));
         self.now += 1;
-        self.last_tried[agent.table.weight(row, action)] = self.now;
-        agent.learn_outcome(row, action, outcome);
+        self.last_tried[agent.table.weight_index(row, action)] = self.now;
+        agent.update_from_entry(row, action, outcome);
         self.model.remember(row, action, outcome);
         for _ in 0..self.planning_steps {
-            let row = self.model.any_row(draw);
-            let action = draw.integers(agent.table.actions() as u32) as usize;
-            let Outcome { reward, next } =
-                self.model.outcome(row, action).unwrap_or(Outcome { reward: 0.0, next: Some(row) });
-            let elapsed = (self.now - self.last_tried[agent.table.weight(row, action)]) as f64;
+            let row = self.model.sample_state(rng);
+            let action = rng.integers(agent.table.num_actions() as u32) as usize;
+            let ModelEntry { reward, next } =
+                self.model.outcome(row, action).unwrap_or(ModelEntry { reward: 0.0, next: Some(row) });
+            let elapsed = (self.now - self.last_tried[agent.table.weight_index(row, action)]) as f64;
             let curious = reward + self.time_weight * elapsed.sqrt();
-            agent.learn_outcome(row, action, Outcome { reward: curious, next });
+            agent.update_from_entry(row, action, ModelEntry { reward: curious, next });
         }
-        agent.go_on(next, draw)
+        agent.next_action(next, rng)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Learner;
-    use crate::learners::Control;
-    use crate::learners::example::{agent, draw};
+    use crate::learners::common::test_support::{agent, rng};
+    use crate::learners::common::{Learner, TdLearner};
 
     #[test]
     fn what_was_not_tried_for_long_gains() {
         let rule = DynaQPlus::new(Model::new(1, 2), 64, 1.0);
-        let mut learner = Control { agent: agent(&[0.0, 0.0]), rule };
-        learner.learn([0], 0, 0.0, Next::Terminal, &mut draw());
+        let mut learner = TdLearner { agent: agent(&[0.0, 0.0]), rule };
+        learner.learn([0], 0, 0.0, Next::Terminal, &mut rng());
         // Action 1, never tried, is taken to lead back with κ √1: its value v = 1 + 0.5 v, so 2 in the end.
         let &[tried, untried] = learner.agent.table.values() else { unreachable!("two actions") };
         assert_eq!(tried, 0.0);

@@ -2,9 +2,9 @@
 
 use std::collections::VecDeque;
 
-use super::{Agent, Rule};
-use crate::random::Draw;
-use crate::world::Next;
+use super::common::{Agent, UpdateRule};
+use crate::random::Rng;
+use crate::tasks::Next;
 
 /// A pair on its way to its update, and the reward that followed it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,7 @@ impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
             target += power * agent.value(rows, action);
         }
         if let Some(Visit { rows, action, .. }) = self.visits.pop_front() {
-            agent.move_towards(rows, action, target);
+            agent.update(rows, action, target);
         }
     }
 
@@ -55,20 +55,20 @@ impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for NStepSarsa<R> {
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for NStepSarsa<R> {
     #[inline]
     fn learn(
         &mut self,
         agent: &mut Agent,
-        here: R,
+        state: R,
         action: usize,
         reward: f64,
         next: Next<R>,
-        draw: &mut impl Draw,
+        rng: &mut impl Rng,
     ) -> usize {
-        self.visits.push_back(Visit { rows: here, action, reward });
-        let end = agent.follow(next, draw);
-        if !matches!(next, Next::Goes(_)) {
+        self.visits.push_back(Visit { rows: state, action, reward });
+        let end = agent.sample_next(next, rng);
+        if !matches!(next, Next::NonTerminal(_)) {
             self.update_all(agent, end);
         } else if self.visits.len() == self.steps {
             self.update_oldest(agent, end);
@@ -80,25 +80,24 @@ impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for NStepSarsa<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Learner;
-    use crate::learners::Control;
-    use crate::learners::example::{agent, draw};
+    use crate::learners::common::test_support::{agent, rng};
+    use crate::learners::common::{Learner, TdLearner};
 
     #[test]
     fn two_rewards_and_what_follows_by_hand() {
-        let mut learner = Control { agent: agent(&[1.0, 0.0, 2.0, 3.0, 4.0, 8.0]), rule: NStepSarsa::new(2) };
-        assert_eq!(learner.learn([0], 0, -1.0, Next::Goes([1]), &mut draw()), 1);
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0, 4.0, 8.0]), rule: NStepSarsa::new(2) };
+        assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);
         assert_eq!(learner.agent.table.values()[0], 1.0);
-        learner.learn([1], 1, -2.0, Next::Goes([2]), &mut draw());
+        learner.learn([1], 1, -2.0, Next::NonTerminal([2]), &mut rng());
         // 1 + 0.5 (-1 + 0.5 · -2 + 0.25 · 8 - 1)
         assert_eq!(learner.agent.table.values()[0], 0.5);
     }
 
     #[test]
     fn the_last_visits_are_updated_when_the_episode_ends() {
-        let mut learner = Control { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: NStepSarsa::new(5) };
-        learner.learn([0], 0, -1.0, Next::Goes([1]), &mut draw());
-        learner.learn([1], 1, -2.0, Next::Terminal, &mut draw());
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: NStepSarsa::new(5) };
+        learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng());
+        learner.learn([1], 1, -2.0, Next::Terminal, &mut rng());
         // 1 + 0.5 (-1 + 0.5 · -2 - 1), then 3 + 0.5 (-2 - 3)
         assert_eq!(learner.agent.table.values(), [-0.5, 0.0, 2.0, 0.5]);
     }

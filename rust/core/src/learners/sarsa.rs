@@ -1,14 +1,16 @@
 //! Sarsa: on-policy temporal-difference control (Rummery & Niranjan, 1994; Sutton & Barto, equation 6.7).
 
-use super::{Agent, Policy, Rule, StepSize};
-use crate::random::Draw;
-use crate::world::Next;
+use super::common::{Agent, UpdateRule};
+use crate::policies::Policy;
+use crate::random::Rng;
+use crate::schedules::StepSize;
+use crate::tasks::Next;
 
 /// Q(S, A) ← Q(S, A) + α [R + γ Q(S′, A′) - Q(S, A)], A′ chosen before the update.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sarsa;
 
-impl<const N: usize, R, P, A> Rule<R, Agent<N, P, A>> for Sarsa
+impl<const N: usize, R, P, A> UpdateRule<R, Agent<N, P, A>> for Sarsa
 where
     R: Copy + AsRef<[u32]>,
     P: Policy,
@@ -18,18 +20,18 @@ where
     fn learn(
         &mut self,
         agent: &mut Agent<N, P, A>,
-        here: R,
+        state: R,
         action: usize,
         reward: f64,
         next: Next<R>,
-        draw: &mut impl Draw,
+        rng: &mut impl Rng,
     ) -> usize {
-        let Some((there, next_action)) = agent.follow(next, draw) else {
-            agent.end(here, action, reward);
+        let Some((next_state, next_action)) = agent.sample_next(next, rng) else {
+            agent.update_terminal(state, action, reward);
             return 0;
         };
-        let target = reward + agent.discount * agent.value(there, next_action);
-        agent.move_towards(here, action, target);
+        let target = reward + agent.discount * agent.value(next_state, next_action);
+        agent.update(state, action, target);
         next_action
     }
 }
@@ -37,23 +39,22 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Learner;
-    use crate::learners::Control;
-    use crate::learners::example::{agent, draw};
+    use crate::learners::common::test_support::{agent, rng};
+    use crate::learners::common::{Learner, TdLearner};
 
     #[test]
     fn one_update_by_hand() {
-        let mut learner = Control { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: Sarsa };
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: Sarsa };
         // 1 + 0.5 (-1 + 0.5 · 3 - 1)
-        assert_eq!(learner.learn([0], 0, -1.0, Next::Goes([1]), &mut draw()), 1);
+        assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);
         assert_eq!(learner.agent.table.values(), [0.75, 0.0, 2.0, 3.0]);
     }
 
     #[test]
     fn a_time_out_bootstraps_and_a_terminal_state_does_not() {
-        let mut learner = Control { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: Sarsa };
-        learner.learn([0], 0, -1.0, Next::TimedOut([1]), &mut draw());
-        learner.learn([1], 0, -1.0, Next::Terminal, &mut draw());
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: Sarsa };
+        learner.learn([0], 0, -1.0, Next::Truncated([1]), &mut rng());
+        learner.learn([1], 0, -1.0, Next::Terminal, &mut rng());
         // 2 + 0.5 (-1 - 2)
         assert_eq!(learner.agent.table.values(), [0.75, 0.0, 0.5, 3.0]);
     }

@@ -1,9 +1,9 @@
 //! Watkins's Q(λ) (Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
 
-use super::{Agent, Rule, Trace, Traces};
-use crate::random::Draw;
-use crate::table::maximum;
-use crate::world::Next;
+use super::common::{Agent, TraceKind, Traces, UpdateRule};
+use crate::numeric::maximum;
+use crate::random::Rng;
+use crate::tasks::Next;
 
 /// δ = R + γ maxₐ Q(S′, a) - Q(S, A); w ← w + α δ z; z ← γλ z while A′ is greedy, 0 otherwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,28 +11,28 @@ pub struct WatkinsQLambda {
     /// z.
     pub traces: Traces,
     /// How a visit marks it.
-    pub kind: Trace,
+    pub kind: TraceKind,
     /// λ.
     pub trace_decay: f64,
 }
 
-impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for WatkinsQLambda {
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
     #[inline]
     fn learn(
         &mut self,
         agent: &mut Agent,
-        here: R,
+        state: R,
         action: usize,
         reward: f64,
         next: Next<R>,
-        draw: &mut impl Draw,
+        rng: &mut impl Rng,
     ) -> usize {
-        agent.visit(here, action);
-        self.traces.visit(self.kind, &agent.table, here.as_ref(), action);
-        let value = agent.value(here, action);
-        let (next_action, target, greedy) = match agent.follow(next, draw) {
-            Some((there, next_action)) => {
-                let values = agent.table.read(there.as_ref());
+        agent.visit(state, action);
+        self.traces.visit(self.kind, &agent.table, state.as_ref(), action);
+        let value = agent.value(state, action);
+        let (next_action, target, greedy) = match agent.sample_next(next, rng) {
+            Some((next_state, next_action)) => {
+                let values = agent.table.action_values(next_state.as_ref());
                 let largest = maximum(values);
                 // An action that ties for the largest value is greedy, whether it was explored or not.
                 (next_action, reward + agent.discount * largest, values[next_action] == largest)
@@ -40,8 +40,8 @@ impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for WatkinsQLambda {
             None => (0, reward, false),
         };
         let error = target - value;
-        agent.table.watch(error);
-        self.traces.correct(&mut agent.table, &agent.learning_rate, error);
+        agent.table.check_finite(error);
+        self.traces.apply_td_error(&mut agent.table, &agent.learning_rate, error);
         if greedy {
             self.traces.decay(agent.discount * self.trace_decay);
         } else {
@@ -58,31 +58,32 @@ impl<R: Copy + AsRef<[u32]>> Rule<R, Agent> for WatkinsQLambda {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Learner;
-    use crate::learners::example::{agent, draw};
-    use crate::learners::{Behaviour, Control, Schedule, Ties};
+    use crate::learners::common::test_support::{agent, rng};
+    use crate::learners::common::{Learner, TdLearner};
+    use crate::policies::{AnyPolicy, TieBreaking};
+    use crate::schedules::Schedule;
 
-    fn learner(epsilon: f64) -> Control<WatkinsQLambda> {
+    fn learner(epsilon: f64) -> TdLearner<WatkinsQLambda> {
         let mut agent = agent(&[1.0, 0.0, 2.0, 3.0]);
-        agent.policy = Behaviour::EpsilonGreedy { epsilon: Schedule::constant(epsilon), ties: Ties::First };
-        let rule = WatkinsQLambda { traces: Traces::new(4, 0.0), kind: Trace::Replacing, trace_decay: 0.5 };
-        Control { agent, rule }
+        agent.policy = AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(epsilon), ties: TieBreaking::First };
+        let rule = WatkinsQLambda { traces: Traces::new(4, 0.0), kind: TraceKind::Replacing, trace_decay: 0.5 };
+        TdLearner { agent, rule }
     }
 
     #[test]
     fn an_error_reaches_back_while_actions_are_greedy() {
         let mut learner = learner(0.0);
-        assert_eq!(learner.learn([0], 0, -1.0, Next::Goes([1]), &mut draw()), 1);
+        assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);
         // δ = -1 - 3, and the first pair's trace is 1/4
-        learner.learn([1], 1, -1.0, Next::Terminal, &mut draw());
+        learner.learn([1], 1, -1.0, Next::Terminal, &mut rng());
         assert_eq!(learner.agent.table.values(), [0.25, 0.0, 2.0, 1.0]);
     }
 
     #[test]
     fn an_action_that_is_not_greedy_ends_the_traces() {
         let mut learner = learner(1.0);
-        let mut draw = draw();
-        while learner.learn([0], 0, -1.0, Next::Goes([1]), &mut draw) == 1 {
+        let mut rng = rng();
+        while learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng) == 1 {
             assert!(!learner.rule.traces.is_empty());
         }
         assert!(learner.rule.traces.is_empty());

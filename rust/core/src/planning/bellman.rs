@@ -2,21 +2,21 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::Unsolved;
-use crate::env::Env;
-use crate::envs::Tabular;
+use super::PlanningError;
+use crate::envs::Env;
+use crate::envs::tabular::TabularMdp;
 
 /// Where values have not settled after so many sweeps, they are taken to grow for ever.
-pub const MOST_SWEEPS: u64 = 200_000;
+pub const MAX_SWEEPS: u64 = 200_000;
 /// Values may have settled when a sweep changes none by more than this share of the largest: their last bits.
-const SETTLED: f64 = 4.0 * f64::EPSILON;
+const CONVERGED: f64 = 4.0 * f64::EPSILON;
 /// Two actions are equally good when their values differ by less than this share of the largest value. It is more
 /// than what settled values are wrong by.
 const EQUAL: f64 = 1e-10;
 
 /// The value of an action, its outcomes added from the left. What comes after a terminal step counts nothing.
 #[inline]
-pub(crate) fn action_value(table: &Tabular, state: usize, action: usize, discount: f64, values: &[f64]) -> f64 {
+pub(crate) fn action_value(table: &TabularMdp, state: usize, action: usize, discount: f64, values: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (probability, step) in table.outcomes(state, action) {
         let next = if step.terminated { 0.0 } else { values[step.state as usize] };
@@ -27,44 +27,35 @@ pub(crate) fn action_value(table: &Tabular, state: usize, action: usize, discoun
 
 /// The largest value of a state's actions.
 #[inline]
-pub(crate) fn best_value(table: &Tabular, state: usize, discount: f64, values: &[f64]) -> f64 {
-    (0..table.actions())
+pub(crate) fn best_value(table: &TabularMdp, state: usize, discount: f64, values: &[f64]) -> f64 {
+    (0..table.num_actions())
         .map(|action| action_value(table, state, action, discount, values))
         .fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The values of all actions of all states.
-pub(crate) fn action_values(table: &Tabular, discount: f64, values: &[f64]) -> Vec<f64> {
+pub(crate) fn action_values(table: &TabularMdp, discount: f64, values: &[f64]) -> Vec<f64> {
     (0..table.states())
-        .flat_map(|state| (0..table.actions()).map(move |action| action_value(table, state, action, discount, values)))
+        .flat_map(|state| {
+            (0..table.num_actions()).map(move |action| action_value(table, state, action, discount, values))
+        })
         .collect()
 }
 
-/// The first maximum.
-pub(crate) fn first_maximum(values: &[f64]) -> usize {
-    let mut best = 0;
-    for (action, &value) in values.iter().enumerate() {
-        if value > values[best] {
-            best = action;
-        }
-    }
-    best
-}
-
 /// By how much an action must be better to count as better.
-pub(crate) fn margin(values: &[f64]) -> f64 {
+pub(crate) fn tie_tolerance(values: &[f64]) -> f64 {
     EQUAL * values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()))
 }
 
 /// Sweeps over the states, each value being replaced in its place, until the changes are in the last bits and shrink no
 /// more; returns how many sweeps that took.
-pub(crate) fn settle(
+pub(crate) fn converge(
     values: &mut [f64],
     stop: &AtomicBool,
     mut backup: impl FnMut(usize, &[f64]) -> f64,
-) -> Result<u64, Unsolved> {
+) -> Result<u64, PlanningError> {
     let mut before = f64::INFINITY;
-    for sweeps in 1..=MOST_SWEEPS {
+    for sweeps in 1..=MAX_SWEEPS {
         let (mut change, mut largest) = (0.0_f64, 0.0_f64);
         for state in 0..values.len() {
             let value = backup(state, values);
@@ -72,13 +63,13 @@ pub(crate) fn settle(
             largest = largest.max(value.abs());
             values[state] = value;
         }
-        if change == 0.0 || (change <= SETTLED * largest && change >= before) {
+        if change == 0.0 || (change <= CONVERGED * largest && change >= before) {
             return Ok(sweeps);
         }
         before = change;
         if stop.load(Ordering::Acquire) {
-            return Err(Unsolved::Stopped);
+            return Err(PlanningError::Stopped);
         }
     }
-    Err(Unsolved::Unsettled)
+    Err(PlanningError::NotConverged)
 }

@@ -5,16 +5,16 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::Unsolved;
-use super::bellman::first_maximum;
-use crate::envs::{MountainCar, MountainCarState};
+use super::PlanningError;
+use crate::envs::classic_control::{MountainCar, MountainCarState};
+use crate::numeric::argmax;
 
 /// Points along the positions and along the velocities; with half as many, the routes are a tenth of a step longer.
 const POINTS: [usize; 2] = [1441, 561];
 /// The coarsest grid has only every 16th point; each finer one begins with the steps of the one before.
 const COARSEST: usize = 16;
 /// A sweep that changes no point by more, in steps, is the last.
-const SETTLED: f64 = 1e-2;
+const CONVERGED: f64 = 1e-2;
 /// No sweep looks further ahead than this, and none less far: short limits are no reason to see less.
 const HORIZONS: (f64, f64) = (200.0, 1000.0);
 const ACTIONS: usize = 3;
@@ -32,13 +32,13 @@ pub struct CostToGo {
 /// A state between four points: the lowest of them, and how far it is from there to the next, along both axes. There
 /// are millions of them.
 #[derive(Clone, Copy)]
-struct Place {
+struct GridPoint {
     point: u32,
     shares: [f32; 2],
 }
 
 /// Beyond the goal.
-const GOAL: Place = Place { point: u32::MAX, shares: [0.0; 2] };
+const GOAL: GridPoint = GridPoint { point: u32::MAX, shares: [0.0; 2] };
 
 impl CostToGo {
     /// Sweeps until the steps settle. `limit` is the time limit: where no way to the goal is seen within it (or within
@@ -46,7 +46,7 @@ impl CostToGo {
     ///
     /// # Errors
     /// `Stopped` after `stop` was set.
-    pub fn new(car: MountainCar, limit: u64, stop: &AtomicBool) -> Result<Self, Unsolved> {
+    pub fn new(car: MountainCar, limit: u64, stop: &AtomicBool) -> Result<Self, PlanningError> {
         let horizon = (limit as f64).clamp(HORIZONS.0, HORIZONS.1);
         let mut coarser = Self { car, points: [2, 2], steps: vec![0.0; 4], horizon };
         let mut every = COARSEST;
@@ -54,7 +54,7 @@ impl CostToGo {
             let points = POINTS.map(|points| (points - 1) / every + 1);
             let mut finer = Self { car, points, steps: vec![0.0; points[0] * points[1]], horizon };
             finer.steps = (0..finer.steps.len()).map(|point| coarser.steps(finer.state(point))).collect();
-            finer.settle(stop)?;
+            finer.converge(stop)?;
             if every == 1 {
                 return Ok(finer);
             }
@@ -63,11 +63,11 @@ impl CostToGo {
     }
 
     /// Value iteration, in place.
-    fn settle(&mut self, stop: &AtomicBool) -> Result<(), Unsolved> {
-        let next: Vec<[Place; ACTIONS]> = (0..self.steps.len())
+    fn converge(&mut self, stop: &AtomicBool) -> Result<(), PlanningError> {
+        let next: Vec<[GridPoint; ACTIONS]> = (0..self.steps.len())
             .map(|point| {
                 std::array::from_fn(|action| {
-                    let after = self.car.drive(self.state(point), action);
+                    let after = self.car.transition(self.state(point), action);
                     if after.terminated { GOAL } else { self.place(after.state) }
                 })
             })
@@ -82,11 +82,11 @@ impl CostToGo {
                 change = change.max((fewest - self.steps[point]).abs());
                 self.steps[point] = fewest;
             }
-            if change < SETTLED {
+            if change < CONVERGED {
                 return Ok(());
             }
             if stop.load(Ordering::Acquire) {
-                return Err(Unsolved::Stopped);
+                return Err(PlanningError::Stopped);
             }
         }
     }
@@ -109,14 +109,14 @@ impl CostToGo {
     /// For each action the steps, this one counted.
     pub fn action_steps(&self, state: MountainCarState) -> [f64; ACTIONS] {
         std::array::from_fn(|action| {
-            let step = self.car.drive(state, action);
+            let step = self.car.transition(state, action);
             1.0 + if step.terminated { 0.0 } else { self.steps(step.state) }
         })
     }
 
     /// The first of the actions that take the fewest.
     pub fn best_action(&self, state: MountainCarState) -> usize {
-        first_maximum(&self.action_steps(state).map(|steps| -steps))
+        argmax(&self.action_steps(state).map(|steps| -steps))
     }
 
     /// The positions and the velocities of the grid.
@@ -152,7 +152,7 @@ impl CostToGo {
         }
     }
 
-    fn place(&self, state: MountainCarState) -> Place {
+    fn place(&self, state: MountainCarState) -> GridPoint {
         let along = |axis: usize, value: f64| {
             let (low, high) = self.bounds(axis);
             let last = (self.points[axis] - 1) as f64;
@@ -163,10 +163,10 @@ impl CostToGo {
         let ((position, position_share), (velocity, velocity_share)) =
             (along(0, state.position), along(1, state.velocity));
         let shares = [position_share as f32, velocity_share as f32];
-        Place { point: (position * self.points[1] + velocity) as u32, shares }
+        GridPoint { point: (position * self.points[1] + velocity) as u32, shares }
     }
 
-    fn between(&self, Place { point, shares }: Place) -> f64 {
+    fn between(&self, GridPoint { point, shares }: GridPoint) -> f64 {
         if point == GOAL.point {
             return 0.0;
         }

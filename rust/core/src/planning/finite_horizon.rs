@@ -5,10 +5,11 @@
 use std::mem::swap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::Unsolved;
-use super::bellman::{action_value, action_values, first_maximum};
-use crate::env::Env;
-use crate::envs::Tabular;
+use super::PlanningError;
+use super::bellman::{action_value, action_values};
+use crate::envs::Env;
+use crate::envs::tabular::TabularMdp;
+use crate::numeric::argmax;
 
 /// The best policy under a time limit, which depends on the steps that are left.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +21,7 @@ pub struct FiniteHorizon {
     /// For each state the best action, with all steps left.
     pub policy: Vec<usize>,
     /// The policy with fewer steps left, by what changes as they grow more.
-    pub changes: Vec<Change>,
+    pub changes: Vec<PolicyChange>,
     /// The policy's return from the first states, without a discount.
     pub expected_return: f64,
     /// How often all states were looked at: the limit, or fewer where more steps change nothing.
@@ -29,9 +30,9 @@ pub struct FiniteHorizon {
 
 /// From so many steps left on, another action is best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Change {
+pub struct PolicyChange {
     /// How many steps are left.
-    pub left: u64,
+    pub steps_to_go: u64,
     /// Where.
     pub state: usize,
     /// The best action from there on.
@@ -44,12 +45,12 @@ pub struct Change {
 /// # Errors
 /// `Stopped` after `stop` was set.
 pub fn finite_horizon(
-    table: &Tabular,
+    table: &TabularMdp,
     discount: f64,
     steps: u64,
     stop: &AtomicBool,
-) -> Result<FiniteHorizon, Unsolved> {
-    let actions = table.actions();
+) -> Result<FiniteHorizon, PlanningError> {
+    let actions = table.num_actions();
     let mut values = vec![0.0; table.states()];
     let mut returns = values.clone();
     let (mut next_values, mut next_returns) = (values.clone(), values.clone());
@@ -60,17 +61,17 @@ pub fn finite_horizon(
     let mut same = false;
     while sweeps < steps && !same {
         if stop.load(Ordering::Acquire) {
-            return Err(Unsolved::Stopped);
+            return Err(PlanningError::Stopped);
         }
         sweeps += 1;
         for (state, kept) in policy.iter_mut().enumerate() {
             for (action, value) in row.iter_mut().enumerate() {
                 *value = action_value(table, state, action, discount, &values);
             }
-            let best = first_maximum(&row);
+            let best = argmax(&row);
             if row.get(*kept).is_none_or(|&value| value < row[best]) {
                 *kept = best;
-                changes.push(Change { left: sweeps, state, action: best });
+                changes.push(PolicyChange { steps_to_go: sweeps, state, action: best });
             }
             next_values[state] = row[best];
             next_returns[state] = action_value(table, state, *kept, 1.0, &returns);
@@ -93,13 +94,18 @@ pub fn finite_horizon(
 ///
 /// # Panics
 /// For a policy of another length than the states', or with an action outside the table.
-pub fn policy_return(table: &Tabular, policy: &[usize], steps: u64, stop: &AtomicBool) -> Result<f64, Unsolved> {
+pub fn policy_return(
+    table: &TabularMdp,
+    policy: &[usize],
+    steps: u64,
+    stop: &AtomicBool,
+) -> Result<f64, PlanningError> {
     assert_eq!(policy.len(), table.states(), "a policy has an action for each state");
     let mut returns = vec![0.0; table.states()];
     let mut next = returns.clone();
     for _ in 0..steps {
         if stop.load(Ordering::Acquire) {
-            return Err(Unsolved::Stopped);
+            return Err(PlanningError::Stopped);
         }
         for (state, &action) in policy.iter().enumerate() {
             next[state] = action_value(table, state, action, 1.0, &returns);
@@ -113,6 +119,6 @@ pub fn policy_return(table: &Tabular, policy: &[usize], steps: u64, stop: &Atomi
 }
 
 /// The mean over the first states, added from the left.
-fn expected(table: &Tabular, values: &[f64]) -> f64 {
+fn expected(table: &TabularMdp, values: &[f64]) -> f64 {
     table.initial().iter().zip(values).fold(0.0, |sum, (probability, value)| sum + probability * value)
 }

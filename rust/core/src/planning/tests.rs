@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 use proptest::prelude::*;
 
 use super::*;
-use crate::env::Env;
-use crate::envs::{Outcome, Tabular};
+use crate::envs::Env;
+use crate::envs::tabular::{Outcome, TabularMdp};
 
 static GO: AtomicBool = AtomicBool::new(false);
 
@@ -19,21 +19,21 @@ fn chance(outcomes: &[(f64, i64, f64, bool)]) -> Vec<Outcome> {
     outcomes.iter().map(outcome).collect()
 }
 
-fn table(actions: usize, rows: &[Vec<Outcome>]) -> Tabular {
+fn table(actions: usize, rows: &[Vec<Outcome>]) -> TabularMdp {
     let states = rows.len() / actions;
     let mut start = vec![0.0; states];
     start[0] = 1.0;
-    Tabular::new(actions, &start, rows).expect("a table")
+    TabularMdp::new(actions, &start, rows).expect("a table")
 }
 
 /// A corridor of three: left or right, each step costs one, right of the last is the end.
-fn corridor() -> Tabular {
+fn corridor() -> TabularMdp {
     let row = |state: i64| [sure((state - 1).max(0), -1.0, false), sure((state + 1).min(2), -1.0, state == 2)];
     table(2, &(0..3).flat_map(row).collect::<Vec<_>>())
 }
 
 /// Stand still for nothing, or leave at once for `reward`.
-fn door(reward: f64) -> Tabular {
+fn door(reward: f64) -> TabularMdp {
     table(2, &[sure(0, 0.0, false), sure(0, reward, true)])
 }
 
@@ -67,7 +67,7 @@ fn the_best_policy_does_not_put_off_what_is_worth_the_same_later() {
     }
     let horizon = finite_horizon(&door(1.0), 1.0, 5, &GO).expect("it ends");
     assert_eq!(horizon.policy, [1]);
-    assert_eq!(horizon.changes, [Change { left: 1, state: 0, action: 1 }]);
+    assert_eq!(horizon.changes, [PolicyChange { steps_to_go: 1, state: 0, action: 1 }]);
     assert_eq!(horizon.sweeps, 2);
 }
 
@@ -80,10 +80,10 @@ fn not_to_end_may_be_best_but_is_no_policy_that_ends() {
 #[test]
 fn rewards_without_an_end_are_noticed() {
     let mint = table(2, &[sure(0, 1.0, false), sure(0, 0.0, true)]);
-    assert_eq!(value_iteration(&mint, 1.0, &GO), Err(Unsolved::Unsettled));
-    assert_eq!(policy_iteration(&mint, 1.0, &GO), Err(Unsolved::Endless(0)));
+    assert_eq!(value_iteration(&mint, 1.0, &GO), Err(PlanningError::NotConverged));
+    assert_eq!(policy_iteration(&mint, 1.0, &GO), Err(PlanningError::UnboundedReturn(0)));
     let trap = table(1, &[sure(0, -1.0, false)]);
-    assert_eq!(policy_iteration(&trap, 1.0, &GO), Err(Unsolved::NeverEnds(0)));
+    assert_eq!(policy_iteration(&trap, 1.0, &GO), Err(PlanningError::NoProperPolicy(0)));
     let solution = value_iteration(&mint, 0.5, &GO).expect("a discount makes an end");
     assert_eq!(solution.values, [2.0]);
     assert_eq!(finite_horizon(&mint, 1.0, 7, &GO).expect("it ends").expected_return, 7.0);
@@ -106,7 +106,10 @@ fn what_is_best_depends_on_the_steps_left() {
     }
     let horizon = finite_horizon(&table, 1.0, 9, &GO).expect("it ends");
     let first: Vec<_> = horizon.changes.iter().filter(|change| change.state == 0).collect();
-    assert_eq!(first, [&Change { left: 1, state: 0, action: 0 }, &Change { left: 3, state: 0, action: 1 }]);
+    assert_eq!(
+        first,
+        [&PolicyChange { steps_to_go: 1, state: 0, action: 0 }, &PolicyChange { steps_to_go: 3, state: 0, action: 1 }]
+    );
     assert_eq!(policy_return(&table, &[1, 1, 0], 2, &GO), Ok(0.0));
     assert_eq!(policy_return(&table, &[1, 1, 0], 3, &GO), Ok(3.0));
 }
@@ -125,13 +128,13 @@ fn a_discounted_policy_is_still_judged_without_a_discount() {
 fn who_is_told_to_stop_stops() {
     let stop = AtomicBool::new(true);
     let slow = table(1, &[chance(&[(0.999, 0, 1.0, false), (0.001, 0, 1.0, true)])]);
-    assert_eq!(value_iteration(&slow, 1.0, &stop), Err(Unsolved::Stopped));
-    assert_eq!(policy_iteration(&slow, 1.0, &stop), Err(Unsolved::Stopped));
-    assert_eq!(finite_horizon(&slow, 1.0, 100, &stop), Err(Unsolved::Stopped));
-    assert_eq!(policy_return(&slow, &[0], 100, &stop), Err(Unsolved::Stopped));
+    assert_eq!(value_iteration(&slow, 1.0, &stop), Err(PlanningError::Stopped));
+    assert_eq!(policy_iteration(&slow, 1.0, &stop), Err(PlanningError::Stopped));
+    assert_eq!(finite_horizon(&slow, 1.0, 100, &stop), Err(PlanningError::Stopped));
+    assert_eq!(policy_return(&slow, &[0], 100, &stop), Err(PlanningError::Stopped));
 }
 
-fn tables() -> impl Strategy<Value = Tabular> {
+fn tables() -> impl Strategy<Value = TabularMdp> {
     let entry = |states: i64| (1_u32..5, 0..states, -3_i32..4, prop::bool::weighted(0.3));
     (1_i64..6, 1_usize..4).prop_flat_map(move |(states, actions)| {
         let row = prop::collection::vec(entry(states), 1..4);
@@ -150,13 +153,13 @@ fn tables() -> impl Strategy<Value = Tabular> {
                 })
                 .collect();
             let start = vec![1.0 / states as f64; states as usize];
-            Tabular::new(actions, &start, &rows).expect("a table")
+            TabularMdp::new(actions, &start, &rows).expect("a table")
         })
     })
 }
 
 /// The best return over all histories: every branch looked at.
-fn by_hand(table: &Tabular, state: usize, discount: f64, left: u32) -> f64 {
+fn by_hand(table: &TabularMdp, state: usize, discount: f64, left: u32) -> f64 {
     if left == 0 {
         return 0.0;
     }
@@ -166,7 +169,7 @@ fn by_hand(table: &Tabular, state: usize, discount: f64, left: u32) -> f64 {
             sum + probability * (step.reward + discount * next)
         })
     };
-    (0..table.actions()).map(value).fold(f64::NEG_INFINITY, f64::max)
+    (0..table.num_actions()).map(value).fold(f64::NEG_INFINITY, f64::max)
 }
 
 fn near(left: &[f64], right: &[f64]) -> bool {
@@ -198,23 +201,23 @@ proptest! {
     #[test]
     fn no_policy_returns_more_than_the_best(table in tables(), seed: usize, steps in 0_u64..30) {
         let best = finite_horizon(&table, 1.0, steps, &GO).expect("it ends").expected_return;
-        let policy: Vec<usize> = (0..table.states()).map(|state| (seed >> (2 * state)) % table.actions()).collect();
+        let policy: Vec<usize> = (0..table.states()).map(|state| (seed >> (2 * state)) % table.num_actions()).collect();
         prop_assert!(policy_return(&table, &policy, steps, &GO).expect("it ends") <= best + 1e-12 * best.abs());
     }
 
     #[test]
     fn without_a_discount_a_policy_that_ends_has_its_values(table in tables()) {
         // Every reward costs: whoever does not end pays for ever, and both methods agree.
-        let cost = |(probability, step): (f64, crate::env::Step<u32>)| Outcome {
+        let cost = |(probability, step): (f64, crate::envs::Step<u32>)| Outcome {
             probability,
             state: step.state.into(),
             reward: step.reward - 4.0,
             terminated: step.terminated,
         };
-        let rows: Vec<Vec<Outcome>> = (0..table.states() * table.actions())
-            .map(|row| table.outcomes(row / table.actions(), row % table.actions()).map(cost).collect())
+        let rows: Vec<Vec<Outcome>> = (0..table.states() * table.num_actions())
+            .map(|row| table.outcomes(row / table.num_actions(), row % table.num_actions()).map(cost).collect())
             .collect();
-        let table = Tabular::new(table.actions(), table.initial(), &rows).expect("a table");
+        let table = TabularMdp::new(table.num_actions(), table.initial(), &rows).expect("a table");
         match policy_iteration(&table, 1.0, &GO) {
             Ok(policies) => {
                 let values = value_iteration(&table, 1.0, &GO).expect("it settles");
@@ -224,8 +227,8 @@ proptest! {
                 prop_assert!(near(&[long], &[first]), "{long} {first}");
             }
             Err(unsolved) => {
-                prop_assert!(matches!(unsolved, Unsolved::NeverEnds(_)));
-                prop_assert_eq!(value_iteration(&table, 1.0, &GO), Err(Unsolved::Unsettled));
+                prop_assert!(matches!(unsolved, PlanningError::NoProperPolicy(_)));
+                prop_assert_eq!(value_iteration(&table, 1.0, &GO), Err(PlanningError::NotConverged));
             }
         }
     }

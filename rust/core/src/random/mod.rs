@@ -1,15 +1,16 @@
-//! `NumPy`'s random streams: the same seed gives the same draws, bit for bit.
+//! `NumPy`'s random generators: the same seed gives the same numbers, bit for bit.
 
-mod draw;
+mod agent_rng;
 mod mt19937;
 mod pcg64;
+mod prefetched_pcg64;
+mod rng;
 mod seed_sequence;
-mod stream;
 
-pub(crate) use draw::FLOATS;
-pub use draw::{Draw, NoDraw};
+pub use agent_rng::AgentRng;
 pub use mt19937::Mt19937;
 pub use pcg64::Pcg64;
-pub(crate) use pcg64::{bounded, unit};
+pub(crate) use prefetched_pcg64::PrefetchedPcg64;
+pub(crate) use rng::TWO_POW_53;
+pub use rng::{NoRng, Rng};
 pub use seed_sequence::SeedSequence;
-pub use stream::Stream;

@@ -2,7 +2,7 @@
 
 use rand_mt::Mt;
 
-use super::Draw;
+use super::Rng;
 
 /// The Mersenne Twister with `NumPy`'s legacy seeding and legacy draws.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,7 +17,7 @@ impl Mt19937 {
     }
 }
 
-impl Draw for Mt19937 {
+impl Rng for Mt19937 {
     /// 53 bits from two words: `random_sample()`.
     #[inline]
     fn random(&mut self) -> f64 {

@@ -1,16 +1,16 @@
 //! `numpy.random.Generator(PCG64(…))`: the stream of Gymnasium's environments and the agents' default.
 
-use rand_core::Rng;
+use rand_core::Rng as _;
 
-use super::{Draw, FLOATS, SeedSequence};
+use super::{Rng, SeedSequence, TWO_POW_53};
 
 /// PCG-XSL-RR 128/64 with `NumPy`'s seeding and `NumPy`'s buffer of one 32-bit half.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pcg64 {
     engine: rand_pcg::Pcg64,
     /// The upper half of a 64-bit word whose lower half is used up; `random()` leaves it alone.
-    half: Option<u32>,
-    drawn: u64,
+    buffered_u32: Option<u32>,
+    words_drawn: u64,
 }
 
 impl Pcg64 {
@@ -18,72 +18,72 @@ impl Pcg64 {
     pub fn new(seed: &SeedSequence) -> Self {
         let [state_high, state_low, stream_high, stream_low] = seed.generate_state().map(u128::from);
         let engine = rand_pcg::Pcg64::new((state_high << 64) | state_low, (stream_high << 64) | stream_low);
-        Self { engine, half: None, drawn: 0 }
+        Self { engine, buffered_u32: None, words_drawn: 0 }
     }
 
     /// How many 64-bit words have been drawn since seeding: what `bit_generator.advance` takes to come here.
-    pub fn drawn(&self) -> u64 {
-        self.drawn
+    pub fn words_drawn(&self) -> u64 {
+        self.words_drawn
     }
 
     /// The buffered 32-bit half, `NumPy`'s `uinteger` where its `has_uint32` is set.
-    pub fn half(&self) -> Option<u32> {
-        self.half
+    pub fn buffered_u32(&self) -> Option<u32> {
+        self.buffered_u32
     }
 
-    pub(crate) fn set_half(&mut self, half: Option<u32>) {
-        self.half = half;
+    pub(crate) fn set_buffered_u32(&mut self, buffered_u32: Option<u32>) {
+        self.buffered_u32 = buffered_u32;
     }
 
     #[inline]
     pub(crate) fn next_u64(&mut self) -> u64 {
-        self.drawn += 1;
+        self.words_drawn += 1;
         self.engine.next_u64()
     }
 
     #[inline]
     fn next_u32(&mut self) -> u32 {
-        if let Some(half) = self.half.take() {
-            return half;
+        if let Some(buffered_u32) = self.buffered_u32.take() {
+            return buffered_u32;
         }
         let word = self.next_u64();
-        self.half = Some((word >> 32) as u32);
+        self.buffered_u32 = Some((word >> 32) as u32);
         word as u32
     }
 }
 
-impl Draw for Pcg64 {
+impl Rng for Pcg64 {
     #[inline]
     fn random(&mut self) -> f64 {
-        unit(self.next_u64())
+        u64_to_f64(self.next_u64())
     }
 
     #[inline]
-    fn fraction(&mut self) -> u64 {
-        fraction(self.next_u64())
+    fn random_u53(&mut self) -> u64 {
+        random_u53(self.next_u64())
     }
 
     #[inline]
     fn integers(&mut self, below: u32) -> u32 {
-        bounded(below, || self.next_u32())
+        lemire_bounded(below, || self.next_u32())
     }
 }
 
 /// A float in [0, 1) from a word's upper 53 bits.
 #[inline]
-pub(crate) fn unit(word: u64) -> f64 {
-    fraction(word) as f64 * (1.0 / FLOATS)
+pub(crate) fn u64_to_f64(word: u64) -> f64 {
+    random_u53(word) as f64 * (1.0 / TWO_POW_53)
 }
 
 /// A word's upper 53 bits.
 #[inline]
-fn fraction(word: u64) -> u64 {
+fn random_u53(word: u64) -> u64 {
     word >> 11
 }
 
 /// Lemire's multiply-shift with rejection, as `Generator.integers` does for ranges under 2³².
 #[inline]
-pub(crate) fn bounded(below: u32, mut next: impl FnMut() -> u32) -> u32 {
+pub(crate) fn lemire_bounded(below: u32, mut next: impl FnMut() -> u32) -> u32 {
     if below <= 1 {
         return 0;
     }
@@ -113,11 +113,11 @@ mod tests {
 
     #[test]
     fn a_fraction_is_the_float_as_a_whole_number() {
-        let mut draw = Pcg64::new(&SeedSequence::new(&[0]));
+        let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
         let mut other = Mt19937::new(0);
         for _ in 0..1000 {
-            assert_eq!(draw.clone().fraction() as f64 / FLOATS, draw.random());
-            assert_eq!(other.clone().fraction() as f64 / FLOATS, other.random());
+            assert_eq!(rng.clone().random_u53() as f64 / TWO_POW_53, rng.random());
+            assert_eq!(other.clone().random_u53() as f64 / TWO_POW_53, other.random());
         }
     }
 
@@ -125,6 +125,6 @@ mod tests {
     fn one_choice_draws_nothing() {
         let mut stream = Pcg64::new(&SeedSequence::new(&[0]));
         assert_eq!(stream.integers(1), 0);
-        assert_eq!(stream.drawn(), 0);
+        assert_eq!(stream.words_drawn(), 0);
     }
 }

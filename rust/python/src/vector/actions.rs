@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedAr
 use pyo3::exceptions::{PyAssertionError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
-use qtab_core::envs::Scalar;
+use qtab_core::numeric::Scalar;
 
 use crate::numbers::{LARGEST_FORCE, double, first, index, numpy_scalar};
 

@@ -5,7 +5,8 @@ use pyo3::exceptions::PyAssertionError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use qtab_core::Env;
-use qtab_core::vector::{Autoreset, Batch, Vector};
+use qtab_core::VectorEnv;
+use qtab_core::vector::{Autoreset, StepBuffers};
 
 use super::actions::Acts;
 use super::infos::{Infos, Nature};
@@ -49,7 +50,7 @@ pub(super) trait Steps: Send + Sync {
 }
 
 pub(super) struct Fleet<E: Env> {
-    vector: Vector<E>,
+    vector: VectorEnv<E>,
     nature: Nature<E>,
     /// The last actions, and those that are being read.
     actions: [Vec<E::Action>; 2],
@@ -72,7 +73,7 @@ where
             let cores = std::thread::available_parallelism().map_or(1, usize::from);
             cores.min(size / nature.crew)
         });
-        let vector = Vector::new(env, size, max_episode_steps, autoreset, threads);
+        let vector = VectorEnv::new(env, size, max_episode_steps, autoreset, threads);
         let observations: Vec<_> = vector.states().map(|state| vector.env().observe(state)).collect();
         let places = if copy { None } else { Some(E::Observation::batched(py, &observations)?.unbind()) };
         Ok(Self {
@@ -104,16 +105,16 @@ where
         let py = actions.py();
         let Self { vector, nature, autoreset, .. } = self;
         if *autoreset == Autoreset::Disabled
-            && let Some(lane) = vector.over().position(|over| over)
+            && let Some(lane) = vector.done().position(|over| over)
         {
             let text = "is over: reset it first, with options={'reset_mask': ...}";
             return Err(PyAssertionError::new_err(format!("the episode of sub-environment {lane} {text}")));
         }
-        let idle = |lane| *autoreset == Autoreset::NextStep && vector.is_over(lane);
-        E::Action::read(actions, vector.env().actions(), &idle, &mut self.actions[1])?;
+        let idle = |lane| *autoreset == Autoreset::NextStep && vector.is_done(lane);
+        E::Action::read(actions, vector.env().num_actions(), &idle, &mut self.actions[1])?;
         self.actions.swap(0, 1);
 
-        let batch = Batch {
+        let batch = StepBuffers {
             observations: &mut self.observations,
             rewards: &mut self.rewards,
             terminated: &mut self.terminated,
@@ -153,7 +154,7 @@ where
     }
 
     fn start(&self) -> Option<[(&'static str, f64); 2]> {
-        E::START
+        E::RESET_BOUNDS
     }
 
     fn portrait<'py>(&self, py: Python<'py>, lane: usize) -> PyResult<Portrait<'py>> {
@@ -161,9 +162,9 @@ where
         let attributes = PyDict::new(py);
         let last = (elapsed > 0).then(|| self.actions[0][lane]);
         (self.nature.portray)(&attributes, self.vector.env(), state, last)?;
-        if self.vector.is_over(lane) && self.terminated[lane] {
+        if self.vector.is_done(lane) && self.terminated[lane] {
             self.nature.fell.map_or(Ok(()), |name| attributes.set_item(name, 0))?;
         }
-        Ok((attributes, elapsed, self.vector.is_over(lane), self.observations[lane].alone(py)?))
+        Ok((attributes, elapsed, self.vector.is_done(lane), self.observations[lane].alone(py)?))
     }
 }

@@ -6,7 +6,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use qtab_core::Env;
-use qtab_core::vector::Vector;
+use qtab_core::VectorEnv;
 
 use super::observations::Shows;
 
@@ -58,36 +58,36 @@ impl<'py> Infos<'py> {
     }
 
     /// After a step everyone has something to say.
-    pub(super) fn step<E: Env>(&self, vector: &Vector<E>, nature: &Nature<E>) -> PyResult<()> {
+    pub(super) fn step<E: Env>(&self, vector: &VectorEnv<E>, nature: &Nature<E>) -> PyResult<()> {
         let Some(says) = &nature.says else { return Ok(()) };
         self.say(&self.dict, says, vector.states().enumerate(), false)
     }
 
     /// After a reset those have that were reset.
-    pub(super) fn reset<E: Env>(&self, vector: &Vector<E>, nature: &Nature<E>, lanes: &[usize]) -> PyResult<()> {
+    pub(super) fn reset<E: Env>(&self, vector: &VectorEnv<E>, nature: &Nature<E>, lanes: &[usize]) -> PyResult<()> {
         let Some(says) = &nature.says else { return Ok(()) };
         let states = lanes.iter().map(|&lane| (lane, vector.state(lane)));
         self.say(&self.dict, says, states, says.whole)
     }
 
     /// What was seen last of the episodes that ended and began anew in the same step.
-    pub(super) fn finals<E: Env<Observation: Shows>>(&self, vector: &Vector<E>, nature: &Nature<E>) -> PyResult<()> {
-        if vector.finals().next().is_none() {
+    pub(super) fn finals<E: Env<Observation: Shows>>(&self, vector: &VectorEnv<E>, nature: &Nature<E>) -> PyResult<()> {
+        if vector.final_states().next().is_none() {
             return Ok(());
         }
         let (py, size) = (self.py, self.size);
         let last = PyArray1::<Py<PyAny>>::from_iter(py, (0..size).map(|_| py.None()));
-        for (lane, state) in vector.finals() {
+        for (lane, state) in vector.final_states() {
             last.try_readwrite()?.as_slice_mut()?[lane] = vector.env().observe(state).alone(py)?.unbind();
         }
         let infos = PyDict::new(py);
         if let Some(says) = &nature.says {
-            self.say(&infos, says, vector.finals(), false)?;
+            self.say(&infos, says, vector.final_states(), false)?;
         }
         self.dict.set_item(intern!(py, "final_obs"), last)?;
-        self.dict.set_item(intern!(py, "_final_obs"), self.mask(vector.finals().map(|(lane, _)| lane)))?;
+        self.dict.set_item(intern!(py, "_final_obs"), self.mask(vector.final_states().map(|(lane, _)| lane)))?;
         self.dict.set_item(intern!(py, "final_info"), infos)?;
-        self.dict.set_item(intern!(py, "_final_info"), self.mask(vector.finals().map(|(lane, _)| lane)))
+        self.dict.set_item(intern!(py, "_final_info"), self.mask(vector.final_states().map(|(lane, _)| lane)))
     }
 
     fn say<'a, S: 'a>(

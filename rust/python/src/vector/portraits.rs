@@ -4,11 +4,13 @@ use numpy::PyArray1;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use qtab_core::env::Env;
-use qtab_core::envs::{
-    Acrobot, AcrobotState, ContinuousMountainCar, ContinuousMountainCarState, DECK, Dealt, Pendulum, PendulumState,
-    Scalar, TaxiState, Told,
+use qtab_core::Env;
+use qtab_core::envs::classic_control::{
+    Acrobot, AcrobotState, ContinuousMountainCar, ContinuousMountainCarState, Pendulum, PendulumState,
 };
+use qtab_core::envs::toy_text::{DECK, TaxiState};
+use qtab_core::envs::wrappers::{DealHistory, TransitionProbabilityState};
+use qtab_core::numeric::Scalar;
 
 use super::actions::Acts;
 use crate::blackjack::{FACES, SUITS, numpy_string};
@@ -66,7 +68,7 @@ pub(super) fn acrobot(
     state: &AcrobotState,
     last: Option<usize>,
 ) -> PyResult<()> {
-    if !state.single {
+    if !state.is_f32 {
         return plain::<_, 4>(into, env, state, last);
     }
     let numbers = <[f64; 4]>::from(*state).map(|number| number as f32);
@@ -86,20 +88,20 @@ pub(super) fn pendulum(
 }
 
 /// A table's cell.
-pub(super) fn table<E: Env<State = Told<u32>, Action = usize>>(
+pub(super) fn table<E: Env<State = TransitionProbabilityState<u32>, Action = usize>>(
     into: Attributes<'_, '_>,
     _env: &E,
-    state: &Told<u32>,
+    state: &TransitionProbabilityState<u32>,
     last: Option<usize>,
 ) -> PyResult<()> {
     cell(into, state.state, last)
 }
 
 /// With what the passenger is up to.
-pub(super) fn taxi<E: Env<State = Told<TaxiState>, Action = usize>>(
+pub(super) fn taxi<E: Env<State = TransitionProbabilityState<TaxiState>, Action = usize>>(
     into: Attributes<'_, '_>,
     _env: &E,
-    state: &Told<TaxiState>,
+    state: &TransitionProbabilityState<TaxiState>,
     last: Option<usize>,
 ) -> PyResult<()> {
     into.set_item(intern!(into.py(), "fickle_step"), state.state.fickle)?;
@@ -107,14 +109,14 @@ pub(super) fn taxi<E: Env<State = Told<TaxiState>, Action = usize>>(
 }
 
 /// With its cards, and the picture of the open one.
-pub(super) fn blackjack<E: Env<State = Dealt>>(
+pub(super) fn blackjack<E: Env<State = DealHistory>>(
     into: Attributes<'_, '_>,
     _env: &E,
-    state: &Dealt,
+    state: &DealHistory,
     _last: Option<E::Action>,
 ) -> PyResult<()> {
     let py = into.py();
-    let drawn: Vec<usize> = state.drawn().collect();
+    let drawn: Vec<usize> = state.draws().collect();
     let [first, second, third, fourth, suit, ref taken @ ..] = drawn[..] else { return Ok(()) };
     let card = |&place: &usize| DECK[place];
     let (face, taken) = match taken {

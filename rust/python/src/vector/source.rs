@@ -2,7 +2,7 @@
 
 use pyo3::intern;
 use pyo3::prelude::*;
-use qtab_core::random::{Draw, Pcg64, SeedSequence};
+use qtab_core::random::{Pcg64, Rng, SeedSequence};
 
 /// Its `np_random`: ours as long as nobody has seen it, `NumPy`'s own from then on, so that the two never part.
 pub(super) enum Source {
@@ -29,7 +29,7 @@ fn drawn<T: Default + for<'a, 'py> FromPyObject<'a, 'py, Error: Into<PyErr>>>(
     })
 }
 
-impl Draw for Source {
+impl Rng for Source {
     #[inline]
     fn random(&mut self) -> f64 {
         match self {

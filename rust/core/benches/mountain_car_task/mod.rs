@@ -1,0 +1,26 @@
+//! What the benches share: the article's valley, its grid, and the streams of seed 0.
+
+use qtab_core::envs::classic_control::MountainCar;
+use qtab_core::features::{Axis, Features, Rounding};
+use qtab_core::random::{Pcg64, SeedSequence};
+use qtab_core::tasks::NativeTask;
+
+/// Gymnasium's time limit.
+pub(crate) const LIMIT: u64 = 200;
+pub(crate) const INSIDE: &str = "the valley lies inside the box";
+
+pub(crate) type AnyGrid = Rounding<f32, [Axis<f32>; 2]>;
+pub(crate) type MountainCarTask<F = AnyGrid> = NativeTask<MountainCar, F>;
+
+pub(crate) fn rounding() -> AnyGrid {
+    Rounding::new([Axis::new(-1.2, 0.6, 10.0), Axis::new(-0.07, 0.07, 100.0)])
+}
+
+pub(crate) fn task<F: Features<[f32; 2]>>(features: F) -> MountainCarTask<F> {
+    NativeTask::new(MountainCar::default(), features, Some(LIMIT), Pcg64::new(&SeedSequence::new(&[0])))
+}
+
+/// The agent's stream of seed 0.
+pub(crate) fn agent_rng() -> Pcg64 {
+    Pcg64::new(&SeedSequence::new(&[0]).child(0))
+}

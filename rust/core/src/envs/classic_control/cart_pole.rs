@@ -1,0 +1,273 @@
+//! `CartPole-v1`: a pole on a cart that is pushed left or right (Barto, Sutton & Anderson, 1983; R. V. Florian, "Correct
+//! equations for the dynamics of the cart-pole system", 2005).
+
+use crate::envs::{Env, Flag, Parameters, SimdEnv, Step, step_batch};
+use crate::random::Rng;
+
+/// Each component of the first state is uniform over these.
+const RESET_BOUNDS: [(&str, f64); 2] = [("low", -0.05), ("high", 0.05)];
+
+/// The constants of the dynamics, under Gymnasium's names. Those that Gymnasium derives from others when it makes the
+/// environment (`total_mass`, `polemass_length`) are constants of their own afterwards, there as here.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CartPole {
+    /// m/s²
+    pub gravity: f64,
+    /// The pole's mass.
+    pub masspole: f64,
+    /// The mass of cart and pole.
+    pub total_mass: f64,
+    /// Half the pole's length.
+    pub length: f64,
+    /// The pole's mass times `length`.
+    pub polemass_length: f64,
+    /// The force of a push.
+    pub force_mag: f64,
+    /// Seconds a step.
+    pub tau: f64,
+    /// An episode ends beyond this angle, both ways …
+    pub theta_threshold_radians: f64,
+    /// … or beyond this position.
+    pub x_threshold: f64,
+    /// Positions move by the old speeds (Gymnasium's "euler"), not by the new ones.
+    pub euler: bool,
+    /// The reward is -1 at the fall and 0 before it, not 1 a step.
+    pub sutton_barto_reward: bool,
+}
+
+impl Default for CartPole {
+    fn default() -> Self {
+        Self {
+            gravity: 9.8,
+            masspole: 0.1,
+            total_mass: 0.1 + 1.0,
+            length: 0.5,
+            polemass_length: 0.1 * 0.5,
+            force_mag: 10.0,
+            tau: 0.02,
+            theta_threshold_radians: 12.0 * 2.0 * std::f64::consts::PI / 360.0,
+            x_threshold: 2.4,
+            euler: true,
+            sutton_barto_reward: false,
+        }
+    }
+}
+
+impl Parameters for CartPole {
+    const NAMES: &'static [&'static str] = &[
+        "gravity",
+        "masspole",
+        "total_mass",
+        "length",
+        "polemass_length",
+        "force_mag",
+        "tau",
+        "theta_threshold_radians",
+        "x_threshold",
+    ];
+    const FLAGS: &'static [Flag] = &[
+        Flag { name: "kinematics_integrator", true_value: Some("euler") },
+        Flag { name: "_sutton_barto_reward", true_value: None },
+    ];
+
+    fn parameter(&mut self, name: &str) -> Option<&mut f64> {
+        Some(match name {
+            "gravity" => &mut self.gravity,
+            "masspole" => &mut self.masspole,
+            "total_mass" => &mut self.total_mass,
+            "length" => &mut self.length,
+            "polemass_length" => &mut self.polemass_length,
+            "force_mag" => &mut self.force_mag,
+            "tau" => &mut self.tau,
+            "theta_threshold_radians" => &mut self.theta_threshold_radians,
+            "x_threshold" => &mut self.x_threshold,
+            _ => return None,
+        })
+    }
+
+    fn flag(&mut self, name: &str) -> Option<&mut bool> {
+        Some(match name {
+            "kinematics_integrator" => &mut self.euler,
+            "_sutton_barto_reward" => &mut self.sutton_barto_reward,
+            _ => return None,
+        })
+    }
+}
+
+/// Where cart and pole are, in f64.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CartPoleState {
+    /// The cart's position.
+    pub x: f64,
+    /// Its speed.
+    pub x_dot: f64,
+    /// The pole's angle from upright, in radians.
+    pub theta: f64,
+    /// Its angular speed.
+    pub theta_dot: f64,
+}
+
+impl From<[f64; 4]> for CartPoleState {
+    fn from([x, x_dot, theta, theta_dot]: [f64; 4]) -> Self {
+        Self { x, x_dot, theta, theta_dot }
+    }
+}
+
+impl From<CartPoleState> for [f64; 4] {
+    fn from(state: CartPoleState) -> Self {
+        [state.x, state.x_dot, state.theta, state.theta_dot]
+    }
+}
+
+impl CartPole {
+    #[inline]
+    fn force(&self, action: usize) -> f64 {
+        if action == 1 { self.force_mag } else { -self.force_mag }
+    }
+
+    /// Moves `K` poles under a force each, and says which come to a terminal state.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    #[expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be a branch in each of many lanes")]
+    fn transition<const K: usize>(
+        &self,
+        [x, x_dot, theta, theta_dot]: &mut [[f64; K]; 4],
+        force: [f64; K],
+    ) -> [bool; K] {
+        let costheta = theta.map(f64::cos);
+        let sintheta = theta.map(f64::sin);
+        let mut terminated = [false; K];
+        for lane in 0..K {
+            let (costheta, sintheta) = (costheta[lane], sintheta[lane]);
+            let (speed, spin) = (x_dot[lane], theta_dot[lane]);
+            let temp = (force[lane] + self.polemass_length * (spin * spin) * sintheta) / self.total_mass;
+            let thetaacc = (self.gravity * sintheta - costheta * temp)
+                / (self.length * (4.0 / 3.0 - self.masspole * (costheta * costheta) / self.total_mass));
+            let xacc = temp - self.polemass_length * thetaacc * costheta / self.total_mass;
+
+            x_dot[lane] = speed + self.tau * xacc;
+            theta_dot[lane] = spin + self.tau * thetaacc;
+            // Semi-implicit, the positions move by the new speeds.
+            x[lane] += self.tau * if self.euler { speed } else { x_dot[lane] };
+            theta[lane] += self.tau * if self.euler { spin } else { theta_dot[lane] };
+            terminated[lane] = (x[lane] < -self.x_threshold)
+                | (x[lane] > self.x_threshold)
+                | (theta[lane] < -self.theta_threshold_radians)
+                | (theta[lane] > self.theta_threshold_radians);
+        }
+        terminated
+    }
+}
+
+impl Env for CartPole {
+    type State = CartPoleState;
+    type Action = usize;
+    type Observation = [f32; 4];
+
+    #[inline]
+    fn num_actions(&self) -> usize {
+        2
+    }
+
+    const RESET_BOUNDS: Option<[(&'static str, f64); 2]> = Some(RESET_BOUNDS);
+
+    #[inline]
+    fn reset(&self, rng: &mut impl Rng) -> CartPoleState {
+        self.reset_within(RESET_BOUNDS.map(|(_, number)| number), rng)
+    }
+
+    #[inline]
+    fn reset_within(&self, [low, high]: [f64; 2], rng: &mut impl Rng) -> CartPoleState {
+        [(); 4].map(|()| rng.uniform(low, high)).into()
+    }
+
+    /// The reward is that of an episode under way: what Gymnasium gives for stepping on after the fall is not here.
+    #[expect(clippy::inline_always, reason = "a call a step costs a tenth of it")]
+    #[inline(always)]
+    fn step(&self, state: CartPoleState, action: usize, _draw: &mut impl Rng) -> Step<CartPoleState> {
+        let mut one = <[f64; 4]>::from(state).map(|number| [number]);
+        let [terminated] = self.transition(&mut one, [self.force(action)]);
+        Step { state: one.map(|[number]| number).into(), reward: self.reward(terminated), terminated }
+    }
+
+    #[inline]
+    fn step_batch(
+        &self,
+        states: &mut [CartPoleState],
+        actions: &[usize],
+        _draws: &mut [impl Rng],
+        rewards: &mut [f64],
+        terminated: &mut [bool],
+        inactive: &[bool],
+    ) {
+        step_batch(self, states, actions, rewards, terminated, inactive);
+    }
+
+    #[inline]
+    fn observe(&self, state: &CartPoleState) -> [f32; 4] {
+        [state.x as f32, state.x_dot as f32, state.theta as f32, state.theta_dot as f32]
+    }
+}
+
+/// The platform's sine and cosine one by one, the arithmetic in wide registers.
+impl SimdEnv<4> for CartPole {
+    fn is_exact(&self) -> bool {
+        true
+    }
+
+    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    #[inline(always)]
+    fn step_soa<const K: usize>(&self, fields: &mut [[f64; K]; 4], actions: &[usize; K]) -> [bool; K] {
+        self.transition(fields, actions.map(|action| self.force(action)))
+    }
+
+    #[inline]
+    fn reward(&self, terminated: bool) -> f64 {
+        match (self.sutton_barto_reward, terminated) {
+            (false, _) => 1.0,
+            (true, false) => 0.0,
+            (true, true) => -1.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Pcg64, SeedSequence};
+
+    fn step(env: CartPole, state: [f64; 4], action: usize) -> Step<CartPoleState> {
+        env.step(state.into(), action, &mut Pcg64::new(&SeedSequence::new(&[0])))
+    }
+
+    #[test]
+    fn a_push_moves_the_cart_only_after_a_step() {
+        let pushed = step(CartPole::default(), [0.0; 4], 1).state;
+        assert_eq!((pushed.x, pushed.theta), (0.0, 0.0));
+        assert!(pushed.x_dot > 0.0 && pushed.theta_dot < 0.0);
+        let at_once = step(CartPole { euler: false, ..CartPole::default() }, [0.0; 4], 1).state;
+        assert!(at_once.x > 0.0 && at_once.theta < 0.0);
+    }
+
+    #[test]
+    fn left_mirrors_right() {
+        let left: [f64; 4] = step(CartPole::default(), [0.1, 0.2, 0.03, 0.4], 0).state.into();
+        let right: [f64; 4] = step(CartPole::default(), [-0.1, -0.2, -0.03, -0.4], 1).state.into();
+        assert_eq!(left, right.map(|number| -number));
+    }
+
+    #[test]
+    fn an_episode_ends_beyond_either_threshold() {
+        assert!(step(CartPole::default(), [2.4, 1.0, 0.0, 0.0], 1).terminated);
+        assert!(step(CartPole::default(), [0.0, 0.0, -0.21, -0.1], 0).terminated);
+        assert!(!step(CartPole::default(), [2.3, 0.0, 0.2, 0.0], 0).terminated);
+    }
+
+    #[test]
+    fn the_books_reward_is_minus_one_at_the_fall() {
+        let env = CartPole { sutton_barto_reward: true, ..CartPole::default() };
+        assert_eq!(step(env, [0.0; 4], 0).reward, 0.0);
+        assert_eq!(step(env, [3.0, 0.0, 0.0, 0.0], 0).reward, -1.0);
+        assert_eq!(step(CartPole::default(), [3.0, 0.0, 0.0, 0.0], 0).reward, 1.0);
+    }
+}

@@ -1,0 +1,206 @@
+//! `MountainCarContinuous-v0`: the mountain car with a continuous force, paid for by its square.
+
+use crate::envs::{Env, Parameters, Step};
+use crate::numeric::{Scalar, squared};
+use crate::random::Rng;
+
+/// The starting position is uniform over these.
+const RESET_BOUNDS: [(&str, f64); 2] = [("low", -0.6), ("high", -0.4)];
+/// The acceleration along the slope at its steepest, a step.
+const GRAVITY: f64 = 0.0025;
+const GOAL_REWARD: f64 = 100.0;
+
+/// The constants of the dynamics, under Gymnasium's names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContinuousMountainCar {
+    /// The force is clipped to this from below …
+    pub min_action: f64,
+    /// … and to this from above.
+    pub max_action: f64,
+    /// The left wall, which absorbs the car's speed.
+    pub min_position: f64,
+    /// The right end of the track.
+    pub max_position: f64,
+    /// The speed is clipped to this, both ways.
+    pub max_speed: f64,
+    /// An episode ends at or beyond this position …
+    pub goal_position: f64,
+    /// … when the velocity is at least this.
+    pub goal_velocity: f64,
+    /// The acceleration of a force of one, a step.
+    pub power: f64,
+}
+
+impl Default for ContinuousMountainCar {
+    fn default() -> Self {
+        Self {
+            min_action: -1.0,
+            max_action: 1.0,
+            min_position: -1.2,
+            max_position: 0.6,
+            max_speed: 0.07,
+            goal_position: 0.45,
+            goal_velocity: 0.0,
+            power: 0.0015,
+        }
+    }
+}
+
+impl Parameters for ContinuousMountainCar {
+    const NAMES: &'static [&'static str] = &[
+        "min_action",
+        "max_action",
+        "min_position",
+        "max_position",
+        "max_speed",
+        "goal_position",
+        "goal_velocity",
+        "power",
+    ];
+
+    fn parameter(&mut self, name: &str) -> Option<&mut f64> {
+        Some(match name {
+            "min_action" => &mut self.min_action,
+            "max_action" => &mut self.max_action,
+            "min_position" => &mut self.min_position,
+            "max_position" => &mut self.max_position,
+            "max_speed" => &mut self.max_speed,
+            "goal_position" => &mut self.goal_position,
+            "goal_velocity" => &mut self.goal_velocity,
+            "power" => &mut self.power,
+            _ => return None,
+        })
+    }
+}
+
+/// Where the car is and how fast it moves: f64 after a reset, f32 after a step, as Gymnasium keeps them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContinuousMountainCarState {
+    /// In the track's units.
+    pub position: Scalar,
+    /// Position units per step.
+    pub velocity: Scalar,
+}
+
+impl From<[Scalar; 2]> for ContinuousMountainCarState {
+    fn from([position, velocity]: [Scalar; 2]) -> Self {
+        Self { position, velocity }
+    }
+}
+
+impl From<ContinuousMountainCarState> for [f64; 2] {
+    fn from(state: ContinuousMountainCarState) -> Self {
+        [state.position.into(), state.velocity.into()]
+    }
+}
+
+impl Env for ContinuousMountainCar {
+    type State = ContinuousMountainCarState;
+    /// The force, in the dtype in which it comes: single and double forces give different numbers.
+    type Action = Scalar;
+    type Observation = [f32; 2];
+
+    #[inline]
+    fn num_actions(&self) -> usize {
+        0
+    }
+
+    const RESET_BOUNDS: Option<[(&'static str, f64); 2]> = Some(RESET_BOUNDS);
+
+    #[inline]
+    fn reset(&self, rng: &mut impl Rng) -> Self::State {
+        self.reset_within(RESET_BOUNDS.map(|(_, number)| number), rng)
+    }
+
+    #[inline]
+    fn reset_within(&self, [low, high]: [f64; 2], rng: &mut impl Rng) -> Self::State {
+        let position = Scalar::Double(rng.uniform(low, high));
+        ContinuousMountainCarState { position, velocity: Scalar::Double(0.0) }
+    }
+
+    #[inline]
+    fn step(&self, state: Self::State, action: Scalar, _draw: &mut impl Rng) -> Step<Self::State> {
+        let ContinuousMountainCarState { mut position, mut velocity } = state;
+        let [min_action, max_action] = [self.min_action, self.max_action].map(Scalar::Python);
+        let [min_position, max_position] = [self.min_position, self.max_position].map(Scalar::Python);
+        let [max_speed, min_speed] = [self.max_speed, -self.max_speed].map(Scalar::Python);
+
+        let mut force = action;
+        if force.less(min_action) {
+            force = min_action;
+        }
+        if max_action.less(force) {
+            force = max_action;
+        }
+        let slope = f64::from(Scalar::Python(3.0) * position).cos();
+        velocity = velocity + (force * Scalar::Python(self.power) - Scalar::Python(GRAVITY * slope));
+        if max_speed.less(velocity) {
+            velocity = max_speed;
+        }
+        if velocity.less(min_speed) {
+            velocity = min_speed;
+        }
+        position = position + velocity;
+        if max_position.less(position) {
+            position = max_position;
+        }
+        if position.less(min_position) {
+            position = min_position;
+        }
+        if position.equal(min_position) && velocity.less(Scalar::Python(0.0)) {
+            velocity = Scalar::Python(0.0);
+        }
+
+        let terminated = position.greater_equal(Scalar::Python(self.goal_position))
+            && velocity.greater_equal(Scalar::Python(self.goal_velocity));
+        let reward = if terminated { GOAL_REWARD } else { 0.0 };
+        Step {
+            state: ContinuousMountainCarState {
+                position: Scalar::Single(position.into()),
+                velocity: Scalar::Single(velocity.into()),
+            },
+            reward: reward - squared(action.into()) * 0.1,
+            terminated,
+        }
+    }
+
+    #[inline]
+    fn observe(&self, state: &Self::State) -> [f32; 2] {
+        [state.position.into(), state.velocity.into()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Pcg64, SeedSequence};
+
+    fn step(position: f32, velocity: f32, force: f32) -> Step<ContinuousMountainCarState> {
+        let state =
+            ContinuousMountainCarState { position: Scalar::Single(position), velocity: Scalar::Single(velocity) };
+        let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
+        ContinuousMountainCar::default().step(state, Scalar::Single(force), &mut rng)
+    }
+
+    #[test]
+    fn the_left_wall_absorbs_speed() {
+        assert_eq!(
+            step(-1.19, -0.05, -1.0).state,
+            ContinuousMountainCarState { position: Scalar::Single(-1.2), velocity: Scalar::Single(0.0) }
+        );
+    }
+
+    #[test]
+    fn a_force_is_paid_for_as_it_was_asked_and_acts_as_it_is_clipped() {
+        assert_eq!(step(-0.5, 0.0, 2.0).state, step(-0.5, 0.0, 1.0).state);
+        assert_eq!(step(-0.5, 0.0, 2.0).reward, -0.4);
+        assert_eq!(step(-0.5, 0.0, 0.0).reward, 0.0);
+    }
+
+    #[test]
+    fn the_goal_is_worth_a_hundred() {
+        let goal = step(0.449, 0.06, 1.0);
+        assert!(goal.terminated);
+        assert_eq!(goal.reward, 99.9);
+    }
+}

@@ -1,0 +1,15 @@
+//! Gymnasium's classic control environments.
+
+mod acrobot;
+mod cart_pole;
+mod continuous_mountain_car;
+mod mountain_car;
+mod mountain_car_simd;
+mod pendulum;
+
+pub use acrobot::{Acrobot, AcrobotState};
+pub use cart_pole::{CartPole, CartPoleState};
+pub use continuous_mountain_car::{ContinuousMountainCar, ContinuousMountainCarState};
+pub(crate) use mountain_car::RESET_BOUNDS as MOUNTAIN_CAR_RESET_BOUNDS;
+pub use mountain_car::{MountainCar, MountainCarState};
+pub use pendulum::{Pendulum, PendulumState};

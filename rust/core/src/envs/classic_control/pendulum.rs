@@ -1,0 +1,172 @@
+//! `Pendulum-v1`: swing a pendulum up and keep it there; the torque is continuous.
+
+use std::f64::consts::PI;
+
+use crate::envs::{Env, Parameters, Step};
+use crate::numeric::{Scalar, clip, modulo, squared};
+use crate::random::Rng;
+
+/// The first angle and the first speed are uniform between these and their negatives.
+const RESET_BOUNDS: [(&str, f64); 2] = [("x_init", PI), ("y_init", 1.0)];
+
+/// The constants of the dynamics, under Gymnasium's names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pendulum {
+    /// The angular speed is clipped to this, both ways.
+    pub max_speed: f64,
+    /// The torque is clipped to this, both ways.
+    pub max_torque: f64,
+    /// Seconds a step.
+    pub dt: f64,
+    /// m/s²
+    pub g: f64,
+    /// The mass.
+    pub m: f64,
+    /// The length.
+    pub l: f64,
+}
+
+impl Default for Pendulum {
+    fn default() -> Self {
+        Self { max_speed: 8.0, max_torque: 2.0, dt: 0.05, g: 10.0, m: 1.0, l: 1.0 }
+    }
+}
+
+impl Parameters for Pendulum {
+    const NAMES: &'static [&'static str] = &["max_speed", "max_torque", "dt", "g", "m", "l"];
+
+    fn parameter(&mut self, name: &str) -> Option<&mut f64> {
+        Some(match name {
+            "max_speed" => &mut self.max_speed,
+            "max_torque" => &mut self.max_torque,
+            "dt" => &mut self.dt,
+            "g" => &mut self.g,
+            "m" => &mut self.m,
+            "l" => &mut self.l,
+            _ => return None,
+        })
+    }
+}
+
+/// The pendulum, in f64.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PendulumState {
+    /// The angle from upright in radians, which counts the turns.
+    pub theta: f64,
+    /// The angular speed.
+    pub theta_dot: f64,
+}
+
+impl From<[f64; 2]> for PendulumState {
+    fn from([theta, theta_dot]: [f64; 2]) -> Self {
+        Self { theta, theta_dot }
+    }
+}
+
+impl From<PendulumState> for [f64; 2] {
+    fn from(state: PendulumState) -> Self {
+        [state.theta, state.theta_dot]
+    }
+}
+
+impl Pendulum {
+    /// A torque as the motor gives it: clipped, in its own dtype.
+    #[inline]
+    pub fn torque(&self, u: Scalar) -> Scalar {
+        match u {
+            Scalar::Single(u) => {
+                let (low, high) = (-self.max_torque as f32, self.max_torque as f32);
+                let raised = if u < low { low } else { u };
+                Scalar::Single(if raised > high { high } else { raised })
+            }
+            Scalar::Python(u) | Scalar::Double(u) => Scalar::Double(clip(u, -self.max_torque, self.max_torque)),
+        }
+    }
+}
+
+impl Env for Pendulum {
+    type State = PendulumState;
+    /// The torque, in the dtype in which it comes: single and double torques give different numbers.
+    type Action = Scalar;
+    type Observation = [f32; 3];
+
+    #[inline]
+    fn num_actions(&self) -> usize {
+        0
+    }
+
+    const RESET_BOUNDS: Option<[(&'static str, f64); 2]> = Some(RESET_BOUNDS);
+
+    #[inline]
+    fn reset(&self, rng: &mut impl Rng) -> PendulumState {
+        self.reset_within(RESET_BOUNDS.map(|(_, number)| number), rng)
+    }
+
+    #[inline]
+    fn reset_within(&self, [angle, speed]: [f64; 2], rng: &mut impl Rng) -> PendulumState {
+        let theta = rng.uniform(-angle, angle);
+        PendulumState { theta, theta_dot: rng.uniform(-speed, speed) }
+    }
+
+    #[inline]
+    fn step(&self, state: PendulumState, u: Scalar, _draw: &mut impl Rng) -> Step<PendulumState> {
+        let PendulumState { theta, theta_dot } = state;
+        let Self { max_speed, dt, g, m, l, .. } = *self;
+        let u = self.torque(u);
+        let effort = Scalar::Python(0.001) * u.squared();
+        let costs = squared(normalized(theta)) + 0.1 * squared(theta_dot) + f64::from(effort);
+
+        let pull = Scalar::Python(3.0 / (m * squared(l))) * u;
+        let theta_dot = theta_dot + (3.0 * g / (2.0 * l) * theta.sin() + f64::from(pull)) * dt;
+        let theta_dot = clip(theta_dot, -max_speed, max_speed);
+        Step { state: PendulumState { theta: theta + theta_dot * dt, theta_dot }, reward: -costs, terminated: false }
+    }
+
+    #[inline]
+    fn observe(&self, state: &PendulumState) -> [f32; 3] {
+        [state.theta.cos() as f32, state.theta.sin() as f32, state.theta_dot as f32]
+    }
+}
+
+/// The angle between -π and π.
+#[inline]
+fn normalized(angle: f64) -> f64 {
+    modulo(angle + PI, 2.0 * PI) - PI
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Pcg64, SeedSequence};
+
+    fn step(state: [f64; 2], u: Scalar) -> Step<PendulumState> {
+        Pendulum::default().step(state.into(), u, &mut Pcg64::new(&SeedSequence::new(&[0])))
+    }
+
+    #[test]
+    fn upright_and_at_rest_costs_nothing() {
+        assert_eq!(step([0.0, 0.0], Scalar::Single(0.0)).reward, 0.0);
+        assert_eq!(step([PI, 0.0], Scalar::Double(0.0)).reward, -(PI * PI));
+    }
+
+    #[test]
+    fn the_torque_is_clipped_in_its_own_dtype() {
+        assert_eq!(Pendulum::default().torque(Scalar::Single(3.0)), Scalar::Single(2.0));
+        assert_eq!(Pendulum::default().torque(Scalar::Double(-3.0)), Scalar::Double(-2.0));
+        assert_eq!(step([1.0, 0.5], Scalar::Single(9.0)), step([1.0, 0.5], Scalar::Single(2.0)));
+    }
+
+    #[test]
+    fn the_speed_is_limited_and_an_episode_never_ends() {
+        let fast = step([PI / 2.0, 7.9], Scalar::Single(2.0));
+        assert_eq!(fast.state.theta_dot, 8.0);
+        assert!(!fast.terminated);
+    }
+
+    #[test]
+    fn turns_are_counted_but_cost_nothing() {
+        let turned = step([2.0 * PI, 0.0], Scalar::Single(0.0));
+        assert_eq!(turned.reward, 0.0);
+        assert!(turned.state.theta > 6.0);
+    }
+}

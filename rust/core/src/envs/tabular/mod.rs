@@ -1,0 +1,12 @@
+//! Finite Markov decision processes.
+
+mod invalid_mdp;
+mod maximization_bias;
+mod outcome;
+mod outcome_distribution;
+mod tabular_mdp;
+
+pub use invalid_mdp::InvalidMdp;
+pub use maximization_bias::{MaximizationBias, STATES as MAXIMIZATION_BIAS_STATES};
+pub use outcome::{Outcome, TOLERANCE};
+pub use tabular_mdp::TabularMdp;

@@ -1,0 +1,75 @@
+//! Tables that say how likely what happened was, as Gymnasium's toy text does in its info.
+
+use crate::envs::TransitionProbability;
+use crate::envs::{Env, Step};
+use crate::random::Rng;
+
+/// The same environment, whose state remembers how likely it was.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WithTransitionProbability<E>(pub E);
+
+/// A state, and how likely the step was that led to it; 1 after a reset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransitionProbabilityState<S> {
+    /// The environment's own state.
+    pub state: S,
+    /// Of what was drawn.
+    pub probability: f64,
+}
+
+impl<E: TransitionProbability> Env for WithTransitionProbability<E> {
+    type State = TransitionProbabilityState<E::State>;
+    type Action = E::Action;
+    type Observation = E::Observation;
+
+    #[inline]
+    fn num_actions(&self) -> usize {
+        self.0.num_actions()
+    }
+
+    #[inline]
+    fn reset(&self, rng: &mut impl Rng) -> Self::State {
+        TransitionProbabilityState { state: self.0.reset(rng), probability: 1.0 }
+    }
+
+    #[inline]
+    fn step(&self, state: Self::State, action: Self::Action, rng: &mut impl Rng) -> Step<Self::State> {
+        let (Step { state, reward, terminated }, probability) = self.0.step_with_probability(state.state, action, rng);
+        Step { state: TransitionProbabilityState { state, probability }, reward, terminated }
+    }
+
+    #[inline]
+    fn observe(&self, state: &Self::State) -> Self::Observation {
+        self.0.observe(&state.state)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::envs::tabular::{Outcome, TabularMdp};
+    use crate::random::{Pcg64, SeedSequence};
+
+    #[test]
+    fn what_happened_says_how_likely_it_was() {
+        let outcome = |probability, state| Outcome { probability, state, reward: 0.0, terminated: false };
+        let rows = [vec![outcome(0.25, 0), outcome(0.75, 1)], vec![outcome(1.0, 0)]];
+        let table = TabularMdp::new(1, &[1.0, 0.0], &rows).expect("a table");
+        let telling = WithTransitionProbability(table.clone());
+        let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
+        let mut state = telling.reset(&mut rng);
+        assert_eq!(state, TransitionProbabilityState { state: 0, probability: 1.0 });
+        for _ in 0..100 {
+            let mut same = rng.clone();
+            let step = telling.step(state, 0, &mut rng);
+            assert_eq!(step.state.state, table.step(state.state, 0, &mut same).state);
+            let expected = match (state.state, step.state.state) {
+                (0, 0) => 0.25,
+                (0, _) => 0.75,
+                _ => 1.0,
+            };
+            assert_eq!(step.state.probability, expected);
+            state = step.state;
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! A grid of either kind: cells rounded to, or bins between edges.
+
+use super::{Bins, Features, OutOfBounds, Rounding};
+use crate::numeric::Float;
+
+/// One row for each observation, by whichever rule was chosen at run time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AnyGrid<T> {
+    /// The article's.
+    Rounding(Rounding<T>),
+    /// `np.digitize`'s.
+    Bins(Bins<T>),
+}
+
+impl<T: Float, O: AsRef<[T]> + ?Sized> Features<O> for AnyGrid<T> {
+    type Active = [u32; 1];
+
+    #[inline]
+    fn active_rows(&self, observation: &O) -> Result<[u32; 1], OutOfBounds> {
+        match self {
+            Self::Rounding(grid) => grid.active_rows(observation),
+            Self::Bins(grid) => grid.active_rows(observation),
+        }
+    }
+
+    fn len(&self) -> usize {
+        match self {
+            Self::Rounding(grid) => Features::<O>::len(grid),
+            Self::Bins(grid) => Features::<O>::len(grid),
+        }
+    }
+}

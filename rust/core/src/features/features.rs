@@ -1,0 +1,23 @@
+//! The trait of all features.
+
+use super::OutOfBounds;
+
+/// Maps an observation to the active rows of a Q table: one row for a grid, several for tile coding.
+pub trait Features<O: ?Sized> {
+    /// The active rows, in the order in which a learner sums their values.
+    type Active: Copy + AsRef<[u32]>;
+
+    /// The active rows of an observation.
+    ///
+    /// # Errors
+    /// The observation has no row. A row index never wraps around, and is clamped only where the features say so.
+    fn active_rows(&self, observation: &O) -> Result<Self::Active, OutOfBounds>;
+
+    /// The number of rows of the table.
+    fn len(&self) -> usize;
+
+    /// Whether the table has no rows.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}

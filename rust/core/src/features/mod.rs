@@ -1,0 +1,23 @@
+//! Features: from an observation to the active rows of a Q table.
+
+mod any_grid;
+mod batch_features;
+mod bins;
+#[expect(clippy::module_inception, reason = "each trait is in the file named for it")]
+mod features;
+mod hashing;
+mod identity;
+mod multi_discrete_index;
+mod out_of_bounds;
+mod rounding;
+mod tile_coding;
+
+pub use any_grid::AnyGrid;
+pub use batch_features::BatchFeatures;
+pub use bins::{Bins, Edges};
+pub use features::Features;
+pub use identity::Identity;
+pub use multi_discrete_index::MultiDiscreteIndex;
+pub use out_of_bounds::OutOfBounds;
+pub use rounding::{Axis, Rounding};
+pub use tile_coding::{ActiveTiles, MAX_TILINGS, TileCoding};

@@ -1,0 +1,54 @@
+//! Several discrete numbers as one row index.
+
+use super::{Features, OutOfBounds};
+
+/// One row for each combination of numbers below so many each, the last one running fastest: `np.ravel_multi_index`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MultiDiscreteIndex<C>(pub C);
+
+impl<C: AsRef<[u32]>> Features<[u32]> for MultiDiscreteIndex<C> {
+    type Active = [u32; 1];
+
+    #[inline]
+    fn active_rows(&self, observation: &[u32]) -> Result<[u32; 1], OutOfBounds> {
+        let mut row = 0;
+        for (axis, (&number, &count)) in observation.iter().zip(self.0.as_ref()).enumerate() {
+            if number >= count {
+                return Err(OutOfBounds { axis, value: f64::from(number) });
+            }
+            row = row * count + number;
+        }
+        Ok([row])
+    }
+
+    fn len(&self) -> usize {
+        self.0.as_ref().iter().map(|&count| count as usize).product()
+    }
+}
+
+impl<const N: usize> Features<[u32; N]> for MultiDiscreteIndex<[u32; N]> {
+    type Active = [u32; 1];
+
+    #[inline]
+    fn active_rows(&self, observation: &[u32; N]) -> Result<[u32; 1], OutOfBounds> {
+        self.active_rows(observation.as_slice())
+    }
+
+    fn len(&self) -> usize {
+        Features::<[u32]>::len(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn combinations_are_counted_in_c_order() {
+        let cells = MultiDiscreteIndex([2, 3, 4]);
+        assert_eq!(Features::<[u32]>::len(&cells), 24);
+        assert_eq!(cells.active_rows(&[0, 0, 3]), Ok([3]));
+        assert_eq!(cells.active_rows(&[1, 2, 3]), Ok([23]));
+        assert_eq!(cells.active_rows(&[1, 3, 0]), Err(OutOfBounds { axis: 1, value: 3.0 }));
+    }
+}

@@ -1,0 +1,20 @@
+//! What the learning algorithms share: the learner trait, the agent, eligibility traces, the model of Dyna.
+
+mod agent;
+mod learner;
+mod model;
+mod td_learner;
+#[cfg(test)]
+pub(super) mod test_support;
+mod traces;
+mod truncation_handling;
+mod update_rule;
+
+pub use agent::Agent;
+pub use learner::Learner;
+pub(super) use model::single_row;
+pub use model::{Model, ModelEntry};
+pub use td_learner::TdLearner;
+pub use traces::{TraceKind, Traces};
+pub use truncation_handling::TruncationHandling;
+pub use update_rule::UpdateRule;

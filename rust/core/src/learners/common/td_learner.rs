@@ -1,0 +1,48 @@
+//! What the learners of one agent share, so that the file of each holds its equation and nothing else.
+
+use super::UpdateRule;
+use super::{Agent, Learner};
+use crate::policies::Policy;
+use crate::random::Rng;
+use crate::schedules::StepSize;
+use crate::tasks::Next;
+
+/// An agent that learns by a rule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TdLearner<U, G = Agent> {
+    /// Q, the policy and the constants.
+    pub agent: G,
+    /// How a step changes them.
+    pub rule: U,
+}
+
+impl<const N: usize, R, U, P, A> Learner<R> for TdLearner<U, Agent<N, P, A>>
+where
+    R: Copy + AsRef<[u32]>,
+    U: UpdateRule<R, Agent<N, P, A>>,
+    P: Policy,
+    A: StepSize,
+{
+    #[inline]
+    fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
+        self.agent.choose(state, rng)
+    }
+
+    #[inline]
+    fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
+        self.rule.learn(&mut self.agent, state, action, reward, next, rng)
+    }
+
+    fn end_episode(&mut self) {
+        self.rule.end_episode();
+        self.agent.end_episode();
+    }
+
+    fn tables(&self) -> Vec<&[f64]> {
+        vec![self.agent.table.values()]
+    }
+
+    fn diverged(&self) -> bool {
+        self.agent.table.diverged()
+    }
+}

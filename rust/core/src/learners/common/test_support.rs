@@ -1,0 +1,22 @@
+//! Small numbers that updates are worked out by hand with.
+
+use super::Agent;
+use crate::policies::{AnyPolicy, TieBreaking};
+use crate::q_table::{QTable, TerminalUpdate};
+use crate::random::{Pcg64, SeedSequence};
+use crate::schedules::{LearningRate, Schedule};
+
+/// Two actions, α = γ = 1/2, always greedy.
+pub(crate) fn agent(values: &[f64]) -> Agent {
+    Agent {
+        table: QTable::new(values.to_vec(), 2),
+        policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.0), ties: TieBreaking::First },
+        learning_rate: LearningRate::scheduled(Schedule::constant(0.5), 1),
+        discount: 0.5,
+        terminal_update: TerminalUpdate::Target,
+    }
+}
+
+pub(crate) fn rng() -> Pcg64 {
+    Pcg64::new(&SeedSequence::new(&[0]))
+}

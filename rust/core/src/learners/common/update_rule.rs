@@ -1,0 +1,21 @@
+//! The trait of all update rules.
+
+use crate::random::Rng;
+use crate::tasks::Next;
+
+/// How a step changes an agent `G`: an equation, and what it remembers from step to step.
+pub trait UpdateRule<R, G> {
+    /// Learns from one step and returns the next action, as [`Learner::learn`].
+    fn learn(
+        &mut self,
+        agent: &mut G,
+        state: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        rng: &mut impl Rng,
+    ) -> usize;
+
+    /// Called after the last step of every episode.
+    fn end_episode(&mut self) {}
+}

@@ -1,0 +1,40 @@
+//! The maximum of some values, and where it is.
+
+/// The first of the largest values: `np.argmax`.
+#[inline]
+pub(crate) fn argmax(values: &[f64]) -> usize {
+    // The largest value is carried along: looked up by index, it would add a load to the chain of comparisons.
+    let larger = |one: (usize, f64), other: (usize, f64)| if other.1 > one.1 { other } else { one };
+    let mut best = (0, values[0]);
+    if values.len() < 4 {
+        for (action, &value) in values.iter().enumerate().skip(1) {
+            best = larger(best, (action, value));
+        }
+        return best.0;
+    }
+    // By pairs, so that fewer comparisons wait for each other.
+    for (pair, values) in values.chunks(2).enumerate() {
+        let first = (2 * pair, values[0]);
+        let of_pair = if let &[_, second] = values { larger(first, (2 * pair + 1, second)) } else { first };
+        best = if pair == 0 { of_pair } else { larger(best, of_pair) };
+    }
+    best.0
+}
+
+/// `np.max`.
+#[inline]
+pub(crate) fn maximum(values: &[f64]) -> f64 {
+    values[1..].iter().fold(values[0], |largest, &value| if value > largest { value } else { largest })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_of_equal_maxima_wins() {
+        assert_eq!(argmax(&[1.0, 3.0, 3.0]), 1);
+        assert_eq!(argmax(&[0.0, -0.0]), 0);
+        assert_eq!(maximum(&[-2.0, -1.0, -3.0]), -1.0);
+    }
+}

@@ -1,0 +1,33 @@
+//! The dtypes of Gymnasium's boxes.
+
+use std::ops::{Add, Div, Mul, Sub};
+
+/// f32 or f64, with `NumPy` 2's promotion: a box's arithmetic stays in the dtype of its bounds.
+pub trait Float:
+    Copy
+    + PartialOrd
+    + Into<f64>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Send
+    + Sync
+{
+    /// The nearest number to a count.
+    fn from_count(count: u32) -> Self;
+}
+
+impl Float for f32 {
+    #[inline]
+    fn from_count(count: u32) -> Self {
+        count as f32
+    }
+}
+
+impl Float for f64 {
+    #[inline]
+    fn from_count(count: u32) -> Self {
+        f64::from(count)
+    }
+}

@@ -1,0 +1,13 @@
+//! Policies: how an action is chosen from action values.
+
+mod any_policy;
+mod epsilon_greedy;
+mod policy;
+mod softmax;
+mod tie_breaking;
+
+pub use any_policy::AnyPolicy;
+pub use epsilon_greedy::EpsilonGreedy;
+pub use policy::Policy;
+pub use softmax::Softmax;
+pub use tie_breaking::TieBreaking;

@@ -1,0 +1,9 @@
+//! Rates that change over a run: the exploration rate ε and the learning rate α.
+
+mod learning_rate;
+mod schedule;
+mod step_size;
+
+pub use learning_rate::LearningRate;
+pub use schedule::{Decay, Schedule};
+pub use step_size::StepSize;

@@ -1,0 +1,13 @@
+//! Tasks: what a learner interacts with. An environment, its features and its time limit.
+
+mod boxed_task;
+mod episode_recorder;
+mod native_task;
+mod rng_snapshot;
+mod task;
+
+pub use boxed_task::BoxedTask;
+pub use episode_recorder::{EpisodeRecorder, Recording, Recordings};
+pub use native_task::{NativeTask, TimedState};
+pub use rng_snapshot::RngSnapshot;
+pub use task::{Next, Task, Transition};

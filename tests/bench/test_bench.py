@@ -1,0 +1,153 @@
+"""The bench measures what it says, and prints it; no test looks at how fast anything is."""
+
+from pathlib import Path
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab as package
+from qtab.bench import (
+    article,
+    article_numba,
+    environments,
+    footprint,
+    learners,
+    measure,
+    overhead,
+    plain,
+    report,
+    sarsa_numba,
+    subjects,
+    vectors,
+)
+from qtab.bench.rounds import Timings
+from support.command import qtab, refused
+
+
+def test_the_numba_loop_is_the_articles_loop_to_the_bit() -> None:
+    run = package.train("MountainCar-v0", episodes=300, seed=4, bit_generator="MT19937", backend="rust")
+    starts = np.random.default_rng(4).uniform(-0.6, -0.4, 300)
+    table, returns, steps = article_numba.q_learning(starts, 4, 0.2, 0.9, 0.8, 0.0)
+    assert table.tobytes() == run.q_table.tobytes()
+    assert returns.tobytes() == run.episode_returns.tobytes()
+    assert steps == run.episode_lengths.sum()
+
+
+def test_the_plain_loop_is_the_articles_loop_to_the_bit() -> None:
+    run = package.train("MountainCar-v0", episodes=30, seed=4)
+    table, steps = article.q_learning(gym.make("MountainCar-v0"), 0.2, 0.9, 0.8, 0.0, 30, 4)
+    assert table.tobytes() == run.q_table.tobytes()
+    assert steps == run.episode_lengths.sum()
+
+
+@pytest.mark.parametrize("cutoff", [0.0, learners.CUTOFF])
+def test_the_numba_loop_of_sarsa_lambda_is_ours_to_the_bit(cutoff: float) -> None:
+    settings = {**learners.SETTINGS[learners.CUT], "episodes": 6, "trace_cutoff": cutoff}
+    run = package.train("MountainCar-v0", seed=4, bit_generator="MT19937", **settings)
+    starts = np.random.default_rng(4).uniform(-0.6, -0.4, 6)
+    table, returns, steps = sarsa_numba.sarsa_lambda(sarsa_numba.look, starts, 4, 0.3, 0.9, cutoff)
+    assert table.tobytes() == run.tables.tobytes()
+    assert returns.tobytes() == run.episode_returns.tobytes()
+    assert steps == run.episode_lengths.sum()
+
+
+@pytest.mark.parametrize("name", environments.names())
+def test_the_plain_loop_by_a_preset_is_ours_to_the_bit(name: str) -> None:
+    run = package.train(name, episodes=30, seed=4)
+    table, steps = plain.q_learning(name, 30, 4)
+    assert table.tobytes() == run.q_table.tobytes()
+    assert steps == run.episode_lengths.sum()
+
+
+def test_subjects_take_turns_and_ratios_are_taken_within_a_round() -> None:
+    turns: list[str] = []
+
+    def subject(name: str) -> subjects.Subject:
+        def run(index: int) -> int:
+            turns.append(f"{name}{index}")
+            return 1
+
+        return run
+
+    timings = measure({"a": subject("a"), "b": subject("b")}, seconds=0, rounds=2)
+    assert turns == ["a0", "b0", "a1", "b1", "a2", "b2"]
+    assert {name: len(times) for name, times in timings.nanoseconds.items()} == {"a": 2, "b": 2}
+    drifting = Timings({"slow": np.array([10.0, 200.0, 30.0]), "fast": np.array([1.0, 20.0, 3.0])})
+    assert drifting.ratio("slow", "fast") == 10.0
+    assert drifting.median("slow") == 30.0
+
+
+def test_what_learning_adds_is_a_difference_within_each_round() -> None:
+    times = {overhead.BARE: np.array([100.0, 400.0, 200.0]), overhead.LEARNING: np.array([350.0, 600.0, 410.0])}
+    assert overhead.sentence(Timings(times)).startswith("learning adds 210 ns a step")
+
+
+def test_every_subject_counts_its_steps() -> None:
+    training = subjects.training()
+    assert 1900 <= training[subjects.ARTICLE](0) <= 2000
+    assert training[subjects.TRAIN](0) == package.train("MountainCar-v0", seed=0).episode_lengths.sum()
+    assert all(step(0) == subjects.STEPS for step in subjects.stepping().values())
+    lone = f"Taxi, {environments.WAYS[1]}"
+    assert environments.training()[lone](0) == package.train("Taxi-v4", seed=0).episode_lengths.sum()
+    cut = package.train("MountainCar-v0", seed=0, **learners.SETTINGS[learners.CUT])
+    assert learners.training()[learners.CUT](0) == cut.episode_lengths.sum()
+    idle = overhead.EPISODES * overhead.EPISODE_STEPS
+    assert [loop(0) for loop in overhead.python_stepping().values()] == [idle, idle]
+
+
+def test_vector_environments_count_the_steps_of_all_and_are_compared_with_their_own_kind() -> None:
+    steps = vectors.stepping()
+    assert steps[vectors.QTAB_POLES](0) == 200 * 4096
+    assert steps[vectors.QTAB_ONE](0) == 10_000
+    nanoseconds = {vectors.SYNC: 900.0, vectors.QTAB_CARS: 3.0, vectors.NUMPY_POLES: 8.0, vectors.QTAB_POLES: 2.0}
+    rows = dict(vectors.compared(Timings({name: np.array([number]) for name, number in nanoseconds.items()})))
+    assert rows == {
+        vectors.SYNC: [1.0, None, None],
+        vectors.QTAB_CARS: [300.0, None, None],
+        vectors.NUMPY_POLES: [1.0, None, None],
+        vectors.QTAB_POLES: [4.0, None, None],
+    }
+
+
+def test_the_bench_prints_its_tables_with_versions_and_build(tmp_path: Path) -> None:
+    done = qtab("bench", "--rounds", "1", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    names = (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP, subjects.QTAB_MAKE)
+    for name in (*names, vectors.SYNC, vectors.QTAB_CARS, vectors.QTAB_POLES, vectors.QTAB_ONE):
+        assert f"\n{name}  " in done.stdout
+    for name in (environments.FIRST, *learners.SETTINGS):
+        assert f"\n{name}  " in done.stdout
+    assert "learning adds" in done.stdout
+    assert "import qtab adds" in done.stdout
+    assert f"numpy {np.__version__}" in done.stdout
+    assert f"build {package.versions.versions()['build']}" in done.stdout
+
+
+def test_a_part_is_timed_alone() -> None:
+    printed = str(report.bench(rounds=1, progress=False, part="stepping"))
+    assert subjects.QTAB_STEP in printed
+    assert not any(subject in printed for subject in (subjects.TRAIN, environments.FIRST, learners.Q_LEARNING))
+
+
+def test_a_learners_time_is_a_multiple_of_q_learnings() -> None:
+    times = dict.fromkeys(learners.SETTINGS, np.array([30.0, 60.0])) | {learners.Q_LEARNING: np.array([10.0, 20.0])}
+    times |= dict.fromkeys(learners.NUMBA, np.array([90.0, 180.0]))
+    rows = {name: columns for name, *columns in learners.lines(Timings(times))}
+    assert rows[learners.TRACES] == ["45.0", "3.00", "3.0"]
+    assert rows[learners.Q_LEARNING] == ["15.0", "1.00", ""]
+
+
+def test_without_numba_the_table_says_how_to_get_it_and_a_debug_build_is_warned_of() -> None:
+    names = (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP)
+    names = (*names, subjects.GYMNASIUM_MAKE, subjects.QTAB_MAKE)
+    timings = Timings({name: np.array([1.0]) for name in names})
+    printed = str(report.Report(timings, 1, footprint.Footprint(200.0, 5.0, None), {"build": "debug"}))
+    assert printed.startswith("WARNING: this is a debug build")
+    assert "qtab[bench]" in printed
+    assert "× numba" not in printed
+
+
+@pytest.mark.parametrize("arguments", [["--rounds", "0"], ["--seconds", "-1"], ["--laps", "3"], ["--part", "whole"]])
+def test_bad_usage_is_refused(tmp_path: Path, arguments: list[str]) -> None:
+    assert refused("bench", *arguments, cwd=tmp_path).startswith("qtab bench: error: ")

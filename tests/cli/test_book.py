@@ -1,0 +1,90 @@
+"""``qtab book`` as a user runs it."""
+
+import subprocess
+import sys
+
+import pytest
+
+import qtab
+from support.command import environment, refused
+from support.command import qtab as command
+
+
+def test_without_a_name_the_experiments_are_listed(tmp_path):
+    done = command("book", cwd=tmp_path)
+    assert done.returncode == 0
+    assert [row.split()[0] for row in done.stdout.splitlines()] == list(qtab.book.EXPERIMENTS)
+
+
+def test_an_experiment_prints_its_settings_and_its_table(tmp_path):
+    done = command("book", "8.2", "--runs", "3", "--plot", "maze.png", "--save", "maze.csv", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("Figure 8.2: Dyna-Q")
+    assert "α = 0.1, ε = 0.1, γ = 0.95" in done.stdout
+    assert "3 runs of each setting (FEWER than the 30 of a whole figure)" in " ".join(done.stdout.split())
+    assert "capped at 5,000 steps" in " ".join(done.stdout.split())
+    assert "std. error" in done.stdout
+    assert (tmp_path / "maze.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "maze.csv").read_text().startswith("line,x,mean,standard_error,runs,")
+    _, rows = str(qtab.book.run("8.2", runs=3)).split("\n\n")
+    assert rows in done.stdout
+
+
+def test_a_whole_figure_says_its_count(tmp_path):
+    done = command("book", "8.2", cwd=tmp_path)
+    assert "30 runs of each setting, seeds from 0" in done.stdout
+    assert "FEWER" not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["99"], "qtab book: error: name must be one of example-6.5, example-6.6, figure-6.3"),
+        (["6.5"], "qtab book: error: name must be example-6.5 or figure-6.5, got '6.5', which is both"),
+        (["8.2", "--runs", "0"], "qtab book: error: runs must be an integer of at least 1, got 0"),
+        (["8.2", "--runs", "many"], "many"),
+        (["8.2", "--seed", "-1"], "seed must be an integer of at least 0, got -1"),
+        (["8.2", "--threads", "0"], "threads must be an integer from 1 to 1024, got 0"),
+        (["8.2", "--plot", "maze.tex.gz"], "plot must end in one of"),
+        (["8.2", "--plot", "nowhere/maze.png"], "plot must be a file that can be written"),
+        (["8.2", "--save", "nowhere/maze.csv"], "save must be a file that can be written"),
+    ],
+)
+def test_bad_usage_is_refused_before_anything_runs(arguments, message, tmp_path):
+    assert message in refused("book", *arguments, cwd=tmp_path)
+
+
+INTERRUPTED = """
+import os, signal, sys, threading, time
+from qtab.book import trials
+from qtab.cli import main
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell starts in the background would ignore it
+
+def at_work():
+    frame = sys._current_frames()[threading.main_thread().ident]
+    while frame is not None and frame.f_code is not trials.train.__code__:
+        frame = frame.f_back
+    return frame is not None
+
+def interrupt():
+    while not at_work():
+        time.sleep(0.01)
+    time.sleep(0.2)
+    os.kill(os.getpid(), signal.SIGINT)
+
+threading.Thread(target=interrupt, daemon=True).start()
+sys.exit(main(["book", "6.3", "--plot", "cliff.png"]))
+"""
+
+
+def test_ctrl_c_ends_it_and_leaves_no_file(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED], cwd=tmp_path, env=environment(tmp_path), capture_output=True, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
+    assert not (tmp_path / "cliff.png").exists()
+
+
+def test_a_picture_of_no_experiment_is_refused(tmp_path):
+    assert "NAME must be given" in refused("book", "--plot", "maze.png", cwd=tmp_path)

@@ -1,0 +1,271 @@
+"""The ``qtab`` command: what it prints, what it writes, how it fails."""
+
+import importlib.metadata
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import qtab as package
+from support.command import QTAB, environment, qtab, refused
+
+
+def test_train_prints_averages_as_the_article_does_and_saves_what_the_api_returns(tmp_path: Path) -> None:
+    done = qtab("train", "--seed", "3", "--episodes", "450", "--save", "run.npz", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    run = package.load(tmp_path / "run.npz")
+    same = package.train("MountainCar-v0", seed=3, episodes=450)
+    assert run.q_table.tobytes() == same.q_table.tobytes()
+    printed = re.findall(r"^Episode (\d+) Average Reward: (.*)$", done.stdout, re.M)
+    assert printed == [(str(100 * i + 100), str(mean)) for i, mean in enumerate(same.mean_returns(100).tolist())]
+    header, *_ = done.stdout.splitlines()
+    assert header == "MountainCar-v0 in Rust, preset article, 450 episodes, seed 3"
+    assert f"last 100 episodes: {same.episode_returns[-100:].mean():.2f}" in done.stdout
+    assert done.stdout.splitlines()[-1] == "Saved the run to run.npz"
+
+
+def test_every_setting_is_a_flag_and_help_shows_the_preset(tmp_path: Path) -> None:
+    done = qtab("train", "--help", cwd=tmp_path)
+    assert done.returncode == 0
+    for name in package.Config.__dataclass_fields__:
+        if name != "env":
+            assert f"--{name.replace('_', '-')} " in done.stdout
+    words = " ".join(done.stdout.replace("│", "").split())
+    assert "default: 10.0 100.0" in words
+    assert "default: MountainCar-v0" in words
+
+
+def test_help_shows_the_settings_of_the_file(tmp_path: Path) -> None:
+    (tmp_path / "run.toml").write_text("episodes = 123")
+    assert "123" in qtab("train", "--config", "run.toml", "--help", cwd=tmp_path).stdout
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["qtab/MountainCar-v0", "--episodes", "5"],
+        ["--episodes", "5", "qtab/MountainCar-v0"],
+        ["--env", "qtab/MountainCar-v0", "--episodes", "5"],
+        ["--episodes=5", "--env=qtab/MountainCar-v0"],
+    ],
+)
+def test_the_environment_is_named_first_or_last_or_by_its_flag(tmp_path: Path, arguments: list[str]) -> None:
+    done = qtab("train", *arguments, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("qtab/MountainCar-v0 in Rust, preset article, 5 episodes")
+
+
+def test_flags_win_over_the_file_and_the_file_over_the_preset(tmp_path: Path) -> None:
+    (tmp_path / "run.toml").write_text(
+        'env = "qtab/MountainCar-v0"\nepisodes = 7\nseed = 1\nlearning_rate = 0.5\nscale = [5, 50]\n'
+        "initial_q = [-2, 0]\nmin_epsilon = 0.1\n[env_kwargs]\ngoal_velocity = 0.01\n"
+    )
+    done = qtab("train", "--config", "run.toml", "--seed", "2", "--discount", "0.99", "--save", "a.npz", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    config = package.load(tmp_path / "a.npz").config
+    assert (config.env, config.episodes, config.seed, config.learning_rate) == ("qtab/MountainCar-v0", 7, 2, 0.5)
+    assert (config.scale, config.initial_q, config.min_epsilon) == ((5.0, 50.0), (-2.0, 0.0), 0.1)
+    assert (config.discount, config.terminal_update, config.env_kwargs) == (0.99, "assign", {"goal_velocity": 0.01})
+
+
+def test_pairs_and_negative_ranges_reach_the_run(tmp_path: Path) -> None:
+    done = qtab(
+        *("train", "--episodes", "3", "--env-kwargs", "goal_velocity", "-0.01", "--initial-q", "-2", "-1"),
+        *("--save", "a.npz"),
+        cwd=tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    config = package.load(tmp_path / "a.npz").config
+    assert (config.env_kwargs, config.initial_q) == ({"goal_velocity": -0.01}, (-2.0, -1.0))
+
+
+def test_a_saved_run_goes_on_from_its_table(tmp_path: Path) -> None:
+    first = package.train("MountainCar-v0", seed=0, episodes=50)
+    first.save(tmp_path / "first.npz")
+    for settings in (["--initial-q", "first.npz"], ["--config", "run.toml"]):
+        (tmp_path / "run.toml").write_text('initial_q = "first.npz"')
+        done = qtab("train", "--episodes", "20", "--seed", "1", *settings, "--save", "more.npz", cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        more = package.train("MountainCar-v0", seed=1, episodes=20, initial_q=first.q_table)
+        assert package.load(tmp_path / "more.npz").q_table.tobytes() == more.q_table.tobytes()
+
+
+def test_an_environment_in_python_is_said_to_be_and_so_is_the_limit_it_lacks(tmp_path: Path) -> None:
+    done = qtab("train", "toys:Walk-v0", "--scale", "1", "--episodes", "3", "--seed", "0", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    first, second, *_ = done.stdout.splitlines()
+    assert first == "toys:Walk-v0 stepped by Gymnasium in Python, no preset, 3 episodes, seed 0"
+    assert "no time limit" in second
+    assert "10,000 steps" in second
+    limited = qtab("train", "toys:Walk-v0", "--scale", "1", "--episodes", "3", "--max-episode-steps", "9", cwd=tmp_path)
+    assert "no time limit" not in limited.stdout
+
+
+@pytest.mark.parametrize("arguments", [["CliffWalking"], ["--seed", "0", "CliffWalking"], ["--env", "CliffWalking"]])
+def test_an_id_without_a_version_is_the_newest_with_its_preset(tmp_path: Path, arguments: list[str]) -> None:
+    done = qtab("train", *arguments, "--episodes", "2", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("CliffWalking-v1 in Rust, preset tuned, 2 episodes, seed ")
+    assert "Using the latest versioned environment `CliffWalking-v1`" in done.stderr
+    # The header has said it.
+    assert "no time limit" not in done.stderr
+
+
+@pytest.mark.parametrize("name", ["rewards.jpg", "rewards.png", "rewards.pdf", "rewards.svg"])
+def test_plots_are_written_in_the_format_of_their_ending(tmp_path: Path, name: str) -> None:
+    done = qtab("train", "--episodes", "300", "--plot", name, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    starts = {"jpg": b"\xff\xd8\xff", "png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}
+    assert (tmp_path / name).read_bytes().startswith(starts[name[-3:]])
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "toys.py"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--episdes", "3"], "--episdes"),
+        (["--episodes", "x"], "'x'"),
+        (["--episodes"], "--episodes"),
+        (["--episodes", "0"], "episodes must be an integer .* got 0"),
+        (["--learning-rate", "1.5"], r"learning_rate must lie in \[0, 1\], got 1.5"),
+        (["--discount", "nan"], r"discount must lie in \[0, 1\], got nan"),
+        (["--min-epsilon", "0.9"], "min_epsilon must lie in .* got 0.9"),
+        (["--seed", "1.5"], "--seed.*1.5"),
+        (["--seed", "-1"], "seed must be .* got -1"),
+        (["--backend", "fortran"], "'fortran'"),
+        (["--preset", "novel"], "preset must be one that MountainCar-v0 has .* got 'novel'"),
+        (["NoSuchCar-v0"], "NoSuchCar"),
+        (["MountainCar-v0", "Taxi-v4"], "Taxi-v4"),
+        (["MountainCar-v0", "--actions", "3"], "actions must be left out"),
+        (["Pendulum-v1", "--actions", "all"], "a count or the actions themselves, got 'all'"),
+        (["--discretizer", "edges", "--edges", "0", "1"], r"a row such as \[-0.5,0,0.5\]"),
+        (["--env-kwargs", "goal_velocity"], "'goal_velocity' has no value"),
+        (["--initial-q", "1", "2", "3"], "LOW HIGH, VALUE or FILE"),
+        (["--initial-q", "none.npz"], "none.npz"),
+        (["--config", "none.toml"], "none.toml"),
+        (["--plot", "rewards.xyz"], r"plot must end in one of .*\.png.* got 'rewards.xyz'"),
+        (["--plot", "none/rewards.png"], "plot must be a file that can be written, got 'none/rewards.png'"),
+        (["--save", "none/run.npz"], "save must be a file that can be written, got 'none/run.npz'"),
+        (["--save", "."], r"save must be a file, got the folder '\.'"),
+        (["--record", "toys.py"], "record must be a folder .* got 'toys.py'"),
+        (["--watch", "0"], "watch must be an integer of at least 1, got 0"),
+    ],
+)
+def test_bad_usage_is_one_line_and_exit_code_2(tmp_path: Path, arguments: list[str], said: str) -> None:
+    line = refused("train", *arguments, cwd=tmp_path)
+    assert line.startswith("qtab train: error: ")
+    assert re.search(said, line), line
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("epsiodes = 3", "run.toml: 'epsiodes' is no setting"), ("episodes =", "must be a TOML file, got 'run.toml'")],
+)
+def test_a_bad_config_file_is_named_with_what_is_wrong(tmp_path: Path, text: str, said: str) -> None:
+    (tmp_path / "run.toml").write_text(text)
+    assert said in refused("train", "--config", "run.toml", cwd=tmp_path)
+
+
+def test_an_unknown_command_is_refused_and_the_known_ones_named(tmp_path: Path) -> None:
+    assert "train, verify, optimum" in refused("fly", cwd=tmp_path)
+
+
+def test_version_and_help(tmp_path: Path) -> None:
+    assert qtab("--version", cwd=tmp_path).stdout == f"qtab {importlib.metadata.version('qtab')}\n"
+    assert "verify" in qtab("--help", cwd=tmp_path).stdout
+    assert qtab(cwd=tmp_path).returncode == 2
+
+
+def test_an_environment_that_fails_leaves_what_was_learned_and_one_line(tmp_path: Path) -> None:
+    done = qtab(
+        *("train", "toys:Walk-v0", "--scale", "1", "--episodes", "5000", "--env-kwargs", "fail_after", "2000"),
+        *("--save", "part.npz"),
+        cwd=tmp_path,
+    )
+    assert done.returncode == 1
+    assert done.stderr == "qtab train: error: the motor is broken\n"
+    run = package.load(tmp_path / "part.npz")
+    assert not run.completed
+    assert 0 < run.episode_lengths.sum() <= 2000
+
+
+def test_without_tyro_the_command_names_the_extra(tmp_path: Path) -> None:
+    (tmp_path / "tyro.py").write_text("raise ModuleNotFoundError(\"No module named 'tyro'\", name='tyro')")
+    done = qtab("train", cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stderr == "qtab: error: this needs tyro, which is not installed; run: pip install 'qtab[cli]'\n"
+
+
+def heed_ctrl_c() -> None:
+    """What a shell starts in the background ignores it, and so would its children."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is no signal there")
+def test_ctrl_c_saves_and_plots_what_was_learned_so_far(tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [*QTAB, "train", "--episodes", "1000000", "--seed", "0", "--save", "part.npz", "--plot", "part.png"],
+        cwd=tmp_path,
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=heed_ctrl_c,
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline().startswith("MountainCar-v0 in Rust")
+    first = process.stdout.readline()
+    assert first.startswith("Episode 10000 ")
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate()
+    out = first + out
+    assert process.returncode == 130
+    assert err == ""
+    run = package.load(tmp_path / "part.npz")
+    finished = len(run.episode_returns)
+    assert not run.completed
+    assert 10_000 <= finished < 1_000_000
+    assert f"Stopped after {finished:,} of 1,000,000 episodes" in out
+    assert f"Episode {finished // 10_000 * 10_000} Average Reward" in out
+    assert out.endswith("Saved the run to part.npz\nSaved the plot to part.png\n")
+    assert (tmp_path / "part.png").read_bytes().startswith(b"\x89PNG")
+    # The schedule of the full run: its first episodes again, and no others.
+    again = package.train(
+        "MountainCar-v0",
+        episodes=1_000_000,
+        seed=0,
+        callback=lambda progress: progress.episodes < 100,
+    )
+    assert np.array_equal(run.episode_returns[:100], again.episode_returns)
+
+
+def test_verify_reports_equality_and_exits_with_0(tmp_path: Path) -> None:
+    package.train("MountainCar-v0", seed=0, episodes=40).save(tmp_path / "run.npz")
+    for arguments, count in ((["run.npz"], 40), (["run.npz", "--episodes", "10"], 10)):
+        done = qtab("verify", *arguments, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert f"seed 0, {count} episodes against Gymnasium and NumPy" in done.stdout
+        assert done.stdout.count(" equal\n") == 3
+
+
+def test_verify_exits_with_1_where_the_table_was_tampered_with(tmp_path: Path) -> None:
+    run = package.train("MountainCar-v0", seed=0, episodes=10)
+    run.tables[0, 0, 0] += 1e-12
+    run.save(tmp_path / "run.npz")
+    done = qtab("verify", "run.npz", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "Q table  DIFFERENT" in done.stdout
+    assert done.stderr == ""
+
+
+def test_verify_refuses_what_is_no_run(tmp_path: Path) -> None:
+    (tmp_path / "bad.npz").write_bytes(b"not a run")
+    assert "'bad.npz' is no run" in refused("verify", "bad.npz", cwd=tmp_path)
+    assert "none.npz" in refused("verify", "none.npz", cwd=tmp_path)
+    package.train("MountainCar-v0", seed=0, episodes=5).save(tmp_path / "run.npz")
+    assert "episodes must be" in refused("verify", "run.npz", "--episodes", "6", cwd=tmp_path)

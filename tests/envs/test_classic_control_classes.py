@@ -1,0 +1,119 @@
+"""The classes around the steps: registration, rendering, copies, wrappers, and machines with another sine."""
+
+import copy
+import os
+import pickle
+import subprocess
+import sys
+import warnings
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from gymnasium.wrappers import NormalizeObservation, RecordEpisodeStatistics
+
+from support.lockstep import EDITS, IDS, Pair, frozen, good
+
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_gymnasiums_checker_is_content(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what it says of Gymnasium's own spaces
+        check_env(gym.make(f"qtab/{name}", render_mode="rgb_array").unwrapped)
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_pixels_are_gymnasiums(name):
+    pair = Pair(name, render_mode="rgb_array")
+    pair.reset(seed=8)
+    for _ in range(3):
+        pair.both(lambda env: env.render())
+        pair.run(5, good)
+    pair.both(lambda env: env.close())
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_a_person_watches_every_step(name):
+    shown = []
+    env = gym.make(f"qtab/{name}").unwrapped
+    env.reset(seed=0)
+    env.render_mode = "human"
+    object.__getattribute__(env, "__dict__")["render"] = lambda: shown.append(frozen(np.array(env.state)))
+    for _ in range(3):
+        env.step(env.action_space.sample())
+    assert len(set(shown)) == 3
+
+
+@pytest.mark.parametrize("name", IDS)
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])  # noqa: S301
+def test_a_copy_goes_on_where_its_original_stands(name, copied):
+    pair = Pair(name)
+    copied(pair.ours)
+    pair.reset(seed=9)
+    pair.run(30)
+    attribute, value = next(iter(EDITS[name].items()))
+    pair.set(**{attribute: value})
+    original, pair.ours = pair.ours, copied(pair.ours)
+    original.step(original.action_space.sample())
+    pair.run(300)
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_wrappers_work_on_it(name):
+    ours, theirs = (
+        NormalizeObservation(RecordEpisodeStatistics(gym.make(env, max_episode_steps=20)))
+        for env in (f"qtab/{name}", name)
+    )
+    assert frozen(ours.reset(seed=0)[0]) == frozen(theirs.reset(seed=0)[0])
+    for _ in range(20):
+        action = theirs.action_space.sample()
+        one, other = ours.step(action), theirs.step(action)
+        assert frozen(one[:4]) == frozen(other[:4])
+        if one[2] or one[3]:
+            assert one[4]["episode"]["r"] == other[4]["episode"]["r"]
+            break
+
+
+@pytest.mark.filterwarnings("ignore:.*out of date")
+@pytest.mark.parametrize("name", [*IDS, "CartPole-v0"])
+def test_limits_thresholds_and_spaces_are_gymnasiums(name):
+    ours, theirs = gym.spec(f"qtab/{name}"), gym.spec(name)
+    for field in ("max_episode_steps", "reward_threshold", "nondeterministic", "order_enforce", "disable_env_checker"):
+        assert getattr(ours, field) == getattr(theirs, field), field
+    pair = Pair(name)
+    pair.both(lambda env: (env.observation_space == pair.theirs.observation_space, env.metadata))
+    pair.both(lambda env: env.action_space == pair.theirs.action_space)
+
+
+def fresh(code: str) -> str:
+    return subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
+
+
+def test_an_id_brings_its_own_import():
+    code = "import gymnasium as g; e = g.make('qtab:qtab/CartPole-v1'); e.reset(); print(type(e.unwrapped).__module__)"
+    assert fresh(code).strip() == "qtab.envs.classic_control"
+
+
+def test_another_numpys_sine_is_still_gymnasiums():
+    """As on a CPU for which NumPy has vector code of its own: patched before anything asks for it."""
+    assert fresh(PATCHED).split() == ["False", "1", "equal"]
+
+
+PATCHED = """
+import warnings, numpy as np
+true = np.sin
+np.sin = lambda x, *rest: np.nextafter(true(x, *rest), 2.0) if np.ndim(x) else np.nextafter(true(x), x.dtype.type(2.0))
+import gymnasium as gym, qtab
+from qtab import _core
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    ours, theirs = gym.make("qtab/CartPole-v1").unwrapped, gym.make("CartPole-v1").unwrapped
+    ours.reset(seed=0), theirs.reset(seed=0)
+    for _ in range(9):
+        one, other = ours.step(1), theirs.step(1)
+        assert one[0].tobytes() == other[0].tobytes() and ours.state.tobytes() == theirs.state.tobytes()
+print(_core.numpy_calls_the_platform(), sum("sin and cos" in str(w.message) for w in caught), "equal")
+"""

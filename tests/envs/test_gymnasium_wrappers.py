@@ -1,0 +1,141 @@
+"""Gymnasium's wrappers and its checker on our environments: in lock-step with the same wrappers on Gymnasium's own."""
+
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium import wrappers
+from gymnasium.utils.env_checker import check_env
+
+from support.lockstep import IDS as CLASSIC
+from support.lockstep import frozen
+from support.toy_text import IDS as TOYS
+
+IDS = [*CLASSIC, *TOYS]
+REGISTERED = sorted(name for name in gym.registry if name.startswith("qtab/"))
+STEPS = 150
+
+
+def comparable(value: Any) -> Any:
+    """Types and bytes of anything that a wrapper returns, but for the seconds that an episode took."""
+    if isinstance(value, tuple | list):
+        return type(value), [comparable(item) for item in value]
+    if isinstance(value, dict):
+        return [(key, comparable(item)) for key, item in value.items() if key != "t"]
+    return frozen(value)
+
+
+def made(name: str, wrap: Callable[[gym.Env], gym.Env], **kwargs: Any) -> Any:
+    """A wrapped environment, or what Gymnasium says against it."""
+    env = gym.make(name, **kwargs)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            return wrap(env)
+        except Exception as error:
+            return type(error), str(error)
+
+
+def walk(env: gym.Env, steps: int = STEPS) -> list[Any]:
+    """Everything that a random walk over several episodes returns."""
+    env.action_space.seed(5)
+    seen: list[Any] = [comparable(env.reset(seed=3))]
+    for _ in range(steps):
+        answer = env.step(env.action_space.sample())
+        seen.append(comparable(answer))
+        if answer[2] or answer[3]:
+            seen.append(comparable(env.reset()))
+    return seen
+
+
+WRAPPERS: dict[str, Callable[[gym.Env], gym.Env]] = {
+    "Autoreset": wrappers.Autoreset,
+    "ClipReward": lambda env: wrappers.ClipReward(env, -0.5, 0.5),
+    "DelayObservation": lambda env: wrappers.DelayObservation(env, 2),
+    "DiscretizeAction": lambda env: wrappers.DiscretizeAction(env, bins=5),
+    "DiscretizeObservation": lambda env: wrappers.DiscretizeObservation(env, bins=7),
+    "DtypeObservation": lambda env: wrappers.DtypeObservation(env, np.float16),
+    "FlattenObservation": wrappers.FlattenObservation,
+    "FrameStackObservation": lambda env: wrappers.FrameStackObservation(env, 3),
+    "MaxAndSkipObservation": lambda env: wrappers.MaxAndSkipObservation(env, skip=2),
+    "NormalizeObservation": wrappers.NormalizeObservation,
+    "NormalizeReward": wrappers.NormalizeReward,
+    "RecordEpisodeStatistics": wrappers.RecordEpisodeStatistics,
+    "RepeatAction": lambda env: wrappers.RepeatAction(env, num_repeats=3),
+    "RescaleAction": lambda env: wrappers.RescaleAction(env, np.float32(-1), np.float32(1)),
+    "RescaleObservation": lambda env: wrappers.RescaleObservation(env, np.float32(-1), np.float32(1)),
+    "StickyAction": lambda env: wrappers.StickyAction(env, 0.3),
+    "TimeAwareObservation": wrappers.TimeAwareObservation,
+    "TimeLimit": lambda env: wrappers.TimeLimit(env, 17),
+    "TransformReward": lambda env: wrappers.TransformReward(env, lambda reward: 3 * reward + 1),
+}
+FIT_ALL = {"Autoreset", "ClipReward", "RecordEpisodeStatistics", "StickyAction", "TimeLimit", "TransformReward"}
+"""The wrappers that ask nothing of the spaces."""
+
+
+@pytest.mark.parametrize("wrapper", WRAPPERS)
+def test_a_wrapper_sees_what_it_sees_on_gymnasiums_environment(wrapper: str) -> None:
+    fitting = set()
+    for name in IDS:
+        ours, theirs = made(f"qtab/{name}", WRAPPERS[wrapper]), made(name, WRAPPERS[wrapper])
+        if not isinstance(theirs, gym.Env):
+            assert ours == theirs
+            continue
+        fitting.add(name)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what Gymnasium's wrappers warn of is theirs
+            assert (ours.observation_space, ours.action_space) == (theirs.observation_space, theirs.action_space)
+            assert walk(ours) == walk(theirs), name
+    assert fitting == set(IDS) if wrapper in FIT_ALL else fitting
+
+
+def test_statistics_of_episodes_are_gymnasiums() -> None:
+    ours, theirs = (wrappers.RecordEpisodeStatistics(gym.make(name)) for name in ("qtab/CartPole-v1", "CartPole-v1"))
+    assert walk(ours) == walk(theirs)
+    assert list(ours.return_queue) == list(theirs.return_queue)
+    assert list(ours.length_queue) == list(theirs.length_queue)
+    assert len(ours.return_queue) > 3
+
+
+@pytest.mark.parametrize("name", ["MountainCar-v0", "CartPole-v1", "FrozenLake-v1", "Blackjack-v1"])
+def test_a_video_holds_gymnasiums_frames(name: str, tmp_path: Path) -> None:
+    frames = []
+    for env in (f"qtab/{name}", name):
+        folder = tmp_path / env.replace("/", "-")
+        recorded = wrappers.RecordVideo(
+            gym.make(env, render_mode="rgb_array", max_episode_steps=20),
+            str(folder),
+            episode_trigger=lambda episode: episode == 0,
+            disable_logger=True,
+        )
+        recorded.action_space.seed(5)
+        recorded.reset(seed=3)
+        over, kept = False, []
+        while not over:
+            *_, terminated, truncated, _ = recorded.step(recorded.action_space.sample())
+            kept = list(recorded.recorded_frames) or kept
+            over = terminated or truncated
+        recorded.close()
+        frames.append([frozen(frame) for frame in kept])
+        assert next(folder.glob("*.mp4")).stat().st_size > 0
+    assert frames[0] == frames[1]
+    assert len(frames[0]) > 1
+
+
+@pytest.mark.parametrize("name", REGISTERED)
+def test_gymnasiums_checker_is_content_with_every_environment(name: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # CartPole-v0 is said to be out of date
+        env = gym.make(name)
+    with warnings.catch_warnings():
+        # It recommends other bounds than Gymnasium's own environments have.
+        warnings.filterwarnings("ignore", message=".*(action|observation) space|.*maximum value|.*minimum value")
+        check_env(env.unwrapped, skip_render_check=True)
+
+
+def test_every_known_environment_is_registered() -> None:
+    assert set(REGISTERED) >= {f"qtab/{name}" for name in [*IDS, "CartPole-v0"]}

@@ -1,0 +1,71 @@
+"""Rendering is Gymnasium's own, pixel for pixel."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab  # noqa: F401 - registers the environment
+from support.parity import assert_same_value, energy_policy
+
+
+def pair(render_mode):
+    return (
+        gym.make("qtab/MountainCar-v0", render_mode=render_mode),
+        gym.make("MountainCar-v0", render_mode=render_mode),
+    )
+
+
+def test_pixels_along_a_way_to_the_goal_are_gymnasiums():
+    ours, theirs = pair("rgb_array")
+    observation, _ = theirs.reset(seed=0)
+    ours.reset(seed=0)
+    frames, done = set(), False
+    while not done:
+        assert_same_value(ours.render(), theirs.render())
+        frames.add(ours.render().tobytes())
+        action = energy_policy(observation)
+        ours.step(action)
+        observation, _, terminated, truncated, _ = theirs.step(action)
+        done = terminated or truncated
+    assert terminated
+    assert len(frames) > 50
+    assert ours.render().shape == (400, 600, 3)
+    ours.close()
+    theirs.close()
+
+
+def test_an_assigned_goal_moves_the_flag():
+    ours, theirs = pair("rgb_array")
+    for env in (ours, theirs):
+        env.reset(seed=0)
+    before = ours.render()
+    for env in (ours, theirs):
+        env.unwrapped.goal_position = 0.2
+    assert_same_value(ours.render(), theirs.render())
+    assert not np.array_equal(before, ours.render())
+    ours.close()
+    theirs.close()
+
+
+def test_every_step_is_drawn_on_the_screen_in_human_mode(monkeypatch):
+    ours, _ = pair("human")
+    drawn = []
+    env = ours.unwrapped
+    render = env.render
+    monkeypatch.setattr(env, "render", lambda: drawn.append(np.array(env.state)) or render())
+    ours.reset(seed=0)
+    for _ in range(3):
+        ours.step(2)
+    assert len(drawn) == 4
+    assert env.screen is not None
+    assert drawn[-1].tobytes() == np.array(env.state).tobytes()
+    ours.close()
+
+
+def test_no_frames_are_made_where_no_render_mode_was_asked_for():
+    ours, _ = pair(None)
+    ours.reset(seed=0)
+    ours.step(0)
+    assert ours.unwrapped.screen is None
+    with pytest.warns(UserWarning, match=r"qtab/MountainCar-v0"):
+        assert ours.unwrapped.render() is None

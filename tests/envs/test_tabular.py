@@ -1,0 +1,148 @@
+"""A user's own table: checked where it is made, and walked as Gymnasium walks its own."""
+
+import copy
+import pickle
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import qtab
+from support.ids import short_repr
+from support.toy_text import TABLES, flat
+
+
+@pytest.mark.parametrize("name", [name for name in TABLES if name != "Taxi-v4"])
+def test_gymnasiums_own_table_walks_as_gymnasiums_environment(name):
+    theirs = gym.make(name).unwrapped
+    ours = qtab.TabularEnv(theirs.P, theirs.initial_state_distrib)
+    assert (ours.observation_space, ours.action_space) == (theirs.observation_space, theirs.action_space)
+    assert flat(ours.reset(seed=3)) == flat(theirs.reset(seed=3))
+    rng = np.random.default_rng(0)
+    for step in range(100_000):
+        action = int(rng.integers(4))
+        one, other = ours.step(action), theirs.step(action)
+        assert flat(one) == flat(other)
+        if one[2] or step % 200 == 199:
+            assert flat(ours.reset()) == flat(theirs.reset())
+    assert ours.np_random.bit_generator.state == theirs.np_random.bit_generator.state
+
+
+def chain(**changes):
+    """Two states: action 0 stays, action 1 goes to the other, most of the time."""
+    table = {
+        0: {0: [(1.0, 0, -1.0, False)], 1: [(0.9, 1, 5.0, True), (0.1, 0, 0.0, False)]},
+        1: {0: [(1.0, 1, 0.0, True)], 1: [(1.0, 1, 0.0, True)]},
+    }
+    for place, outcomes in changes.items():
+        table[int(place[1])][int(place[2])] = outcomes
+    return table
+
+
+def test_a_table_may_be_nested_lists():
+    table = [[row[action] for action in (0, 1)] for row in chain().values()]
+    one, other = qtab.TabularEnv(table, [1, 0]), qtab.TabularEnv(chain(), np.array([1.0, 0.0]))
+    for seed in range(50):
+        assert one.reset(seed=seed) == other.reset(seed=seed) == (0, {"prob": 1})
+        assert flat(one.step(1)) == flat(other.step(1))
+
+
+def test_gymnasiums_checker_is_content_and_copies_go_on():
+    check_env(qtab.TabularEnv(chain(), [1, 0]), skip_render_check=True)
+    env = qtab.TabularEnv(chain(), [0.5, 0.5])
+    env.reset(seed=1)
+    for twin in (copy.deepcopy(env), pickle.loads(pickle.dumps(env))):  # noqa: S301
+        one = copy.deepcopy(env)
+        for _ in range(30):
+            assert one.reset() == twin.reset()
+            assert one.step(1) == twin.step(1)
+
+
+def test_a_table_is_its_own_and_can_be_edited():
+    table = chain()
+    env = qtab.TabularEnv(table, [1, 0])
+    table[0][0].append("nonsense")
+    env.reset(seed=0)
+    assert env.step(0) == (0, -1.0, False, False, {"prob": 1.0})
+    env.P[0][0] = [(1.0, 1, 9.0, True)]
+    assert env.step(0) == (1, 9.0, True, False, {"prob": 1.0})
+    env.P[1][0] = [[1.0, 0, 2.0, False]]  # a list steps in Gymnasium's code
+    assert env.step(0) == (0, 2.0, False, False, {"prob": 1.0})
+
+
+@pytest.mark.parametrize("action", [2, -1, 0.5, None, "left"])
+def test_an_action_outside_the_space_is_refused(action):
+    env = qtab.TabularEnv(chain(), [1, 0])
+    with pytest.raises(gym.error.ResetNeeded):
+        env.step(0)
+    env.reset(seed=0)
+    before = env.np_random.bit_generator.state
+    with pytest.raises(AssertionError, match="invalid"):
+        env.step(action)
+    assert env.s == 0
+    assert env.np_random.bit_generator.state == before
+
+
+def test_sums_within_a_billionth_pass():
+    qtab.TabularEnv(chain(p00=[(1 / 3, 0, 0, False)] * 2 + [(1 / 3 + 9e-10, 0, 0, False)]), [1, 0])
+    with pytest.raises(ValueError, match=r"^P\[0\]\[0\] must have probabilities that sum to 1, got 1.00000000"):
+        qtab.TabularEnv(chain(p00=[(1.0, 0, 0, False), (2e-9, 0, 0, False)]), [1, 0])
+
+
+BAD = [
+    ({"p01": [(0.5, 0, 0, False)]}, ValueError, r"P\[0\]\[1\] must have probabilities that sum to 1, got 0.5"),
+    ({"p01": []}, ValueError, r"P\[0\]\[1\] must have probabilities that sum to 1, got 0"),
+    ({"p11": [(1.0, 2, 0, False)]}, ValueError, r"P\[1\]\[1\]\[0\] must lead to a state from 0 to 1, got 2"),
+    ({"p11": [(1.0, -1, 0, False)]}, ValueError, r"P\[1\]\[1\]\[0\] must lead to a state from 0 to 1, got -1"),
+    ({"p10": [(2.0, 0, 0, False), (-1.0, 1, 0, False)]}, ValueError, r"P\[1\]\[0\]\[0\] .* in \[0, 1\], got 2"),
+    ({"p10": [(float("nan"), 0, 0, False)]}, ValueError, r"P\[1\]\[0\]\[0\] .* in \[0, 1\], got NaN"),
+    ({"p10": [(1.0, 0, float("nan"), False)]}, ValueError, r"P\[1\]\[0\]\[0\] must have a finite reward"),
+    ({"p10": [(1.0, 0, 0)]}, TypeError, r"P\[1\]\[0\]\[0\] must be \(probability, .*\), got \(1.0, 0, 0\)"),
+    ({"p10": [(1.0, 0.5, 0, False)]}, TypeError, r"P\[1\]\[0\]\[0\] must be"),
+    ({"p10": [(1.0, 0, True, -1)]}, TypeError, r"P\[1\]\[0\]\[0\] must be"),
+    ({"p10": 5}, TypeError, r"P\[1\]\[0\] must be a list of outcomes"),
+    ({"p10": iter([(1.0, 0, 0, False)])}, TypeError, r"P\[1\]\[0\] must be a list of outcomes"),
+    ({"p12": [(1.0, 0, 0, False)]}, ValueError, r"P\[1\] must have 2 actions as P\[0\] has, got 3"),
+]
+
+
+@pytest.mark.parametrize(("changes", "error", "text"), BAD, ids=short_repr)
+def test_a_bad_table_is_refused_and_says_where(changes, error, text):
+    with pytest.raises(error, match=text):
+        qtab.TabularEnv(chain(**changes), [1, 0])
+
+
+@pytest.mark.parametrize(
+    ("table", "error", "text"),
+    [
+        (5, TypeError, "P must hold"),
+        ({0: 3, 1: 3}, TypeError, "P must hold"),
+        ({}, ValueError, "P must have rows|initial_state_distrib"),
+        ({0: chain()[0], 2: chain()[1]}, ValueError, "P must have the states 0 to 1, it lacks 1"),
+        ({0: chain()[0], 1: {0: [], 7: []}}, ValueError, r"P\[1\] must have the actions 0 to 1, it lacks 1"),
+    ],
+    ids=repr,
+)
+def test_what_is_no_table_is_refused(table, error, text):
+    with pytest.raises(error, match=text):
+        qtab.TabularEnv(table, [1, 0])
+
+
+@pytest.mark.parametrize(
+    ("start", "error", "text"),
+    [
+        ([1.0], ValueError, "initial_state_distrib must hold 2 numbers, one for each state, got 1"),
+        ([0.5, 0.4], ValueError, "initial_state_distrib must have probabilities that sum to 1, got 0.9"),
+        ([1.5, -0.5], ValueError, r"initial_state_distrib\[0\] must have a probability in \[0, 1\], got 1.5"),
+        ([[1.0, 0.0]], ValueError, "initial_state_distrib must have one axis, got 2"),
+        (1.0, ValueError, "initial_state_distrib must have one axis, got 0"),
+        ("start", TypeError, "initial_state_distrib must hold numbers"),
+        ([1.0, None], ValueError, "initial_state_distrib"),
+        ([1.0, "x"], TypeError, "initial_state_distrib"),
+    ],
+    ids=repr,
+)
+def test_a_bad_start_is_refused(start, error, text):
+    with pytest.raises(error, match=text):
+        qtab.TabularEnv(chain(), start)

@@ -1,0 +1,194 @@
+"""The classes around the steps: spaces, pictures, copies, wrappers, hands and masks that a user touches."""
+
+import copy
+import pickle
+import warnings
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from gymnasium.wrappers import RecordEpisodeStatistics
+
+from qtab.envs.toy_text import FrozenLakeEnv, TaxiEnv
+from support.toy_text import IDS, TABLES, LockstepToyText, flat
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_gymnasiums_checker_is_content(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what it says of Gymnasium's own spaces
+        check_env(gym.make(f"qtab/{name}", render_mode="rgb_array").unwrapped)
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_registration_and_spaces_are_gymnasiums(name):
+    ours, theirs = gym.spec(f"qtab/{name}"), gym.spec(name)
+    fields = ("max_episode_steps", "reward_threshold", "nondeterministic", "order_enforce", "disable_env_checker")
+    for field in (*fields, "kwargs"):
+        assert getattr(ours, field) == getattr(theirs, field), field
+    pair = LockstepToyText(name)
+    pair.both(lambda env: env.reset(seed=0))
+    pair.both(lambda env: (env.observation_space == pair.theirs.observation_space, env.metadata, env.render_mode))
+    pair.both(lambda env: env.action_space == pair.theirs.action_space)
+    if name in TABLES:
+        pair.both(lambda env: (env.P, env.initial_state_distrib))
+
+
+MODES = [(name, mode) for name in IDS for mode in ("rgb_array", "ansi") if (name, mode) != ("Blackjack-v1", "ansi")]
+
+
+@pytest.mark.parametrize(("name", "mode"), MODES)
+def test_pictures_and_text_are_gymnasiums(name, mode):
+    pair = LockstepToyText(name, render_mode=mode)
+    pair.both(lambda env: env.reset(seed=8))
+    seen = set()
+    for step in range(12):
+        seen.add(repr(pair.both(lambda env: env.render())))
+        if pair.both(lambda env, step=step: env.step(step % env.action_space.n)) and step % 4 == 3:
+            pair.both(lambda env: env.reset())
+    assert len(seen) > 2
+    pair.both(lambda env: env.close())
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_a_person_watches_every_step(name):
+    shown = []
+    env = gym.make(f"qtab/{name}").unwrapped
+    env.reset(seed=0)
+    env.render_mode = "human"
+    env.render = lambda: shown.append(copy.deepcopy((getattr(env, "s", None), getattr(env, "player", None))))
+    env.step(1)
+    env.reset()
+    env.step(1)
+    assert len(shown) == 3
+    assert shown[-1] == (getattr(env, "s", None), getattr(env, "player", None))
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_no_mode_no_frames(name):
+    env = gym.make(f"qtab/{name}").unwrapped
+    env.reset(seed=0)
+    with pytest.warns(UserWarning, match=f"qtab/{name}"):
+        assert env.render() is None
+
+
+@pytest.mark.parametrize("name", IDS)
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])  # noqa: S301
+def test_a_copy_goes_on_where_its_original_stands(name, copied):
+    pair = LockstepToyText(name)
+    copied(pair.ours)
+    pair.both(lambda env: env.reset(seed=9))
+    pair.both(lambda env: env.step(1))
+    original, pair.ours = pair.ours, copied(pair.ours)
+    assert type(pair.ours) is type(original)
+    before = repr(original.np_random.bit_generator.state)
+    for _ in range(50):
+        pair.both(lambda env: env.step(0))
+        pair.both(lambda env: env.reset())
+    assert repr(original.np_random.bit_generator.state) == before
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_wrappers_work_on_it(name):
+    ours, theirs = (RecordEpisodeStatistics(gym.make(env, max_episode_steps=20)) for env in (f"qtab/{name}", name))
+    assert flat(ours.reset(seed=0)) == flat(theirs.reset(seed=0))
+    for _ in range(20):
+        action = theirs.action_space.sample()
+        one, other = ours.step(action), theirs.step(action)
+        assert flat(one[:4]) == flat(other[:4])
+        if one[2] or one[3]:
+            assert one[4]["episode"]["r"] == other[4]["episode"]["r"]
+            break
+
+
+HANDS = [[10, 9], [1, 10], [10, 1], [1, 1, 9], [10, 10, 1], [5], [], [1] * 12, (5, 6), [5.0, 6], [True, 10], None, "ab"]
+HANDS += [[np.int64(5), 6], [0, 11], [-3, 10], [2**70, 1]]
+
+
+@pytest.mark.parametrize("hand", HANDS, ids=repr)
+@pytest.mark.parametrize("side", ["player", "dealer"])
+@pytest.mark.parametrize("action", [0, 1])
+def test_an_assigned_hand_is_played(hand, side, action):
+    for rules in ({"sab": True}, {"sab": False, "natural": True}):
+        pair = LockstepToyText("Blackjack-v1", **rules)
+        pair.both(lambda env: env.reset(seed=3))
+        pair.set(**{side: hand})
+        for _ in range(3):
+            pair.both(lambda env: env.step(action))
+
+
+def test_the_rules_can_be_changed_and_the_space_too():
+    pair = LockstepToyText("Blackjack-v1")
+    pair.set(sab=False, natural=1)
+    for seed in range(200):
+        pair.both(lambda env, seed=seed: env.reset(seed=seed))
+        pair.both(lambda env: env.step(0))
+    pair.set(action_space=gym.spaces.Discrete(2, start=1))
+    for action in (0, 1, 2):
+        pair.both(lambda env, action=action: env.step(action))
+
+
+def test_hands_stay_the_lists_that_they_were():
+    env = gym.make("qtab/Blackjack-v1").unwrapped
+    env.reset(seed=0)
+    player = env.player
+    env.step(1)
+    assert env.player is player
+    assert len(player) == 3
+
+
+@pytest.mark.parametrize("state", [*range(500), np.int64(17), True, -1, 500, 1.5, None])
+def test_the_mask_is_gymnasiums(state):
+    pair = TAXIS
+    pair.both(lambda env: env.action_mask(state))
+
+
+TAXIS = LockstepToyText("Taxi-v4")
+TAXIS.both(lambda env: env.reset(seed=0))
+
+
+MAPS = [
+    {"desc": np.asarray([row.replace("|", ":") for row in TAXIS.theirs.desc.astype(str).view("U11").ravel()], "c")},
+    {"desc": TAXIS.theirs.desc[:, ::-1]},
+    {"desc": np.asfortranarray(TAXIS.theirs.desc)},
+    {"desc": TAXIS.theirs.desc.astype("S2")},
+    {"desc": TAXIS.theirs.desc.astype(str)},
+    {"desc": TAXIS.theirs.desc[:5]},
+    {"desc": None},
+    {"locs": [(1, 1), (2, 2), (3, 3), (4, 4)]},
+    {"locs": ((1, 1), (2, 2), (3, 3), (4, 4), (0, 0))},
+    {"locs": [[1, 1], [2, 2], [3, 3], [4, 4]]},
+    {"locs": [(1, 1), (2, 2)]},
+]
+
+
+@pytest.mark.parametrize("edit", MAPS, ids=lambda edit: f"{next(iter(edit))} {next(iter(edit.values()))!r:.40}")
+def test_another_map_is_another_mask(edit):
+    pair = LockstepToyText("Taxi-v4", fickle_passenger=True, fickle_probability=1.0)
+    pair.both(lambda env: env.reset(seed=1))
+    pair.set(**edit)
+    for state in range(0, 500, 7):
+        pair.both(lambda env, state=state: env.action_mask(state))
+        pair.set(s=state, fickle_step=True)
+        pair.both(lambda env: env.step(1))
+
+
+def test_a_mask_of_ones_own_is_in_the_info():
+    class Mine(TaxiEnv):
+        def action_mask(self, state):
+            return "all"
+
+    env = Mine()
+    assert env.reset(seed=0)[1]["action_mask"] == "all"
+    assert env.step(0)[4]["action_mask"] == "all"
+
+
+def test_a_step_of_ones_own_may_call_ours():
+    class Mine(FrozenLakeEnv):
+        def step(self, a):
+            return (*super().step(a)[:4], {"mine": True})
+
+    env = Mine(is_slippery=False)
+    env.reset(seed=0)
+    assert env.step(1) == (4, 0, False, False, {"mine": True})

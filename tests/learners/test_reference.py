@@ -1,0 +1,100 @@
+"""Every learner in Rust gives the table of its plain NumPy version, byte for byte."""
+
+from typing import Any, get_args
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+import qtab
+from qtab.config.choices import Algorithm
+from qtab.reference import LEARNERS
+from support.learner_settings import CAR, TRAINED, run_settings
+
+ALGORITHMS = get_args(Algorithm)
+
+
+def test_every_algorithm_has_a_reference() -> None:
+    assert tuple(LEARNERS) == ALGORITHMS
+
+
+@pytest.mark.parametrize("env", TRAINED)
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_random_settings_give_the_identical_table(algorithm: str, env: str) -> None:
+    @settings(max_examples=40 if env == CAR else 8, deadline=None)
+    @given(run_settings(algorithm, env))
+    def check(chosen: dict[str, Any]) -> None:
+        try:
+            run = qtab.train(env, backend="rust", **chosen)
+        except OverflowError:
+            return
+        verification = qtab.verify(run)
+        assert verification.equal, f"{chosen}\n{verification}"
+
+    check()
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_long_episode_gives_the_identical_table(algorithm: str, seed: int) -> None:
+    run = qtab.train(
+        "MountainCar-v0",
+        algorithm=algorithm,
+        seed=seed,
+        episodes=1,
+        max_episode_steps=3000,
+        learning_rate=0.3,
+        discount=1.0,
+        epsilon=0.1,
+        initial_q=0.0,
+        **({"scale": (10, 100)} if "dyna" in algorithm else {"discretizer": "tiles"}),
+    )
+    assert qtab.verify(run).equal
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("discretizer", ["round", "tiles"])
+def test_both_backends_give_the_identical_table(algorithm: str, discretizer: str) -> None:
+    if "dyna" in algorithm:
+        discretizer = "round"
+    rust, python = (
+        qtab.train("MountainCar-v0", algorithm=algorithm, discretizer=discretizer, seed=5, episodes=3, backend=backend)
+        for backend in ("rust", "gymnasium")
+    )
+    assert rust.tables.tobytes() == python.tables.tobytes()
+    assert rust.episode_returns.tobytes() == python.episode_returns.tobytes()
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_a_prefix_is_verified_with_the_full_runs_schedules(algorithm: str) -> None:
+    run = qtab.train("MountainCar-v0", algorithm=algorithm, seed=1, episodes=40)
+    assert qtab.verify(run, episodes=3).equal
+
+
+class Chain(gym.Env[Any, Any]):
+    """A state of one float64 number; its own rewards; an action space that starts at 5."""
+
+    observation_space = gym.spaces.Box(-2.0, 2.0, (1,), np.float64)
+    action_space = gym.spaces.Discrete(3, start=5)
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        super().reset(seed=seed)
+        self.place = float(self.np_random.uniform(-0.5, 0.5))
+        return np.array([self.place]), {}
+
+    def step(self, action: int) -> Any:
+        self.place += (action - 6) * 0.5 + float(self.np_random.uniform(-0.2, 0.2))
+        over = abs(self.place) > 1.5
+        self.place = min(max(self.place, -2.0), 2.0)
+        return np.array([self.place]), self.place - 0.1, over, False, {}
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("features", [{"scale": (4,)}, {"discretizer": "tiles", "tilings": 4, "tiles": (5,)}])
+def test_an_environment_in_python_gives_the_identical_table(algorithm: str, features: dict[str, Any]) -> None:
+    if "dyna" in algorithm:
+        features = {"scale": (4,)}
+    run = qtab.train(Chain(), algorithm=algorithm, seed=2, episodes=30, **features)
+    assert run.terminated.any()
+    assert qtab.verify(run, env=Chain()).equal

@@ -1,0 +1,203 @@
+"""The best known of MountainCar-v0: every claimed step is driven in Gymnasium; and what a user sees of any optimum."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from support.command import qtab as command
+from support.command import refused
+from support.interrupts import in_a_process
+
+EPISODES = 100
+
+
+@pytest.fixture(scope="module")
+def found() -> qtab.Optimum:
+    return qtab.optimum("MountainCar-v0")
+
+
+def drive(env: gym.Env, position: float, actions: Any) -> list[bool]:
+    """Whether each step ended the episode, in Gymnasium's own environment."""
+    env.reset()
+    env.unwrapped.state = (position, 0.0)  # type: ignore[attr-defined]
+    return [bool(env.step(int(action))[2]) for action in actions]
+
+
+def test_every_route_arrives_in_gymnasium_with_its_last_action(found):
+    env = gym.make("MountainCar-v0")
+    search = found.search
+    for position, steps, route in zip(search.starts, search.steps, search.routes, strict=True):
+        ended = drive(env, float(position), route)
+        assert ended == [False] * (steps - 1) + [True]
+    assert found.expected_return == -search.steps.mean()
+
+
+def test_it_is_the_best_known_and_says_that_it_is_no_proof(found):
+    assert (found.method, found.exact, found.label) == ("search", False, "best known")
+    assert -98 < found.expected_return < -97.6
+    assert found.expected_return >= found.search.followed_return > -98
+    assert "achieved, not proved to be the best" in str(found)
+    assert found.reward_threshold == -110
+
+
+def test_the_starts_are_spread_over_gymnasiums(found):
+    starts = found.search.starts
+    assert len(starts) == 1000
+    assert -0.6 < starts[0] < starts[-1] < -0.4
+    np.testing.assert_allclose(np.diff(starts), 0.2 / 1000)
+
+
+def test_its_predictions_drive_as_well(found):
+    env = gym.make("MountainCar-v0")
+    lengths = []
+    for episode in range(EPISODES):
+        observation, _ = env.reset(seed=0 if episode == 0 else None)
+        steps, over = 0, False
+        while not over:
+            action, state = found.predict(observation)
+            assert state is None
+            observation, _, terminated, truncated, _ = env.step(action)
+            steps, over = steps + 1, terminated or truncated
+        lengths.append(steps)
+    assert abs(np.mean(lengths) + found.search.followed_return) < 3.5 * np.std(lengths) / np.sqrt(EPISODES)
+
+
+def test_the_values_are_costs_to_go_on_their_grid(found):
+    search = found.search
+    assert found.values.shape == found.policy.shape == (len(search.positions), len(search.velocities))
+    assert found.q_values.shape == (*found.values.shape, 3)
+    assert (search.positions[0], search.positions[-1]) == (-1.2, 0.6)
+    np.testing.assert_allclose(search.velocities[[0, -1]], [-0.07, 0.07])
+    position, velocity = np.argmin(np.abs(search.positions + 0.5)), np.argmin(np.abs(search.velocities))
+    assert found.values[position, velocity] == pytest.approx(-search.steps[500], abs=3)
+    right = np.argmin(np.abs(search.positions - 0.45))
+    assert found.values[right, -1] == pytest.approx(-1.0, abs=0.5)
+    assert (found.policy == found.q_values.argmax(axis=-1)).all()
+    state = [search.positions[position], search.velocities[velocity]]
+    assert found.predict(state)[0] == found.policy[position, velocity]
+
+
+def test_a_goal_velocity_is_honoured():
+    slower = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.04})
+    env = gym.make("MountainCar-v0", goal_velocity=0.04)
+    for index in range(0, 1000, 100):
+        ended = drive(env, float(slower.search.starts[index]), slower.search.routes[index])
+        assert ended[-1]
+        assert not any(ended[:-1])
+    never = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.08})
+    assert never.expected_return == never.search.followed_return == -200
+    assert set(never.search.routes) == {None}
+
+
+def test_an_edited_environment_is_taken_as_it_stands():
+    env: Any = gym.make("qtab/MountainCar-v0")
+    env.unwrapped.force = 0.002
+    strong = qtab.optimum(env)
+    assert strong.expected_return > -80
+    env.reset(seed=0)
+    for index in (0, 500, 999):
+        assert drive(env, float(strong.search.starts[index]), strong.search.routes[index])[-1]
+    env.unwrapped.force = float("nan")
+    with pytest.raises(ValueError, match="force must be finite, got nan"):
+        qtab.optimum(env)
+
+
+@pytest.mark.parametrize("edit", [{"max_speed": 0.0}, {"min_position": 0.6}, {"gravity": 1e300}, {"max_speed": -1.0}])
+def test_a_car_that_goes_nowhere_has_no_route(edit):
+    env: Any = gym.make("qtab/MountainCar-v0", max_episode_steps=50)
+    for name, value in edit.items():
+        setattr(env.unwrapped, name, value)
+    found = qtab.optimum(env)
+    for start, route in zip(found.search.starts, found.search.routes, strict=True):
+        if route is not None:
+            assert drive(env, float(start), route)[-1]
+
+
+def test_a_time_limit_ends_every_episode():
+    short = qtab.optimum("MountainCar-v0", max_episode_steps=90)
+    assert short.search.steps.max() == 90
+    assert {len(route) for route in short.search.routes if route is not None} <= set(range(80, 91))
+    assert (short.search.steps[[route is None for route in short.search.routes]] == 90).all()
+
+
+def test_a_run_is_that_far_from_it(found):
+    run = qtab.train("MountainCar-v0", preset="solved", episodes=500, seed=0)
+    gap = found.gap(run)
+    played = qtab.evaluate(run, 1000, seed=0)
+    assert (gap.greedy_return, gap.standard_error) == (played.mean_return, played.standard_error)
+    assert 0 < gap.greedy < gap.final
+    assert str(gap).startswith(f"greedy policy {gap.greedy_return:.4g} ± ")
+    assert "best known -97." in str(gap)
+
+
+@pytest.mark.parametrize("observation", [[0.0], [0.0, float("nan")], 3])
+def test_what_is_no_observation_is_refused(found, observation):
+    with pytest.raises(ValueError, match="observation must be a position and a velocity, got"):
+        found.predict(observation)
+
+
+def test_a_curve_is_drawn_beside_it(found):
+    run = qtab.train("MountainCar-v0", episodes=300, seed=0)
+    for ax, label in [
+        (qtab.plot(run, optimum=found), f"best known {found.expected_return:.4g}"),
+        (qtab.plot(run, optimum=-98.0), "optimum -98"),
+        (qtab.plots.learning_curves(run.episode_returns, optimum=found), f"best known {found.expected_return:.4g}"),
+    ]:
+        [line] = [line for line in ax.lines if line.get_label() == label]
+        assert set(line.get_ydata()) == {-98.0 if label.startswith("optimum") else found.expected_return}
+        assert label in [text.get_text() for text in ax.get_legend().get_texts()]
+        low, high = ax.get_ylim()
+        assert low < -98 < high
+
+
+ENDLESS = """
+import time
+def once_it_plans(then):
+    began = time.monotonic()
+    def wait():
+        time.sleep(1.0)
+        then()
+    threading.Thread(target=wait, daemon=True).start()
+mint = qtab.TabularEnv({0: {0: [(1.0, 0, 1.0, False)]}}, [1.0])
+once_it_plans(ctrl_c)
+try:
+    qtab.optimum(mint, max_episode_steps=10**15)
+except KeyboardInterrupt:
+    print(json.dumps("stopped"))
+"""
+
+
+def test_ctrl_c_stops_it():
+    assert json.loads(in_a_process(ENDLESS).stdout) == "stopped"
+
+
+def test_the_command_prints_a_small_table(tmp_path: Path):
+    done = command("optimum", "FrozenLake-v1", "--env-kwargs", "is_slippery", "false", cwd=tmp_path)
+    assert done.returncode == 0, done
+    lines = done.stdout.splitlines()
+    assert lines[0] == "FrozenLake-v1"
+    assert [line.split("  ")[-1].strip() for line in lines[1:5]] == [
+        "1 within 100 steps",
+        "0.7",
+        "finite_horizon, discount 1: exact",
+        "16, 4 actions",
+    ]
+    assert "CartPole-v1 is not known" in refused("optimum", "CartPole-v1", cwd=tmp_path)
+    assert "discount must lie in [0, 1], got 2.0" in refused("optimum", "Taxi-v4", "--discount", "2", cwd=tmp_path)
+
+
+def test_training_says_how_far_it_is_from_the_optimum(tmp_path: Path):
+    done = command("train", "CliffWalking-v1", "--seed", "0", "--plot", "curve.png", cwd=tmp_path)
+    assert "Greedy policy -13, optimum -13, gap 0" in done.stdout.splitlines()
+    assert (tmp_path / "curve.png").exists()
+    done = command("train", "FrozenLake-v1", "--seed", "0", "--env-kwargs", "is_slippery", "false", cwd=tmp_path)
+    assert "Greedy policy 1, optimum 1, gap 0" in done.stdout.splitlines()
+    done = command("train", "--seed", "0", "--episodes", "200", "--optimum", cwd=tmp_path)
+    assert ", best known -97." in done.stdout
+    done = command("train", "--seed", "0", "--episodes", "200", cwd=tmp_path)
+    assert "best known" not in done.stdout

@@ -1,0 +1,98 @@
+"""The last episodes are played again after the training: the same episodes, and the table knows nothing of it."""
+
+from pathlib import Path
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab as package
+from qtab.rendering.replay import make_render_env, replay_all, replay_episode
+from support.command import qtab, refused
+
+
+@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
+@pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
+def test_recordings_play_the_same_returns_and_lengths_in_gymnasium(backend: str, bit_generator: str) -> None:
+    run = package.train(
+        *("MountainCar-v0",), episodes=300, seed=5, record=30, backend=backend, bit_generator=bit_generator
+    )
+    assert [recording.episode for recording in run.recordings] == list(range(270, 300))
+    env = gym.make("MountainCar-v0")
+    for recording in run.recordings:
+        assert len(recording.actions) == run.episode_lengths[recording.episode]
+        assert replay_episode(env, recording) == run.episode_returns[recording.episode]
+    assert replay_all(env, run) == 0
+
+
+def test_a_recording_from_the_first_episode_starts_where_the_seed_starts() -> None:
+    run = package.train("MountainCar-v0", episodes=3, seed=9, record=3)
+    env = gym.make("MountainCar-v0")
+    seeded, _ = gym.make("MountainCar-v0").reset(seed=9)
+    starts = []
+    reset = env.unwrapped.reset
+
+    def watched(**kwargs: object) -> object:
+        start = reset(**kwargs)
+        starts.append(start[0])
+        return start
+
+    env.unwrapped.reset = watched  # type: ignore[method-assign, assignment]
+    replay_all(env, run)
+    assert starts[0].tobytes() == seeded.tobytes()
+
+
+def test_more_recordings_than_episodes_are_all_episodes() -> None:
+    assert len(package.train("MountainCar-v0", episodes=4, seed=0, record=20).recordings) == 4
+
+
+def test_episodes_that_go_another_way_are_counted() -> None:
+    run = package.train("MountainCar-v0", episodes=3, seed=0, record=3)
+    run.episode_returns[1] -= 1
+    assert replay_all(gym.make("MountainCar-v0"), run) == 1
+
+
+def test_the_stage_has_the_limits_and_constants_of_the_run() -> None:
+    config = package.train("MountainCar-v0", episodes=1, max_episode_steps=7, env_kwargs={"goal_velocity": 0.01}).config
+    env = make_render_env(config, "rgb_array")
+    assert env.unwrapped.goal_velocity == 0.01  # type: ignore[attr-defined]
+    run = package.train("MountainCar-v0", episodes=2, seed=0, record=2, max_episode_steps=7)
+    assert replay_all(env, run) == 0
+
+
+def test_an_environment_without_pictures_is_refused_before_training(tmp_path: Path) -> None:
+    line = refused("train", "toys:Walk-v0", "--scale", "1", "--record", "videos", cwd=tmp_path)
+    assert "cannot be rendered" in line
+
+
+def test_record_writes_the_last_episodes_as_videos_and_leaves_the_table_alone(tmp_path: Path) -> None:
+    import imageio_ffmpeg
+
+    common = ["train", "--seed", "1", "--episodes", "50", "--max-episode-steps", "20"]
+    done = qtab(*common, "--save", "with.npz", "--record", "deep/videos", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    assert qtab(*common, "--save", "without.npz", cwd=tmp_path).returncode == 0
+    one, other = package.load(tmp_path / "with.npz"), package.load(tmp_path / "without.npz")
+    assert one.q_table.tobytes() == other.q_table.tobytes()
+    assert one.episode_returns.tobytes() == other.episode_returns.tobytes()
+    videos = sorted((tmp_path / "deep" / "videos").iterdir())
+    assert [video.name for video in videos] == [f"MountainCar-v0-episode-{number}.mp4" for number in range(31, 51)]
+    frames, _ = imageio_ffmpeg.count_frames_and_secs(str(videos[0]))
+    assert frames == 21  # the reset's, and one for each step
+
+
+def test_watch_is_refused_before_training_without_a_display(tmp_path: Path) -> None:
+    for variables in ({}, {"SDL_VIDEODRIVER": "dummy"}, {"SDL_VIDEODRIVER": "offscreen"}):
+        line = refused("train", "--watch", "3", "--save", "run.npz", cwd=tmp_path, **variables)
+        assert "--record DIR" in line
+
+
+def test_a_window_shows_the_same_episodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    run = package.train("MountainCar-v0", episodes=5, seed=0, record=2, max_episode_steps=10)
+    env = make_render_env(run.config, "human")
+    env.metadata["render_fps"] = 1000
+    assert replay_all(env, run) == 0
+    env.close()
+    assert np.isfinite(run.q_table).all()

@@ -1,0 +1,57 @@
+"""What "equal to the last bit" means, once."""
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+import qtab
+from qtab.reference import q_learning
+
+
+def assert_same_value(one: Any, other: Any) -> None:
+    """Same type, same dtype and shape, same bytes."""
+    assert type(one) is type(other)
+    if isinstance(one, np.ndarray):
+        assert (one.dtype, one.shape) == (other.dtype, other.shape)
+        assert one.tobytes() == other.tobytes(), f"{one!r} is not {other!r}"
+    else:
+        assert one == other
+
+
+def assert_same_step(one: tuple[Any, ...], other: tuple[Any, ...]) -> None:
+    """Observations, rewards, flags and info of two steps (or two resets) are the same, their types included."""
+    assert len(one) == len(other)
+    for mine, theirs in zip(one, other, strict=True):
+        assert_same_value(mine, theirs)
+
+
+def state_bytes(env: gym.Env) -> bytes:
+    """The internal state of a car in f64."""
+    return np.array(env.unwrapped.state, dtype=np.float64).tobytes()
+
+
+def assert_same_run(one: qtab.Run, other: qtab.Run) -> None:
+    """Two runs brought the same episodes and learned the same table."""
+    assert one.episode_lengths.tolist() == other.episode_lengths.tolist()
+    assert one.episode_returns.tobytes() == other.episode_returns.tobytes()
+    assert one.terminated.tolist() == other.terminated.tolist()
+    assert one.tables.tobytes() == other.tables.tobytes()
+
+
+def assert_same_as_reference(run: qtab.Run, env: gym.Env) -> None:
+    """A run is what the reference loop computes on ``env``, which has the run's time limit."""
+    table, returns, lengths = q_learning(env, run.config)
+    assert run.episode_lengths.tolist() == lengths.tolist()
+    assert run.episode_returns.tobytes() == returns.tobytes()
+    assert run.q_table.tobytes() == table.tobytes()
+
+
+def table_to_go_on_from(seed: int = 0, episodes: int = 5000) -> np.ndarray:
+    """A Q table that reaches MountainCar's goal within the spec's 200 steps now and then."""
+    return qtab.train("MountainCar-v0", seed=seed, episodes=episodes).q_table
+
+
+def energy_policy(observation: np.ndarray) -> int:
+    """Pushes the way the car moves, which takes it to the goal."""
+    return 2 if observation[1] >= 0 else 0

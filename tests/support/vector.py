@@ -1,0 +1,105 @@
+"""Vector environments in lock-step: ours beside a SyncVectorEnv of Gymnasium's own environments."""
+
+import copy
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.utils.env_checker import data_equivalence
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+
+from support import lockstep, toy_text
+
+IDS = [*lockstep.IDS, "CartPole-v0", *toy_text.IDS]
+MODES = list(AutoresetMode)
+
+
+def ours(name: str, num_envs: int, **kwargs: Any) -> Any:
+    return gym.make_vec(f"qtab/{name}", num_envs=num_envs, **kwargs)
+
+
+def theirs(name: str, num_envs: int, mode: AutoresetMode = AutoresetMode.NEXT_STEP, **kwargs: Any) -> SyncVectorEnv:
+    return SyncVectorEnv([lambda: gym.make(name, **kwargs)] * num_envs, autoreset_mode=mode)
+
+
+def assert_equal(one: Any, other: Any) -> None:
+    """Exactly equal, types included, but for the one fault of Gymnasium's that is not copied."""
+    if len(one) == 5:  # a step
+        mended = (*other[:4], mend(other[4], one[4]))
+        assert data_equivalence(one, mended, exact=True), (one, other, lockstep.MACHINE)
+    else:
+        assert data_equivalence(one, other, exact=True), (one, other, lockstep.MACHINE)
+
+
+def mend(infos: dict[str, Any], right: dict[str, Any]) -> dict[str, Any]:
+    """After an autoreset of FrozenLake the probabilities turn to integers; right ones, cut, are the same integers."""
+    infos = {**infos}
+    if "prob" in infos:
+        assert right["prob"].dtype == np.float64
+        assert infos["prob"].tolist() == right["prob"].astype(infos["prob"].dtype).tolist()
+        infos["prob"] = right["prob"]
+    if "final_info" in infos:
+        infos["final_info"] = mend(infos["final_info"], right["final_info"])
+    return infos
+
+
+def position(generator: np.random.Generator) -> Any:
+    """Where a generator stands: a half that is used up is no part of it."""
+    state = dict(generator.bit_generator.state)
+    return {**state, "uinteger": state["uinteger"] * state["has_uint32"]}
+
+
+class Vectors:
+    """A vector environment of ours beside Gymnasium's; what is done to one is done to both, and must come out equal."""
+
+    def __init__(
+        self,
+        name: str,
+        num_envs: int,
+        mode: AutoresetMode = AutoresetMode.NEXT_STEP,
+        own: dict[str, Any] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        self.num_envs, self.mode = num_envs, mode
+        self.ours = ours(name, num_envs, autoreset_mode=mode, **(own or {}), **kwargs)
+        self.theirs = theirs(name, num_envs, mode, **kwargs)
+        self.over = np.zeros(num_envs, np.bool_)
+
+    def reset(self, **kwargs: Any) -> Any:
+        mine, gymnasiums = copy.deepcopy(kwargs), copy.deepcopy(kwargs)
+        one, other = self.ours.reset(**mine), self.theirs.reset(**gymnasiums)
+        assert data_equivalence(mine, kwargs, exact=True), "the caller's options were changed"
+        assert_equal(one, other)
+        mask = (kwargs.get("options") or {}).get("reset_mask", np.True_)
+        self.over &= ~mask
+        return one
+
+    def step(self, actions: Any) -> Any:
+        one, other = self.ours.step(actions), self.theirs.step(actions)
+        assert_equal(one, other)
+        self.over = other[2] | other[3]
+        return one
+
+    def run(self, steps: int, seed: int = 0, dtype: Any = None) -> tuple[int, int]:
+        """Takes random steps, returns how many episodes terminated and how many were cut."""
+        rng = np.random.default_rng(seed)
+        terminated = truncated = 0
+        for _ in range(steps):
+            _, _, ended, cut, _ = self.step(self.actions(rng, dtype))
+            terminated, truncated = terminated + int(ended.sum()), truncated + int(cut.sum())
+            if self.mode is AutoresetMode.DISABLED and self.over.any():
+                self.reset(options={"reset_mask": self.over.copy()})
+        return terminated, truncated
+
+    def actions(self, rng: np.random.Generator, dtype: Any = None) -> Any:
+        space = self.theirs.single_action_space
+        if isinstance(space, gym.spaces.Discrete):
+            return rng.integers(0, space.n, self.num_envs).astype(dtype or np.int64)
+        # Beyond the bounds, too, where Gymnasium clips.
+        return (space.high * rng.uniform(-1.5, 1.5, (self.num_envs, 1))).astype(dtype or np.float32)
+
+    def same_streams(self) -> None:
+        """The generators stand alike, and were seeded alike."""
+        for one, other in zip(self.ours.np_random, self.theirs.np_random, strict=True):
+            assert position(one) == position(other)
+        assert self.ours.np_random_seed == self.theirs.np_random_seed

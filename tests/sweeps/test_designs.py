@@ -1,0 +1,42 @@
+"""Designs: settings drawn from a space."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import qtab
+from qtab import designs
+from support.sweeps import CAR
+
+
+def test_a_design_is_a_grid_too():
+    space = {"learning_rate": (0.01, 1.0, "log"), "discount": (0.8, 1.0), "episodes": range(3, 9)}
+    for design in (designs.random(space, 8, seed=1), designs.sobol(space, 8, seed=1)):
+        study = qtab.sweep(CAR, design, seeds=2)
+        assert len(study) == 16
+        assert study.columns["learning_rate"][::2].tolist() == [setting["learning_rate"] for setting in design]
+
+
+def test_sobols_points_are_spread_evenly():
+    points = designs.sobol({"a": (0.0, 8.0), "b": ["x", "y"]}, 8, seed=3)
+    assert sorted(int(point["a"]) for point in points) == list(range(8))
+    assert sorted(point["b"] for point in points) == ["x"] * 4 + ["y"] * 4
+    assert designs.sobol({"a": (0.0, 8.0)}, 8, seed=3) == designs.sobol({"a": (0.0, 8.0)}, 8, seed=3)
+    with pytest.raises(ValueError, match="power of two"):
+        designs.sobol({"a": (0.0, 8.0)}, 7)
+
+
+@settings(max_examples=50, deadline=None)
+@given(low=st.floats(1e-6, 1.0), span=st.floats(0.01, 100), seed=st.integers(0, 2**32))
+def test_points_lie_in_their_space(low, span, seed):
+    space = {"a": (low, low + span), "b": (low, low + span, "log"), "c": [1, 2, 3]}
+    for point in designs.random(space, 5, seed=seed):
+        assert low <= point["a"] <= low + span
+        assert low * (1 - 1e-12) <= point["b"] <= (low + span) * (1 + 1e-12)
+        assert point["c"] in (1, 2, 3)
+
+
+@pytest.mark.parametrize("axis", [(2, 1), (0, 1, "log"), (1, 2, "lin"), 3, [], "ab", (1,)])
+def test_a_bad_axis_is_refused_by_name(axis):
+    with pytest.raises((ValueError, TypeError), match=r"space\['a'\] must"):
+        designs.random({"a": axis}, 3)

@@ -1,0 +1,22 @@
+"""Optuna drives sweeps, as the example in the docs does."""
+
+import runpy
+from pathlib import Path
+
+import optuna
+import pytest
+
+import qtab
+
+EXAMPLE = Path(__file__).parents[2] / "docs" / "optuna_study.py"
+
+
+@pytest.mark.filterwarnings("ignore::optuna.exceptions.ExperimentalWarning")
+def test_a_trial_is_told_what_its_setting_brings():
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    example = runpy.run_path(str(EXAMPLE))
+    study = example["search"](batches=2, size=2, episodes=100)
+    assert [trial.state.name for trial in study.trials] == ["COMPLETE"] * 4
+    for trial in study.trials:
+        runs = qtab.train_many("MountainCar-v0", seeds=example["SEEDS"], preset="solved", episodes=100, **trial.params)
+        assert trial.value == runs.final_returns(100).mean()

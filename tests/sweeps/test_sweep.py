@@ -1,0 +1,168 @@
+"""Sweeps: a tidy table, whatever was killed on the way to it."""
+
+import multiprocessing
+import signal
+import subprocess
+import sys
+import textwrap
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
+import pytest
+
+import qtab
+from qtab.sweeps import store as stores
+from qtab.sweeps import study as studies
+from support.sweeps import CAR, GRID, SMALL, assert_equal
+
+
+def test_a_row_a_run_with_the_lone_runs_numbers():
+    study = qtab.sweep(CAR, GRID, seeds=3, episodes=250, block=50)
+    assert len(study) == 3 * 2 * 3
+    names = ["setting", "learning_rate", "epsilon", "seed", "episodes", "steps"]
+    assert list(study.columns)[:6] == names
+    for row in (0, 7, 17):
+        config = {name: float(study.columns[name][row]) for name in GRID}
+        run = qtab.train(CAR, seed=int(study.columns["seed"][row]), episodes=250, **config)
+        assert study.columns["mean_return"][row] == run.episode_returns.mean()
+        assert study.columns["final_return"][row] == run.episode_returns[-100:].mean()
+        assert study.columns["steps"][row] == run.episode_lengths.sum()
+        setting = int(study.columns["setting"][row])
+        curve = study.curves(setting)[study.columns["seed"][row]]
+        assert curve.tolist() == run.mean_returns(50).tolist()
+    assert study.failed == 0
+
+
+def test_every_setting_has_the_same_seeds():
+    study = qtab.sweep(CAR, GRID, seeds=[7, 3], episodes=5)
+    for setting in range(6):
+        assert study.values("seed", setting).tolist() == [7, 3]
+
+
+def test_the_table_for_pandas_and_arrow():
+    study = qtab.sweep(CAR, {"scale": [(5, 50), (10, 100)], "terminal_update": ["assign", "target"]}, **SMALL)
+    frame = study.to_pandas()
+    assert frame.shape == (20, 11)
+    assert frame.groupby(["scale", "terminal_update"])["final_return"].count().tolist() == [5, 5, 5, 5]
+    table = study.to_arrow()
+    assert table.column_names == list(frame.columns)
+    assert table["mean_return"].to_pylist() == frame["mean_return"].tolist()
+    assert table["error"].null_count == 20
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_threads_and_stores_change_nothing(tmp_path, small_pieces, threads):
+    study = qtab.sweep(CAR, GRID, threads=threads, store=tmp_path / "study.db", **SMALL)
+    assert_equal(study, qtab.sweep(CAR, GRID, **SMALL))
+
+
+@pytest.mark.parametrize("make", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_any_executor_changes_nothing(small_pieces, make):
+    extra = {"mp_context": multiprocessing.get_context("spawn")} if make is ProcessPoolExecutor else {}
+    with make(2, **extra) as executor:
+        study = qtab.sweep(CAR, GRID, executor=executor, **SMALL)
+    assert_equal(study, qtab.sweep(CAR, GRID, **SMALL))
+
+
+def test_progress_comes_as_it_happens(small_pieces):
+    seen = []
+    qtab.sweep(CAR, GRID, callback=seen.append, **SMALL)
+    assert len(seen) >= 10
+    assert [progress.runs for progress in seen] == sorted({progress.runs for progress in seen})
+    assert (seen[-1].runs, seen[-1].total, seen[-1].new) == (30, 30, 30)
+
+
+def test_a_finished_store_is_read_and_nothing_trained_again(tmp_path, small_pieces):
+    path = tmp_path / "study.db"
+    first = qtab.sweep(CAR, GRID, store=path, **SMALL)
+    seen = []
+    assert_equal(qtab.sweep(CAR, GRID, store=path, callback=seen.append, **SMALL), first)
+    assert seen == []
+
+
+SCRIPT = """
+import sys, qtab
+from qtab.sweeps import study
+study.PIECE_STEPS = 2 * 40 * 200 + 1
+qtab.sweep("MountainCar-v0", {grid}, seeds={seeds}, episodes=40, store=sys.argv[1],
+           callback=lambda progress: print(progress.runs, progress.new, flush=True))
+"""
+
+
+def start(path, seeds=5):
+    script = textwrap.dedent(SCRIPT.format(grid=GRID, seeds=seeds))
+    return subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE, text=True)
+
+
+@pytest.mark.parametrize("pieces", [1, 4])
+def test_killed_at_any_moment_it_goes_on(tmp_path, small_pieces, pieces):
+    path = tmp_path / "study.db"
+    many = {"seeds": 600, "episodes": 40}
+    process = start(path, seeds=600)
+    for _ in range(pieces):
+        process.stdout.readline()
+    process.kill()
+    rest = process.communicate()[0].split()
+    assert process.returncode == -signal.SIGKILL, "it was done before it was killed"
+    seen = []
+    study = qtab.sweep(CAR, GRID, store=path, callback=seen.append, **many)
+    found = seen[0].runs - seen[0].new
+    assert found >= pieces
+    assert len(rest) == 0 or found >= int(rest[-2])
+    assert seen[-1].new == 3600 - found
+    assert_equal(study, qtab.sweep(CAR, GRID, **many))
+
+
+def test_ctrl_c_keeps_the_finished_runs_and_lets_go_of_the_others(tmp_path, small_pieces):
+    path = tmp_path / "study.db"
+
+    def interrupt(progress):
+        if progress.new > 10:
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        qtab.sweep(CAR, GRID, store=path, callback=interrupt, **SMALL)
+    partial = caught.value.run
+    assert 10 < len(partial) < 30
+    whole = qtab.sweep(CAR, GRID, store=path, **SMALL)
+    assert partial.columns["steps"].tolist() == whole.columns["steps"][: len(partial)].tolist()
+    assert_equal(whole, qtab.sweep(CAR, GRID, **SMALL))
+
+
+def test_two_processes_share_a_store(tmp_path, small_pieces):
+    path = tmp_path / "study.db"
+    both = [start(path, seeds=150) for _ in range(2)]
+    new = []
+    for process in both:
+        lines = process.communicate(timeout=60)[0].splitlines()
+        assert process.returncode == 0
+        new.append(len(lines))
+    pieces = studies.study(CAR, GRID, 150, 100, {"episodes": 40}).pieces
+    assert sum(new) == len(pieces)
+    assert_equal(
+        qtab.sweep(CAR, GRID, store=path, seeds=150, episodes=40), qtab.sweep(CAR, GRID, seeds=150, episodes=40)
+    )
+
+
+def test_an_expired_claim_is_taken_over_and_a_late_result_is_not_entered_twice(tmp_path, small_pieces, monkeypatch):
+    path = tmp_path / "study.db"
+    planned = studies.study(CAR, GRID, 5, 100, {"episodes": 40})
+    slow = stores.Store(path, planned)
+    number = slow.claim()
+    monkeypatch.setattr(stores, "EXPIRY", -1.0)
+    study = qtab.sweep(CAR, GRID, store=path, **SMALL)
+    monkeypatch.undo()
+    piece = planned.pieces[number]
+    rows = [stores.Row(0, None, b"", "late")] * (piece.stop - piece.start)
+    assert slow.enter(piece, rows) is False
+    slow.close()
+    assert study.failed == 0
+    assert len(study) == 30
+
+
+def test_pieces_depend_on_the_grid_alone():
+    one = studies.study(CAR, GRID, 1000, 100, {"episodes": 5000})
+    assert one.pieces == studies.study(CAR, GRID, 1000, 100, {"episodes": 5000}).pieces
+    assert one.pieces[0].start == 0
+    assert one.pieces[-1].stop == 6000
+    assert all(piece.stop == after.start for piece, after in zip(one.pieces, one.pieces[1:], strict=False))
+    assert 50 < one.pieces[0].stop < 100

@@ -1,0 +1,152 @@
+"""Classic control trained in Rust: the tables of Gymnasium's own environments, byte for byte."""
+
+from typing import Any, get_args
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from qtab import _core
+from qtab.config.choices import Algorithm
+from qtab.config.options import TABLES_ONLY
+from support.learner_settings import CAR, KEYWORDS, LIMITS, TRAINED
+from support.lockstep import MACHINE
+from support.parity import assert_same_run
+
+ALGORITHMS = get_args(Algorithm)
+OTHERS = [env for env in TRAINED if env.values != (CAR,)]
+STEPS = 100_000
+
+
+def settings_of(env: str, discretizer: str) -> dict[str, Any]:
+    low, high = LIMITS[env]
+    few = {"actions": (-0.7, 0.1, 1.0)} if "Pendulum" in env or "Continuous" in env else {}
+    own: dict[str, dict[str, Any]] = {
+        "bins": {"bins": 3, "low": low, "high": high},
+        "edges": {"edges": tuple((0.7 * first, 0.0, 0.2 * last) for first, last in zip(low, high, strict=True))},
+        "round": {"scale": tuple(3.0 / (last - first) for first, last in zip(low, high, strict=True))},
+        "tiles": {"tiles": 2, "tilings": 12, "low": low, "high": high},
+    }
+    return {"discretizer": discretizer, "learning_rate": 0.1, **own[discretizer], **few}
+
+
+@pytest.mark.parametrize("env", OTHERS)
+def test_a_hundred_thousand_steps_make_the_tables_of_gymnasium(env: str) -> None:
+    """Every algorithm with every discretizer, in turn, until there are so many."""
+    steps = seed = 0
+    kinds = ("bins", "edges", "tiles") if env == "CartPole-v1" else ("bins", "edges", "tiles", "round")
+    pairs = [(kind, name) for kind in kinds for name in ALGORITHMS if kind != "tiles" or name not in TABLES_ONLY]
+    while steps < STEPS or seed < len(pairs):
+        kind, algorithm = pairs[seed % len(pairs)]
+        chosen = {**settings_of(env, kind), "algorithm": algorithm, "seed": seed, "episodes": 9 if seed % 2 else 60}
+        chosen["max_episode_steps"] = 500 if seed % 2 else 37
+        chosen["on_truncation"] = "terminate" if seed % 3 else "bootstrap"
+        fast = qtab.train(env, backend="rust", **chosen)
+        assert_same_run(fast, qtab.train(env, backend="gymnasium", **chosen))
+        steps += int(fast.episode_lengths.sum())
+        seed += 1
+
+
+@pytest.mark.parametrize("env", OTHERS)
+@pytest.mark.parametrize("kind", ["bins", "tiles"])
+def test_many_runs_are_the_lone_ones(env: str, kind: str) -> None:
+    chosen = {**settings_of(env, kind), "episodes": 20, "max_episode_steps": 60}
+    runs = qtab.train_many(env, seeds=6, threads=3, tables=True, **chosen)
+    assert runs.tables is not None
+    for seed in range(6):
+        lone = qtab.train(env, seed=seed, **chosen)
+        assert runs.tables[seed].tobytes() == lone.tables.tobytes()
+        assert runs.episode_returns[seed].tobytes() == lone.episode_returns.tobytes()
+
+
+@pytest.mark.parametrize("env", OTHERS)
+def test_every_way_to_name_it_is_the_same(env: str) -> None:
+    chosen = {**settings_of(env, "bins"), "seed": 4, "episodes": 5, "max_episode_steps": 50}
+    run = qtab.train(env, **chosen)
+    assert run.config.backend == "rust"
+    assert_same_run(run, qtab.train(f"qtab/{env}", **chosen))
+    assert_same_run(run, qtab.train(gym.spec(env), **chosen))
+    assert_same_run(run, qtab.train(gym.make(env), backend="rust", **chosen))
+    assert_same_run(run, qtab.train(gym.make(env), **chosen))
+
+
+@pytest.mark.parametrize("env", [env for env in TRAINED if env.values[0] in KEYWORDS])
+def test_keyword_arguments_reach_rust(env: str) -> None:
+    name, values = KEYWORDS[env]
+    chosen = {**settings_of(env, "bins"), "seed": 4, "episodes": 30, "max_episode_steps": 300}
+    for value in values:
+        run = qtab.train(env, env_kwargs={name: value}, **chosen)
+        assert run.config.backend == "rust"
+        assert_same_run(run, qtab.train(env, env_kwargs={name: value}, backend="gymnasium", **chosen))
+
+
+@pytest.mark.parametrize(
+    ("env", "keywords"),
+    [
+        ("Pendulum-v1", {"g": np.float32(9.8)}),
+        ("Pendulum-v1", {"g": 1e40}),
+        ("CartPole-v1", {"render_mode": "rgb_array"}),
+    ],
+)
+def test_what_rust_does_not_stand_for_steps_in_gymnasium(env: str, keywords: dict[str, Any]) -> None:
+    chosen = {**settings_of(env, "bins"), "seed": 4, "episodes": 1, "max_episode_steps": 3, "env_kwargs": keywords}
+    assert qtab.train(env, **chosen).config.backend == "gymnasium"
+    with pytest.raises(ValueError, match=r"^backend must be 'gymnasium' or 'auto' here, got 'rust': "):
+        qtab.train(env, backend="rust", **chosen)
+
+
+@pytest.mark.parametrize(
+    ("env", "attribute", "value"),
+    [
+        ("CartPole-v1", "gravity", 9.0),
+        ("CartPole-v1", "kinematics_integrator", "semi-implicit euler"),
+        ("Acrobot-v1", "book_or_nips", "nips"),
+        ("Acrobot-v1", "AVAIL_TORQUE", [-2.0, 0.0, 2.0]),
+        ("Pendulum-v1", "max_speed", 9),
+    ],
+)
+def test_an_edited_object_is_refused_in_rust_by_the_name_of_its_attribute(env: str, attribute: str, value: Any) -> None:
+    made = gym.make(env)
+    setattr(made.unwrapped, attribute, value)
+    with pytest.raises(ValueError, match=f"its attribute {attribute} was changed from"):
+        qtab.train(made, backend="rust", **settings_of(env, "bins"))
+
+
+@pytest.mark.parametrize("env", ["CartPole-v1", "Acrobot-v1", "Pendulum-v1"])
+def test_where_numpys_functions_are_its_own_gymnasium_steps(env: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_core, "computes_as_numpy", lambda model: False)
+    chosen = {**settings_of(env, "bins"), "seed": 4, "episodes": 1, "max_episode_steps": 3}
+    assert qtab.train(env, **chosen).config.backend == "gymnasium"
+    with pytest.raises(ValueError, match=r"got 'rust': NumPy's sin and cos are not the platform's on this machine"):
+        qtab.train(env, backend="rust", **chosen)
+
+
+def test_rust_trains_where_numpy_calls_the_platform() -> None:
+    assert all(_core.computes_as_numpy(name) for name in ("MountainCar", "ContinuousMountainCar"))
+    for name in ("CartPole", "Pendulum"):
+        assert _core.computes_as_numpy(name) == _core.numpy_calls_the_platform(), MACHINE
+
+
+@pytest.mark.parametrize("name", [env for env in TRAINED if env.values == ("Acrobot-v1",)])
+def test_acrobots_first_observations_are_numpys_single_precision(name: str) -> None:
+    """Bins that part next to each first observation of Gymnasium find it again."""
+    env = gym.make(name)
+    for seed in range(300):
+        observation, _ = env.reset(seed=seed)
+        edges = tuple((float(np.nextafter(x, np.float32(-99))), float(x)) for x in observation)
+        run = qtab.train(
+            name,
+            backend="rust",
+            seed=seed,
+            episodes=1,
+            max_episode_steps=1,
+            initial_q=0.0,
+            discretizer="edges",
+            edges=edges,
+            epsilon=0.0,
+            discount=0.0,
+            learning_rate=1.0,
+        )
+        assert run.tables[0, run.grid.lit(observation)[0], 0] == -1.0
+        assert run.grid.cell(observation) == (2,) * 6

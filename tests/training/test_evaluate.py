@@ -1,0 +1,129 @@
+"""evaluate plays the greedy policy in the environment: what a plain Python rollout brings."""
+
+import math
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from support.environments import Walk
+
+
+@pytest.fixture(scope="module")
+def learned():
+    return qtab.train("MountainCar-v0", seed=0)
+
+
+def rollout(env, run, episodes, seed):
+    """Gymnasium's own loop: act greedily, learn nothing."""
+    returns, lengths, ends = [], [], []
+    for episode in range(episodes):
+        observation, _ = env.reset(seed=seed if episode == 0 else None)
+        total, length, terminated, truncated = 0.0, 0, False, False
+        while not (terminated or truncated):
+            action, _ = run.predict(observation)
+            observation, reward, terminated, truncated, _ = env.step(action)
+            total += reward
+            length += 1
+        returns.append(total)
+        lengths.append(length)
+        ends.append(terminated)
+    return returns, lengths, ends
+
+
+@pytest.mark.parametrize("seed", [0, 17, 2**70])
+def test_it_is_a_greedy_rollout_on_gymnasiums_environment(learned, seed):
+    found = qtab.evaluate(learned, episodes=20, seed=seed)
+    returns, lengths, ends = rollout(gym.make("MountainCar-v0"), learned, 20, seed)
+    assert found.returns.tolist() == returns
+    assert found.lengths.tolist() == lengths
+    assert found.terminated.tolist() == ends
+    assert any(ends)
+    assert found.seed == seed
+
+
+def test_its_fields_are_what_they_say(learned):
+    found = qtab.evaluate(learned, episodes=50, seed=1)
+    returns = found.returns.tolist()
+    mean = sum(returns) / 50
+    assert found.mean_return == pytest.approx(mean, rel=1e-12)
+    spread = math.sqrt(sum((value - mean) ** 2 for value in returns) / 49)
+    assert found.standard_error == pytest.approx(spread / math.sqrt(50), rel=1e-12)
+    assert found.terminated_rate == found.terminated.sum() / 50
+    assert found.success_rate == sum(value >= -110.0 for value in returns) / 50
+    assert found.reward_threshold == -110.0
+    assert (found.returns.dtype, found.lengths.dtype) == (np.float64, np.int64)
+
+
+def test_a_return_at_the_threshold_is_a_success(learned):
+    found = qtab.evaluate(learned, episodes=60, seed=1)
+    at = qtab.Evaluation(found.returns, found.lengths, found.terminated, 1, float(found.returns.max()))
+    assert at.success_rate == (found.returns == found.returns.max()).sum() / 60
+
+
+def test_one_episode_has_no_standard_error(learned):
+    assert math.isnan(qtab.evaluate(learned, episodes=1, seed=0).standard_error)
+
+
+def test_an_environment_without_a_threshold_has_no_success_rate():
+    run = qtab.train(Walk(), scale=(2, 2), seed=0, episodes=5, max_episode_steps=30)
+    found = qtab.evaluate(run, episodes=5, seed=1, env=Walk())
+    assert found.success_rate is None
+    assert found.returns.tolist() == rollout(gym.wrappers.TimeLimit(Walk(), 30), run, 5, 1)[0]
+
+
+def test_actions_and_limits_are_those_of_the_run():
+    run = qtab.train(Walk(np.float64, start=5), scale=(2, 3), seed=0, episodes=30, max_episode_steps=25)
+    found = qtab.evaluate(run, episodes=5, seed=1, env=Walk(np.float64, start=5))
+    env = gym.wrappers.TimeLimit(Walk(np.float64, start=5), 25)
+    assert (found.returns.tolist(), found.lengths.tolist(), found.terminated.tolist()) == rollout(env, run, 5, 1)
+
+
+def test_the_environments_keywords_are_those_of_the_run():
+    never = {"goal_velocity": 0.08}
+    run = qtab.train("MountainCar-v0", seed=0, env_kwargs=never, max_episode_steps=300)
+    found = qtab.evaluate(run, episodes=5, seed=0)
+    assert found.terminated_rate == 0.0
+    assert found.success_rate == 0.0
+    assert found.lengths.tolist() == [300] * 5
+    assert found.lengths.tolist() == rollout(gym.make("MountainCar-v0", max_episode_steps=300, **never), run, 5, 0)[1]
+
+
+def test_a_saved_run_evaluates_the_same(learned, tmp_path):
+    learned.save(tmp_path / "run.npz")
+    loaded = qtab.load(tmp_path / "run.npz")
+    assert qtab.evaluate(loaded, 9, seed=3).returns.tolist() == qtab.evaluate(learned, 9, seed=3).returns.tolist()
+
+
+def test_both_backends_evaluate_the_same():
+    settings = {"seed": 0, "episodes": 600}
+    fast, slow = (qtab.train("MountainCar-v0", backend=backend, **settings) for backend in ("rust", "gymnasium"))
+    assert qtab.evaluate(fast, 9, seed=3).returns.tolist() == qtab.evaluate(slow, 9, seed=3).returns.tolist()
+
+
+def test_evaluating_leaves_the_run_as_it_was(learned):
+    before = learned.tables.tobytes()
+    qtab.evaluate(learned, episodes=5, seed=0)
+    assert learned.tables.tobytes() == before
+
+
+def test_a_seed_that_is_left_open_is_drawn_and_recorded(learned):
+    found = qtab.evaluate(learned, episodes=5)
+    assert qtab.evaluate(learned, episodes=5, seed=found.seed).returns.tolist() == found.returns.tolist()
+    assert found.seed != qtab.evaluate(learned, episodes=5).seed
+
+
+@pytest.mark.parametrize(
+    ("argument", "error"),
+    [
+        ({"episodes": 0}, ValueError),
+        ({"episodes": 1.5}, TypeError),
+        ({"seed": -1}, ValueError),
+        ({"seed": 1.0}, TypeError),
+    ],
+)
+def test_a_bad_argument_is_named(learned, argument, error):
+    ((name, value),) = argument.items()
+    with pytest.raises(error, match=f"{name} must be .* got {value!r}"):
+        qtab.evaluate(learned, **argument)

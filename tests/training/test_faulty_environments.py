@@ -1,0 +1,148 @@
+"""An environment that fails takes nothing along: its own exception comes through, with the run so far."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from support.environments import Calls, ScriptedEnv
+from support.parity import assert_same_run
+
+ONE = np.array([1.0], np.float32)
+
+
+class BrokenError(Exception):
+    """Raised by the tests' environments."""
+
+
+def raising_at(step, error):
+    def fail(count):
+        if count == step:
+            raise error
+
+    return fail
+
+
+def train(env, **settings):
+    return qtab.train(env, **{"scale": (1,), "seed": 0, "episodes": 5} | settings)
+
+
+@pytest.mark.parametrize(
+    "error", [BrokenError("axle"), KeyboardInterrupt(), SystemExit(1), StopIteration(), OSError(5, "x")]
+)
+def test_an_exception_in_mid_episode_comes_through_with_the_finished_episodes(error):
+    with pytest.raises(type(error)) as caught:
+        train(Calls(ScriptedEnv([ONE]), raising_at(2 * 8 + 3, error)))
+    assert caught.value is error
+    run = error.run
+    assert run.completed is False
+    assert run.episode_lengths.tolist() == [8, 8]
+    whole = train(ScriptedEnv([ONE]))
+    assert run.episode_returns.tobytes() == whole.episode_returns[:2].tobytes()
+    assert run.config.episodes == 5
+
+
+def test_what_was_learned_in_the_unfinished_episode_is_kept():
+    runs = []
+    for step in (8, 8 + 5):
+        error = BrokenError()
+        with pytest.raises(BrokenError):
+            train(Calls(ScriptedEnv([ONE]), raising_at(step, error)))
+        runs.append(error.run)
+    assert runs[0].episode_lengths.tolist() == runs[1].episode_lengths.tolist() == [8]
+    assert runs[0].tables.tobytes() != runs[1].tables.tobytes()
+
+
+@pytest.mark.parametrize("at", [0, 3])
+def test_an_exception_in_a_reset_comes_through(at):
+    error = BrokenError("no start")
+
+    class NoStart(ScriptedEnv):
+        def reset(self, **kwargs):
+            if len(self.seeds) == at:
+                raise error
+            return super().reset(**kwargs)
+
+    with pytest.raises(BrokenError) as caught:
+        train(NoStart([ONE]))
+    assert caught.value is error
+    assert len(error.run.episode_returns) == at
+
+
+def test_an_exception_that_has_a_run_of_its_own_comes_through_as_it_is():
+    class OwnRunError(Exception):
+        @property
+        def run(self):
+            return 7
+
+    error = OwnRunError()
+    with pytest.raises(OwnRunError) as caught:
+        train(Calls(ScriptedEnv([ONE]), raising_at(3, error)))
+    assert caught.value is error
+    assert error.run == 7
+
+
+def test_a_traceback_leads_into_the_environment():
+    with pytest.raises(BrokenError) as caught:
+        train(Calls(ScriptedEnv([ONE]), raising_at(3, BrokenError())))
+    assert any(entry.name == "fail" for entry in caught.traceback)
+
+
+@pytest.mark.parametrize("reward", [float("nan"), float("inf"), float("-inf"), np.float32("nan")])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_a_reward_that_is_not_finite_is_refused(dtype, reward):
+    with pytest.raises(ValueError, match=r"reward is (NaN|-?inf)") as caught:
+        train(ScriptedEnv([ONE.astype(dtype)], dtype=dtype, rewards=[-1.0] * 20 + [reward]))
+    assert caught.value.run.episode_lengths.tolist() == [8, 8]
+    assert np.isfinite(caught.value.run.tables).all()
+
+
+@pytest.mark.parametrize("reward", [None, "much", [1.0], np.ones(2)])
+def test_a_reward_that_is_no_number_is_a_type_error(reward):
+    with pytest.raises(TypeError):
+        train(ScriptedEnv([ONE], rewards=[reward]))
+
+
+@pytest.mark.parametrize(
+    ("observation", "shape"),
+    [(np.ones(2, np.float32), r"\(2,\)"), (np.ones((1, 1), np.float32), r"\(1, 1\)"), (1.0, r"\(\)"), ([], r"\(0,\)")],
+)
+def test_an_observation_of_another_shape_is_refused_and_its_shape_shown(observation, shape):
+    with pytest.raises(ValueError, match=rf"observation must have shape \(1,\).* got {shape}$"):
+        train(ScriptedEnv([ONE, ONE, observation]))
+
+
+@pytest.mark.parametrize("observation", ["left", {"x": 1.0}, object()])
+def test_an_observation_of_no_numbers_is_refused(observation):
+    with pytest.raises((TypeError, ValueError)):
+        train(ScriptedEnv([ONE, observation]))
+
+
+def test_the_old_apis_step_of_four_values_is_refused():
+    class Old(ScriptedEnv):
+        def step(self, action):
+            return super().step(action)[:4]
+
+    with pytest.raises(ValueError, match="expected tuple of length 5, but got tuple of length 4"):
+        train(Old([ONE]))
+
+
+def test_an_environment_can_be_trained_on_again_after_it_failed():
+    env = Calls(ScriptedEnv([ONE]), raising_at(3, BrokenError()))
+    with pytest.raises(BrokenError):
+        train(env)
+    assert_same_run(train(env), train(ScriptedEnv([ONE])))
+
+
+def test_an_environment_may_train_in_its_own_step():
+    inner = []
+    outer = train(Calls(ScriptedEnv([ONE]), lambda count: count == 3 and inner.append(train(ScriptedEnv([ONE])))))
+    assert_same_run(outer, inner[0])
+
+
+def test_an_assertion_of_gymnasiums_wrappers_comes_through():
+    env = gym.wrappers.OrderEnforcing(ScriptedEnv([ONE]))
+    env.reset = lambda **kwargs: (ONE, {})
+    with pytest.raises(gym.error.ResetNeeded) as caught:
+        train(env)
+    assert caught.value.run.completed is False

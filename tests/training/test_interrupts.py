@@ -1,0 +1,107 @@
+"""Ctrl-C stops a run of any length, in a process of its own, and what was learned comes along."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from support.interrupts import PRELUDE, in_a_process
+
+
+@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
+def test_ctrl_c_stops_an_endless_episode_and_carries_the_run(backend):
+    done = in_a_process(f"""
+once_it_trains(ctrl_c)
+try:
+    qtab.train("MountainCar-v0", backend={backend!r}, **ENDLESS)
+except KeyboardInterrupt as interrupt:
+    report(interrupt.run)
+""")
+    run = json.loads(done.stdout)
+    assert run["completed"] is False
+    assert run["episodes"] == 0
+    assert run["learned"] > 10
+    assert run["finite"]
+
+
+@pytest.mark.parametrize(
+    "settings", ["", "bit_generator='MT19937'", "record=3", "callback=print, callback_every=10**8"]
+)
+def test_ctrl_c_between_episodes_carries_the_finished_ones(settings):
+    done = in_a_process(f"""
+once_it_trains(ctrl_c)
+try:
+    qtab.train("MountainCar-v0", episodes=10**9, seed=0, {settings})
+except KeyboardInterrupt as interrupt:
+    run = interrupt.run
+    count = len(run.episode_returns)
+    again = qtab.train("MountainCar-v0", episodes=10**9, seed=0, callback=lambda progress: False,
+                       callback_every=count, bit_generator=run.config.bit_generator)
+    report(run, same=again.episode_returns.tobytes() == run.episode_returns.tobytes())
+""")
+    run = json.loads(done.stdout)
+    assert run["completed"] is False
+    assert run["episodes"] > 0
+    assert run["same"]
+
+
+def test_an_uncaught_ctrl_c_ends_the_process_as_python_does():
+    done = subprocess.run(
+        [sys.executable, "-c", PRELUDE + "once_it_trains(ctrl_c)\nqtab.train('MountainCar-v0', **ENDLESS)"],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode != 0
+    assert done.stderr.rstrip().endswith("KeyboardInterrupt")
+
+
+def test_a_signal_handlers_own_exception_comes_through_with_the_run():
+    done = in_a_process("""
+class Enough(Exception): pass
+def handler(number, frame):
+    raise Enough
+signal.signal(signal.SIGTERM, handler)
+once_it_trains(lambda: os.kill(os.getpid(), signal.SIGTERM))
+try:
+    qtab.train("MountainCar-v0", **ENDLESS)
+except Enough as enough:
+    report(enough.run)
+""")
+    assert json.loads(done.stdout)["learned"] > 10
+
+
+def test_a_signal_that_is_handled_does_not_stop_a_run():
+    done = in_a_process("""
+seen = []
+signal.signal(signal.SIGTERM, lambda number, frame: seen.append(number))
+def then():
+    os.kill(os.getpid(), signal.SIGTERM)
+    while not seen:
+        time.sleep(0.01)
+    ctrl_c()
+once_it_trains(then)
+try:
+    qtab.train("MountainCar-v0", **ENDLESS)
+except KeyboardInterrupt as interrupt:
+    report(interrupt.run, seen=len(seen))
+""")
+    assert json.loads(done.stdout)["seen"] == 1
+
+
+def test_other_python_threads_run_while_a_run_trains():
+    # Only the other thread can end this run, after a million turns of a Python loop.
+    done = in_a_process("""
+def count_and_stop():
+    turns = 0
+    while turns < 1_000_000:
+        turns += 1
+    _thread.interrupt_main()
+once_it_trains(count_and_stop)
+try:
+    qtab.train("MountainCar-v0", **ENDLESS)
+except KeyboardInterrupt as interrupt:
+    report(interrupt.run)
+""")
+    assert json.loads(done.stdout)["learned"] > 10

@@ -1,0 +1,155 @@
+"""Training on environments of other people: LunarLander, a room in the manner of MiniGrid, wrappers of any kind."""
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from qtab.rendering.replay import replay_episode
+from support.gridworld import SHORTEST
+from support.parity import assert_same_run
+
+gym.register("qtab-tests/Room-v0", "support.gridworld:Room", max_episode_steps=100)
+ROOM: dict[str, Any] = {"episodes": 250, "learning_rate": 0.5, "discount": 0.95, "epsilon": 0.5, "initial_q": 0.0}
+ROOM |= {"seed": 0, "ties": "random"}
+
+
+@pytest.mark.parametrize("multi", [False, True])
+def test_a_room_is_walked_through_the_shortest_way(multi: bool) -> None:
+    run = qtab.train("qtab-tests/Room-v0", env_kwargs={"multi": multi}, **ROOM)
+    assert run.q_table.shape == (5, 5, 4, 3)
+    assert run.config.max_episode_steps == 100
+    played = qtab.evaluate(run, episodes=3, seed=1)
+    assert played.lengths.tolist() == [SHORTEST] * 3
+    assert played.terminated.all()
+    assert played.mean_return == 1.0 - 0.005 * SHORTEST
+
+
+def test_a_tuple_and_an_array_are_the_same_observation() -> None:
+    one, other = (qtab.train("qtab-tests/Room-v0", env_kwargs={"multi": multi}, **ROOM) for multi in (False, True))
+    assert_same_run(one, other)
+
+
+@pytest.mark.parametrize("algorithm", ["q_learning", "sarsa_lambda", "dyna_q"])
+def test_a_slippery_room_is_learned_saved_loaded_and_verified(algorithm: str, tmp_path: Any) -> None:
+    run = qtab.train("qtab-tests/Room-v0", env_kwargs={"slip": 0.1}, algorithm=algorithm, **ROOM)
+    run.save(tmp_path / "run.npz")
+    loaded = qtab.load(tmp_path / "run.npz")
+    assert qtab.verify(loaded).equal
+    played = qtab.evaluate(loaded, episodes=50, seed=1)
+    assert played.returns.tobytes() == qtab.evaluate(run, episodes=50, seed=1).returns.tobytes()
+    assert played.terminated_rate == 1.0
+    assert loaded.predict((1, 1, 0)) == run.predict(np.array([1, 1, 0]))
+
+
+def test_the_last_episodes_in_the_room_are_played_again() -> None:
+    run = qtab.train("qtab-tests/Room-v0", env_kwargs={"slip": 0.1}, record=5, **ROOM)
+    env = gym.make("qtab-tests/Room-v0", slip=0.1, render_mode="ansi")
+    returns = [replay_episode(env, recording) for recording in run.recordings]
+    assert returns == run.episode_returns[-5:].tolist()
+    assert all(returns)
+
+
+LANDER: dict[str, Any] = {
+    "algorithm": "sarsa_lambda",
+    "discretizer": "tiles",
+    "tiles": (3, 3, 3, 3, 3, 3, 1, 1),
+    "low": (-1.0, -0.5, -1.5, -1.5, -1.0, -2.0, 0.0, 0.0),
+    "high": (1.0, 1.5, 1.5, 1.0, 1.0, 2.0, 1.0, 1.0),
+    "learning_rate": 0.3,
+    "discount": 0.99,
+    "epsilon": 0.1,
+    "trace_decay": 0.8,
+    "trace_cutoff": 0.01,
+    "initial_q": 0.0,
+    "max_episode_steps": 300,
+    "seed": 0,
+}
+"""Settings of LunarLander that learn something in little time; its own bounds are wider than where it flies."""
+
+
+@pytest.fixture(scope="module")
+def lander() -> str:
+    pytest.importorskip("Box2D", reason="LunarLander needs the extra box2d")
+    return "LunarLander-v3"
+
+
+def test_the_lander_learns_to_come_down_more_gently(lander: str) -> None:
+    run = qtab.train(lander, episodes=200, hashed_rows=2**16, **LANDER)
+    first, second = run.mean_returns(100)
+    assert first < -50 < 0 < second
+
+
+@pytest.mark.parametrize("hashed_rows", [None, 5000])
+@pytest.mark.parametrize("algorithm", ["q_learning", "sarsa_lambda"])
+def test_the_lander_is_verified(lander: str, algorithm: str, hashed_rows: int | None) -> None:
+    settings = {**LANDER, "algorithm": algorithm, "hashed_rows": hashed_rows}
+    if algorithm == "q_learning":
+        settings = {name: value for name, value in settings.items() if not name.startswith("trace_")}
+    run = qtab.train(lander, episodes=3, **settings)
+    assert run.config.backend == "gymnasium"
+    assert qtab.verify(run).equal
+
+
+def discretized(env: gym.Env) -> gym.Env:
+    return gym.wrappers.DiscretizeObservation(env, bins=12)
+
+
+WRAPPED: dict[str, tuple[Any, dict[str, Any]]] = {
+    "TimeLimit": (lambda env: gym.wrappers.TimeLimit(env, 50), {"scale": (10, 100)}),
+    "TransformReward": (lambda env: gym.wrappers.TransformReward(env, lambda reward: 2 * reward), {"scale": (10, 100)}),
+    "NormalizeObservation": (
+        gym.wrappers.NormalizeObservation,
+        {"discretizer": "tiles", "low": (-2.0, -2.0), "high": (2.0, 2.0)},
+    ),
+    "NormalizeReward": (gym.wrappers.NormalizeReward, {"scale": (10, 100)}),
+    "TimeAwareObservation": (
+        gym.wrappers.TimeAwareObservation,
+        {"discretizer": "tiles", "tiles": (8, 8, 2)},
+    ),
+    "DiscretizeObservation": (discretized, {}),
+    "RescaleObservation": (
+        lambda env: gym.wrappers.RescaleObservation(env, np.float32(-1), np.float32(1)),
+        {"scale": (9, 7)},
+    ),
+    "StickyAction": (lambda env: gym.wrappers.StickyAction(env, 0.25), {"scale": (10, 100)}),
+}
+
+
+@pytest.mark.parametrize("name", WRAPPED)
+def test_a_wrapped_environment_trains_as_it_stands(name: str) -> None:
+    wrap, settings = WRAPPED[name]
+    settings = {**settings, "episodes": 4, "seed": 3}
+    ours, theirs = (qtab.train(wrap(gym.make(env)), **settings) for env in ("qtab/MountainCar-v0", "MountainCar-v0"))
+    assert ours.config.backend == "gymnasium"
+    assert_same_run(ours, theirs)
+    assert qtab.verify(ours, env=wrap(gym.make("MountainCar-v0"))).equal
+
+
+def test_bounds_the_wrong_way_round_are_refused() -> None:
+    env = gym.make("MountainCar-v0").unwrapped
+    env.observation_space.low[1] = 5.0
+    with pytest.raises(ValueError, match=r"^the observation space must have low <= high, got Box\("):
+        qtab.train(env, scale=(10, 100))
+    with pytest.raises(ValueError, match=r"^low must lie below high, got \[-1.2.*, 5.0\] and \[0.6"):
+        qtab.train(env, discretizer="tiles")
+
+
+@pytest.mark.parametrize("settings", [{"discretizer": "round", "scale": (1,) * 4}, {"discretizer": "tiles"}], ids=str)
+def test_infinite_bounds_without_limits_are_refused(settings: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=r"(have|has no) finite bounds.* Box\(\[-4.8 +-inf"):
+        qtab.train("CartPole-v1", backend="gymnasium", low=None, high=None, **settings)
+
+
+@pytest.mark.parametrize("hashed_rows", [None, 100])
+def test_an_observation_of_nan_is_refused_by_its_component(hashed_rows: int | None) -> None:
+    def spoil(observation: Any) -> Any:
+        return np.array([observation[0], np.nan], np.float32)
+
+    env = gym.make("MountainCar-v0")
+    env = gym.wrappers.TransformObservation(env, spoil, env.observation_space)
+    with pytest.raises(ValueError, match=r"^observation\[1\] is NaN, outside the observation space$") as caught:
+        qtab.train(env, discretizer="tiles", hashed_rows=hashed_rows)
+    assert len(caught.value.run.episode_returns) == 0  # type: ignore[attr-defined]

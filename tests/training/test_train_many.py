@@ -1,0 +1,311 @@
+"""Many runs: each the lone one to the bit, however many threads; and what happens when they do not get that far."""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import qtab
+from support.environments import make_brittle
+
+CAR = "MountainCar-v0"
+POLE = "CartPole-v1"
+SHORT = {"episodes": 30}
+
+
+def assert_equal_to_lone_runs(runs, env=CAR, **config):
+    for index, seed in enumerate(runs.seeds):
+        lone = qtab.train(env, seed=seed, **config)
+        assert runs.episode_returns[index].tobytes() == lone.episode_returns.tobytes()
+        assert runs.episode_lengths[index].tobytes() == lone.episode_lengths.tobytes()
+        assert runs.terminated[index].tobytes() == lone.terminated.tobytes()
+        if runs.tables is not None:
+            assert runs.tables[index].tobytes() == lone.tables.tobytes()
+
+
+@pytest.mark.parametrize("threads", [1, 2, 7, 64])
+def test_each_run_is_the_lone_one_for_any_number_of_threads(threads):
+    runs = qtab.train_many(CAR, seeds=range(20), threads=threads, tables=True, episodes=200)
+    assert runs.completed
+    assert runs.seeds == tuple(range(20))
+    assert runs.episode_returns.shape == runs.episode_lengths.shape == runs.terminated.shape == (20, 200)
+    assert runs.tables.shape == (20, 1, 285, 3)
+    assert_equal_to_lone_runs(runs, episodes=200)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    seeds=st.lists(st.integers(0, 2**32 - 1), min_size=1, max_size=12, unique=True),
+    threads=st.integers(1, 5),
+    episodes=st.integers(1, 25),
+    config=st.fixed_dictionaries(
+        {
+            "learning_rate": st.floats(0, 1),
+            "discount": st.floats(0, 1),
+            "epsilon": st.floats(0.1, 1),
+            "bit_generator": st.sampled_from(["PCG64", "MT19937"]),
+            "terminal_update": st.sampled_from(["assign", "target"]),
+            "max_episode_steps": st.sampled_from([1, 37, 200, 500]),
+        }
+    ),
+)
+def test_each_run_is_the_lone_one_for_any_config(seeds, threads, episodes, config):
+    runs = qtab.train_many(CAR, seeds, threads=threads, tables=True, episodes=episodes, **config)
+    assert_equal_to_lone_runs(runs, episodes=episodes, **config)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    seeds=st.lists(st.integers(0, 2**32 - 1), min_size=4, max_size=12, unique=True),
+    episodes=st.integers(2, 25),
+    config=st.fixed_dictionaries(
+        {
+            "learning_rate": st.floats(0.1, 1),
+            "discount": st.floats(0, 1),
+            "epsilon": st.floats(0.1, 1),
+            "terminal_update": st.sampled_from(["assign", "target"]),
+            "max_episode_steps": st.sampled_from([1, 37, 500]),
+            "bins": st.sampled_from([(3, 3, 6, 6), (1, 1, 9, 70)]),
+            "env_kwargs": st.sampled_from([{}, {"sutton_barto_reward": True}]),
+        }
+    ),
+)
+def test_each_run_of_poles_is_the_lone_one_for_any_config(seeds, episodes, config):
+    runs = qtab.train_many(POLE, seeds, threads=1, tables=True, episodes=episodes, **config)
+    assert runs.config.learning_rate_schedule == "linear"
+    assert_equal_to_lone_runs(runs, env=POLE, episodes=episodes, **config)
+
+
+def test_runs_of_poles_are_gymnasiums():
+    runs = qtab.train_many(POLE, 9, threads=1, tables=True, episodes=40)
+    assert runs.config.backend == "rust"
+    assert_equal_to_lone_runs(runs, env=POLE, episodes=40, backend="gymnasium")
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        {"algorithm": "double_q_learning"},
+        {"algorithm": "sarsa_lambda", "trace_decay": 0.9},
+        {"algorithm": "dyna_q", "planning_steps": 3},
+        {"discretizer": "tiles", "algorithm": "sarsa"},
+    ],
+)
+@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
+def test_each_run_is_the_lone_one_for_every_learner(config, backend):
+    episodes = 12 if backend == "rust" else 2
+    config = {**config, "episodes": episodes, "backend": backend}
+    runs = qtab.train_many(CAR, 3, threads=2, tables=True, **config)
+    assert_equal_to_lone_runs(runs, **config)
+    assert runs[1].tables.shape == qtab.train(CAR, seed=1, **config).tables.shape
+
+
+STEEP = {"discretizer": "tiles", "algorithm": "sarsa_lambda", "traces": "accumulating", "trace_decay": 1.0}
+STEEP |= {"learning_rate": 1.5, "discount": 1.0, "epsilon": 0.8, "min_epsilon": 0.8, "episodes": 4}
+
+
+def test_a_failing_run_names_its_seed_and_leaves_the_finished_ones():
+    with pytest.raises(OverflowError) as lone:
+        qtab.train(CAR, seed=0, **STEEP)
+    with pytest.raises(OverflowError) as caught:
+        qtab.train_many(CAR, [1, 0, 2], threads=1, tables=True, **STEEP)
+    assert str(caught.value) == str(lone.value)
+    assert "seed 0" in getattr(caught.value, "__notes__", ["seed 0"])[0]
+    runs = caught.value.run
+    assert runs.seeds == (1,)
+    assert not runs.completed
+    assert_equal_to_lone_runs(runs, **STEEP)
+
+
+def test_a_number_of_seeds_counts_from_zero():
+    assert qtab.train_many(CAR, 3, **SHORT).seeds == (0, 1, 2)
+    assert qtab.train_many(CAR, np.int64(2), **SHORT).seeds == (0, 1)
+    assert qtab.train_many(CAR, np.array([5, 3]), **SHORT).seeds == (5, 3)
+    assert qtab.train_many(CAR, [2**70], **SHORT).seeds == (2**70,)
+
+
+def test_a_single_run_of_them_is_a_run(tmp_path):
+    runs = qtab.train_many(CAR, [4, 9], tables=True, **SHORT)
+    run = runs[-1]
+    assert run.config.seed == 9
+    run.save(tmp_path / "run.npz")
+    assert qtab.load(tmp_path / "run.npz").q_table.tobytes() == qtab.train(CAR, seed=9, **SHORT).q_table.tobytes()
+    assert [one.config.seed for one in runs] == [4, 9]
+    with pytest.raises(IndexError):
+        runs[2]
+    with pytest.raises(ValueError, match="tables=True"):
+        qtab.train_many(CAR, 1, **SHORT)[0]
+
+
+def test_summaries_have_a_number_a_run():
+    runs = qtab.train_many(CAR, 3, episodes=250)
+    columns = runs.summaries()
+    assert columns["seed"].tolist() == [0, 1, 2]
+    assert columns["steps"].tolist() == runs.episode_lengths.sum(axis=1).tolist()
+    assert columns["final_return"].tolist() == runs.final_returns().tolist()
+    assert runs.mean_returns(100).shape == (3, 2)
+    assert runs.mean_returns(100)[1].tolist() == qtab.train(CAR, seed=1, episodes=250).mean_returns(100).tolist()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"seeds": 0}, ValueError, "seeds must be an integer of at least 1, got 0"),
+        ({"seeds": []}, ValueError, "seeds must hold at least one seed"),
+        ({"seeds": [3, 1, 3]}, ValueError, "seeds must differ from each other, got 3 twice"),
+        ({"seeds": [-1]}, ValueError, "seeds must be an integer of at least 0, got -1"),
+        ({"seeds": True}, TypeError, "seeds must be an integer"),
+        ({"seeds": [True]}, TypeError, "seeds must be an integer"),
+        ({"seeds": 2.0}, TypeError, "seeds must be an integer or a sequence"),
+        ({"seeds": "12"}, TypeError, "seeds must be an integer or a sequence"),
+        ({"seeds": [2**32], "bit_generator": "MT19937"}, ValueError, "seed must be an integer from 0 to 4294967295"),
+        ({"threads": 0}, ValueError, "threads must be an integer from 1 to 1024, got 0"),
+        ({"threads": -2}, ValueError, "threads must be an integer from 1 to 1024, got -2"),
+        ({"threads": 1025}, ValueError, "threads must be an integer from 1 to 1024, got 1025"),
+        ({"threads": 1.5}, TypeError, "threads must be an integer"),
+        ({"seed": 3}, TypeError, "seed is what seeds"),
+        ({"episode": 3}, TypeError, "'episode' is no setting of a run"),
+        ({"learning_rate": 2}, ValueError, "learning_rate must lie in"),
+        ({"env": gym.make(CAR)}, TypeError, "env must be an id, an EnvSpec or a function that makes an environment"),
+        ({"env": lambda: 3}, TypeError, "env must make an environment, got 3"),
+        ({"env": 3}, TypeError, "env must be an environment id"),
+        ({"memory_limit": 0}, ValueError, "memory_limit must be an integer of at least 1"),
+        ({"memory_limit": 10**6}, MemoryError, "1000 runs of 5000 episodes need 81.. MiB, more than memory_limit"),
+        ({"seeds": 10, "tables": True, "scale": (1e4, 1e4)}, MemoryError, "more than memory_limit"),
+    ],
+)
+def test_bad_input_is_refused_before_anything_starts(arguments, error, message):
+    with pytest.raises(error, match=message):
+        qtab.train_many(**{"env": CAR, "memory_limit": 2**30, **arguments})
+
+
+def test_the_limit_can_be_raised():
+    with pytest.raises(MemoryError):
+        qtab.train_many(CAR, 10, memory_limit=15_000, **SHORT)
+    assert len(qtab.train_many(CAR, 10, memory_limit=40_000, threads=1, **SHORT)) == 10
+
+
+def _in_a_child(queue):
+    queue.put(qtab.train_many(CAR, 4, threads=2, **SHORT).episode_returns)
+
+
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_it_works_after_a_fork():
+    before = qtab.train_many(CAR, 4, threads=2, **SHORT).episode_returns
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    child = context.Process(target=_in_a_child, args=(queue,))
+    child.start()
+    after = queue.get(timeout=30)
+    child.join(30)
+    assert child.exitcode == 0
+    assert before.tobytes() == after.tobytes()
+
+
+def test_other_python_threads_go_on_meanwhile():
+    ticks = []
+    over = threading.Event()
+
+    def tick():
+        while not over.is_set():
+            ticks.append(over.wait(0.001))
+
+    other = threading.Thread(target=tick)
+    other.start()
+    qtab.train_many(CAR, 20, threads=2, episodes=500)
+    over.set()
+    other.join()
+    assert len(ticks) > 3
+
+
+def test_threads_may_call_it_at_the_same_time():
+    results = {}
+
+    def work(name):
+        results[name] = qtab.train_many(CAR, 6, threads=2, episodes=100).episode_returns.tobytes()
+
+    workers = [threading.Thread(target=work, args=(name,)) for name in range(3)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert len(set(results.values())) == 1
+    assert len(results) == 3
+
+
+def run_until_ready_then_interrupt(script):
+    """Runs a script that prints a line when it is under way, interrupts it, and returns what it said."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(script)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "ready\n"
+    os.kill(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
+    return out.split()
+
+
+def test_ctrl_c_keeps_the_finished_runs():
+    # The first run is short work, the others are not: the interrupt comes between.
+    said = run_until_ready_then_interrupt(
+        """
+        import threading, time, qtab
+        def ready():
+            time.sleep(0.5)
+            print("ready", flush=True)
+        qtab.train_many("MountainCar-v0", 1, episodes=1)  # what takes time before the first run is behind it
+        threading.Thread(target=ready, daemon=True).start()
+        try:
+            qtab.train_many("MountainCar-v0", 100_000, threads=2, episodes=200)
+        except KeyboardInterrupt as error:
+            runs = error.run
+            assert error.runs is runs and not runs.completed
+            lone = qtab.train("MountainCar-v0", seed=runs.seeds[0], episodes=200)
+            print(len(runs), len(runs.episode_returns), (runs.episode_returns[0] == lone.episode_returns).all())
+        """
+    )
+    assert 0 < int(said[0]) == int(said[1]) < 100_000
+    assert said[2] == "True"
+
+
+def test_python_environments_run_in_processes_and_are_the_lone_runs():
+    runs = qtab.train_many(CAR, [3, 5, 8], threads=2, tables=True, backend="gymnasium", episodes=3)
+    assert_equal_to_lone_runs(runs, episodes=3, backend="gymnasium")
+    assert runs.config.backend == "gymnasium"
+
+
+def test_a_failing_process_names_its_seed_and_leaves_the_finished_runs():
+    with pytest.raises(RuntimeError, match="out of order") as caught:
+        qtab.train_many(make_brittle, [0, 4, 2], threads=1, scale=(10, 100), episodes=2)
+    assert caught.value.run.seeds == (0, 4)
+    lone = qtab.train(make_brittle(), seed=0, scale=(10, 100), episodes=2)
+    assert caught.value.run.episode_returns[0].tobytes() == lone.episode_returns.tobytes()
+
+
+def test_ctrl_c_stops_the_processes_too():
+    said = run_until_ready_then_interrupt(
+        """
+        import multiprocessing, threading, time, qtab
+        def ready():
+            while not multiprocessing.active_children():
+                time.sleep(0.05)
+            time.sleep(2)
+            print("ready", flush=True)
+        if __name__ == "__main__":
+            threading.Thread(target=ready, daemon=True).start()
+            try:
+                qtab.train_many("MountainCar-v0", 1000, threads=2, backend="gymnasium", episodes=50)
+            except KeyboardInterrupt as error:
+                print(error.run.completed, multiprocessing.active_children() == [])
+        """
+    )
+    assert said == ["False", "True"]

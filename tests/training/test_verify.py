@@ -1,0 +1,177 @@
+"""verify replays a run through Gymnasium and NumPy, and says where the two part."""
+
+import dataclasses
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from support.environments import Walk
+from support.parity import table_to_go_on_from
+
+LEARNED = table_to_go_on_from()
+
+
+def train(**settings):
+    return qtab.train("MountainCar-v0", **{"seed": 3, "episodes": 12, "max_episode_steps": 60} | settings)
+
+
+RUNS = {
+    "default": {},
+    "MT19937": {"bit_generator": "MT19937"},
+    "gymnasium": {"backend": "gymnasium"},
+    "MT19937 on gymnasium": {"bit_generator": "MT19937", "backend": "gymnasium"},
+    "from a table, to the goal": {"initial_q": LEARNED, "max_episode_steps": 1000, "epsilon": 0.1},
+    "the book's update": {"initial_q": LEARNED, "max_episode_steps": 1000, "terminal_update": "target"},
+    "a long seed": {"seed": 2**200 + 1},
+    "another goal": {"env_kwargs": {"goal_velocity": 0.05}},
+}
+
+
+@pytest.mark.parametrize("settings", RUNS.values(), ids=RUNS)
+def test_a_run_verifies(settings):
+    run = train(**settings)
+    report = qtab.verify(run)
+    assert run.terminated.any() == (run.config.max_episode_steps == 1000)
+    assert report.equal is True
+    assert (report.returns_equal, report.lengths_equal, report.table_equal) == (True, True, True)
+    assert (report.episode, report.step) == (None, None)
+    assert report.episodes == 12
+    assert report.seed == run.config.seed
+    assert {"gymnasium", "numpy", "python", "platform"} <= set(report.versions)
+
+
+@pytest.mark.parametrize("env", ["qtab/MountainCar-v0", "qtab:qtab/MountainCar-v0", gym.spec("MountainCar-v0")])
+def test_a_run_of_our_id_or_of_a_spec_verifies_against_gymnasiums(env):
+    assert qtab.verify(qtab.train(env, seed=0, episodes=3)).equal
+
+
+def test_a_saved_run_verifies(tmp_path):
+    train().save(tmp_path / "run.npz")
+    assert qtab.verify(qtab.load(tmp_path / "run.npz")).equal
+
+
+@pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
+@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
+@pytest.mark.parametrize("episodes", [1, 5, 12])
+def test_a_prefix_verifies_with_the_schedule_of_the_whole(bit_generator, backend, episodes):
+    report = qtab.verify(train(bit_generator=bit_generator, backend=backend), episodes=episodes)
+    assert report.equal is True
+    assert report.episodes == episodes
+
+
+def test_a_prefix_of_the_articles_five_thousand_episodes_verifies():
+    assert qtab.verify(qtab.train("MountainCar-v0", seed=0), episodes=30).equal
+
+
+def stopped():
+    return train(callback=lambda progress: progress.episodes < 6, callback_every=3)
+
+
+def test_a_run_that_was_stopped_verifies_by_a_prefix():
+    assert qtab.verify(stopped(), episodes=6).equal
+    assert qtab.verify(stopped(), episodes=4).equal
+
+
+def test_a_run_that_was_stopped_is_refused_without_one():
+    with pytest.raises(ValueError, match="episodes must be given for a run that was stopped early, at most 6"):
+        qtab.verify(stopped())
+
+
+@pytest.mark.parametrize(("episodes", "error"), [(0, ValueError), (13, ValueError), (2.0, TypeError), ("5", TypeError)])
+def test_a_number_of_episodes_that_does_not_fit_is_refused(episodes, error):
+    with pytest.raises(error, match=rf"episodes must be an integer from 1 to 12, got {episodes!r}"):
+        qtab.verify(train(), episodes=episodes)
+
+
+def tampered(run, name, index, change):
+    values = getattr(run, name).copy()
+    values.flat[index] = change(values.flat[index])
+    return dataclasses.replace(run, **{name: values})
+
+
+def test_a_changed_return_is_found_in_its_episode():
+    report = qtab.verify(tampered(train(), "episode_returns", 4, lambda value: np.nextafter(value, 0)))
+    assert report.equal is False
+    assert (report.returns_equal, report.lengths_equal, report.table_equal) == (False, True, True)
+    assert (report.episode, report.step) == (4, None)
+
+
+@pytest.mark.parametrize(("change", "step"), [(-20, 40), (+3, 60)])
+def test_a_changed_length_is_found_in_its_episode_and_step(change, step):
+    report = qtab.verify(tampered(train(), "episode_lengths", 7, lambda value: value + change))
+    assert (report.returns_equal, report.lengths_equal, report.table_equal) == (True, False, True)
+    assert (report.episode, report.step) == (7, step)
+
+
+@pytest.mark.parametrize("cell", [0, 400, -1])
+def test_a_table_that_differs_by_one_bit_is_found(cell):
+    run = tampered(train(), "tables", cell, lambda value: np.nextafter(value, 9))
+    report = qtab.verify(run)
+    assert report.equal is False
+    assert (report.returns_equal, report.lengths_equal, report.table_equal) == (True, True, False)
+    assert (report.episode, report.step) == (None, None)
+
+
+def test_the_sign_of_a_zero_is_a_difference():
+    run = train(initial_q=(0.0, 0.0))
+    untouched = int(np.flatnonzero(run.tables == 0.0)[0])
+    assert qtab.verify(run).equal
+    assert not qtab.verify(tampered(run, "tables", untouched, lambda value: -0.0)).equal
+
+
+def test_a_table_is_compared_whatever_its_memory_order():
+    run = train()
+    flipped = np.asfortranarray(run.tables)
+    assert qtab.verify(dataclasses.replace(run, tables=flipped)).equal
+
+
+@pytest.mark.parametrize("episodes", [None, 10])
+def test_another_seed_in_the_config_is_found_in_the_first_episode_that_differs(episodes):
+    run = train(initial_q=LEARNED, max_episode_steps=1000)
+    other = train(initial_q=LEARNED, max_episode_steps=1000, seed=4)
+    claimed = dataclasses.replace(run, config=run.config.replace(seed=4))
+    report = qtab.verify(claimed, episodes=episodes)
+    assert report.equal is False
+    assert report.episode == int(np.argmax(run.episode_lengths != other.episode_lengths))
+
+
+@pytest.mark.parametrize("setting", [{"learning_rate": 0.21}, {"discount": 0.91}, {"terminal_update": "target"}])
+def test_another_setting_in_the_config_is_found(setting):
+    run = train(initial_q=LEARNED, max_episode_steps=1000, epsilon=0.1)
+    assert run.terminated.any()
+    assert not qtab.verify(dataclasses.replace(run, config=run.config.replace(**setting))).equal
+
+
+def test_a_run_on_an_object_verifies_against_that_object():
+    run = qtab.train(Walk(start=5), scale=(2, 2), seed=0, episodes=5, max_episode_steps=40)
+    assert qtab.verify(run, env=Walk(start=5)).equal
+    assert qtab.verify(run, env=Walk(start=5), episodes=3).equal
+    assert qtab.verify(tampered(run, "episode_lengths", 2, lambda value: value + 1), env=Walk(start=5)).episode == 2
+
+
+def test_an_edited_object_verifies_against_itself_alone():
+    env = gym.make("MountainCar-v0")
+    env.unwrapped.force = 0.002
+    run = qtab.train(env, seed=0, episodes=10)
+    assert qtab.verify(run, env=env).equal
+    report = qtab.verify(run)
+    assert report.equal is False
+
+
+def test_progress_is_told_after_every_episode():
+    told = []
+    qtab.verify(train(episodes=4), progress=lambda done, total: told.append((done, total)))
+    assert [total for _, total in told] == [4] * len(told)
+    assert [done for done, _ in told] == [1, 2, 3, 4]
+
+
+def test_the_report_reads_as_one():
+    run = tampered(train(), "episode_lengths", 7, lambda value: value - 1)
+    text = str(qtab.verify(run))
+    assert "MountainCar-v0, seed 3, 12 episodes" in text
+    assert "returns  equal" in text
+    assert "lengths  DIFFERENT" in text
+    assert "they part in episode 7, step 59" in text
+    assert f"numpy {np.__version__}" in text

@@ -1,0 +1,101 @@
+"""Each vector environment is a SyncVectorEnv of Gymnasium's own environments, to the bit, in every autoreset mode."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import qtab
+from support import lockstep
+from support.vector import IDS, MODES, Vectors
+
+LANE_STEPS = 4_200
+EXAMPLES = 8
+"""Three modes, eight examples, 4,200 steps of a sub-environment each: 100,800 for every environment."""
+
+SETTINGS: dict[str, dict[str, Any]] = {
+    "MountainCar-v0": {"goal_velocity": [0, 0.01, 0.03]},
+    "MountainCarContinuous-v0": {"goal_velocity": [0, 0.01, 0.03]},
+    "CartPole-v1": {"sutton_barto_reward": [False, True]},
+    "CartPole-v0": {"sutton_barto_reward": [False, True]},
+    "Pendulum-v1": {"g": [10.0, 9.81, 2]},
+    "FrozenLake-v1": {"is_slippery": [True, False], "map_name": ["4x4", "8x8"], "success_rate": [1 / 3, 0.7]},
+    "FrozenLake8x8-v1": {"desc": [["SFHF", "FFFG"], None], "reward_schedule": [(1, 0, 0), (2.5, -1, -0.25)]},
+    "CliffWalking-v1": {"is_slippery": [False, True]},
+    "Taxi-v4": {"is_rainy": [False, True], "fickle_passenger": [False, True], "fickle_probability": [0.3, 1.0]},
+    "Blackjack-v1": {"natural": [False, True], "sab": [False, True]},
+}
+NEAR_THE_END = {
+    "MountainCar-v0": {"low": 0.49, "high": 0.52},
+    "MountainCarContinuous-v0": {"low": 0.44, "high": 0.47},
+    "CartPole-v1": {"low": -0.2},
+    "Acrobot-v1": {"low": 1, "high": 2.5},
+    "Pendulum-v1": {"x_init": 20.0, "y_init": 0},
+}
+
+
+@pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("name", IDS)
+def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
+    seen = np.zeros(2, np.int64)
+
+    @settings(max_examples=EXAMPLES)
+    @given(
+        num_envs=st.integers(1, 40),
+        seed=st.integers(0, 2**70) | st.none(),
+        threads=st.sampled_from([None, 1, 2, 3]),
+        copy=st.booleans(),
+        limit=st.sampled_from([None, None, 1, 7, 60]),
+        kwargs=st.fixed_dictionaries(
+            {}, optional={key: st.sampled_from(values) for key, values in SETTINGS.get(name, {}).items()}
+        ),
+        options=st.sampled_from([None, {}, NEAR_THE_END.get(name, {"unknown": 1})]),
+        dtype=st.sampled_from([np.float32, np.float64] if name in lockstep.CONTINUOUS else [np.int64, np.int32]),
+        data=st.data(),
+    )
+    def run(num_envs, seed, threads, copy, limit, kwargs, options, dtype, data) -> None:
+        own = {"threads": threads, "copy": copy}
+        vectors = Vectors(name, num_envs, mode, own, max_episode_steps=limit, **kwargs)
+        assert vectors.ours.unwrapped.launched == lockstep.MACHINE["NumPy calls the platform"] or not any(
+            part in name for part in ("CartPole", "Acrobot", "Pendulum")
+        )
+        if seed is None:
+            seed = data.draw(st.lists(st.integers(0, 2**40), min_size=num_envs, max_size=num_envs))
+        vectors.reset(seed=seed, options=options)
+        if data.draw(st.booleans()):
+            mask = np.array(data.draw(st.lists(st.booleans(), min_size=num_envs, max_size=num_envs)))
+            mask[data.draw(st.integers(0, num_envs - 1))] = True
+            vectors.reset(seed=data.draw(st.sampled_from([None, 3])), options={"reset_mask": mask, **(options or {})})
+        seen[:] += vectors.run(LANE_STEPS // num_envs, 0 if seed is None else 1, dtype)
+        vectors.same_streams()
+        vectors.reset(options=NEAR_THE_END.get(name))
+        seen[:] += vectors.run(3)
+
+    run()
+    # Blackjack is over before most limits, and no example need draw the one that it meets.
+    cut = Vectors(name, 3, mode, max_episode_steps=1)
+    cut.reset(seed=0)
+    seen[:] += cut.run(3)
+    assert seen[1] > 0
+    # At random a taxi and a walker by the cliff seldom arrive.
+    assert seen[0] > 0 or name in ("Pendulum-v1", "Taxi-v4", "CliffWalking-v1", "CliffWalkingSlippery-v1")
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("name", ["Taxi-v4", "CliffWalking-v1"])
+def test_those_who_know_the_way_arrive_in_lock_step(name: str, mode: Any) -> None:
+    policy = qtab.optimum(name).policy
+    vectors = Vectors(name, 9, mode)
+    observations, _ = vectors.reset(seed=3)
+    arrived = 0
+    for _ in range(60):
+        observations, _, terminated, _, _ = vectors.step(policy[observations].astype(np.int64))
+        arrived += int(terminated.sum())
+        if mode is AutoresetMode.DISABLED and terminated.any():
+            observations, _ = vectors.reset(options={"reset_mask": terminated})
+    assert arrived >= 18
+    vectors.same_streams()
