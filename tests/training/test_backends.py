@@ -52,7 +52,7 @@ def test_a_spec_of_a_wrapped_environment_is_stepped_in_gymnasium_with_its_wrappe
     run = qtab.train(spec, **SHORT)
     assert run.config.backend == "gymnasium"
     assert (run.episode_returns == -12.5).all()
-    with pytest.raises(ValueError, match="backend must be 'gymnasium' or 'auto' here, got 'rust'"):
+    with pytest.raises(ValueError, match="backend must be 'auto' or 'gymnasium' for this environment, got 'rust'"):
         qtab.train(spec, backend="rust", **SHORT)
 
 
@@ -60,7 +60,7 @@ def test_a_spec_of_a_wrapped_environment_is_stepped_in_gymnasium_with_its_wrappe
 def test_auto_leaves_keywords_that_rust_does_not_know_to_gymnasium(env_kwargs):
     run = qtab.train("MountainCar-v0", env_kwargs=env_kwargs, **SHORT)
     assert run.config.backend == "gymnasium"
-    with pytest.raises(ValueError, match="backend must be 'gymnasium' or 'auto' here, got 'rust'"):
+    with pytest.raises(ValueError, match="backend must be 'auto' or 'gymnasium' for this environment, got 'rust'"):
         qtab.train("MountainCar-v0", env_kwargs=env_kwargs, backend="rust", **SHORT)
 
 
@@ -73,7 +73,7 @@ def test_keywords_that_say_nothing_do_not_keep_rust_away():
 def test_auto_leaves_an_id_that_rust_does_not_know_to_gymnasium(walk_id):
     run = qtab.train(walk_id, scale=(2, 2), **SHORT)
     assert run.config.backend == "gymnasium"
-    with pytest.raises(ValueError, match=r"got 'rust': Rust has no QtabTests/Walk-v0"):
+    with pytest.raises(ValueError, match=r"got 'rust': Rust does not implement QtabTests/Walk-v0"):
         qtab.train(walk_id, scale=(2, 2), backend="rust", **SHORT)
 
 
@@ -150,5 +150,5 @@ def test_rust_refuses_another_environment_and_a_subclass_by_name():
         pass
 
     for env, name in ((Walk(), "Walk"), (Steeper(), "Steeper")):
-        with pytest.raises(ValueError, match=f"Rust has no .*{name}"):
+        with pytest.raises(ValueError, match=f"Rust does not implement .*{name}"):
             qtab.train(env, backend="rust", scale=(2, 2), **SHORT)

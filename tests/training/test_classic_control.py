@@ -92,7 +92,7 @@ def test_keyword_arguments_reach_rust(env: str) -> None:
 def test_what_rust_does_not_stand_for_steps_in_gymnasium(env: str, keywords: dict[str, Any]) -> None:
     chosen = {**settings_of(env, "bins"), "seed": 4, "episodes": 1, "max_episode_steps": 3, "env_kwargs": keywords}
     assert qtab.train(env, **chosen).config.backend == "gymnasium"
-    with pytest.raises(ValueError, match=r"^backend must be 'gymnasium' or 'auto' here, got 'rust': "):
+    with pytest.raises(ValueError, match=r"^backend must be 'auto' or 'gymnasium' for this environment, got 'rust': "):
         qtab.train(env, backend="rust", **chosen)
 
 

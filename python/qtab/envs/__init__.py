@@ -1,4 +1,4 @@
-"""The environments as Gymnasium makes them: physics in Rust, all the rest inherited."""
+"""Gymnasium environments whose transitions are computed in Rust; everything else is inherited from Gymnasium."""
 
 import gymnasium as gym
 
@@ -6,19 +6,23 @@ from qtab.envs.registry import ENTRIES, EXTRA, PREFIX
 
 
 def register() -> None:
-    """Registers ``qtab/…`` beside each of Gymnasium's environments that Rust knows, with its limit and threshold."""
-    for name, model in ENTRIES.items():
-        theirs = gym.registry.get(name)
-        if theirs is None:  # an old version that this Gymnasium no longer has
+    """Registers every environment of this package with Gymnasium.
+
+    Each id of :data:`~qtab.envs.registry.ENTRIES` gets a twin with the prefix ``qtab/`` and the same time limit, reward
+    threshold and keyword arguments. Ids that the installed Gymnasium does not have are skipped.
+    """
+    for name, entry in ENTRIES.items():
+        spec = gym.registry.get(name)
+        if spec is None:
             continue
         gym.register(
             id=PREFIX + name,
-            entry_point=model.qtab,
+            entry_point=entry.entry_point,
             vector_entry_point=f"qtab.envs.vector:{name}",
-            max_episode_steps=theirs.max_episode_steps,
-            reward_threshold=theirs.reward_threshold,
-            nondeterministic=theirs.nondeterministic,
-            kwargs=dict(theirs.kwargs),
+            max_episode_steps=spec.max_episode_steps,
+            reward_threshold=spec.reward_threshold,
+            nondeterministic=spec.nondeterministic,
+            kwargs=dict(spec.kwargs),
         )
-    for name, model in EXTRA.items():
-        gym.register(id=name, entry_point=model.qtab)
+    for name, entry in EXTRA.items():
+        gym.register(id=name, entry_point=entry.entry_point)

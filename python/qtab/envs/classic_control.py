@@ -1,4 +1,4 @@
-"""Gymnasium's classic control with the physics step in Rust: ``qtab/MountainCar-v0`` and the others."""
+"""Gymnasium's classic control environments with steps computed in Rust: ``qtab/MountainCar-v0`` and the others."""
 
 from typing import Any
 
@@ -18,15 +18,16 @@ from qtab import _core
 
 
 class ClassicControlMixin(_core.Physics):
-    """The base of an environment that steps in Rust; Gymnasium's class comes after it.
+    """Mixin that steps a classic control environment in Rust; Gymnasium's class follows it in the bases.
 
-    Spaces, reset options, rendering and attributes are Gymnasium's own. Whatever Gymnasium lets a user assign is
-    honoured from the next step on, in a class from the next reset on. CartPole, Acrobot and Pendulum call NumPy's sine
-    and cosine: where those are not the platform's, they step in Gymnasium's own code, and its logger says so once.
+    Spaces, reset options, rendering and attributes are inherited from Gymnasium. An attribute assigned on the instance
+    takes effect at the next step, one assigned on the class at the next reset. CartPole, Acrobot and Pendulum use
+    NumPy's sine and cosine. Where NumPy does not take these from the C library, which Rust calls, the environments step
+    in Gymnasium's code, and Gymnasium's logger reports it once.
     """
 
     model: str
-    """The name of the physics in Rust."""
+    """The registry's name of the environment."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         super().__setattr__(name, value)
@@ -39,22 +40,22 @@ class ClassicControlMixin(_core.Physics):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Draws the first state in Rust, from the environment's own generator; by ``options`` in Gymnasium's code."""
+        """Draws the first state in Rust from ``np_random``, or in Gymnasium's code if there are ``options``."""
         if options is None:
             gym.Env.reset(self, seed=seed)  # type: ignore[arg-type]
             begun = self.begin()
             if begun is not None:
                 return begun
-            seed = None  # it has been heeded
-        theirs: Any = super(_core.Physics, self)
-        first: tuple[NDArray[np.float32], dict[str, Any]] = theirs.reset(seed=seed, options=options)
+            seed = None  # already applied
+        gymnasium_env: Any = super(_core.Physics, self)
+        first: tuple[NDArray[np.float32], dict[str, Any]] = gymnasium_env.reset(seed=seed, options=options)
         return first
 
     def step_in_python(self, action: Any) -> Any:
-        """Steps through Gymnasium's own code what Rust does not stand for, such as a float32 state.
+        """Steps in Gymnasium's code, for states that Rust does not support, such as one of float32.
 
         Raises:
-            gymnasium.error.ResetNeeded: before the first reset, where Gymnasium has no error of its own.
+            gymnasium.error.ResetNeeded: before the first reset.
         """
         try:
             return super(_core.Physics, self).step(action)  # type: ignore[misc]
@@ -64,7 +65,7 @@ class ClassicControlMixin(_core.Physics):
             raise
 
     def __getstate__(self) -> dict[str, Any]:
-        """All that a copy needs: Python's attributes, and the state, which lives in Rust."""
+        """Returns the Python attributes and the state, which Rust holds."""
         return {**self.__dict__, **({"state": self.state} if hasattr(self, "state") else {})}
 
     def __setstate__(self, attributes: dict[str, Any]) -> None:
@@ -73,30 +74,30 @@ class ClassicControlMixin(_core.Physics):
 
 
 class MountainCarEnv(ClassicControlMixin, GymnasiumMountainCarEnv):
-    """Gymnasium's MountainCar-v0 with its physics step in Rust, equal to the last bit."""
+    """Gymnasium's MountainCar-v0 with steps computed in Rust, equal to the last bit."""
 
     model = "MountainCar"
 
 
 class ContinuousMountainCarEnv(ClassicControlMixin, GymnasiumContinuousMountainCarEnv):
-    """Gymnasium's MountainCarContinuous-v0 with its physics step in Rust, equal to the last bit."""
+    """Gymnasium's MountainCarContinuous-v0 with steps computed in Rust, equal to the last bit."""
 
     model = "ContinuousMountainCar"
 
 
 class CartPoleEnv(ClassicControlMixin, GymnasiumCartPoleEnv):
-    """Gymnasium's CartPole with its physics step in Rust, equal to the last bit."""
+    """Gymnasium's CartPole with steps computed in Rust, equal to the last bit."""
 
     model = "CartPole"
 
 
 class AcrobotEnv(ClassicControlMixin, GymnasiumAcrobotEnv):
-    """Gymnasium's Acrobot-v1 with its physics step in Rust, equal to the last bit."""
+    """Gymnasium's Acrobot-v1 with steps computed in Rust, equal to the last bit."""
 
     model = "Acrobot"
 
 
 class PendulumEnv(ClassicControlMixin, GymnasiumPendulumEnv):
-    """Gymnasium's Pendulum-v1 with its physics step in Rust, equal to the last bit."""
+    """Gymnasium's Pendulum-v1 with steps computed in Rust, equal to the last bit."""
 
     model = "Pendulum"

@@ -1,63 +1,65 @@
-"""Which environment objects Rust may stand in for: those that are still what their id says."""
+"""Matching of environment objects to registry entries: Rust replaces only those whose numbers it reproduces."""
+
+from typing import Any
 
 import gymnasium as gym
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
 from qtab.envs.registry import TABULAR, EnvEntry, entry_for_id
 
-# What gymnasium.make puts around an environment; none of it changes a number.
-_HARMLESS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
+# The wrappers of gymnasium.make, none of which changes an observation or a reward.
+_HARMLESS_WRAPPERS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
 
 
 def unknown_wrapper(env: gym.Env) -> str | None:
-    """Returns the name of the outermost wrapper that may change a number; None where there is none."""
+    """Returns the class name of the outermost wrapper that may change a number; None if there is none."""
     while isinstance(env, gym.Wrapper):
-        if type(env) not in _HARMLESS:
+        if type(env) not in _HARMLESS_WRAPPERS:
             return type(env).__name__
         env = env.env
     return None
 
 
+def rust_unavailable(reason: str) -> ValueError:
+    """Returns the error for ``backend="rust"`` where Rust cannot step the environment."""
+    return ValueError(f"backend must be 'auto' or 'gymnasium' for this environment, got 'rust': {reason}")
+
+
 def entry_for_env(env: gym.Env) -> EnvEntry:
-    """Returns the model that computes what an environment object would.
+    """Returns the registry entry that computes the same numbers as an environment object.
 
     Raises:
-        ValueError: if there is none; it names the wrapper or the attribute in the way.
+        ValueError: if there is none; the message names the class, wrapper or attribute that rules it out.
     """
-    refused = "backend must be 'gymnasium' or 'auto' for this environment, got 'rust': "
-    inner = env.unwrapped
+    unwrapped: Any = env.unwrapped
     wrapper = unknown_wrapper(env)
     if wrapper is not None:
-        raise ValueError(f"{refused}Rust does not know its wrapper {wrapper}")
-    entry_point = f"{type(inner).__module__}:{type(inner).__qualname__}"
-    if entry_point == TABULAR.qtab:
+        raise rust_unavailable(f"Rust does not implement its wrapper {wrapper}")
+    if _entry_point(unwrapped) == TABULAR.entry_point:
         return TABULAR
-    spec = inner.spec
-    model = entry_for_id(spec.id) if spec is not None else None
-    if model is None or entry_point not in (model.gymnasium, model.qtab):
-        raise ValueError(f"{refused}Rust has no {type(inner).__qualname__}")
-    if model.has_table:
-        return model  # whose table is taken as it stands
+    spec = unwrapped.spec
+    entry = entry_for_id(spec.id) if spec is not None else None
+    if entry is None or _entry_point(unwrapped) not in (entry.gymnasium_entry_point, entry.entry_point):
+        raise rust_unavailable(f"Rust does not implement {type(unwrapped).__qualname__}")
+    if entry.has_table:
+        return entry  # Rust reads the table from the object, so no attribute can be out of date
     from qtab._core import parameter_names
 
-    untouched = type(inner)(**(spec.kwargs if spec is not None else {}))
-    for name in parameter_names(model.name):
-        now, then = getattr(inner, name), getattr(untouched, name)
-        if type(now) not in (int, float, bool, str, list) or now != then:
-            raise ValueError(f"{refused}its attribute {name} was changed from {then!r} to {now!r}")
-    return model
+    default = type(unwrapped)(**(spec.kwargs if spec is not None else {}))
+    for name in parameter_names(entry.name):
+        value, default_value = getattr(unwrapped, name), getattr(default, name)
+        if type(value) not in (int, float, bool, str, list) or value != default_value:
+            raise rust_unavailable(f"its attribute {name} was changed from {default_value!r} to {value!r}")
+    return entry
 
 
 def is_tabular_env(env: gym.Env) -> bool:
-    """Whether this is a :class:`qtab.TabularEnv`, with no more around it than ``gymnasium.make`` puts there."""
-    try:
-        return entry_for_env(env) is TABULAR
-    except ValueError:
-        return False
+    """Returns whether this is a :class:`qtab.TabularEnv` with no wrapper other than those of ``gymnasium.make``."""
+    return unknown_wrapper(env) is None and _entry_point(env.unwrapped) == TABULAR.entry_point
 
 
 def time_limit(env: gym.Env) -> int | None:
-    """Returns the most steps of an episode, as the environment's own wrapper has it."""
+    """Returns the time limit in steps that an environment's ``TimeLimit`` wrapper sets; None without one."""
     while isinstance(env, gym.Wrapper):
         if isinstance(env, gym.wrappers.TimeLimit):
             return env._max_episode_steps
@@ -65,4 +67,8 @@ def time_limit(env: gym.Env) -> int | None:
     return None
 
 
-__all__ = ["entry_for_env", "is_tabular_env", "time_limit", "unknown_wrapper"]
+def _entry_point(env: gym.Env) -> str:
+    return f"{type(env).__module__}:{type(env).__qualname__}"
+
+
+__all__ = ["entry_for_env", "is_tabular_env", "rust_unavailable", "time_limit", "unknown_wrapper"]

@@ -1,4 +1,4 @@
-"""``qtab/MaximizationBias-v0``: why Double Q-learning (Sutton & Barto, 2nd ed., Example 6.7 and Figure 6.5)."""
+"""``qtab/MaximizationBias-v0``: the case for Double Q-learning (Sutton & Barto, 2nd ed., Example 6.7, Figure 6.5)."""
 
 import math
 from typing import Any
@@ -13,16 +13,20 @@ RIGHT, LEFT = range(2)
 
 
 class MaximizationBiasEnv(gym.Env[Any, Any]):
-    """A, whence right ends the episode and left leads to B; there every action ends it with a normal reward.
+    """The two-state Markov decision process of Example 6.7, on which Q-learning suffers from maximization bias.
 
-    The mean reward of B lies below zero, so that left is always a mistake; yet the largest of B's estimates soon lies
-    above. A has two actions: any other number goes left, too, and ``info["action_mask"]`` says which there are, as
-    Gymnasium's Taxi does. A learner of this package is told by an ``initial_q`` with -inf, as the preset has it.
+    Episodes start in state A. Right ends the episode with reward 0; left leads to state B with reward 0. Every action
+    in B ends the episode with a normally distributed reward. The mean of that reward is negative, so left is always a
+    mistake, but the largest estimated value in B is positive early in training.
+
+    State A has only the actions right (0) and left (1); larger numbers act as left. ``info["action_mask"]``, (actions,)
+    int8, marks the valid actions, as in Gymnasium's Taxi. A learner of this package excludes the others by -inf in
+    ``initial_q``, as the preset does.
 
     Args:
-        actions: How many actions B has. The book says "many".
-        mean: Of B's rewards.
-        deviation: Their standard deviation.
+        actions: The number of actions in B. The book says "many".
+        mean: The mean reward in B.
+        deviation: The standard deviation of the reward in B.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -37,13 +41,13 @@ class MaximizationBiasEnv(gym.Env[Any, Any]):
         self.state = END
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[int, dict[str, Any]]:
-        """Begins in A, without a draw."""
+        """Starts an episode in A; no random number is drawn."""
         super().reset(seed=seed, options=options)
         self.state = A
         return self.state, self._info()
 
     def step(self, action: int) -> tuple[int, float, bool, bool, dict[str, Any]]:
-        """Takes a step; in B it draws two numbers.
+        """Takes a step; a step from B draws two random numbers.
 
         Raises:
             AssertionError: for an action outside the space.
@@ -59,7 +63,7 @@ class MaximizationBiasEnv(gym.Env[Any, Any]):
         return self.state, reward, self.state == END, False, self._info()
 
     def _normal(self) -> float:
-        """By the method of Box and Muller (1958)."""
+        """Returns a normally distributed reward by the method of Box and Muller (1958)."""
         u, v = self.np_random.random(), self.np_random.random()
         return self.mean + self.deviation * (math.sqrt(-2.0 * math.log(1.0 - u)) * math.cos(math.tau * v))
 

@@ -1,4 +1,4 @@
-"""Gymnasium's environments as the extension module takes them: constants, transition tables, rules."""
+"""Environment objects described for the extension module: constants, transition tables, rules."""
 
 from typing import Any
 
@@ -12,18 +12,18 @@ from qtab.envs.maximization_bias import MaximizationBiasEnv
 
 
 def native_spec(env: Any) -> plan.Process | plan.Rules | plan.Bias:
-    """Returns what Rust trains on without physics as the extension module takes it; see :func:`toy_text_spec`."""
+    """Returns the description of an environment whose registry entry has a table; see :func:`toy_text_spec`."""
     if isinstance(env, MaximizationBiasEnv):
         return {"actions": env.actions, "mean": env.mean, "deviation": env.deviation}
     return toy_text_spec(env)
 
 
 def toy_text_spec(env: Any) -> plan.Process | plan.Rules:
-    """Returns an environment of Gymnasium's toy text, or a table of one's own, as the extension module takes it.
+    """Returns the description of a toy text environment or of any other environment with a transition table.
 
     Raises:
-        TypeError: for a table that Rust would not add up as NumPy does.
-        ValueError: for one that is no table.
+        TypeError: if the table holds types for which Rust would not compute the sums that NumPy does.
+        ValueError: if ``P`` and ``initial_state_distrib`` are not a valid table.
     """
     if isinstance(env, BlackjackEnv):
         return {"natural": bool(env.natural), "sab": bool(env.sab)}
@@ -32,10 +32,11 @@ def toy_text_spec(env: Any) -> plan.Process | plan.Rules:
 
 
 def classic_spec(env: Any, model: str, actions: Actions) -> plan.Control:
-    """Returns an environment of Gymnasium's classic control as the extension module takes it.
+    """Returns the description of a classic control environment.
 
     Raises:
-        ValueError: for an attribute, an action space or a machine for which Rust does not compute what NumPy does.
+        ValueError: if Rust would not compute the same numbers as NumPy for an attribute, the action space or on this
+            machine.
     """
     if not _core.computes_as_numpy(model):
         raise ValueError("NumPy's sin and cos are not the platform's on this machine, which Rust calls")

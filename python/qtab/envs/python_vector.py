@@ -1,4 +1,4 @@
-"""Sub-environments that are stepped in Python, one by one, as Gymnasium does it."""
+"""A vector environment whose sub-environments Python steps one by one, like Gymnasium's ``SyncVectorEnv``."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,69 +10,81 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from gymnasium.vector.utils import iterate
 from numpy.typing import NDArray
 
-Portrait = tuple[dict[str, Any], int, bool, Any]
-"""An environment's attributes, how many steps its episode has had, whether it is over, what it shows."""
+Snapshot = tuple[dict[str, Any], int, bool, Any]
+"""State of a sub-environment: its attributes, the steps of its episode, whether that is over, the last observation."""
 
 
-class SubEnvironments(SyncVectorEnv[Any, Any]):
-    """Gymnasium's ``SyncVectorEnv``, but what is a float stays one, and bad actions move nobody."""
+class PythonVectorEnv(SyncVectorEnv[Any, Any]):
+    """Gymnasium's ``SyncVectorEnv`` with two differences.
+
+    All actions are checked before any sub-environment steps, and an info that is a float stays a float64.
+    """
 
     def step(
         self, actions: Any
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Steps each, once all actions were looked at.
+        """Steps every sub-environment after checking all actions.
 
         Raises:
-            AssertionError: for an action outside a discrete space, or an episode that is over and was not reset.
-            ValueError: for a wrong number of actions, or one that is no finite number.
+            AssertionError: for an action outside a discrete space, or a step after the end of an episode without a
+                reset.
+            ValueError: for the wrong number of actions, or a continuous action that is not one finite number.
         """
-        self._look_at(actions)
+        self._check_actions(actions)
         observations, rewards, terminations, truncations, infos = super().step(actions)
         if "prob" in infos:
             infos["prob"] = infos["prob"].astype(np.float64)
         return observations, rewards, terminations, truncations, infos
 
-    def unbegun(self) -> list[int]:
-        """Returns which were never reset."""
-        return [lane for lane, observation in enumerate(self._env_obs) if observation is None]
+    def not_reset(self) -> list[int]:
+        """Returns the indices of the sub-environments that were never reset."""
+        return [index for index, observation in enumerate(self._env_obs) if observation is None]
 
-    def _look_at(self, actions: Any) -> None:
-        waiting = self._autoreset_envs
-        if self.autoreset_mode is AutoresetMode.DISABLED and waiting.any():
-            lane = int(np.argmax(waiting))
+    def _check_actions(self, actions: Any) -> None:
+        awaits_reset = self._autoreset_envs
+        if self.autoreset_mode is AutoresetMode.DISABLED and awaits_reset.any():
+            index = int(np.argmax(awaits_reset))
             raise AssertionError(
-                f"the episode of sub-environment {lane} is over: reset it first, with options={{'reset_mask': ...}}"
+                f"the episode of sub-environment {index} is over: reset it first, with options={{'reset_mask': ...}}"
             )
         if len(actions) != self.num_envs:
             raise ValueError(f"actions must have shape {self.action_space.shape}, got {len(actions)} of them")
-        for lane, action in enumerate(iterate(self.action_space, actions)):
-            if self.autoreset_mode is AutoresetMode.NEXT_STEP and waiting[lane]:
-                continue
+        for index, action in enumerate(iterate(self.action_space, actions)):
+            if self.autoreset_mode is AutoresetMode.NEXT_STEP and awaits_reset[index]:
+                continue  # this step resets it and ignores the action
             if not isinstance(self.single_action_space, Discrete):
                 if np.shape(action) != (1,) or not np.isfinite(action).all():
-                    raise ValueError(f"actions[{lane}] must be a finite number, got {action}")
+                    raise ValueError(f"actions[{index}] must be a finite number, got {action}")
             elif not self.single_action_space.contains(action):
-                raise AssertionError(f"sub-environment {lane}: {action!r} ({type(action)}) invalid")
+                raise AssertionError(f"sub-environment {index}: {action!r} ({type(action)}) invalid")
 
-    def go_on(
+    def resume_from(
         self,
-        portraits: Sequence[Portrait],
-        unbegun: Sequence[int],
+        snapshots: Sequence[Snapshot],
+        not_reset: Sequence[int],
         generators: Sequence[np.random.Generator],
         seeds: Sequence[int],
     ) -> None:
-        """Takes over where others stand, those never reset included."""
-        for lane, portrait in enumerate(portraits):
-            env = self.envs[lane]
-            if lane not in unbegun:
+        """Continues the episodes of other sub-environments.
+
+        Args:
+            snapshots: The state of each.
+            not_reset: The indices of those that were never reset.
+            generators: The random generator of each.
+            seeds: The seed of each generator.
+        """
+        for index, snapshot in enumerate(snapshots):
+            env = self.envs[index]
+            if index not in not_reset:
                 env.reset(seed=0)
-                paint(env, portrait)
-                _, _, self._autoreset_envs[lane], self._env_obs[lane] = portrait
-            env.unwrapped._np_random = generators[lane]
-            env.unwrapped._np_random_seed = seeds[lane]
+                restore(env, snapshot)
+                _, _, self._autoreset_envs[index], self._env_obs[index] = snapshot
+            env.unwrapped._np_random = generators[index]
+            env.unwrapped._np_random_seed = seeds[index]
 
     def _add_info(self, vector_infos: dict[str, Any], env_info: dict[str, Any], env_num: int) -> dict[str, Any]:
-        # A table's probability is 1 after a reset, an integer; an array that begins with it would cut others.
+        # The probability is the integer 1 after a reset. An array of integers would truncate the probabilities that
+        # other sub-environments add.
         for name, value in env_info.items():
             array = vector_infos.get(name)
             if isinstance(value, float) and isinstance(array, np.ndarray) and array.dtype.kind == "i":
@@ -80,10 +92,10 @@ class SubEnvironments(SyncVectorEnv[Any, Any]):
         return super()._add_info(vector_infos, env_info, env_num)
 
 
-def paint(env: gym.Env[Any, Any], portrait: Portrait) -> None:
-    """Gives an environment that was reset the attributes of another."""
-    attributes, elapsed, _, _ = portrait
+def restore(env: gym.Env[Any, Any], snapshot: Snapshot) -> None:
+    """Sets the attributes and the step count of an environment, which must have been reset, to those of a snapshot."""
+    attributes, elapsed_steps, _, _ = snapshot
     for name, value in attributes.items():
         setattr(env.unwrapped, name, value)
     if env.has_wrapper_attr("_elapsed_steps"):
-        env.set_wrapper_attr("_elapsed_steps", elapsed)
+        env.set_wrapper_attr("_elapsed_steps", elapsed_steps)

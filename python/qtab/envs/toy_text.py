@@ -1,4 +1,4 @@
-"""Gymnasium's toy text with its draws and steps in Rust: ``qtab/FrozenLake-v1`` and the others."""
+"""Gymnasium's toy text environments with resets and steps in Rust: ``qtab/FrozenLake-v1`` and the others."""
 
 from typing import Any
 
@@ -12,37 +12,40 @@ from qtab import _core
 
 
 class ToyTextMixin:
-    """The base of an environment that begins an episode in Rust, its draws from its own generator.
+    """Mixin that resets a toy text environment in Rust; a class of the extension module precedes it in the bases.
 
-    ``begin`` draws the first state and returns what a reset returns; where Rust does not stand for the distribution as
-    it is, it calls ``reset_in_python``.
+    ``begin``, which that class defines, draws the first state from ``np_random`` and returns what ``reset`` returns. It
+    calls ``reset_in_python`` if Rust does not support the distribution of first states.
     """
 
     begin: Any
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[int, dict[str, Any]]:
-        """Draws the first state; ``options`` has none, as in Gymnasium."""
+        """Draws the first state; ``options`` are ignored, as in Gymnasium."""
         gym.Env.reset(self, seed=seed, options=options)  # type: ignore[arg-type]
         first: tuple[int, dict[str, Any]] = self.begin()
         return first
 
 
 class FrozenLakeEnv(_core.Table, ToyTextMixin, GymnasiumFrozenLakeEnv):
-    """Gymnasium's FrozenLake stepping in Rust by its own table ``P``, as it stands at each step."""
+    """Gymnasium's FrozenLake stepped in Rust; changes to its table ``P`` take effect at the next step."""
 
     reset_in_python = GymnasiumFrozenLakeEnv.reset
     step_in_python = GymnasiumFrozenLakeEnv.step
 
 
 class CliffWalkingEnv(_core.Table, ToyTextMixin, GymnasiumCliffWalkingEnv):
-    """Gymnasium's CliffWalking stepping in Rust by its own table ``P``, as it stands at each step."""
+    """Gymnasium's CliffWalking stepped in Rust; changes to its table ``P`` take effect at the next step."""
 
     reset_in_python = GymnasiumCliffWalkingEnv.reset
     step_in_python = GymnasiumCliffWalkingEnv.step
 
 
 class TaxiEnv(_core.Taxi, ToyTextMixin, GymnasiumTaxiEnv):
-    """Gymnasium's Taxi stepping in Rust by its own table ``P``, its fickle passenger and its action mask included."""
+    """Gymnasium's Taxi stepped in Rust, with the fickle passenger and the action mask.
+
+    Changes to its table ``P`` take effect at the next step.
+    """
 
     reset_in_python = GymnasiumTaxiEnv.reset
     step_in_python = GymnasiumTaxiEnv.step
@@ -50,14 +53,14 @@ class TaxiEnv(_core.Taxi, ToyTextMixin, GymnasiumTaxiEnv):
 
 
 class BlackjackEnv(_core.Blackjack, GymnasiumBlackjackEnv):
-    """Gymnasium's Blackjack dealing and stepping in Rust, its cards from the environment's own generator."""
+    """Gymnasium's Blackjack dealt and stepped in Rust, with cards drawn from ``np_random``."""
 
     step_in_python = GymnasiumBlackjackEnv.step
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[tuple[int, int, int], dict[str, Any]]:
-        """Deals anew."""
+        """Deals two cards to the player and two to the dealer; ``options`` are ignored, as in Gymnasium."""
         super(GymnasiumBlackjackEnv, self).reset(seed=seed)
         dealt: tuple[tuple[int, int, int], dict[str, Any]] | None = self.deal()
         return super().reset(options=options) if dealt is None else dealt

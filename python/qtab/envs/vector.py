@@ -1,4 +1,4 @@
-"""``gymnasium.make_vec("qtab/…")``: all sub-environments in one call of Rust a step."""
+"""``gymnasium.make_vec("qtab/…")``: a vector environment that steps all sub-environments in one call of Rust."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -7,41 +7,43 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 from gymnasium.envs.toy_text.taxi import TaxiEnv
-from gymnasium.error import Error, ResetNeeded
+from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
-from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
 from qtab.envs.native import toy_text_spec
-from qtab.envs.python_vector import SubEnvironments, paint
+from qtab.envs.python_vector import PythonVectorEnv, restore
 from qtab.envs.registry import PREFIX
+from qtab.envs.vector_arguments import check_reset_mask, seeds_of
 
-_FAR = 1e6
-"""First states so far out may overflow, which is left to Gymnasium's code."""
+_MAX_RESET_BOUND = 1e6
+"""First states beyond this may overflow. Gymnasium's code then decides what happens."""
 
 
 class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
-    """Any number of sub-environments of one kind, stepped together in Rust, with the numbers of Gymnasium's own.
+    """A vector environment of equal sub-environments, stepped together in Rust.
 
-    It is what ``SyncVectorEnv([lambda: gymnasium.make(id)] * num_envs)`` is, bit for bit: arrays, dtypes, infos, seeds,
-    time limits. Two things differ: the ``prob`` of toy text stays a float after an autoreset, and what is refused
-    changes nothing. ``np_random`` hands out the generators that are drawn from.
+    It equals ``SyncVectorEnv([lambda: gymnasium.make(id)] * num_envs)`` bit for bit: arrays, dtypes, infos, seeds and
+    time limits. There are two differences: the info ``prob`` of toy text stays a float after an autoreset, and a call
+    that raises an error changes nothing. ``np_random`` returns the generators that the sub-environments draw from.
 
-    Whoever asks for the sub-environments themselves (``envs``, ``call``, ``get_attr``, ``set_attr``) gets them, as
-    they stand, and from then on they are stepped in Python, one by one. So they are from the beginning with a window
-    (``render_mode="human"``), a list of frames, Taxi's frames, a constant that Rust does not compute with, and, for
-    CartPole, Acrobot and Pendulum, on a machine on which NumPy's sine and cosine are not the platform's.
+    Accessing the sub-environments (``envs``, ``call``, ``get_attr``, ``set_attr``) switches the vector environment to
+    Python stepping, one sub-environment after another, with their current states. It steps in Python from the start
+
+    - with a window (``render_mode="human"``), with lists of frames, and with frames of Taxi;
+    - with a constructor argument that Rust does not compute with;
+    - for CartPole, Acrobot and Pendulum on machines where NumPy does not take sine and cosine from the C library.
 
     Args:
         name: Gymnasium's id of the environment.
-        num_envs: How many there are.
-        max_episode_steps: A limit other than the spec's, as ``gymnasium.make`` takes it (-1: none).
-        copy: Whether observations are handed out in new arrays; if not, in the same arrays each time.
-        autoreset_mode: What becomes of a sub-environment whose episode is over: an ``AutoresetMode``, or its value.
-        threads: How many threads step them; None means as many as pay. The results are the same for any number.
-        kwargs: Everything else that ``gymnasium.make`` takes.
+        num_envs: The number of sub-environments.
+        max_episode_steps: A time limit other than the spec's, as in ``gymnasium.make`` (-1: no limit).
+        copy: Whether each step returns new arrays of observations. If False, it returns the same arrays each time.
+        autoreset_mode: What happens after the end of an episode: an ``AutoresetMode`` or its value.
+        threads: The number of threads; None chooses automatically. It does not change the results.
+        kwargs: Further arguments of ``gymnasium.make``.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -61,7 +63,7 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         self.num_envs = checks.integer("num_envs", num_envs, least=1)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.copy = bool(copy)
-        # A spec, since an id of an old version would be warned of a second time.
+        # A spec instead of an id: Gymnasium would warn of an old version a second time.
         spec = gym.spec(PREFIX + name)
         self._make = partial(gym.make, spec, max_episode_steps=max_episode_steps, **kwargs)
         self._example = self._make()
@@ -71,22 +73,22 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         self.single_action_space = self._example.action_space
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
-        self._stage: list[gym.Env[Any, Any]] = []
-        self._python: SubEnvironments | None = None
+        self._render_envs: list[gym.Env[Any, Any]] = []
+        self._python: PythonVectorEnv | None = None
         threads = None if threads is None else checks.threads(threads)
-        if not self._launched(threads):
-            self._leave_rust()
+        if not self._start_in_rust(threads):
+            self._fall_back_to_python()
 
-    def _launched(self, threads: int | None) -> bool:
-        """Makes the sub-environments in Rust, if it stands for them."""
+    def _start_in_rust(self, threads: int | None) -> bool:
+        """Creates the sub-environments in Rust; returns False if Rust does not support them."""
         env = self._example.unwrapped
-        # A taxi's picture depends on the pictures before it.
-        painted = self.render_mode in ("rgb_array", "ansi") and not isinstance(env, TaxiEnv)
-        if self.render_mode is not None and not painted:
+        # A frame of Taxi depends on the frames before it.
+        can_render = self.render_mode in ("rgb_array", "ansi") and not isinstance(env, TaxiEnv)
+        if self.render_mode is not None and not can_render:
             return False
         try:
             kind = None if isinstance(env, _core.Physics) else toy_text_spec(env)
-        except (TypeError, ValueError):  # a table that Gymnasium may take, but Rust does not
+        except (TypeError, ValueError):  # a table that Gymnasium accepts and Rust does not
             return False
         limited = self._example.has_wrapper_attr("_max_episode_steps")
         limit = self._example.get_wrapper_attr("_max_episode_steps") if limited else None
@@ -95,7 +97,7 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
             kind,
             [env.action_mask(state).tolist() for state in range(500)] if isinstance(env, TaxiEnv) else None,
             self.num_envs,
-            # Gymnasium takes any integer, and nobody lives to see the largest of 64 bits.
+            # Gymnasium accepts any integer; no episode reaches the largest of 64 bits.
             None if limit is None else min(limit, checks.LARGEST_COUNT),
             self.autoreset_mode.value,
             self.copy,
@@ -105,130 +107,105 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode in each sub-environment, or in those of ``options["reset_mask"]``.
+        """Starts an episode in every sub-environment, or in those selected by ``options["reset_mask"]``.
 
         Args:
-            seed: None, an integer that the first sub-environment is seeded with, the next with the next; or a list.
-            options: The sub-environments' own options, and ``reset_mask``: (num_envs,) bool.
+            seed: None; an integer, to seed the sub-environments with ``seed``, ``seed + 1``, …; or a list of num_envs.
+            options: The sub-environments' reset options, and ``reset_mask``: (num_envs,) bool.
 
         Returns:
-            All observations, and infos of those that were reset.
+            The observations of all sub-environments, and the infos of those that were reset.
 
         Raises:
             gymnasium.error.Error: for a seed that is not a non-negative integer.
-            gymnasium.error.ResetNeeded: for a mask that leaves out what was never reset.
-            TypeError: for a mask that is no array of bool.
-            ValueError: for a mask or a list of another length, a mask without any; Gymnasium's for its options.
+            gymnasium.error.ResetNeeded: for a mask that leaves out a sub-environment that was never reset.
+            TypeError: for a mask that is not a NumPy array of bool, or a seed of another type.
+            ValueError: for a mask of another shape or without any True, or a list of seeds of another length;
+                Gymnasium's errors for its options.
         """
-        seeds = self._seeds(seed)
+        seeds = seeds_of(seed, self.num_envs)
         options = None if options is None else dict(options)
-        mask = None if options is None or "reset_mask" not in options else self._mask(options.pop("reset_mask"))
-        start = self._start(options) if self.launched else None
+        mask = None
+        if options is not None and "reset_mask" in options:
+            not_reset = self.unbegun() if self._python is None else self._python.not_reset()
+            mask = check_reset_mask(options.pop("reset_mask"), self.num_envs, not_reset)
+        bounds = self._reset_bounds(options) if self.launched else None
         if self._python is not None:
             masked = options if mask is None else {**(options or {}), "reset_mask": mask}
             return self._python.reset(seed=seeds, options=masked)
-        lanes = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
-        return self.begin(list(lanes), [seeds[lane] for lane in lanes], start)
+        indices = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
+        return self.begin(list(indices), [seeds[index] for index in indices], bounds)
 
-    def _seeds(self, seed: Any) -> list[int | None]:
-        if seed is None:
-            return [None] * self.num_envs
-        if isinstance(seed, int):
-            seeds: list[Any] = [seed + lane for lane in range(self.num_envs)]
-        elif isinstance(seed, list | tuple):
-            seeds = list(seed)
-        else:
-            raise TypeError(f"seed must be an integer, a list of integers or None, got {seed!r}")
-        if len(seeds) != self.num_envs:
-            raise ValueError(
-                f"If seeds are passed as a list the length must match num_envs={self.num_envs} but got "
-                f"length={len(seeds)}."
-            )
-        for lane, one in enumerate(seeds):
-            if one is not None and not isinstance(one, int):
-                raise Error(f"sub-environment {lane}: Seed must be a python integer, actual type: {type(one)}")
-            if one is not None and one < 0:
-                raise Error(f"sub-environment {lane}: Seed must be greater or equal to zero, actual value: {one}")
-        return seeds
-
-    def _mask(self, mask: Any) -> NDArray[np.bool_]:
-        place = "`options['reset_mask']` must"
-        if not isinstance(mask, np.ndarray):
-            raise TypeError(f"{place} be a numpy array, got {type(mask)}")
-        if mask.shape != (self.num_envs,):
-            raise ValueError(f"{place} have shape `({self.num_envs},)`, got {mask.shape}")
-        if mask.dtype != np.bool_:
-            raise TypeError(f"{place} have `dtype=np.bool_`, got {mask.dtype}")
-        if not mask.any():
-            raise ValueError(f"{place} contain a boolean array with at least one True value, got reset_mask={mask}")
-        unbegun = self.unbegun() if self._python is None else self._python.unbegun()
-        missing = [lane for lane in unbegun if not mask[lane]]
-        if missing:
-            raise ResetNeeded(f"{place} not leave out sub-environment {missing[0]}, which was never reset")
-        return mask
-
-    def _start(self, options: dict[str, Any] | None) -> tuple[float, float] | None:
-        """Returns the numbers that bound first states, if the options say others than the usual ones."""
+    def _reset_bounds(self, options: dict[str, Any] | None) -> tuple[float, float] | None:
+        """Returns the bounds of the first states that the options set; None for the default ones."""
         names = self.start()
         if names is None or not options:
             return None
-        self._example.reset(options=options)  # Gymnasium's errors, before anything changes
+        self._example.reset(options=options)  # raises Gymnasium's errors before anything changes
         low, high = (float(options.get(name, default)) for name, default in names)
-        if max(abs(low), abs(high)) > _FAR:
-            self._leave_rust()
+        if max(abs(low), abs(high)) > _MAX_RESET_BOUND:
+            self._fall_back_to_python()
         return low, high
 
     @property  # type: ignore[misc]
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
-        """The generators that the sub-environments draw from."""
+        """The random generators of the sub-environments."""
         if self._python is not None:
             return self._python.np_random
-        return tuple(self._generator(lane) for lane in range(self.num_envs))
+        return tuple(self._generator(index) for index in range(self.num_envs))
 
     @property
     def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override]
-        """What each was seeded with."""
+        """The seeds of the sub-environments' generators."""
         if self._python is not None:
             return self._python.np_random_seed
-        return tuple(self.seed_of(lane) for lane in range(self.num_envs))
+        return tuple(self.seed_of(index) for index in range(self.num_envs))
 
-    def _generator(self, lane: int) -> np.random.Generator:
-        """Returns a sub-environment's generator, which it draws from itself from now on."""
-        source = self.source(lane)
+    def _generator(self, index: int) -> np.random.Generator:
+        """Returns a sub-environment's generator, from which Rust draws from now on."""
+        source = self.source(index)
         if isinstance(source, tuple):
-            drawn, half = source
-            bits = np.random.PCG64(np.random.SeedSequence(self.seed_of(lane)))
-            bits.advance(drawn)
-            bits.state = {**bits.state, "has_uint32": int(half is not None), "uinteger": half or 0}
-            source = np.random.Generator(bits)
-            self.draw_from(lane, source)
+            words_drawn, buffered_uint32 = source
+            bit_generator = np.random.PCG64(np.random.SeedSequence(self.seed_of(index)))
+            bit_generator.advance(words_drawn)
+            bit_generator.state = {
+                **bit_generator.state,
+                "has_uint32": int(buffered_uint32 is not None),
+                "uinteger": buffered_uint32 or 0,
+            }
+            source = np.random.Generator(bit_generator)
+            self.draw_from(index, source)
         return source
 
     def render(self) -> tuple[Any, ...]:
-        """Returns what each sub-environment's ``render`` returns."""
+        """Returns the result of each sub-environment's ``render``.
+
+        Raises:
+            gymnasium.error.ResetNeeded: before the first reset.
+        """
         if self.render_mode is None:
-            self._leave_rust()
+            self._fall_back_to_python()
         if self._python is not None:
             return self._python.render()
         missing = self.unbegun()
         if missing:
             raise ResetNeeded(f"Cannot call `env.render()` before calling `env.reset()`: sub-environment {missing[0]}")
-        if not self._stage:
-            self._stage = [self._make() for _ in range(self.num_envs)]
-            for env in self._stage:
+        if not self._render_envs:
+            self._render_envs = [self._make() for _ in range(self.num_envs)]
+            for env in self._render_envs:
                 env.reset(seed=0)
-        for env, portrait in zip(self._stage, self.portraits(), strict=True):
-            paint(env, portrait)
-        return tuple(env.render() for env in self._stage)
+        for env, snapshot in zip(self._render_envs, self.portraits(), strict=True):
+            restore(env, snapshot)
+        return tuple(env.render() for env in self._render_envs)
 
     @property
     def envs(self) -> list[gym.Env[Any, Any]]:
-        """The sub-environments, which are stepped in Python from now on."""
-        return self._sub_environments().envs
+        """The sub-environments, which Python steps from now on."""
+        return self._fall_back_to_python().envs
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Calls a method of each sub-environment, or returns an attribute of each."""
-        return self._sub_environments().call(name, *args, **kwargs)
+        return self._fall_back_to_python().call(name, *args, **kwargs)
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
         """Returns an attribute of each sub-environment."""
@@ -238,42 +215,38 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         return self.call(name)
 
     def set_attr(self, name: str, values: list[Any] | tuple[Any, ...] | Any) -> None:
-        """Sets an attribute of each sub-environment, to a value for each or to one for all."""
-        self._sub_environments().set_attr(name, values)
+        """Sets an attribute of each sub-environment, to a list of values or to the same value for all."""
+        self._fall_back_to_python().set_attr(name, values)
 
     def step_in_python(self, actions: Any) -> Any:
-        """One step of what Rust does not stand for."""
-        return self._sub_environments().step(actions)
+        """Takes one step of sub-environments that Rust does not support."""
+        return self._fall_back_to_python().step(actions)
 
-    def _sub_environments(self) -> SubEnvironments:
-        self._leave_rust()
-        assert self._python is not None  # noqa: S101 - it was just made
-        return self._python
-
-    def _leave_rust(self) -> None:
-        """Goes on in Python, where Rust stands."""
+    def _fall_back_to_python(self) -> PythonVectorEnv:
+        """Returns the sub-environments in Python, which continue from the current states the first time."""
         if self._python is not None:
-            return
-        python = SubEnvironments([self._make] * self.num_envs, copy=self.copy, autoreset_mode=self.autoreset_mode)
+            return self._python
+        python = PythonVectorEnv([self._make] * self.num_envs, copy=self.copy, autoreset_mode=self.autoreset_mode)
         if self.launched:
-            python.go_on(self.portraits(), self.unbegun(), self.np_random, self.np_random_seed)
+            python.resume_from(self.portraits(), self.unbegun(), self.np_random, self.np_random_seed)
             self.retire()
         self._python = python
+        return python
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Closes every environment that was made."""
+        """Closes every environment that was created."""
         self._example.close()
-        for env in self._stage:
+        for env in self._render_envs:
             env.close()
         if self._python is not None:
             self._python.close(**kwargs)
 
     def __reduce__(self) -> Any:
-        raise TypeError("a vector environment in Rust can neither be copied nor pickled: make another")
+        raise TypeError("a vector environment in Rust can neither be copied nor pickled; create another one")
 
 
 def __getattr__(name: str) -> Any:
-    """Gives each id its entry point: ``qtab.envs.vector:CartPole-v1``."""
+    """Returns the entry point of an id: ``qtab.envs.vector:CartPole-v1``."""
     if gym.registry.get(PREFIX + name) is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return partial(RustVectorEnv, name)

@@ -1,4 +1,4 @@
-"""The truth: the best that can be returned, or the best that is known, and how far a run is from it."""
+"""The best policy of an environment, exact or the best known, and how far a run falls short of it."""
 
 from qtab.planning.gap import Gap
 from qtab.planning.optimum import Optimum

@@ -1,4 +1,4 @@
-"""How far a run is from the truth."""
+"""``qtab.Gap``: how far a run falls short of the optimum."""
 
 from dataclasses import dataclass
 from typing import Generic, TypeVar
@@ -7,35 +7,37 @@ import numpy as np
 from numpy.typing import NDArray
 
 Number = TypeVar("Number", float, NDArray[np.float64])
-"""A number for one run, (runs,) for many."""
+"""A float for one run, (runs,) float64 for many."""
 
 
 @dataclass(frozen=True, eq=False)
 class Gap(Generic[Number]):
-    """The expected return of the optimum beside what a run came to; a gap is what is missing, 0 at best."""
+    """The expected return of the optimum, the returns of a run, and how much these fall short of it."""
 
     optimum: float
     """The expected return of the optimum."""
     final_return: Number
-    """The mean of a run's last 100 returns, exploration and all."""
+    """The mean return of the run's last 100 training episodes, which include exploration."""
     greedy_return: Number
-    """The expected return of its greedy policy under the time limit; NaN where the tables were not kept."""
+    """The expected return of the run's greedy policy under the time limit; NaN if its Q tables were not kept."""
     standard_error: Number
-    """Of ``greedy_return``: 0 where it was computed exactly, from a table."""
+    """The standard error of ``greedy_return``; 0 where that was computed exactly, from a transition table."""
     label: str = "optimum"
-    """Whether the optimum is one, or the best that is known."""
+    """``"optimum"``, or ``"best known"`` where the optimum is not proven."""
 
     @property
     def final(self) -> Number:
-        """How much the last episodes miss."""
+        """The optimum minus ``final_return``."""
         return self.optimum - self.final_return
 
     @property
     def greedy(self) -> Number:
-        """How much the greedy policy misses."""
+        """The optimum minus ``greedy_return``."""
         return self.optimum - self.greedy_return
 
     def __str__(self) -> str:
-        greedy, error, gap = (float(np.mean(part)) for part in (self.greedy_return, self.standard_error, self.greedy))
-        exact = f" ± {error:.2g}" if error > 0 else ""
-        return f"greedy policy {greedy:.4g}{exact}, {self.label} {self.optimum:.4g}, gap {gap:.2g}"
+        greedy_return, standard_error, gap = (
+            float(np.mean(value)) for value in (self.greedy_return, self.standard_error, self.greedy)
+        )
+        uncertainty = f" ± {standard_error:.2g}" if standard_error > 0 else ""
+        return f"greedy policy {greedy_return:.4g}{uncertainty}, {self.label} {self.optimum:.4g}, gap {gap:.2g}"

@@ -1,4 +1,4 @@
-"""The best known ways out of MountainCar's valley."""
+"""The best known policy of MountainCar-v0, found by a search over the exact dynamics."""
 
 from dataclasses import dataclass
 
@@ -9,49 +9,49 @@ from qtab import _core
 from qtab.results.run import Run
 from qtab.training.evaluate import evaluate
 
-EVALUATED = 1000
-"""So many episodes tell a greedy policy's return, seeded with 0."""
+EVALUATION_EPISODES = 1000
+"""The return of a greedy policy is estimated from this many episodes, with seed 0."""
 
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """What the search over the car's exact dynamics found. It is achieved, not proved to be the best."""
+    """The routes and values that the search found. Every route reaches the goal; none is proven to be the shortest."""
 
     starts: NDArray[np.float64]
-    """(1000,): starting positions, the middles of equal shares of Gymnasium's range."""
+    """(1000,): start positions, the midpoints of equal parts of Gymnasium's range of start positions."""
     steps: NDArray[np.int64]
-    """(1000,): how many steps it takes from each; the time limit where no way was found."""
+    """(1000,): the length of the route from each start; the time limit where no route was found."""
     routes: tuple[NDArray[np.uint8] | None, ...]
-    """(1000,): the actions from each start, the last of which reaches the goal; None where no way was found."""
-    followed_return: float
-    """The mean return of :meth:`Optimum.predict` from the same starts; the routes may be a little shorter."""
+    """(1000,): the actions from each start, the last of which reaches the goal; None where no route was found."""
+    predict_return: float
+    """The mean return of :meth:`Optimum.predict` from the same starts. The routes may be a little shorter."""
     positions: NDArray[np.float64]
-    """(positions,): the grid of the values."""
+    """(positions,): the first axis of the grid of values."""
     velocities: NDArray[np.float64]
-    """(velocities,)"""
+    """(velocities,): the second axis of the grid of values."""
 
 
-def search(valley: _core.Valley, limit: int) -> Search:
-    """Searches a route from each start."""
+def search_routes(valley: _core.Valley, max_episode_steps: int) -> Search:
+    """Searches a route from each start position."""
     starts, routes = valley.routes()
-    steps = np.array([limit if route is None else len(route) for route in routes], dtype=np.int64)
-    followed = -float(valley.followed().mean())
-    return Search(starts, steps, tuple(routes), followed, *valley.axes())
+    steps = np.array([max_episode_steps if route is None else len(route) for route in routes], dtype=np.int64)
+    predict_return = -float(valley.followed().mean())
+    return Search(starts, steps, tuple(routes), predict_return, *valley.axes())
 
 
-class ValleyTruth:
-    """Decides by the cost-to-go."""
+class MountainCarSolver:
+    """Acts greedily with respect to the cost-to-go, and evaluates the policies of runs by simulation."""
 
-    remembers = False
+    needs_step_count = False
 
     def __init__(self, valley: _core.Valley) -> None:
         self._valley = valley
 
-    def action(self, observation: ArrayLike, taken: int) -> int:  # noqa: ARG002 - it does not matter here
-        """Returns the action that the cost-to-go says is best.
+    def action(self, observation: ArrayLike, steps_taken: int) -> int:  # noqa: ARG002 - see needs_step_count
+        """Returns the action with the smallest cost-to-go.
 
         Raises:
-            ValueError: for what is no position and velocity.
+            ValueError: if the observation is not a finite position and velocity.
         """
         numbers = np.asarray(observation, dtype=np.float64)
         if numbers.shape != (2,) or not np.isfinite(numbers).all():
@@ -60,5 +60,5 @@ class ValleyTruth:
 
     def greedy_return(self, run: Run) -> tuple[float, float]:
         """Returns the mean return of a run's greedy policy over 1,000 episodes, and its standard error."""
-        played = evaluate(run, EVALUATED, seed=0)
-        return played.mean_return, played.standard_error
+        evaluation = evaluate(run, EVALUATION_EPISODES, seed=0)
+        return evaluation.mean_return, evaluation.standard_error

@@ -1,7 +1,8 @@
-"""``qtab.optimum``: from an environment to the best that can be done in it."""
+"""``qtab.optimum``: the best policy of an environment."""
 
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import gymnasium as gym
@@ -9,6 +10,7 @@ import numpy as np
 from gymnasium.envs.classic_control.mountain_car import MountainCarEnv
 from gymnasium.envs.registration import EnvSpec
 from gymnasium.envs.toy_text.blackjack import BlackjackEnv
+from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
@@ -18,9 +20,9 @@ from qtab.envs.classic_control import MountainCarEnv as RustMountainCarEnv
 from qtab.envs.matching import time_limit, unknown_wrapper
 from qtab.envs.native import toy_text_spec
 from qtab.envs.registry import spec_of, versioned
-from qtab.planning.mountain_car import ValleyTruth, search
-from qtab.planning.optimum import Optimum
-from qtab.planning.tables import METHODS, TableTruth, solve
+from qtab.planning.mountain_car import MountainCarSolver, Search, search_routes
+from qtab.planning.optimum import Optimum, Solver
+from qtab.planning.tabular import METHODS, TabularSolver, solve_table
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.training.resolve import UNLIMITED_MAX_EPISODE_STEPS
@@ -36,50 +38,52 @@ def optimum(
     method: str | None = None,
     env_kwargs: Mapping[str, Any] | None = None,
 ) -> Optimum:
-    """Computes the best policy of an environment, its values and its expected return under the time limit.
+    """Computes the best policy of an environment, its values, and its expected return under the time limit.
 
-    Exact for every environment with a transition table: toy text, :class:`qtab.TabularEnv`, anything with ``P`` and
-    ``initial_state_distrib``, and Blackjack, whose table follows from its rules. For MountainCar-v0 it is the best that
-    is known: a search over the exact dynamics, whose routes can be driven, but are not proved to be the shortest.
+    The result is exact for every environment with a transition table: toy text, :class:`qtab.TabularEnv`, any other
+    environment with ``P`` and ``initial_state_distrib``, and Blackjack, whose table follows from its rules. For
+    MountainCar-v0 it is the best known policy, found by a search over the exact dynamics: each route that it returns
+    reaches the goal, but none is proven to be the shortest.
 
     Args:
         env: A Gymnasium id, an ``EnvSpec`` or an environment, which is neither stepped nor closed; or a run, whose
-            environment, keyword arguments and time limit are taken.
-        discount: What ``values`` and the policy count a later reward; None means 1, no discount.
-        max_episode_steps: The time limit; None takes the environment's own, or else that of training, 10,000.
-        method: ``"finite_horizon"``, backward induction over the time limit (the default: nothing returns more);
-            ``"value_iteration"`` (Sutton & Barto, 2nd ed., eq. 4.10) or ``"policy_iteration"`` (section 4.3), the best
-            policy that does not look at the clock, without a discount the latter the best of those that end;
-            ``"search"`` for MountainCar-v0.
+            environment, keyword arguments and time limit are used.
+        discount: The discount of the values and the policy, in [0, 1]; None means 1, no discount.
+        max_episode_steps: The time limit in steps; None means the environment's own, or 10,000, as in training.
+        method: With a transition table, ``"finite_horizon"`` (the default; backward induction over the time limit, so
+            no policy returns more), ``"value_iteration"`` (Sutton & Barto, 2nd ed., eq. 4.10) or
+            ``"policy_iteration"`` (section 4.3). The last two give the best policy that ignores the time limit; without
+            a discount, policy iteration considers only policies that end the episode. For MountainCar-v0,
+            ``"search"``.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
 
     Raises:
-        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
+        gymnasium.error.Error: from Gymnasium, for an unknown id.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, an environment whose optimum is not known, or values that grow for
-            ever without a discount.
+        ValueError: for an argument out of range, an environment whose optimum is not known, or values that are
+            unbounded without a discount.
     """
     if isinstance(env, Run | Runs):
-        return _of_run(env, discount, max_episode_steps, method, env_kwargs)
+        return _optimum_for_run(env, discount, max_episode_steps, method, env_kwargs)
     if max_episode_steps is not None:
         max_episode_steps = checks.count("max_episode_steps", max_episode_steps, least=1)
     if isinstance(env, gym.Env):
         if env_kwargs is not None:
-            raise ValueError(f"env_kwargs must be None with an environment, which is made already, got {env_kwargs!r}")
+            raise ValueError(f"env_kwargs must be None if env is an environment object, got {env_kwargs!r}")
         name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
-        return _solve(name, env, max_episode_steps, discount, method)
+        return _optimum_for_env(name, env, max_episode_steps, discount, method)
     if not isinstance(env, str | EnvSpec):
         raise TypeError(f"env must be an environment id, an EnvSpec, an environment or a run, got {env!r}")
     name = env.id if isinstance(env, EnvSpec) else versioned(env)
     spec = env if isinstance(env, EnvSpec) else spec_of(name)
     made = gym.make(spec, **(env_kwargs or {}))
     try:
-        return _solve(name, made, max_episode_steps, discount, method)
+        return _optimum_for_env(name, made, max_episode_steps, discount, method)
     finally:
         made.close()
 
 
-def _of_run(
+def _optimum_for_run(
     run: Run | Runs,
     discount: float | None,
     max_episode_steps: int | None,
@@ -88,12 +92,12 @@ def _of_run(
 ) -> Optimum:
     config = run.config
     if env_kwargs is not None:
-        raise ValueError(f"env_kwargs must be None with a run, which has its own, got {env_kwargs!r}")
+        raise ValueError(f"env_kwargs must be None with a run, whose own are used, got {env_kwargs!r}")
     try:
         spec_of(config.env)
     except gym.error.Error:
         raise ValueError(
-            f"env must be the environment itself: the run is of {config.env!r}, an id that is not registered"
+            f"env must be an environment object for this run: its environment {config.env!r} is not a registered id"
         ) from None
     return optimum(
         config.env,
@@ -104,69 +108,95 @@ def _of_run(
     )
 
 
-def _solve(name: str, env: gym.Env, limit: int | None, discount: float | None, method: str | None) -> Optimum:
-    began = time.perf_counter()
-    inner: Any = env.unwrapped
+def _optimum_for_env(
+    name: str, env: gym.Env, max_episode_steps: int | None, discount: float | None, method: str | None
+) -> Optimum:
+    started = time.perf_counter()
+    unwrapped: Any = env.unwrapped
     wrapper = unknown_wrapper(env)
     if wrapper is not None:
-        raise ValueError(f"env must have no wrapper that may change it, got {wrapper}")
+        raise ValueError(f"env must have no wrapper that may change observations or rewards, got {wrapper}")
     discount = 1.0 if discount is None else checks.real("discount", discount, 0.0, 1.0)
-    car = type(inner) in (MountainCarEnv, RustMountainCarEnv)
-    table = isinstance(inner, BlackjackEnv) or (hasattr(inner, "P") and hasattr(inner, "initial_state_distrib"))
-    if not car and not table:
+    is_mountain_car = type(unwrapped) in (MountainCarEnv, RustMountainCarEnv)
+    if not is_mountain_car and not _has_transition_table(unwrapped):
         raise ValueError(
             "env must have a transition table P and an initial_state_distrib, or be Blackjack or MountainCar-v0: the "
             f"optimum of {name} is not known"
         )
-    methods = (SEARCH,) if car else METHODS
+    methods = (SEARCH,) if is_mountain_car else METHODS
     method = methods[0] if method is None else checks.choice("method", method, methods)
-    steps = limit or time_limit(env) or UNLIMITED_MAX_EPISODE_STEPS
-    spec = env.spec
-    common: dict[str, Any] = {
-        "env": name,
-        "env_kwargs": {} if spec is None else dict(spec.kwargs),
-        "max_episode_steps": steps,
-        "method": method,
-        "exact": not car,
-        "discount": discount,
-        "reward_threshold": None if spec is None else spec.reward_threshold,
-    }
-    found = _search(inner, steps, discount) if car else _plan(inner, method, discount, steps)
-    return Optimum(**common, **found, seconds=time.perf_counter() - began)
+    steps = max_episode_steps or time_limit(env) or UNLIMITED_MAX_EPISODE_STEPS
+    if is_mountain_car:
+        best = _search_mountain_car(unwrapped, discount, steps)
+    else:
+        best = _solve_table(unwrapped, method, discount, steps)
+    return Optimum(
+        env=name,
+        env_kwargs={} if env.spec is None else dict(env.spec.kwargs),
+        max_episode_steps=steps,
+        method=method,
+        exact=not is_mountain_car,
+        discount=discount,
+        values=best.values,
+        q_values=best.q_values,
+        policy=best.policy,
+        expected_return=best.expected_return,
+        reward_threshold=None if env.spec is None else env.spec.reward_threshold,
+        seconds=time.perf_counter() - started,
+        search=best.search,
+        solver=best.solver,
+    )
 
 
-def _plan(env: Any, method: str, discount: float, steps: int) -> dict[str, Any]:
+def _has_transition_table(env: Any) -> bool:
+    return isinstance(env, BlackjackEnv) or (hasattr(env, "P") and hasattr(env, "initial_state_distrib"))
+
+
+@dataclass(frozen=True, eq=False)
+class _Best:
+    """The fields of an :class:`Optimum` that depend on the method."""
+
+    values: NDArray[np.float64]
+    q_values: NDArray[np.float64]
+    policy: NDArray[np.int64]
+    expected_return: float
+    solver: Solver
+    search: Search | None = None
+
+
+def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int) -> _Best:
     table = cells(env, actions(env.action_space, None))
     planner = _core.Planner(toy_text_spec(env))
-    solution = solve(planner, method, discount, steps)
-    # The first states are those that an observation shows; what follows is hidden behind them.
+    solution = solve_table(planner, method, discount, max_episode_steps)
     if len(solution.values) < table.rows or solution.q_values.shape[1] != table.actions:
         raise ValueError(f"P must have {table.rows} states of {table.actions} actions, as the spaces of env have")
+    # The first states of the solution are those that observations show. Where an observation hides part of the state,
+    # the hidden variants follow.
+    observed = slice(table.rows)
     shape = table.shape[:-1]
-    return {
-        "values": solution.values[: table.rows].reshape(shape),
-        "q_values": solution.q_values[: table.rows].reshape(table.shape),
-        "policy": solution.policy[: table.rows].reshape(shape) + table.first_action,
-        "expected_return": solution.expected_return,
-        "search": None,
-        "truth": TableTruth(planner, table, solution, steps),
-    }
+    return _Best(
+        values=solution.values[observed].reshape(shape),
+        q_values=solution.q_values[observed].reshape(table.shape),
+        policy=solution.policy[observed].reshape(shape) + table.first_action,
+        expected_return=solution.expected_return,
+        solver=TabularSolver(planner, table, solution, max_episode_steps),
+    )
 
 
-def _search(env: Any, steps: int, discount: float) -> dict[str, Any]:
+def _search_mountain_car(env: Any, discount: float, max_episode_steps: int) -> _Best:
     if discount != 1.0:
-        raise ValueError(f"discount must be 1 for the search, which counts steps, got {discount!r}")
+        raise ValueError(f"discount must be 1 for method 'search', which counts steps, got {discount!r}")
     names = _core.parameter_names("MountainCar")
-    valley = _core.Valley([(name, checks.finite(name, getattr(env, name))) for name in names], steps)
-    found = search(valley, steps)
-    left, action_left = valley.steps()
-    shape = (len(found.positions), len(found.velocities))
-    q_values = -action_left.reshape(*shape, -1)
-    return {
-        "values": -left.reshape(shape),
-        "q_values": q_values,
-        "policy": np.argmax(q_values, axis=-1),
-        "expected_return": -float(found.steps.mean()),
-        "search": found,
-        "truth": ValleyTruth(valley),
-    }
+    valley = _core.Valley([(name, checks.finite(name, getattr(env, name))) for name in names], max_episode_steps)
+    search = search_routes(valley, max_episode_steps)
+    cost_to_go, action_costs_to_go = valley.steps()
+    shape = (len(search.positions), len(search.velocities))
+    q_values = -action_costs_to_go.reshape(*shape, -1)
+    return _Best(
+        values=-cost_to_go.reshape(shape),
+        q_values=q_values,
+        policy=np.argmax(q_values, axis=-1),
+        expected_return=-float(search.steps.mean()),
+        solver=MountainCarSolver(valley),
+        search=search,
+    )

@@ -19,7 +19,7 @@ from qtab.discretizers.bins import Bins, bins
 from qtab.discretizers.identity import cells, components
 from qtab.discretizers.rounding import grid
 from qtab.discretizers.tile_coding import Tiling, tiling
-from qtab.envs.matching import entry_for_env, is_tabular_env, time_limit
+from qtab.envs.matching import entry_for_env, is_tabular_env, rust_unavailable, time_limit
 from qtab.envs.native import classic_spec, native_spec
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
 
@@ -138,7 +138,7 @@ def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
     config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
     model = entry_for_spec(spec, config.env_kwargs)
     if model is None and config.backend == "rust":
-        raise _refused(f"Rust has no {spec.id} with these keyword arguments or wrappers")
+        raise rust_unavailable(f"Rust does not implement {spec.id} with these keyword arguments and wrappers")
     limit: dict[str, Any] = {}
     if config.max_episode_steps is not None:
         limit["max_episode_steps"] = config.max_episode_steps
@@ -182,16 +182,12 @@ def _resolved(
             described = native_spec(unwrapped) if model.has_table else classic_spec(unwrapped, model.name, choices)
         except (TypeError, ValueError) as error:
             if config.backend == "rust":
-                raise _refused(str(error)) from None
+                raise rust_unavailable(str(error)) from None
     table = _features(env, config, choices)
     steps = config.max_episode_steps or own_limit
     config = _complete(config, table, "gymnasium" if described is None else "rust", steps)
     model, stepped = (None, env) if described is None else (model, None)
     return Resolved(config, table, model, stepped, made, described, limited=steps is None)
-
-
-def _refused(why_not: str) -> ValueError:
-    return ValueError(f"backend must be 'gymnasium' or 'auto' here, got 'rust': {why_not}")
 
 
 def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config:

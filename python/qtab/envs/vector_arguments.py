@@ -1,0 +1,68 @@
+"""Checks of what a vector environment's ``reset`` takes, with the errors and messages of Gymnasium."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium.error import Error, ResetNeeded
+from numpy.typing import NDArray
+
+
+def seeds_of(seed: Any, num_envs: int) -> list[int | None]:
+    """Returns one seed for each sub-environment.
+
+    Args:
+        seed: None, the first of consecutive integers, or a list of num_envs integers or None.
+        num_envs: The number of sub-environments.
+
+    Raises:
+        gymnasium.error.Error: for a seed that is not a non-negative integer.
+        TypeError: if ``seed`` is none of the above.
+        ValueError: for a list of another length.
+    """
+    if seed is None:
+        return [None] * num_envs
+    if isinstance(seed, int):
+        seeds: list[Any] = [seed + index for index in range(num_envs)]
+    elif isinstance(seed, list | tuple):
+        seeds = list(seed)
+    else:
+        raise TypeError(f"seed must be an integer, a list of integers or None, got {seed!r}")
+    if len(seeds) != num_envs:
+        raise ValueError(
+            f"If seeds are passed as a list the length must match num_envs={num_envs} but got length={len(seeds)}."
+        )
+    for index, value in enumerate(seeds):
+        if value is not None and not isinstance(value, int):
+            raise Error(f"sub-environment {index}: Seed must be a python integer, actual type: {type(value)}")
+        if value is not None and value < 0:
+            raise Error(f"sub-environment {index}: Seed must be greater or equal to zero, actual value: {value}")
+    return seeds
+
+
+def check_reset_mask(mask: Any, num_envs: int, not_reset: Sequence[int]) -> NDArray[np.bool_]:
+    """Returns the mask of the sub-environments to reset, (num_envs,) bool.
+
+    Args:
+        mask: The value of ``options["reset_mask"]``.
+        num_envs: The number of sub-environments.
+        not_reset: The indices of those that were never reset, which the mask must include.
+
+    Raises:
+        gymnasium.error.ResetNeeded: if the mask leaves out a sub-environment that was never reset.
+        TypeError: if it is not a NumPy array of bool.
+        ValueError: for another shape, or a mask without any True.
+    """
+    subject = "`options['reset_mask']` must"
+    if not isinstance(mask, np.ndarray):
+        raise TypeError(f"{subject} be a numpy array, got {type(mask)}")
+    if mask.shape != (num_envs,):
+        raise ValueError(f"{subject} have shape `({num_envs},)`, got {mask.shape}")
+    if mask.dtype != np.bool_:
+        raise TypeError(f"{subject} have `dtype=np.bool_`, got {mask.dtype}")
+    if not mask.any():
+        raise ValueError(f"{subject} contain a boolean array with at least one True value, got reset_mask={mask}")
+    left_out = [index for index in not_reset if not mask[index]]
+    if left_out:
+        raise ResetNeeded(f"{subject} not leave out sub-environment {left_out[0]}, which was never reset")
+    return mask

@@ -1,0 +1,88 @@
+"""The best policy of an environment with a transition table, by dynamic programming."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qtab import _core
+from qtab.discretizers.identity import Cells
+from qtab.results.run import Run
+
+METHODS = ("finite_horizon", "value_iteration", "policy_iteration")
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The optimal values and policy of a transition table."""
+
+    values: NDArray[np.float64]
+    """(states,): the optimal state values."""
+    q_values: NDArray[np.float64]
+    """(states, actions): the optimal action values."""
+    policy: NDArray[np.int64]
+    """(states,): the best action, counted from 0; for a finite horizon at the start of an episode."""
+    expected_return: float
+    """The undiscounted expected return of the policy under the time limit."""
+    policy_changes: tuple[NDArray[np.int64], ...] | None
+    """For a finite horizon (changes,) each: the steps to go, the state, and the action that is best there with as many
+    steps to go or more, until the next change. None where the best action does not depend on the steps to go."""
+
+
+def solve_table(planner: _core.Planner, method: str, discount: float, max_episode_steps: int) -> Solution:
+    """Solves a transition table by one of ``METHODS``.
+
+    Raises:
+        ValueError: if values are unbounded without a discount, except for a finite horizon.
+    """
+    if method == "finite_horizon":
+        (values, q_values, policy), changes, expected_return = planner.finite_horizon(discount, max_episode_steps)
+        return Solution(values, q_values.reshape(len(values), -1), policy, expected_return, changes)
+    values, q_values, policy = getattr(planner, method)(discount)
+    expected_return = planner.policy_return(policy, max_episode_steps)
+    return Solution(values, q_values.reshape(len(values), -1), policy, expected_return, None)
+
+
+class TabularSolver:
+    """Acts by the solution of a transition table, and evaluates the policies of runs exactly."""
+
+    def __init__(self, planner: _core.Planner, cells: Cells, solution: Solution, max_episode_steps: int) -> None:
+        self._planner, self._cells, self._solution = planner, cells, solution
+        self._max_episode_steps = max_episode_steps
+        self.needs_step_count = solution.policy_changes is not None
+
+    def action(self, observation: ArrayLike, steps_taken: int) -> int:
+        """Returns the best action after a number of steps of the episode.
+
+        Raises:
+            ValueError: for an observation outside the space, or one that does not determine the best action.
+        """
+        [row] = self._cells.lit(np.asarray(observation))
+        # Several states share an observation if it hides part of the state.
+        best_actions = {
+            self._best_action(int(state), steps_taken) for state in np.flatnonzero(self._planner.rows == row)
+        }
+        if len(best_actions) > 1:
+            raise ValueError(f"the best action depends on what the observation {observation!r} does not show")
+        return best_actions.pop() + self._cells.first_action
+
+    def _best_action(self, state: int, steps_taken: int) -> int:
+        if self._solution.policy_changes is None:
+            return int(self._solution.policy[state])
+        steps_to_go, states, actions = self._solution.policy_changes
+        remaining = max(self._max_episode_steps - steps_taken, 1)
+        # Sorted by the steps to go: the last change that applies is in force.
+        applicable = np.flatnonzero((states == state) & (steps_to_go <= remaining))
+        return int(actions[applicable[-1]])
+
+    def greedy_return(self, run: Run) -> tuple[float, float]:
+        """Returns the expected return of a run's greedy policy, and 0.0 as its standard error: it is exact.
+
+        Raises:
+            ValueError: if the run's Q table has another shape than the environment.
+        """
+        if not isinstance(run.grid, Cells) or run.grid.shape != self._cells.shape:
+            raise ValueError(f"run must have a table of shape {self._cells.shape}, got {run.grid.shape!r}")
+        policy: Any = np.ascontiguousarray(run.policy.ravel() - run.grid.first_action)
+        return self._planner.policy_return(policy, self._max_episode_steps), 0.0
