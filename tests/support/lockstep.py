@@ -18,10 +18,10 @@ IDS = ["MountainCar-v0", "MountainCarContinuous-v0", "CartPole-v1", "Acrobot-v1"
 CONTINUOUS = ["MountainCarContinuous-v0", "Pendulum-v1"]
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # what is said once where they differ
-    _core.numpy_calls_the_platform()
+    _core.numpy_uses_libm()
 MACHINE = {
     **versions(),
-    "NumPy calls the platform": _core.numpy_calls_the_platform(),
+    "NumPy calls the platform": _core.numpy_uses_libm(),
     "CPU": [name for name, there in np._core._multiarray_umath.__cpu_features__.items() if there],
 }
 

@@ -39,7 +39,7 @@ def train(env: Environment, config: Mapping[str, Any], seeds: Sequence[int], thr
     assert cap is not None  # noqa: S101 - resolved
     results = allocate(resolved, len(seeds), min(threads, len(seeds)), tables=False, limit=memory_limit(None))
     diverged = np.zeros(len(seeds), np.bool_)
-    for index, error in train_in_threads(resolved, tuple(seeds), results, threads, go_on=True):
+    for index, error in train_in_threads(resolved, tuple(seeds), results, threads, keep_going=True):
         if not isinstance(error, OverflowError):
             raise error
         diverged[index] = True

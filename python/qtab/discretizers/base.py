@@ -10,7 +10,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab import _spec as plan
+from qtab import _spec
 from qtab.discretizers.actions import FLOATS, Actions
 
 LARGEST_TABLE = 2**32
@@ -59,8 +59,12 @@ class Features(ABC):
         """
 
     @abstractmethod
-    def plan(self) -> plan.Features:
+    def spec(self) -> _spec.DiscretizerSpec:
         """Returns it as the extension module takes it."""
+
+    def float_type(self) -> _spec.FloatType:
+        """Returns the dtype of the observations of a Box."""
+        return "float32" if self.low.dtype == np.float32 else "float64"
 
     def numbers(self, observation: NDArray[Any]) -> NDArray[np.floating]:
         """Returns an observation of a Box in the space's dtype.

@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab import _spec as plan
+from qtab import _spec
 from qtab.config import Config
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.base import Features, box, check_size, counts, limits
@@ -46,9 +46,10 @@ class Bins(Features):
         numbers = self.numbers(observation)
         return tuple(int(np.digitize(number, edges)) for number, edges in zip(numbers, self.edges, strict=True))
 
-    def plan(self) -> plan.Bins:
+    def spec(self) -> _spec.BinsSpec:
         """Returns it as the extension module takes it."""
-        return {"edges": [edges.astype(np.float64).tolist() for edges in self.edges]}
+        edges = [edges.astype(np.float64).tolist() for edges in self.edges]
+        return {"type": "bins", "dtype": self.float_type(), "edges": edges}
 
 
 def bins(env: gym.Env, config: Config, actions: Actions) -> Bins:

@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab import _spec as plan
+from qtab import _spec
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.base import Features, check_size
 
@@ -49,9 +49,10 @@ class Cells(Features):
             row = row * count + number - int(first)
         return [row]
 
-    def plan(self) -> plan.Cells:
+    def spec(self) -> _spec.IdentitySpec:
         """Returns it as the extension module takes it."""
-        return {"first": np.ravel(self.low).tolist(), "counts": list(self.counts), "scalar": not self.low.shape}
+        first = np.ravel(self.low).tolist()
+        return {"type": "identity", "first": first, "counts": list(self.counts), "scalar": not self.low.shape}
 
 
 def components(space: gym.Space[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:

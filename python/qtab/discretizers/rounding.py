@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab import _spec as plan
+from qtab import _spec
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.actions import actions as choices_of
 from qtab.discretizers.base import Features, box, check_size
@@ -35,9 +35,15 @@ class Grid(Features):
         """
         return [int(np.ravel_multi_index(self.cell(observation), self.shape[:-1]))]
 
-    def plan(self) -> plan.Rounding:
+    def spec(self) -> _spec.RoundSpec:
         """Returns it as the extension module takes it."""
-        return {"scale": self.scale.tolist()}
+        return {
+            "type": "round",
+            "dtype": self.float_type(),
+            "low": self.low.astype(np.float64).tolist(),
+            "high": self.high.astype(np.float64).tolist(),
+            "scale": self.scale.tolist(),
+        }
 
     def cell(self, observation: NDArray[Any]) -> tuple[int, ...]:
         """Returns the index of an observation's row.

@@ -8,7 +8,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab import _spec as plan
+from qtab import _spec
 from qtab.config import Config
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.base import Features, box, check_size, counts, limits
@@ -80,10 +80,12 @@ class Tiling(Features):
                 rows.append(_dense_row(tiling, tile, self.tiles))
         return rows
 
-    def plan(self) -> plan.Tiles:
+    def spec(self) -> _spec.TilesSpec:
         """Returns it as the extension module takes it."""
         low, high = self.edges
         return {
+            "type": "tiles",
+            "dtype": self.float_type(),
             "low": low.tolist(),
             "high": high.tolist(),
             "tiles": list(self.tiles),

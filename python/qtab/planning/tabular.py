@@ -30,7 +30,7 @@ class Solution:
     steps to go or more, until the next change. None where the best action does not depend on the steps to go."""
 
 
-def solve_table(planner: _core.Planner, method: str, discount: float, max_episode_steps: int) -> Solution:
+def solve_table(planner: _core.MdpSolver, method: str, discount: float, max_episode_steps: int) -> Solution:
     """Solves a transition table by one of ``METHODS``.
 
     Raises:
@@ -47,7 +47,7 @@ def solve_table(planner: _core.Planner, method: str, discount: float, max_episod
 class TabularSolver:
     """Acts by the solution of a transition table, and evaluates the policies of runs exactly."""
 
-    def __init__(self, planner: _core.Planner, cells: Cells, solution: Solution, max_episode_steps: int) -> None:
+    def __init__(self, planner: _core.MdpSolver, cells: Cells, solution: Solution, max_episode_steps: int) -> None:
         self._planner, self._cells, self._solution = planner, cells, solution
         self._max_episode_steps = max_episode_steps
         self.needs_step_count = solution.policy_changes is not None

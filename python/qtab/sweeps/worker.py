@@ -46,7 +46,7 @@ def train_share(
     if resolved.model is None:
         return [_in_python(env, overrides, seed, block) for seed in seeds]
     results = allocate(resolved, len(seeds), threads, tables=False, limit=2**63)
-    failed = dict(train_in_threads(resolved, tuple(seeds), results, threads, go_on=True))
+    failed = dict(train_in_threads(resolved, tuple(seeds), results, threads, keep_going=True))
     rows = _rows(seeds, block, results["returns"], results["lengths"], results["terminated"])
     return [_failed(row.seed, failed[index]) if index in failed else row for index, row in enumerate(rows)]
 
@@ -56,7 +56,7 @@ def _in_python(env: Any, overrides: dict[str, Any], seed: int, block: int) -> Ro
     try:
         resolved = resolve(made, {**overrides, "seed": seed})
         try:
-            trainer = _core.Trainer(resolved.core_environment(), resolved.plan())
+            trainer = _core.Trainer(resolved.spec(), resolved.seed)
             train_to_the_end(trainer, resolved.config.episodes)
             returns, lengths, terminated = (column[np.newaxis] for column in trainer.episodes())
             return _rows([seed], block, returns, lengths, terminated)[0]

@@ -14,8 +14,7 @@ from typing import Any
 
 import cloudpickle
 
-from qtab import _core
-from qtab import _spec as plan
+from qtab import _core, _spec
 from qtab.envs.registry import spec_of
 from qtab.training.resolve import resolve
 
@@ -24,7 +23,7 @@ WAIT = 0.2
 
 
 def train_in_processes(
-    env: Any, overrides: Mapping[str, Any], seeds: tuple[int, ...], results: plan.Results, workers: int
+    env: Any, overrides: Mapping[str, Any], seeds: tuple[int, ...], results: _spec.Results, workers: int
 ) -> list[tuple[int, Exception]]:
     """Trains each seed in a worker process and fills in the results as they come; returns the first failure."""
     # cloudpickle, as in Gymnasium's own vector environments, takes functions of the main script along.
@@ -81,7 +80,7 @@ def _portable_env(env: Any) -> Any:
     return spec_of(env) if isinstance(env, str) else env
 
 
-def _fill(index: int, future: "Future[Any]", results: plan.Results) -> Exception | None:
+def _fill(index: int, future: "Future[Any]", results: _spec.Results) -> Exception | None:
     answer = future.result()
     if isinstance(answer, Exception):
         return answer
@@ -126,7 +125,7 @@ def _train(seed: int, tables: bool) -> Any:
         env = _Worker.env() if callable(_Worker.env) else _Worker.env
         resolved = resolve(env, {**_Worker.overrides, "seed": seed})
         try:
-            trainer = _core.Trainer(resolved.core_environment(), resolved.plan())
+            trainer = _core.Trainer(resolved.spec(), resolved.seed)
             train_to_the_end(trainer, resolved.config.episodes)
             return *trainer.episodes(), trainer.tables() if tables else None
         finally:

@@ -3,13 +3,13 @@
 import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
-from qtab import _spec as plan
+from qtab import _core, _spec
 from qtab.config import Config, known_fields
 from qtab.config.options import defaults, stranger, tables
 from qtab.config.presets import preset
@@ -20,18 +20,15 @@ from qtab.discretizers.identity import cells, components
 from qtab.discretizers.rounding import grid
 from qtab.discretizers.tile_coding import Tiling, tiling
 from qtab.envs.matching import entry_for_env, is_tabular_env, rust_unavailable, time_limit
-from qtab.envs.native import classic_spec, native_spec
+from qtab.envs.native import native_env
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
+from qtab.training import agent_spec
 
 _LOGGER = logging.getLogger("qtab")
 _limited: set[str] = set()
 """The environments whose want of a time limit was said in this process."""
 UNLIMITED_MAX_EPISODE_STEPS = 10_000
 """The time limit in training of an environment that has none of its own."""
-
-
-Described: TypeAlias = plan.Control | plan.Process | plan.Rules | plan.Bias
-"""An environment as Rust steps it."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +43,8 @@ class Resolved:
     """The environment stepped in Python."""
     made: bool
     """Whether the environment was made here, and so is closed here."""
-    described: Described | None = None
-    """What the model steps by."""
+    native: _core.NativeEnv | None = None
+    """The environment that Rust steps."""
     limited: bool = False
     """Whether the time limit is ours, the environment having none."""
 
@@ -56,42 +53,42 @@ class Resolved:
         if self.made and self.env is not None:
             self.env.close()
 
-    def core_environment(self) -> Described | plan.PythonEnvironment:
-        """Returns the environment as the extension module takes it."""
-        if self.described is not None:
-            return self.described
-        assert self.config.seed is not None  # noqa: S101 - resolved
-        choices = self.grid.choices
-        return {
-            "env": self.env,
-            "seed": self.config.seed,
-            "first_action": self.grid.first_action,
-            "choices": choices.arrays(),
-        }
-
-    def plan(self, record: int = 0) -> plan.Plan:
+    def spec(self) -> _spec.RunSpec:
         """Returns the run's description as the extension module takes it."""
         config = self.config
-        assert config.seed is not None  # noqa: S101 - resolved
+        assert config.max_episode_steps is not None  # noqa: S101 - resolved
         return {
-            "low": np.ravel(self.grid.low).astype(np.float64).tolist(),
-            "high": np.ravel(self.grid.high).astype(np.float64).tolist(),
-            "single": self.grid.low.dtype == np.float32,
-            "features": self.grid.plan(),
-            "actions": self.grid.actions,
+            "env": self._environment(),
+            "discretizer": self.grid.spec(),
+            "num_actions": self.grid.actions,
             "max_episode_steps": config.max_episode_steps,
-            "seed": plan.seed_words(config.seed),
-            "bit_generator": config.bit_generator,
-            "initial_q": config.initial_q,
-            "learning_rate": plan.learning_rate(config),
+            "algorithm": agent_spec.algorithm(config),
+            "policy": agent_spec.policy(config),
+            "learning_rate": agent_spec.learning_rate(config),
             "discount": config.discount,
-            "policy": plan.policy(config),
-            "episodes": config.episodes,
+            "initial_q": agent_spec.initial_q(config),
             "terminal_update": config.terminal_update,
             "on_truncation": config.on_truncation,
-            "algorithm": plan.algorithm(config),
-            "record": record,
+            "episodes": config.episodes,
+            "bit_generator": config.bit_generator,
         }
+
+    def _environment(self) -> _spec.EnvironmentSpec:
+        if self.native is not None:
+            return {"type": "native", "env": self.native}
+        choices = self.grid.choices
+        return {
+            "type": "python",
+            "env": self.env,
+            "first_action": self.grid.first_action,
+            "actions": choices.arrays(),
+        }
+
+    @property
+    def seed(self) -> int:
+        """The seed, which is always set."""
+        assert self.config.seed is not None  # noqa: S101 - resolved
+        return self.config.seed
 
 
 def merge(env: str, *layers: Mapping[str, Any]) -> Config:
@@ -175,19 +172,18 @@ def _resolved(
     """What is run, on the model where Rust can step by what the environment holds and is not kept from it."""
     config = _fitting(env, config, *layers)
     choices = actions(env.action_space, config.actions)
-    described = None
+    native = None
     if model is not None and config.backend != "gymnasium":
         try:
-            unwrapped = env.unwrapped
-            described = native_spec(unwrapped) if model.has_table else classic_spec(unwrapped, model.name, choices)
+            native = native_env(model.name, env.unwrapped, choices)
         except (TypeError, ValueError) as error:
             if config.backend == "rust":
                 raise rust_unavailable(str(error)) from None
     table = _features(env, config, choices)
     steps = config.max_episode_steps or own_limit
-    config = _complete(config, table, "gymnasium" if described is None else "rust", steps)
-    model, stepped = (None, env) if described is None else (model, None)
-    return Resolved(config, table, model, stepped, made, described, limited=steps is None)
+    config = _complete(config, table, "gymnasium" if native is None else "rust", steps)
+    model, stepped = (None, env) if native is None else (model, None)
+    return Resolved(config, table, model, stepped, made, native, limited=steps is None)
 
 
 def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config:

@@ -75,7 +75,7 @@ def train_resolved(
     """Trains what was resolved before; see :func:`train`."""
     total = resolved.config.episodes
     began = time.perf_counter()
-    trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record))
+    trainer = _core.Trainer(resolved.spec(), resolved.seed, record)
     finished = Finished(trainer, total)
     done = 0
     try:

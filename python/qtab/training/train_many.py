@@ -9,8 +9,7 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
-from qtab import _core
-from qtab import _spec as plan
+from qtab import _core, _spec
 from qtab._utils import checks
 from qtab._utils.memory import BYTES_AN_EPISODE, check_memory, memory_limit
 from qtab._utils.versions import versions
@@ -62,7 +61,7 @@ def train_many(
     results = allocate(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
     try:
         if resolved.model is not None:
-            failed = train_in_threads(resolved, numbers, results, workers, go_on=False)
+            failed = train_in_threads(resolved, numbers, results, workers, keep_going=False)
         else:
             from qtab.training.process_pool import train_in_processes
 
@@ -137,7 +136,7 @@ def resolve_one(env: str | EnvSpec | MakeEnv, overrides: dict[str, Any]) -> Reso
     return resolved
 
 
-def allocate(resolved: Resolved, runs: int, alive: int, tables: bool, limit: int) -> plan.Results:
+def allocate(resolved: Resolved, runs: int, alive: int, tables: bool, limit: int) -> _spec.Results:
     """Returns where the results go; ``alive`` runs are underway at a time.
 
     Raises:
@@ -150,7 +149,7 @@ def allocate(resolved: Resolved, runs: int, alive: int, tables: bool, limit: int
     check_memory(what, needed + (runs * 8 * values if tables else 0), limit)
     if tables and resolved.model is not None:
         # Some learners have several tables.
-        values = _core.Trainer(resolved.core_environment(), resolved.plan()).tables().size
+        values = _core.Trainer(resolved.spec(), resolved.seed).tables().size
         check_memory(what, needed + runs * 8 * values, limit)
     return {
         "returns": np.zeros((runs, episodes)),
@@ -162,18 +161,13 @@ def allocate(resolved: Resolved, runs: int, alive: int, tables: bool, limit: int
 
 
 def train_in_threads(
-    resolved: Resolved, seeds: tuple[int, ...], results: plan.Results, threads: int, *, go_on: bool
+    resolved: Resolved, seeds: tuple[int, ...], results: _spec.Results, threads: int, *, keep_going: bool
 ) -> list[tuple[int, Exception]]:
-    """Trains a model in Rust; returns the runs that failed. Nothing is begun after the first unless ``go_on``."""
-    environment, common = resolved.core_environment(), resolved.plan()
-
-    def describe(index: int) -> Any:
-        return environment, {**common, "seed": plan.seed_words(seeds[index])}
-
-    return _core.train_many(describe, results, threads, go_on)
+    """Trains a model in Rust; returns the runs that failed. Nothing is begun after the first unless ``keep_going``."""
+    return _core.train_many(resolved.spec(), seeds, results, threads, keep_going)
 
 
-def _runs(resolved: Resolved, seeds: tuple[int, ...], results: plan.Results, tables: bool, began: float) -> Runs:
+def _runs(resolved: Resolved, seeds: tuple[int, ...], results: _spec.Results, tables: bool, began: float) -> Runs:
     finished = results["finished"]
     whole = bool(finished.all())
     rows = slice(None) if whole else finished

@@ -125,7 +125,7 @@ def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[
     """The fast side once more: its table after so many episodes, and the actions of the last of them."""
     resolved = resolve(config.env if env is None else env, _fields(config))
     try:
-        trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record=1))
+        trainer = _core.Trainer(resolved.spec(), resolved.seed, record=1)
         trainer.advance(episodes)
         (_, actions) = trainer.recordings()[-1]
         return trainer.tables(), [resolved.grid.choices[action] for action in actions]
