@@ -1,4 +1,8 @@
-"""Runs experiments of the book, all where none is named: tables on standard output, pictures into docs/book."""
+"""Reproduces the book's figures: prints each table and writes each picture to docs/book.
+
+python docs/book.py            # all of them
+python docs/book.py 6.3 10.4   # some of them
+"""
 
 import sys
 from pathlib import Path
@@ -9,7 +13,7 @@ from PIL import Image
 import qtab
 
 COLORS = 96
-"""Enough for a few lines and their bands; the files stay small."""
+"""The pictures are reduced to this many colours, which keeps the files small."""
 
 folder = Path(__file__).parent / "book"
 folder.mkdir(exist_ok=True)

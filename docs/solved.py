@@ -1,4 +1,4 @@
-"""The table of docs/environments.md: what each preset comes to over 100 seeds; it takes a minute or two."""
+"""Prints the table of docs/environments.md: the results of every preset over 100 seeds. It takes a minute or two."""
 
 import gymnasium as gym
 import numpy as np
@@ -14,7 +14,7 @@ COLUMNS += ("greedy", "threshold", "optimum")
 
 
 def row(env: str, preset: str, optimum: qtab.Optimum | None) -> str:
-    """One line of the table: a preset, trained and judged over the seeds."""
+    """Trains a preset with every seed and returns its row of the table."""
     runs = qtab.train_many(env, SEEDS, preset=preset, tables=True)
     threshold = gym.spec(env).reward_threshold
     cells = (
@@ -32,13 +32,13 @@ def row(env: str, preset: str, optimum: qtab.Optimum | None) -> str:
 
 
 def best_hundreds(runs: qtab.Runs) -> np.typing.NDArray[np.float64]:
-    """The best mean return of 100 consecutive episodes of each run."""
+    """Returns each run's best mean return over 100 consecutive episodes."""
     sums = np.cumsum(np.pad(runs.episode_returns, ((0, 0), (1, 0))), axis=1)
     return np.max((sums[:, 100:] - sums[:, :-100]) / 100, axis=1)
 
 
 def greedy_returns(runs: qtab.Runs, optimum: qtab.Optimum | None) -> np.typing.ArrayLike:
-    """Each greedy policy's expected return: exactly, where there is a table, or else from playing it."""
+    """Returns each greedy policy's expected return: exact if the transition table is known, else estimated."""
     if optimum is not None and optimum.exact:
         return optimum.gap(runs).greedy_return
     played = (qtab.evaluate(run, GREEDY_EPISODES, seed=index) for index, run in enumerate(runs))
@@ -46,13 +46,13 @@ def greedy_returns(runs: qtab.Runs, optimum: qtab.Optimum | None) -> np.typing.A
 
 
 def average(values: np.typing.ArrayLike) -> str:
-    """The mean over seeds and its standard error."""
+    """Formats the mean over seeds and its standard error."""
     error = np.std(values, ddof=1) / np.sqrt(SEEDS)
     return f"{np.mean(values):.4g}" + (f" ± {error:.1g}" if error > 1e-9 else "")
 
 
 def known_optimum(env: str) -> qtab.Optimum | None:
-    """What is best, or the best that is known; None where nothing is."""
+    """Returns the optimum, or the best known policy; None if neither is available."""
     try:
         return qtab.optimum(env)
     except ValueError:

@@ -20,9 +20,9 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture
-def small_pieces(monkeypatch):
-    """Some three runs a piece."""
+def small_chunks(monkeypatch):
+    """Some three runs a chunk."""
     from qtab.sweeps import study as studies
 
-    monkeypatch.setattr(studies, "PIECE_STEPS", 2 * 40 * 200 + 1)
-    monkeypatch.setattr(studies, "PYTHON_PIECE_STEPS", 1)
+    monkeypatch.setattr(studies, "CHUNK_STEPS", 2 * 40 * 200 + 1)
+    monkeypatch.setattr(studies, "PYTHON_CHUNK_STEPS", 1)

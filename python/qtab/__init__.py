@@ -27,9 +27,8 @@ if TYPE_CHECKING:
     from qtab.results.runs import Runs
     from qtab.results.storage import load
     from qtab.sweeps import designs
-    from qtab.sweeps.loading import load_sweep
-    from qtab.sweeps.results import Sweep
-    from qtab.sweeps.store import StoreError
+    from qtab.sweeps.database import StoreError
+    from qtab.sweeps.results import Sweep, load_sweep
     from qtab.sweeps.sweep import SweepProgress, sweep
     from qtab.training.callbacks import Progress
     from qtab.training.evaluate import Evaluation, evaluate
@@ -78,14 +77,14 @@ _PUBLIC = {
     "Recording": "results.run",
     "Run": "results.run",
     "Runs": "results.runs",
-    "StoreError": "sweeps.store",
+    "StoreError": "sweeps.database",
     "Sweep": "sweeps.results",
     "SweepProgress": "sweeps.sweep",
     "TabularEnv": "envs.tabular",
     "Verification": "training.verify",
     "evaluate": "training.evaluate",
     "load": "results.storage",
-    "load_sweep": "sweeps.loading",
+    "load_sweep": "sweeps.results",
     "optimum": "planning.solve",
     "plot": "plots.run",
     "presets": "config.presets",

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.book import trials
-from qtab.book.result import COLUMNS
+from qtab.book import runner
+from qtab.book.result import CSV_COLUMNS
 
 NAMES = list(qtab.book.EXPERIMENTS)
 
@@ -21,7 +21,7 @@ def measured(number, name, alpha, runs, **changes):
     """(episodes,) The mean return of each episode of one setting."""
     experiment = qtab.book.find(number)
     setting = next(one for one in experiment.settings if (one.line, one.x) == (name, (alpha,)))
-    outcome = trials.train(setting.env, {**experiment.config(setting), **changes}, range(runs), 2)
+    outcome = runner.train_runs(setting.env, {**experiment.config(setting), **changes}, range(runs), 2)
     return outcome.returns.mean(axis=0)
 
 
@@ -86,7 +86,7 @@ def test_an_experiment_makes_a_table_and_a_picture(name, tmp_path):
     result.save(tmp_path / "points.csv")
     with (tmp_path / "points.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert tuple(rows[0]) == COLUMNS
+    assert tuple(rows[0]) == CSV_COLUMNS
     assert len(rows) == sum(len(made.x) for made in result.lines)
     assert float(rows[0]["mean"]) == result.lines[0].mean[0]
     ax = result.plot()
@@ -113,30 +113,30 @@ def test_neither_threads_nor_other_runs_change_a_run():
     experiment = qtab.book.find("10.4")
     setting = experiment.settings[3]
     alone = qtab.train(setting.env, seed=8, **experiment.config(setting))
-    outcome = trials.train(setting.env, experiment.config(setting), [7, 8], 2)
+    outcome = runner.train_runs(setting.env, experiment.config(setting), [7, 8], 2)
     assert outcome.lengths[1].tolist() == alone.episode_lengths.tolist()
 
 
-def test_a_run_that_diverges_counts_as_capped_where_train_raises():
+def test_a_run_that_diverges_counts_as_truncated_where_train_raises():
     experiment = qtab.book.find("12.11")
     setting = next(one for one in experiment.settings if (one.line, one.x) == ("accumulating", (1.6,)))
     config = experiment.config(setting)
-    outcome = trials.train(setting.env, config, range(6), 2)
+    outcome = runner.train_runs(setting.env, config, range(6), 2)
     assert outcome.diverged.all()
-    assert outcome.capped[:, -1].all()
+    assert outcome.truncated[:, -1].all()
     assert (outcome.lengths[:, -1] == 5000).all()
     assert (outcome.returns == -outcome.lengths).all()
     with pytest.raises(OverflowError) as caught:
         qtab.train(setting.env, seed=0, **config)
     finished = caught.value.run.episode_lengths
     assert outcome.lengths[0, : len(finished)].tolist() == finished.tolist()
-    assert outcome.capped[0, len(finished) :].all()
+    assert outcome.truncated[0, len(finished) :].all()
 
 
 def test_another_error_is_not_swallowed():
     config = {"discretizer": "tiles", "episodes": 1, "max_episode_steps": 5, "learning_rate": 3.0}
     with pytest.raises(ValueError, match="learning_rate"):
-        trials.train("MountainCar-v0", config, [0], 1)
+        runner.train_runs("MountainCar-v0", config, [0], 1)
 
 
 def test_double_q_learning_goes_left_less_often():
@@ -205,9 +205,9 @@ def test_a_whole_figure_has_the_books_counts():
     assert counts["figure-6.5"] == 10_000
     assert counts["figure-8.2"] == 30
     assert {counts[f"figure-{number}"] for number in ("10.2", "10.3", "10.4", "12.10", "12.11")} == {100}
-    caps = {name: experiment.cap for name, experiment in qtab.book.EXPERIMENTS.items()}
-    assert {name for name, cap in caps.items() if cap == 20_000} == {"figure-10.3", "figure-10.4"}
-    assert set(caps.values()) == {5_000, 20_000}
+    limits = {name: experiment.max_episode_steps for name, experiment in qtab.book.EXPERIMENTS.items()}
+    assert {name for name, limit in limits.items() if limit == 20_000} == {"figure-10.3", "figure-10.4"}
+    assert set(limits.values()) == {5_000, 20_000}
 
 
 def test_a_number_finds_its_experiment():
@@ -240,7 +240,7 @@ def test_bad_arguments_are_refused(name, settings, error, message):
 def outcome(*lengths):
     steps = np.array(lengths)
     cut = np.zeros(steps.shape, bool)
-    return trials.Outcome(-steps.astype(float), steps, cut, cut[:, 0])
+    return runner.EpisodeLog(-steps.astype(float), steps, cut, cut[:, 0])
 
 
 def test_what_is_measured():

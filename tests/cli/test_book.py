@@ -21,8 +21,8 @@ def test_an_experiment_prints_its_settings_and_its_table(tmp_path):
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("Figure 8.2: Dyna-Q")
     assert "α = 0.1, ε = 0.1, γ = 0.95" in done.stdout
-    assert "3 runs of each setting (FEWER than the 30 of a whole figure)" in " ".join(done.stdout.split())
-    assert "capped at 5,000 steps" in " ".join(done.stdout.split())
+    assert "3 runs of each setting (FEWER than the 30 of the full figure)" in " ".join(done.stdout.split())
+    assert "truncated at 5,000 steps" in " ".join(done.stdout.split())
     assert "std. error" in done.stdout
     assert (tmp_path / "maze.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "maze.csv").read_text().startswith("line,x,mean,standard_error,runs,")
@@ -56,14 +56,14 @@ def test_bad_usage_is_refused_before_anything_runs(arguments, message, tmp_path)
 
 INTERRUPTED = """
 import os, signal, sys, threading, time
-from qtab.book import trials
+from qtab.book import runner
 from qtab.cli import main
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell starts in the background would ignore it
 
 def at_work():
     frame = sys._current_frames()[threading.main_thread().ident]
-    while frame is not None and frame.f_code is not trials.train.__code__:
+    while frame is not None and frame.f_code is not runner.train_runs.__code__:
         frame = frame.f_back
     return frame is not None
 

@@ -60,7 +60,7 @@ def test_a_design_can_be_swept(tmp_path, capsys):
         ("nonsense = 3", "no use for 'nonsense'"),
         ("[grid", "study must be a TOML file"),
         ("[grid]\nepsilon = 0.3", "grid['epsilon'] must be a list of values"),
-        ("[grid]\nepsilom = [0.3]", "'epsilom' is no setting"),
+        ("[grid]\nepsilom = [0.3]", "unknown setting 'epsilom' (did you mean 'epsilon'?)"),
         ("[design]\nkind = 'spiral'\npoints = 3", "[design] must have kind"),
     ],
 )
@@ -77,4 +77,4 @@ def test_what_is_no_store_is_refused(tmp_path, capsys):
     assert main(["report", str(tmp_path / "none.db")]) == 2
     (tmp_path / "x.db").write_text("x" * 5000)
     assert main(["report", str(tmp_path / "x.db")]) == 2
-    assert "no store" in capsys.readouterr().err
+    assert "not a sweep store" in capsys.readouterr().err

@@ -127,7 +127,9 @@ def test_a_choice_of_another_type_is_refused(name, value):
 
 @pytest.mark.parametrize("value", ["articel", "", "ARTICLE"])
 def test_an_unknown_preset_is_refused_and_the_known_ones_listed(value):
-    with pytest.raises(ValueError, match=f"preset must be one that MountainCar-v0 has .*'article'.* got {value!r}"):
+    with pytest.raises(
+        ValueError, match=f"preset must be one of 'article', 'solved' for MountainCar-v0, got {value!r}"
+    ):
         qtab.train("MountainCar-v0", preset=value)
     with pytest.raises(TypeError, match="preset must be a name, got 5"):
         qtab.train("MountainCar-v0", preset=5)
@@ -206,8 +208,8 @@ def test_how_often_and_how_many_are_checked_too(name, value, error):
         qtab.train("MountainCar-v0", **{name: value})
 
 
-def test_an_unknown_setting_is_named_with_the_ones_there_are():
-    with pytest.raises(TypeError, match=r"'learning' is no setting of a run; there are .*learning_rate"):
+def test_an_unknown_setting_is_named_with_the_one_that_was_probably_meant():
+    with pytest.raises(TypeError, match=r"^unknown setting 'learning' \(did you mean 'learning_rate'\?\)$"):
         qtab.train("MountainCar-v0", learning=0.2)
 
 

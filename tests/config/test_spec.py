@@ -21,7 +21,7 @@ def test_the_algorithms_are_the_same_everywhere() -> None:
 
 def test_the_discretizers_are_the_same_but_for_edges_which_are_sent_as_bins() -> None:
     assert set(_core.DISCRETIZERS) == words(_spec.DiscretizerSpec)
-    assert set(get_args(choices.Discretizer)) == {*_core.DISCRETIZERS, "edges"}
+    assert set(get_args(choices.DiscretizerName)) == {*_core.DISCRETIZERS, "edges"}
 
 
 def test_the_schedules_are_the_same_and_epsilon_has_none_by_visits() -> None:

@@ -13,7 +13,8 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.wrappers import NormalizeObservation, RecordEpisodeStatistics
 
-from support.lockstep import EDITS, IDS, Pair, frozen, good
+from support.classic_control import EDITS, IDS, LockstepClassicControl, heuristic_policy
+from support.exact import bitwise
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
@@ -27,11 +28,11 @@ def test_gymnasiums_checker_is_content(name):
 
 @pytest.mark.parametrize("name", IDS)
 def test_pixels_are_gymnasiums(name):
-    pair = Pair(name, render_mode="rgb_array")
+    pair = LockstepClassicControl(name, render_mode="rgb_array")
     pair.reset(seed=8)
     for _ in range(3):
         pair.both(lambda env: env.render())
-        pair.run(5, good)
+        pair.run(5, heuristic_policy)
     pair.both(lambda env: env.close())
 
 
@@ -41,7 +42,7 @@ def test_a_person_watches_every_step(name):
     env = gym.make(f"qtab/{name}").unwrapped
     env.reset(seed=0)
     env.render_mode = "human"
-    object.__getattribute__(env, "__dict__")["render"] = lambda: shown.append(frozen(np.array(env.state)))
+    object.__getattribute__(env, "__dict__")["render"] = lambda: shown.append(bitwise(np.array(env.state)))
     for _ in range(3):
         env.step(env.action_space.sample())
     assert len(set(shown)) == 3
@@ -50,7 +51,7 @@ def test_a_person_watches_every_step(name):
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])  # noqa: S301
 def test_a_copy_goes_on_where_its_original_stands(name, copied):
-    pair = Pair(name)
+    pair = LockstepClassicControl(name)
     copied(pair.ours)
     pair.reset(seed=9)
     pair.run(30)
@@ -67,11 +68,11 @@ def test_wrappers_work_on_it(name):
         NormalizeObservation(RecordEpisodeStatistics(gym.make(env, max_episode_steps=20)))
         for env in (f"qtab/{name}", name)
     )
-    assert frozen(ours.reset(seed=0)[0]) == frozen(theirs.reset(seed=0)[0])
+    assert bitwise(ours.reset(seed=0)[0]) == bitwise(theirs.reset(seed=0)[0])
     for _ in range(20):
         action = theirs.action_space.sample()
         one, other = ours.step(action), theirs.step(action)
-        assert frozen(one[:4]) == frozen(other[:4])
+        assert bitwise(one[:4]) == bitwise(other[:4])
         if one[2] or one[3]:
             assert one[4]["episode"]["r"] == other[4]["episode"]["r"]
             break
@@ -83,7 +84,7 @@ def test_limits_thresholds_and_spaces_are_gymnasiums(name):
     ours, theirs = gym.spec(f"qtab/{name}"), gym.spec(name)
     for field in ("max_episode_steps", "reward_threshold", "nondeterministic", "order_enforce", "disable_env_checker"):
         assert getattr(ours, field) == getattr(theirs, field), field
-    pair = Pair(name)
+    pair = LockstepClassicControl(name)
     pair.both(lambda env: (env.observation_space == pair.theirs.observation_space, env.metadata))
     pair.both(lambda env: env.action_space == pair.theirs.action_space)
 

@@ -7,17 +7,18 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from support.lockstep import CONTINUOUS, IDS, Pair, frozen
+from support.classic_control import CONTINUOUS, IDS, LockstepClassicControl
+from support.exact import bitwise
 
 ATTRIBUTES = ["state", "steps_beyond_terminated", "last_u"]
 
 
-def same(pair: Pair) -> None:
+def same(pair: LockstepClassicControl) -> None:
     """The attributes that a reset leaves, and the generators."""
     for name in ATTRIBUTES:
         assert hasattr(pair.ours, name) == hasattr(pair.theirs, name), name
         if hasattr(pair.ours, name):
-            assert frozen(getattr(pair.ours, name)) == frozen(getattr(pair.theirs, name)), name
+            assert bitwise(getattr(pair.ours, name)) == bitwise(getattr(pair.theirs, name)), name
     one, other = (env.np_random for env in (pair.ours, pair.theirs))
     if isinstance(one, np.random.Generator):
         assert frozen_generator(one) == frozen_generator(other)
@@ -29,7 +30,7 @@ def frozen_generator(generator: np.random.Generator) -> str:
 
 @pytest.mark.parametrize("name", IDS)
 def test_every_first_state_is_gymnasiums(name: str) -> None:
-    pair = Pair(name)
+    pair = LockstepClassicControl(name)
     for seed in [*range(1000), *[None] * 1000, 2**64, 0]:
         pair.reset(seed=seed)
         same(pair)
@@ -38,7 +39,7 @@ def test_every_first_state_is_gymnasiums(name: str) -> None:
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("bits", [np.random.MT19937, np.random.Philox, np.random.SFC64])
 def test_the_users_generator_is_drawn_from(name: str, bits: Any) -> None:
-    pair = Pair(name)
+    pair = LockstepClassicControl(name)
     for env in (pair.ours, pair.theirs):
         env.np_random = np.random.Generator(bits(5))
     for _ in range(20):
@@ -52,7 +53,7 @@ def test_a_generator_that_is_not_numpys_is_asked_as_gymnasium_asks_it(name: str)
         def uniform(self, low: Any = 0.0, high: Any = 1.0, size: Any = None) -> Any:
             return super().uniform(low, high, size) / 2
 
-    pair = Pair(name)
+    pair = LockstepClassicControl(name)
     for generator in (Mine(np.random.PCG64(5)), np.random.RandomState(5)):
         pair.set(np_random=copy.deepcopy(generator))
         for _ in range(5):
@@ -78,7 +79,7 @@ BOUNDS: list[Any] = [
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("options", BOUNDS, ids=repr)
 def test_options_are_gymnasiums_to_read(name: str, options: Any) -> None:
-    pair = Pair(name)
+    pair = LockstepClassicControl(name)
     for seed in (3, None, None):
         pair.reset(seed=seed, options=options)
     same(pair)
@@ -87,18 +88,18 @@ def test_options_are_gymnasiums_to_read(name: str, options: Any) -> None:
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("seed", ["x", -1, 1.5, np.int64(3)], ids=repr)
 def test_an_odd_seed_is_gymnasiums_to_judge(name: str, seed: Any) -> None:
-    Pair(name).reset(seed=seed)
+    LockstepClassicControl(name).reset(seed=seed)
 
 
 @pytest.mark.parametrize("name", IDS)
 def test_a_reset_forgets_the_episode_before(name: str) -> None:
-    pair = Pair(name)
+    pair = LockstepClassicControl(name)
     action = np.array([0.5], np.float32) if name in CONTINUOUS else 1
     for _ in range(3):
         pair.reset(seed=4)
         for _ in range(30):
             pair.both(lambda env: env.step(action))
-        pair.same_state()
+        pair.assert_same_state()
     pair.reset()
     same(pair)
 
@@ -108,7 +109,7 @@ def test_a_person_watches_the_first_state(name: str) -> None:
     counts = []
     for env in (gym.make(f"qtab/{name}", render_mode="human"), gym.make(name, render_mode="human")):
         frames: list[Any] = []
-        env.unwrapped.render = lambda frames=frames, env=env: frames.append(frozen(env.unwrapped.state))
+        env.unwrapped.render = lambda frames=frames, env=env: frames.append(bitwise(env.unwrapped.state))
         env.reset(seed=0)
         env.reset()
         counts.append(frames)
@@ -129,4 +130,4 @@ def test_a_reset_of_ones_own_may_call_ours(name: str) -> None:
     observation, info = Mine().reset(seed=6)
     expected, _ = gym.make(name).unwrapped.reset(seed=6)
     assert info == {"mine": True}
-    assert frozen(observation) == frozen(expected)
+    assert bitwise(observation) == bitwise(expected)

@@ -11,8 +11,8 @@ import pytest
 from gymnasium import wrappers
 from gymnasium.utils.env_checker import check_env
 
-from support.lockstep import IDS as CLASSIC
-from support.lockstep import frozen
+from support.classic_control import IDS as CLASSIC
+from support.exact import bitwise
 from support.toy_text import IDS as TOYS
 
 IDS = [*CLASSIC, *TOYS]
@@ -26,7 +26,7 @@ def comparable(value: Any) -> Any:
         return type(value), [comparable(item) for item in value]
     if isinstance(value, dict):
         return [(key, comparable(item)) for key, item in value.items() if key != "t"]
-    return frozen(value)
+    return bitwise(value)
 
 
 def made(name: str, wrap: Callable[[gym.Env], gym.Env], **kwargs: Any) -> Any:
@@ -120,7 +120,7 @@ def test_a_video_holds_gymnasiums_frames(name: str, tmp_path: Path) -> None:
             kept = list(recorded.recorded_frames) or kept
             over = terminated or truncated
         recorded.close()
-        frames.append([frozen(frame) for frame in kept])
+        frames.append([bitwise(frame) for frame in kept])
         assert next(folder.glob("*.mp4")).stat().st_size > 0
     assert frames[0] == frames[1]
     assert len(frames[0]) > 1

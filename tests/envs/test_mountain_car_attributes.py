@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 import qtab  # noqa: F401 - registers the environment
 from qtab._core import parameter_names
-from support.parity import assert_same_step, energy_policy, state_bytes
+from support.exact import assert_identical
+from support.parity import energy_policy, state_bytes
 
 
 def pair(seed=0):
@@ -25,7 +26,7 @@ def walk(ours, theirs, steps=150):
     """Steps both, and compares everything."""
     for step in range(steps):
         action = energy_policy(np.array(theirs.state, dtype=np.float64)) if step % 7 else step % 3
-        assert_same_step(ours.step(action), theirs.step(action))
+        assert_identical(ours.step(action), theirs.step(action))
         assert state_bytes(ours) == state_bytes(theirs)
 
 
@@ -58,7 +59,7 @@ def test_an_assigned_state_is_stepped_from_as_gymnasium_does(state):
         with pytest.raises(type(error)):
             ours.step(2)
         return
-    assert_same_step(ours.step(2), first)
+    assert_identical(ours.step(2), first)
     walk(ours, theirs)
 
 
@@ -144,7 +145,7 @@ def test_a_constant_that_is_not_a_number_is_honoured_too(name):
     setattr(ours, name, float("nan"))
     setattr(theirs, name, float("nan"))
     for action in (0, 1, 2, 2):
-        assert_same_step(ours.step(action), theirs.step(action))
+        assert_identical(ours.step(action), theirs.step(action))
 
 
 NUMBERS = st.floats(-0.2, 0.2)
@@ -190,9 +191,9 @@ def test_a_copy_made_in_mid_episode_goes_on_as_the_original_does(made):
     assert type(twin.unwrapped.force) is np.float32
     for step in range(400):
         one, other = env.step(step % 3), twin.step(step % 3)
-        assert_same_step(one, other)
+        assert_identical(one, other)
         if one[2] or one[3]:
-            assert_same_step(env.reset(), twin.reset())
+            assert_identical(env.reset(), twin.reset())
 
 
 @pytest.mark.parametrize("made", COPIES.values(), ids=COPIES)

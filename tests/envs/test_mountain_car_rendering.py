@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 import qtab  # noqa: F401 - registers the environment
-from support.parity import assert_same_value, energy_policy
+from support.exact import assert_identical
+from support.parity import energy_policy
 
 
 def pair(render_mode):
@@ -21,7 +22,7 @@ def test_pixels_along_a_way_to_the_goal_are_gymnasiums():
     ours.reset(seed=0)
     frames, done = set(), False
     while not done:
-        assert_same_value(ours.render(), theirs.render())
+        assert_identical(ours.render(), theirs.render())
         frames.add(ours.render().tobytes())
         action = energy_policy(observation)
         ours.step(action)
@@ -41,7 +42,7 @@ def test_an_assigned_goal_moves_the_flag():
     before = ours.render()
     for env in (ours, theirs):
         env.unwrapped.goal_position = 0.2
-    assert_same_value(ours.render(), theirs.render())
+    assert_identical(ours.render(), theirs.render())
     assert not np.array_equal(before, ours.render())
     ours.close()
     theirs.close()

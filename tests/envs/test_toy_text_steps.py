@@ -5,23 +5,35 @@ import numpy as np
 import pytest
 from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 
+import qtab
 from support.toy_text import IDS, TABLES, LockstepToyText
 
-STEPS = 100_000
+STEPS = 40_000
+
+
+def optimal_policy(name: str) -> list[int]:
+    """For each state an action that leads to the goal sooner than random ones."""
+    return qtab.optimum(name).policy.tolist()
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_a_hundred_thousand_steps_are_gymnasiums(name):
-    assert LockstepToyText(name).run(STEPS, seed=3) > 10
+def test_random_steps_are_gymnasiums(name):
+    terminated = LockstepToyText(name).run(STEPS, seed=3)
+    assert terminated > 5 or name == "Taxi-v4"  # at random a taxi seldom arrives
+
+
+@pytest.mark.parametrize("name", [name for name in TABLES if "Taxi" not in name])
+def test_steps_to_the_goal_are_gymnasiums(name):
+    assert LockstepToyText(name).run(STEPS // 2, optimal_policy(name), seed=3) > 100
 
 
 @pytest.mark.parametrize(
     "kwargs",
-    [{"fickle_passenger": True}, {"is_rainy": True}, {"is_rainy": True, "fickle_passenger": True}],
+    [{}, {"fickle_passenger": True}, {"is_rainy": True}, {"is_rainy": True, "fickle_passenger": True}],
     ids=repr,
 )
-def test_a_hundred_thousand_steps_of_every_taxi_are_gymnasiums(kwargs):
-    assert LockstepToyText("Taxi-v4", **kwargs).run(STEPS, seed=4) > 50
+def test_rides_of_every_taxi_are_gymnasiums(kwargs):
+    assert LockstepToyText("Taxi-v4", **kwargs).run(STEPS // 2, optimal_policy("Taxi-v4"), seed=4) > 300
 
 
 LAKE = ["SFFHF", "FHFSF", "FFFFG"]

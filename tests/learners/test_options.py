@@ -61,13 +61,16 @@ def test_every_option_has_a_value_here() -> None:
 
 @pytest.mark.parametrize(("name", "chosen"), strangers(), ids=str)
 def test_an_option_without_a_meaning_is_refused_by_name(name: str, chosen: dict[str, Any]) -> None:
-    with pytest.raises(ValueError, match=rf"^{name} belongs to .* got "):
+    with pytest.raises(ValueError, match=rf"^{name} applies to .*, not to .*, got "):
         qtab.train("MountainCar-v0", episodes=1, **chosen, **{name: VALUES[name]})
 
 
 @pytest.mark.parametrize("algorithm", ["dyna_q", "dyna_q_plus"])
 def test_a_model_of_pairs_needs_a_table(algorithm: str) -> None:
-    with pytest.raises(ValueError, match=r"^algorithm must be one that needs no table for discretizer 'tiles', got "):
+    with pytest.raises(
+        ValueError,
+        match=r"^algorithm must be 'q_learning', .* or 'watkins_q_lambda' for discretizer 'tiles', got 'dyna_q",
+    ):
         qtab.train("MountainCar-v0", algorithm=algorithm, **TILES)
 
 
@@ -78,7 +81,9 @@ def test_only_the_value_of_a_lone_pair_can_be_assigned(settings: dict[str, Any])
 
 
 def test_dutch_traces_know_one_step_size() -> None:
-    with pytest.raises(ValueError, match=r"^learning_rate_schedule must be another .*, got 'visits'"):
+    with pytest.raises(
+        ValueError, match=r"^learning_rate_schedule must be 'constant', 'linear' or 'exponential' for .*, got 'visits'"
+    ):
         qtab.train("MountainCar-v0", algorithm="true_online_sarsa_lambda", learning_rate_schedule="visits")
 
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.plots.run import check_format, save_plot
+from qtab.plots.axes import check_format
+from qtab.plots.run import save_plot
 from support.command import QTAB, environment
 
 
@@ -135,5 +136,18 @@ def test_on_a_terminal_the_bar_and_the_lines_share_the_screen(tmp_path: Path) ->
 
 def test_an_optimum_that_is_none_is_refused_by_name() -> None:
     run = qtab.train("MountainCar-v0", seed=0, episodes=10)
-    with pytest.raises(TypeError, match=r"^optimum must be a number, or what qtab.optimum returns, got .best."):
+    with pytest.raises(TypeError, match=r"^optimum must be a number or a result of qtab.optimum, got .best."):
         qtab.plot(run, optimum="best")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("settings", "note"),
+    [
+        ({"exploration": "softmax", "temperature": 0.5}, "α = 0.2, γ = 0.9, τ = 0.5, seed 0"),
+        ({"epsilon_schedule": "constant", "epsilon": 0.1}, "α = 0.2, γ = 0.9, ε = 0.1, seed 0"),
+        ({"epsilon_schedule": "exponential"}, "α = 0.2, γ = 0.9, ε = 0.8 → 0, seed 0"),
+    ],
+)
+def test_every_kind_of_exploration_can_be_plotted(settings: dict[str, object], note: str) -> None:
+    run = qtab.train("MountainCar-v0", episodes=2, seed=0, **settings)  # type: ignore[arg-type]
+    assert qtab.plot(run).get_title("right") == note

@@ -60,7 +60,7 @@ def test_a_config_cannot_be_changed_in_place(run):
     with pytest.raises(AttributeError):
         run.config.episodes = 3
     assert run.config.replace(episodes=3).episodes == 3
-    with pytest.raises(TypeError, match="'colour' is no setting"):
+    with pytest.raises(TypeError, match="unknown setting 'colour'"):
         run.config.replace(colour="red")
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from qtab import _core
 from qtab.config.options import ONE_STEP, TABLES_ONLY
 from qtab.envs.registry import ENTRIES
-from support.lockstep import MACHINE
+from support.machine import MACHINE
 
 CAR = "MountainCar-v0"
 LIMITS: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {

@@ -1,61 +1,38 @@
-"""Two environments in lock-step: ours and Gymnasium's, equal to the last bit, in type, in warning and in error.
-
-CartPole, Acrobot and Pendulum call NumPy's sine and cosine. Where those are not the platform's, qtab steps them in
-Gymnasium's own code, so equality holds on every machine; ``MACHINE`` says which one it was seen on.
-"""
+"""Two environments in lock-step: ours and Gymnasium's, equal to the last bit, in type, in warning and in error."""
 
 import copy
 import warnings
+from collections.abc import Callable
 from typing import Any
 
 import gymnasium as gym
-import numpy as np
 
-from qtab import _core
-from qtab._utils.versions import versions
-
-IDS = ["MountainCar-v0", "MountainCarContinuous-v0", "CartPole-v1", "Acrobot-v1", "Pendulum-v1"]
-CONTINUOUS = ["MountainCarContinuous-v0", "Pendulum-v1"]
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # what is said once where they differ
-    _core.numpy_uses_libm()
-MACHINE = {
-    **versions(),
-    "NumPy calls the platform": _core.numpy_uses_libm(),
-    "CPU": [name for name, there in np._core._multiarray_umath.__cpu_features__.items() if there],
-}
+from support.exact import bitwise
+from support.machine import MACHINE
 
 
-def frozen(value: Any) -> Any:
-    """What can be compared: types, dtypes and bytes."""
-    if isinstance(value, np.ndarray | np.generic):
-        return type(value), value.dtype, value.shape, value.tobytes()
-    if isinstance(value, float):
-        return float, value.hex()
-    if isinstance(value, tuple):
-        return tuple(map(frozen, value))
-    return type(value), value
-
-
-def outcome(call: Any, env: Any) -> Any:
+def outcome(call: Callable[[Any], Any], env: Any) -> Any:
+    """What a call on an environment returns or raises, and what it warns of."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            value = frozen(call(env))
+            value = bitwise(call(env))
         except Exception as error:
             value = type(error), str(error)
     return value, [(warning.category, str(warning.message)) for warning in caught]
 
 
-class Pair:
-    """An environment of ours beside Gymnasium's; what is done to one is done to both, and must come out equal."""
+class Lockstep:
+    """Our environment beside Gymnasium's: what is done to one is done to both, and the results must be equal."""
 
     def __init__(self, name: str, **kwargs: Any) -> None:
         self.name = name
-        self.ours = gym.make(f"qtab/{name}", **kwargs).unwrapped
-        self.theirs = gym.make(name, **kwargs).unwrapped
+        self.ours: Any = gym.make(f"qtab/{name}", **kwargs).unwrapped
+        self.theirs: Any = gym.make(name, **kwargs).unwrapped
+        assert type(self.ours).__module__.startswith("qtab.")
 
-    def both(self, call: Any) -> Any:
+    def both(self, call: Callable[[Any], Any]) -> Any:
+        """Calls a function with each of the two and returns the outcome, which must be the same."""
         ours, theirs = outcome(call, self.ours), outcome(call, self.theirs)
         assert ours == theirs, (self.name, MACHINE)
         return ours
@@ -67,57 +44,3 @@ class Pair:
 
     def reset(self, **kwargs: Any) -> Any:
         return self.both(lambda env: env.reset(**kwargs))
-
-    def run(self, steps: int, policy: Any = None, seed: int = 0) -> int:
-        """Takes so many steps, episode by episode, and returns how many ended."""
-        space, episodes = self.theirs.action_space, 0
-        space.seed(seed)
-        for step in range(steps):
-            action = space.sample() if policy is None else policy(self.theirs)
-            ours, theirs = self.ours.step(action), self.theirs.step(action)
-            assert frozen(ours) == frozen(theirs), (self.name, step, ours, theirs, MACHINE)
-            if step % 97 == 0:
-                self.same_state()
-            if theirs[2] or step % 200 == 199:
-                episodes += theirs[2]
-                self.reset()
-        self.same_state()
-        return episodes
-
-    def same_state(self) -> None:
-        ours, theirs = self.ours.state, self.theirs.state
-        assert type(ours) is type(theirs)
-        # At the left wall Gymnasium's MountainCar has a velocity of integer 0.
-        assert isinstance(ours, tuple) or ours.dtype == theirs.dtype
-        assert np.array(ours, np.float64).tobytes() == np.array(theirs, np.float64).tobytes()
-
-
-def good(env: Any) -> Any:
-    """A policy that gets somewhere."""
-    if "MountainCar" in type(env).__name__ and "Continuous" not in type(env).__name__:
-        return 2 if env.state[1] >= 0 else 0
-    if "CartPole" in type(env).__name__:
-        return int(env.state[2] + 0.5 * env.state[3] + 0.05 * env.state[1] > 0)
-    if "Acrobot" in type(env).__name__:
-        return 0 if env.state[2] > 0 else 2
-    if "Pendulum" in type(env).__name__:
-        theta, speed = (env.state[0] + np.pi) % (2 * np.pi) - np.pi, env.state[1]
-        return np.array([-10 * theta - 2 * speed if abs(theta) < 0.6 else 2 * np.sign(speed)], np.float32)
-    return np.array([1.5 if env.state[1] >= 0 else -0.75], np.float32)
-
-
-LINKS = dict.fromkeys(["LINK_LENGTH_1", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2"], 0.7)
-EDITS = {
-    "MountainCar-v0": {"force": 0.002, "gravity": 0.002, "max_speed": 0.05, "goal_position": 0.3, "goal_velocity": 0.01}
-    | {"min_position": -0.9, "max_position": 0.45},
-    "MountainCarContinuous-v0": {"power": 0.002, "max_speed": 0.05, "goal_position": 0.3, "goal_velocity": 0.01}
-    | {"min_position": -0.9, "max_position": 0.35, "min_action": -0.4, "max_action": 0.3},
-    "CartPole-v1": {"gravity": 1.6, "masspole": 0.3, "total_mass": 2.0, "length": 0.8, "polemass_length": 0.1}
-    | {"force_mag": 4, "tau": 0.05, "theta_threshold_radians": 0.1, "x_threshold": 1.5, "_sutton_barto_reward": True}
-    | {"kinematics_integrator": "semi-implicit", "steps_beyond_terminated": 3, "masscart": 5.0},
-    "Acrobot-v1": LINKS
-    | {"dt": 0.05, "LINK_MOI": 2.0, "MAX_VEL_1": 2, "MAX_VEL_2": 3.0, "torque_noise_max": 0.5, "LINK_LENGTH_2": 2.0}
-    | {"book_or_nips": "nips", "AVAIL_TORQUE": [-2, 0.5, 2.0]},
-    "Pendulum-v1": {"max_speed": 3, "max_torque": 0.5, "dt": 0.1, "g": 5.0, "m": 2.0, "l": 0.7},
-}
-"""For each environment, attributes that its step reads, with another value than their own."""

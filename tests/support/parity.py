@@ -1,29 +1,10 @@
 """What "equal to the last bit" means, once."""
 
-from typing import Any
-
 import gymnasium as gym
 import numpy as np
 
 import qtab
 from qtab.reference import q_learning
-
-
-def assert_same_value(one: Any, other: Any) -> None:
-    """Same type, same dtype and shape, same bytes."""
-    assert type(one) is type(other)
-    if isinstance(one, np.ndarray):
-        assert (one.dtype, one.shape) == (other.dtype, other.shape)
-        assert one.tobytes() == other.tobytes(), f"{one!r} is not {other!r}"
-    else:
-        assert one == other
-
-
-def assert_same_step(one: tuple[Any, ...], other: tuple[Any, ...]) -> None:
-    """Observations, rewards, flags and info of two steps (or two resets) are the same, their types included."""
-    assert len(one) == len(other)
-    for mine, theirs in zip(one, other, strict=True):
-        assert_same_value(mine, theirs)
 
 
 def state_bytes(env: gym.Env) -> bytes:

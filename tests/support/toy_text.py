@@ -1,12 +1,12 @@
-"""Toy text in lock-step: ours beside Gymnasium's, what is done to one is done to both, and must come out equal."""
+"""Toy text in lock-step with Gymnasium's."""
 
-import copy
+from collections.abc import Callable, Sequence
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 
-from support.lockstep import frozen, outcome
+from support.exact import bitwise, identical
+from support.lockstep import Lockstep
 
 IDS = [
     "FrozenLake-v1",
@@ -17,69 +17,47 @@ IDS = [
     "Blackjack-v1",
 ]
 TABLES = IDS[:-1]
-KEPT = ["s", "lastaction", "fickle_step", "taxi_orientation", "player", "dealer", "dealer_top_card_suit"]
-KEPT += ["dealer_top_card_value_str"]
+"""The environments that have a transition table."""
+ATTRIBUTES = [
+    *("s", "lastaction", "fickle_step", "taxi_orientation"),
+    *("player", "dealer", "dealer_top_card_suit", "dealer_top_card_value_str"),
+]
+"""What the environments keep between steps."""
 
 
-def flat(value: Any) -> Any:
-    """What can be compared of what a reset or a step returns, its info included."""
-    if isinstance(value, tuple):
-        return tuple(map(flat, value))
-    if isinstance(value, list):
-        return [flat(item) for item in value]
-    if isinstance(value, dict):
-        return {name: flat(item) for name, item in value.items()}
-    return frozen(value)
+class LockstepToyText(Lockstep):
+    """An environment of toy text beside Gymnasium's."""
 
+    def both(self, call: Callable[[Any], Any]) -> Any:
+        found = super().both(call)
+        self.assert_same_state()
+        return found
 
-class LockstepToyText:
-    """An environment of ours beside Gymnasium's."""
-
-    def __init__(self, name: str, **kwargs: Any) -> None:
-        self.ours = gym.make(f"qtab/{name}", **kwargs).unwrapped
-        self.theirs = gym.make(name, **kwargs).unwrapped
-        assert type(self.ours).__module__.startswith("qtab.")
-
-    def both(self, call: Any) -> Any:
-        def flattened(env: Any) -> Any:
-            return flat(call(env))
-
-        ours, theirs = outcome(flattened, self.ours), outcome(flattened, self.theirs)
-        assert ours == theirs
-        self.same()
-        return ours
-
-    def set(self, **attributes: Any) -> None:
-        for name, value in attributes.items():
-            for env in (self.ours, self.theirs):
-                setattr(env, name, copy.deepcopy(value))
-
-    def same(self) -> None:
-        """Attributes and generators stand alike."""
-        for name in KEPT:
+    def assert_same_state(self) -> None:
+        """The attributes are the same, and the next draws will be."""
+        for name in ATTRIBUTES:
             assert hasattr(self.ours, name) == hasattr(self.theirs, name), name
             if hasattr(self.ours, name):
-                assert flat(getattr(self.ours, name)) == flat(getattr(self.theirs, name)), name
+                assert bitwise(getattr(self.ours, name)) == bitwise(getattr(self.theirs, name)), name
         generators = self.ours.np_random.bit_generator, self.theirs.np_random.bit_generator
         assert generators[0].state == generators[1].state
 
-    def run(self, steps: int, policy: Any = None, seed: int = 0) -> int:
-        """Takes so many steps, episode by episode, and returns how many ended."""
-        self.both(lambda env: env.reset(seed=seed))
-        rng, episodes = np.random.default_rng(seed), 0
-        mask = None
-        for step in range(steps):
-            action = int(rng.integers(self.theirs.action_space.n))
-            if mask is not None and step % 3:  # a driver who gets somewhere
-                action = int(rng.choice(np.flatnonzero(mask)))
-            ours, theirs = self.ours.step(action), self.theirs.step(action)
-            assert flat(ours) == flat(theirs), (step, ours, theirs)
-            mask = theirs[4].get("action_mask")
+    def run(self, steps: int, policy: Sequence[int] | None = None, seed: int = 0) -> int:
+        """Takes so many steps, episode by episode, and returns how many episodes terminated.
+
+        Actions are random; with a policy, an action for each state, three in four are the policy's.
+        """
+        self.reset(seed=seed)
+        episodes = 0
+        for step, action in enumerate(np.random.default_rng(seed).integers(self.theirs.action_space.n, size=steps)):
+            chosen = int(action) if policy is None or step % 4 == 0 else policy[self.theirs.s]
+            ours, theirs = self.ours.step(chosen), self.theirs.step(chosen)
+            assert identical(ours, theirs), (self.name, step, ours, theirs)
             if step % 97 == 0:
-                self.same()
+                self.assert_same_state()
             if theirs[2] or step % 300 == 299:
                 episodes += bool(theirs[2])
                 ours, theirs = self.ours.reset(), self.theirs.reset()
-                assert flat(ours) == flat(theirs), (step, ours, theirs)
-        self.same()
+                assert identical(ours, theirs), (self.name, step, ours, theirs)
+        self.assert_same_state()
         return episodes

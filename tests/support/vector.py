@@ -8,9 +8,10 @@ import numpy as np
 from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
-from support import lockstep, toy_text
+from support import classic_control, toy_text
+from support.machine import MACHINE
 
-IDS = [*lockstep.IDS, "CartPole-v0", *toy_text.IDS]
+IDS = [*classic_control.IDS, "CartPole-v0", *toy_text.IDS]
 MODES = list(AutoresetMode)
 
 
@@ -26,9 +27,9 @@ def assert_equal(one: Any, other: Any) -> None:
     """Exactly equal, types included, but for the one fault of Gymnasium's that is not copied."""
     if len(one) == 5:  # a step
         mended = (*other[:4], mend(other[4], one[4]))
-        assert data_equivalence(one, mended, exact=True), (one, other, lockstep.MACHINE)
+        assert data_equivalence(one, mended, exact=True), (one, other, MACHINE)
     else:
-        assert data_equivalence(one, other, exact=True), (one, other, lockstep.MACHINE)
+        assert data_equivalence(one, other, exact=True), (one, other, MACHINE)
 
 
 def mend(infos: dict[str, Any], right: dict[str, Any]) -> dict[str, Any]:
@@ -49,7 +50,7 @@ def position(generator: np.random.Generator) -> Any:
     return {**state, "uinteger": state["uinteger"] * state["has_uint32"]}
 
 
-class Vectors:
+class LockstepVectorEnv:
     """A vector environment of ours beside Gymnasium's; what is done to one is done to both, and must come out equal."""
 
     def __init__(

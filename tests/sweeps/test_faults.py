@@ -18,10 +18,10 @@ from support.sweeps import CAR, GRID, SMALL, assert_equal
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ("UPDATE meta SET value = '99' WHERE name = 'version'", "version '99' of the format, this qtab has 1"),
+        ("UPDATE meta SET value = '99' WHERE name = 'version'", "format version '99', but this qtab reads 1"),
         ("UPDATE meta SET value = '{}' WHERE name = 'study'", "belongs to another sweep"),
-        ("UPDATE meta SET value = 'x' WHERE name = 'format'", "is no store of a sweep"),
-        ("DROP TABLE meta", "is no store of a sweep"),
+        ("UPDATE meta SET value = 'x' WHERE name = 'format'", "is not a sweep store"),
+        ("DROP TABLE meta", "is not a sweep store"),
     ],
 )
 def test_a_store_of_another_kind_is_refused(tmp_path, change, message):
@@ -45,7 +45,7 @@ def test_a_store_of_another_sweep_is_refused(tmp_path, change):
 def test_a_damaged_store_is_refused(tmp_path):
     path = tmp_path / "study.db"
     path.write_bytes(b"SQLite is what this is not" * 100)
-    with pytest.raises(qtab.StoreError, match="damaged or no store"):
+    with pytest.raises(qtab.StoreError, match="damaged, or not a sweep store"):
         qtab.sweep(CAR, GRID, store=path, **SMALL)
     path.unlink()
     qtab.sweep(CAR, GRID, store=path, **SMALL)
@@ -61,9 +61,9 @@ def test_a_store_that_cannot_be_written_is_an_error_of_the_system(tmp_path):
         qtab.sweep(CAR, GRID, store=tmp_path / "no" / "study.db", **SMALL)
 
 
-def test_a_full_disk_is_an_error_and_breaks_nothing(tmp_path, small_pieces, monkeypatch):
+def test_a_full_disk_is_an_error_and_breaks_nothing(tmp_path, small_chunks, monkeypatch):
     path = tmp_path / "study.db"
-    connect = stores._connect
+    connect = stores.connect
 
     def tight(path):
         connection = connect(path)
@@ -72,10 +72,10 @@ def test_a_full_disk_is_an_error_and_breaks_nothing(tmp_path, small_pieces, monk
         return connection
 
     many = {"seeds": 600, "episodes": 40}
-    monkeypatch.setattr(stores, "_connect", tight)
+    monkeypatch.setattr(stores, "connect", tight)
     with pytest.raises(OSError, match="full"):
         qtab.sweep(CAR, GRID, store=path, **many)
-    monkeypatch.setattr(stores, "_connect", connect)
+    monkeypatch.setattr(stores, "connect", connect)
     seen = []
     study = qtab.sweep(CAR, GRID, store=path, callback=seen.append, **many)
     assert seen[-1].new < 3600
@@ -104,7 +104,7 @@ def test_a_run_that_diverges_is_recorded():
 
 
 @pytest.mark.filterwarnings("ignore")  # distributed's own
-def test_dask_with_a_worker_killed_gives_the_same_table(tmp_path, small_pieces):
+def test_dask_with_a_worker_killed_gives_the_same_table(tmp_path, small_chunks):
     from distributed import Client, LocalCluster
 
     many = {"seeds": 40, "episodes": 40}
@@ -134,18 +134,18 @@ def test_dask_with_a_worker_killed_gives_the_same_table(tmp_path, small_pieces):
         ({"grid": {"epsilon": "abc"}}, TypeError, r"grid\['epsilon'\] must be a list of values"),
         ({"grid": 3}, TypeError, "grid must map names"),
         ({"grid": [3]}, TypeError, "grid must hold mappings"),
-        ({"grid": [{"epsilon": 0.1}, {"discount": 0.1}]}, ValueError, "the same names"),
-        ({"grid": [{"epsilon": 0.1}, {"epsilon": 0.1}]}, ValueError, "one twice"),
-        ({"grid": {"epsilom": [0.1]}}, TypeError, "'epsilom' is no setting"),
+        ({"grid": [{"epsilon": 0.1}, {"discount": 0.1}]}, ValueError, "must have the same names"),
+        ({"grid": [{"epsilon": 0.1}, {"epsilon": 0.1}]}, ValueError, "the same one twice"),
+        ({"grid": {"epsilom": [0.1]}}, TypeError, "unknown setting 'epsilom'"),
         ({"grid": {"epsilon": ["x"]}}, TypeError, "epsilon must be a number"),
         ({"grid": {"epsilon": [0.1, 3]}}, ValueError, "epsilon must lie in"),
-        ({"grid": {"seed": [1, 2]}}, TypeError, "seed is no part of a grid"),
-        ({"epsilon": 0.3}, TypeError, "epsilon is both in the grid and fixed"),
-        ({"learning_rat": 0.3}, TypeError, "'learning_rat' is no setting"),
+        ({"grid": {"seed": [1, 2]}}, TypeError, "seed cannot be a setting of a sweep"),
+        ({"epsilon": 0.3}, TypeError, "epsilon must be either in the grid or shared"),
+        ({"learning_rat": 0.3}, TypeError, "unknown setting 'learning_rat'"),
         ({"seeds": 0}, ValueError, "seeds must be"),
         ({"seeds": [1, 1]}, ValueError, "seeds must differ"),
         ({"threads": -1}, ValueError, "threads must be"),
-        ({"executor": 3}, TypeError, "executor must have the method submit"),
+        ({"executor": 3}, TypeError, "executor must have a method submit"),
         ({"block": 0}, ValueError, "block must be"),
         ({"episodes": 10**11}, MemoryError, "runs of 100000000000 episodes need 3.09 TiB, more than memory_limit"),
         ({"memory_limit": 1000}, MemoryError, "more than memory_limit=1000"),

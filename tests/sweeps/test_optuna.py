@@ -1,4 +1,4 @@
-"""Optuna drives sweeps, as the example in the docs does."""
+"""Optuna drives sweeps, as examples/optuna_study.py shows."""
 
 import runpy
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 
 import qtab
 
-EXAMPLE = Path(__file__).parents[2] / "docs" / "optuna_study.py"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "optuna_study.py"
 
 
 @pytest.mark.filterwarnings("ignore::optuna.exceptions.ExperimentalWarning")

@@ -12,6 +12,7 @@ import pytest
 import qtab
 from qtab.sweeps import store as stores
 from qtab.sweeps import study as studies
+from qtab.sweeps.database import RunRecord
 from support.sweeps import CAR, GRID, SMALL, assert_equal
 
 
@@ -50,20 +51,20 @@ def test_the_table_for_pandas_and_arrow():
 
 
 @pytest.mark.parametrize("threads", [1, 3])
-def test_threads_and_stores_change_nothing(tmp_path, small_pieces, threads):
+def test_threads_and_stores_change_nothing(tmp_path, small_chunks, threads):
     study = qtab.sweep(CAR, GRID, threads=threads, store=tmp_path / "study.db", **SMALL)
     assert_equal(study, qtab.sweep(CAR, GRID, **SMALL))
 
 
 @pytest.mark.parametrize("make", [ThreadPoolExecutor, ProcessPoolExecutor])
-def test_any_executor_changes_nothing(small_pieces, make):
+def test_any_executor_changes_nothing(small_chunks, make):
     extra = {"mp_context": multiprocessing.get_context("spawn")} if make is ProcessPoolExecutor else {}
     with make(2, **extra) as executor:
         study = qtab.sweep(CAR, GRID, executor=executor, **SMALL)
     assert_equal(study, qtab.sweep(CAR, GRID, **SMALL))
 
 
-def test_progress_comes_as_it_happens(small_pieces):
+def test_progress_comes_as_it_happens(small_chunks):
     seen = []
     qtab.sweep(CAR, GRID, callback=seen.append, **SMALL)
     assert len(seen) >= 10
@@ -71,7 +72,7 @@ def test_progress_comes_as_it_happens(small_pieces):
     assert (seen[-1].runs, seen[-1].total, seen[-1].new) == (30, 30, 30)
 
 
-def test_a_finished_store_is_read_and_nothing_trained_again(tmp_path, small_pieces):
+def test_a_finished_store_is_read_and_nothing_trained_again(tmp_path, small_chunks):
     path = tmp_path / "study.db"
     first = qtab.sweep(CAR, GRID, store=path, **SMALL)
     seen = []
@@ -82,7 +83,7 @@ def test_a_finished_store_is_read_and_nothing_trained_again(tmp_path, small_piec
 SCRIPT = """
 import sys, qtab
 from qtab.sweeps import study
-study.PIECE_STEPS = 2 * 40 * 200 + 1
+study.CHUNK_STEPS = 2 * 40 * 200 + 1
 qtab.sweep("MountainCar-v0", {grid}, seeds={seeds}, episodes=40, store=sys.argv[1],
            callback=lambda progress: print(progress.runs, progress.new, flush=True))
 """
@@ -93,12 +94,12 @@ def start(path, seeds=5):
     return subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE, text=True)
 
 
-@pytest.mark.parametrize("pieces", [1, 4])
-def test_killed_at_any_moment_it_goes_on(tmp_path, small_pieces, pieces):
+@pytest.mark.parametrize("chunks", [1, 4])
+def test_killed_at_any_moment_it_goes_on(tmp_path, small_chunks, chunks):
     path = tmp_path / "study.db"
     many = {"seeds": 600, "episodes": 40}
     process = start(path, seeds=600)
-    for _ in range(pieces):
+    for _ in range(chunks):
         process.stdout.readline()
     process.kill()
     rest = process.communicate()[0].split()
@@ -106,13 +107,13 @@ def test_killed_at_any_moment_it_goes_on(tmp_path, small_pieces, pieces):
     seen = []
     study = qtab.sweep(CAR, GRID, store=path, callback=seen.append, **many)
     found = seen[0].runs - seen[0].new
-    assert found >= pieces
+    assert found >= chunks
     assert len(rest) == 0 or found >= int(rest[-2])
     assert seen[-1].new == 3600 - found
     assert_equal(study, qtab.sweep(CAR, GRID, **many))
 
 
-def test_ctrl_c_keeps_the_finished_runs_and_lets_go_of_the_others(tmp_path, small_pieces):
+def test_ctrl_c_keeps_the_finished_runs_and_lets_go_of_the_others(tmp_path, small_chunks):
     path = tmp_path / "study.db"
 
     def interrupt(progress):
@@ -128,7 +129,7 @@ def test_ctrl_c_keeps_the_finished_runs_and_lets_go_of_the_others(tmp_path, smal
     assert_equal(whole, qtab.sweep(CAR, GRID, **SMALL))
 
 
-def test_two_processes_share_a_store(tmp_path, small_pieces):
+def test_two_processes_share_a_store(tmp_path, small_chunks):
     path = tmp_path / "study.db"
     both = [start(path, seeds=150) for _ in range(2)]
     new = []
@@ -136,33 +137,33 @@ def test_two_processes_share_a_store(tmp_path, small_pieces):
         lines = process.communicate(timeout=60)[0].splitlines()
         assert process.returncode == 0
         new.append(len(lines))
-    pieces = studies.study(CAR, GRID, 150, 100, {"episodes": 40}).pieces
-    assert sum(new) == len(pieces)
+    chunks = studies.plan_study(CAR, GRID, 150, 100, {"episodes": 40}).chunks
+    assert sum(new) == len(chunks)
     assert_equal(
         qtab.sweep(CAR, GRID, store=path, seeds=150, episodes=40), qtab.sweep(CAR, GRID, seeds=150, episodes=40)
     )
 
 
-def test_an_expired_claim_is_taken_over_and_a_late_result_is_not_entered_twice(tmp_path, small_pieces, monkeypatch):
+def test_an_expired_claim_is_taken_over_and_a_late_result_is_not_committed_twice(tmp_path, small_chunks, monkeypatch):
     path = tmp_path / "study.db"
-    planned = studies.study(CAR, GRID, 5, 100, {"episodes": 40})
+    planned = studies.plan_study(CAR, GRID, 5, 100, {"episodes": 40})
     slow = stores.Store(path, planned)
     number = slow.claim()
-    monkeypatch.setattr(stores, "EXPIRY", -1.0)
+    monkeypatch.setattr(stores, "CLAIM_EXPIRY_SECONDS", -1.0)
     study = qtab.sweep(CAR, GRID, store=path, **SMALL)
     monkeypatch.undo()
-    piece = planned.pieces[number]
-    rows = [stores.Row(0, None, b"", "late")] * (piece.stop - piece.start)
-    assert slow.enter(piece, rows) is False
+    chunk = planned.chunks[number]
+    rows = [RunRecord(0, None, b"", "late")] * (chunk.stop - chunk.start)
+    assert slow.commit(chunk, rows) is False
     slow.close()
     assert study.failed == 0
     assert len(study) == 30
 
 
-def test_pieces_depend_on_the_grid_alone():
-    one = studies.study(CAR, GRID, 1000, 100, {"episodes": 5000})
-    assert one.pieces == studies.study(CAR, GRID, 1000, 100, {"episodes": 5000}).pieces
-    assert one.pieces[0].start == 0
-    assert one.pieces[-1].stop == 6000
-    assert all(piece.stop == after.start for piece, after in zip(one.pieces, one.pieces[1:], strict=False))
-    assert 50 < one.pieces[0].stop < 100
+def test_chunks_depend_on_the_grid_alone():
+    one = studies.plan_study(CAR, GRID, 1000, 100, {"episodes": 5000})
+    assert one.chunks == studies.plan_study(CAR, GRID, 1000, 100, {"episodes": 5000}).chunks
+    assert one.chunks[0].start == 0
+    assert one.chunks[-1].stop == 6000
+    assert all(chunk.stop == after.start for chunk, after in zip(one.chunks, one.chunks[1:], strict=False))
+    assert 50 < one.chunks[0].stop < 100

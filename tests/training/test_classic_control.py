@@ -11,7 +11,7 @@ from qtab import _core
 from qtab.config.choices import Algorithm
 from qtab.config.options import TABLES_ONLY
 from support.learner_settings import CAR, KEYWORDS, LIMITS, TRAINED
-from support.lockstep import MACHINE
+from support.machine import MACHINE
 from support.parity import assert_same_run
 
 ALGORITHMS = get_args(Algorithm)

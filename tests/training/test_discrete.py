@@ -8,7 +8,7 @@ import pytest
 from gymnasium.spaces import Box, Discrete, MultiDiscrete, Tuple
 
 import qtab
-from qtab.config.options import tables
+from qtab.config.options import n_tables
 from qtab.reference import LEARNERS
 from support.parity import assert_same_run
 from support.toy_text import IDS
@@ -38,7 +38,7 @@ def test_rust_trains_as_gymnasium_and_numpy_do(name, bit_generator):
 @pytest.mark.parametrize("name", ["FrozenLake-v1", "Taxi-v4", "Blackjack-v1"])
 def test_every_algorithm_learns_the_same(name, algorithm):
     run = same_everywhere(name, algorithm=algorithm, episodes=30, max_episode_steps=40)
-    assert len(run.tables) == tables(algorithm)
+    assert len(run.tables) == n_tables(algorithm)
 
 
 @pytest.mark.parametrize(
@@ -183,7 +183,7 @@ def test_a_run_refuses_observations_that_are_none():
 @pytest.mark.parametrize(
     ("env", "settings", "text"),
     [
-        ("FrozenLake-v1", {"scale": (1.0,)}, "scale belongs to discretizer 'round', not to 'identity'"),
+        ("FrozenLake-v1", {"scale": (1.0,)}, "scale applies to discretizer 'round', not to 'identity'"),
         ("FrozenLake-v1", {"discretizer": "tiles"}, "the observation space must be a Box"),
         ("MountainCar-v0", {"discretizer": "identity"}, "the observation space must be Discrete"),
         (Steps(Discrete(2**33)), {}, r"the observation space must give a table of fewer than 2\*\*32 values"),

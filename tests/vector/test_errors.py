@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
-from support import lockstep, toy_text
+from support import classic_control, toy_text
 from support.vector import IDS, ours, position
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
@@ -103,7 +103,7 @@ BAD_FORCES = [
 
 
 @pytest.mark.parametrize(("actions", "error", "match"), BAD_FORCES)
-@pytest.mark.parametrize("name", lockstep.CONTINUOUS)
+@pytest.mark.parametrize("name", classic_control.CONTINUOUS)
 def test_bad_forces_move_nobody(name, actions, error, match):
     env = ours(name, 3)
     env.reset(seed=1)
@@ -111,11 +111,11 @@ def test_bad_forces_move_nobody(name, actions, error, match):
     refused(env, lambda env: env.step(actions), error, match)
 
 
-@pytest.mark.parametrize("name", lockstep.CONTINUOUS)
+@pytest.mark.parametrize("name", classic_control.CONTINUOUS)
 def test_forces_that_gymnasium_takes_are_taken(name):
-    from support.vector import Vectors
+    from support.vector import LockstepVectorEnv
 
-    vectors = Vectors(name, 3)
+    vectors = LockstepVectorEnv(name, 3)
     vectors.reset(seed=1)
     for actions in (
         np.array([[1], [0], [-3]]),
@@ -134,10 +134,10 @@ def test_forces_that_gymnasium_takes_are_taken(name):
 def test_who_awaits_a_reset_may_be_told_anything(name):
     env = ours(name, 3, max_episode_steps=1)
     env.reset(seed=0)
-    good = np.zeros((3, 1), np.float32) if name in lockstep.CONTINUOUS else np.zeros(3, np.int64)
+    good = np.zeros((3, 1), np.float32) if name in classic_control.CONTINUOUS else np.zeros(3, np.int64)
     env.step(good)
     assert env.step(np.full_like(good, -99))[1].tolist() == [0.0, 0.0, 0.0]
-    if name not in lockstep.CONTINUOUS:
+    if name not in classic_control.CONTINUOUS:
         with pytest.raises(AssertionError, match="sub-environment 0"):
             env.step(np.full_like(good, -99))
 

@@ -10,8 +10,8 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
-from support import lockstep
-from support.vector import IDS, MODES, Vectors, assert_equal, ours, theirs
+from support.exact import bitwise
+from support.vector import IDS, MODES, LockstepVectorEnv, assert_equal, ours, theirs
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 
@@ -77,7 +77,7 @@ def test_rewards_and_flags_are_the_callers_own():
 
 @pytest.mark.parametrize("name", ["MountainCar-v0", "Taxi-v4", "Pendulum-v1"])
 def test_seeds_are_gymnasiums(name):
-    vectors = Vectors(name, 3)
+    vectors = LockstepVectorEnv(name, 3)
     for seed in (0, 12, [5, 6, 2**80], (1, 2, 3), [7, None, 2**32], True, None):
         if seed is None or None in (seed if isinstance(seed, list) else []):
             vectors.ours.reset(seed=seed)
@@ -100,7 +100,7 @@ def test_without_a_seed_no_two_are_alike():
 @pytest.mark.parametrize("name", ["MountainCar-v0", "FrozenLake-v1", "Blackjack-v1", "Taxi-v4"])
 @pytest.mark.parametrize("mode", MODES)
 def test_generators_that_were_handed_out_are_drawn_from(name, mode):
-    vectors = Vectors(name, 4, mode, max_episode_steps=5)
+    vectors = LockstepVectorEnv(name, 4, mode, max_episode_steps=5)
     vectors.reset(seed=3)
     vectors.run(7)
     mine, gymnasiums = vectors.ours.np_random, vectors.theirs.np_random
@@ -121,7 +121,7 @@ def test_generators_that_were_handed_out_are_drawn_from(name, mode):
 
 
 def test_threads_draw_from_handed_out_generators_too():
-    vectors = Vectors("Acrobot-v1", 9, AutoresetMode.SAME_STEP, {"threads": 3}, max_episode_steps=4)
+    vectors = LockstepVectorEnv("Acrobot-v1", 9, AutoresetMode.SAME_STEP, {"threads": 3}, max_episode_steps=4)
     vectors.reset(seed=3)
     assert len(vectors.ours.np_random) == 9
     vectors.run(20)
@@ -145,12 +145,12 @@ def test_any_number_of_threads_gives_the_same(name):
 
 
 def test_a_limit_and_an_end_at_once_are_both_said():
-    vectors = Vectors("MountainCar-v0", 6, max_episode_steps=1)
+    vectors = LockstepVectorEnv("MountainCar-v0", 6, max_episode_steps=1)
     vectors.reset(seed=0, options={"low": 0.49, "high": 0.499})
     _, _, terminated, truncated, _ = vectors.step(np.full(6, 2))
     vectors.reset(seed=0, options={"low": 0.49999, "high": 0.5})
     assert truncated.all()
-    vectors = Vectors("Blackjack-v1", 6, max_episode_steps=1)
+    vectors = LockstepVectorEnv("Blackjack-v1", 6, max_episode_steps=1)
     vectors.reset(seed=0)
     _, _, terminated, truncated, _ = vectors.step(np.zeros(6, np.int64))
     assert terminated.all()
@@ -161,7 +161,7 @@ def test_limits_are_gymnasiums():
     assert ours("CartPole-v0", 1).get_attr("_max_episode_steps") == (200,)
     assert ours("CartPole-v1", 1, max_episode_steps=3).get_attr("_max_episode_steps") == (3,)
     for name, limit in (("CartPole-v1", -1), ("CliffWalking-v1", None)):
-        vectors = Vectors(name, 2, max_episode_steps=limit)
+        vectors = LockstepVectorEnv(name, 2, max_episode_steps=limit)
         vectors.reset(seed=0)
         vectors.run(300)
     with pytest.raises((TypeError, ValueError, AssertionError)):
@@ -169,7 +169,7 @@ def test_limits_are_gymnasiums():
 
 
 def test_a_finished_one_must_be_reset_where_autoreset_is_disabled():
-    vectors = Vectors("CartPole-v1", 3, AutoresetMode.DISABLED)
+    vectors = LockstepVectorEnv("CartPole-v1", 3, AutoresetMode.DISABLED)
     vectors.reset(seed=0)
     vectors.reset(options={"reset_mask": np.array([False, True, False]), "low": 0.3, "high": 0.4})
     _, _, terminated, _, _ = vectors.step(np.ones(3, np.int64))
@@ -180,7 +180,7 @@ def test_a_finished_one_must_be_reset_where_autoreset_is_disabled():
             env.step(np.ones(3, np.int64))
     with pytest.raises(AssertionError, match="episode of sub-environment 1 is over: reset it first"):
         vectors.ours.step(np.ones(3, np.int64))
-    assert lockstep.frozen(before[0][3]) == lockstep.frozen(vectors.ours.snapshots()[0][3])
+    assert bitwise(before[0][3]) == bitwise(vectors.ours.snapshots()[0][3])
 
 
 def _steps_of_a_child(env, queue):

@@ -9,12 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from support import lockstep
-from support.vector import IDS, MODES, Vectors
+from support import classic_control
+from support.machine import MACHINE
+from support.vector import IDS, MODES, LockstepVectorEnv
 
-LANE_STEPS = 4_200
-EXAMPLES = 8
-"""Three modes, eight examples, 4,200 steps of a sub-environment each: 100,800 for every environment."""
+STEPS = 1_600
+"""Steps of all sub-environments together, in each of eight examples of each of three modes."""
+MAX_VECTOR_STEPS = 400
+"""Steps of the vector environment: enough for the longest time limit of a single sub-environment."""
 
 SETTINGS: dict[str, dict[str, Any]] = {
     "MountainCar-v0": {"goal_velocity": [0, 0.01, 0.03]},
@@ -43,7 +45,7 @@ NEAR_THE_END = {
 def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
     seen = np.zeros(2, np.int64)
 
-    @settings(max_examples=EXAMPLES)
+    @settings(max_examples=8)
     @given(
         num_envs=st.integers(1, 40),
         seed=st.integers(0, 2**70) | st.none(),
@@ -54,13 +56,13 @@ def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
             {}, optional={key: st.sampled_from(values) for key, values in SETTINGS.get(name, {}).items()}
         ),
         options=st.sampled_from([None, {}, NEAR_THE_END.get(name, {"unknown": 1})]),
-        dtype=st.sampled_from([np.float32, np.float64] if name in lockstep.CONTINUOUS else [np.int64, np.int32]),
+        dtype=st.sampled_from([np.float32, np.float64] if name in classic_control.CONTINUOUS else [np.int64, np.int32]),
         data=st.data(),
     )
     def run(num_envs, seed, threads, copy, limit, kwargs, options, dtype, data) -> None:
         own = {"threads": threads, "copy": copy}
-        vectors = Vectors(name, num_envs, mode, own, max_episode_steps=limit, **kwargs)
-        assert vectors.ours.unwrapped.is_native == lockstep.MACHINE["NumPy calls the platform"] or not any(
+        vectors = LockstepVectorEnv(name, num_envs, mode, own, max_episode_steps=limit, **kwargs)
+        assert vectors.ours.unwrapped.is_native == MACHINE["NumPy calls the platform"] or not any(
             part in name for part in ("CartPole", "Acrobot", "Pendulum")
         )
         if seed is None:
@@ -70,14 +72,14 @@ def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
             mask = np.array(data.draw(st.lists(st.booleans(), min_size=num_envs, max_size=num_envs)))
             mask[data.draw(st.integers(0, num_envs - 1))] = True
             vectors.reset(seed=data.draw(st.sampled_from([None, 3])), options={"reset_mask": mask, **(options or {})})
-        seen[:] += vectors.run(LANE_STEPS // num_envs, 0 if seed is None else 1, dtype)
+        seen[:] += vectors.run(min(STEPS // num_envs, MAX_VECTOR_STEPS), 0 if seed is None else 1, dtype)
         vectors.same_streams()
         vectors.reset(options=NEAR_THE_END.get(name))
         seen[:] += vectors.run(3)
 
     run()
     # Blackjack is over before most limits, and no example need draw the one that it meets.
-    cut = Vectors(name, 3, mode, max_episode_steps=1)
+    cut = LockstepVectorEnv(name, 3, mode, max_episode_steps=1)
     cut.reset(seed=0)
     seen[:] += cut.run(3)
     assert seen[1] > 0
@@ -89,7 +91,7 @@ def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
 @pytest.mark.parametrize("name", ["Taxi-v4", "CliffWalking-v1"])
 def test_those_who_know_the_way_arrive_in_lock_step(name: str, mode: Any) -> None:
     policy = qtab.optimum(name).policy
-    vectors = Vectors(name, 9, mode)
+    vectors = LockstepVectorEnv(name, 9, mode)
     observations, _ = vectors.reset(seed=3)
     arrived = 0
     for _ in range(60):

@@ -9,7 +9,7 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode
 
-from support.vector import IDS, MODES, Vectors, ours, theirs
+from support.vector import IDS, MODES, LockstepVectorEnv, ours, theirs
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("name", IDS)
 def test_sub_environments_go_on_where_they_stood(name, mode):
-    vectors = Vectors(name, 5, mode, max_episode_steps=6)
+    vectors = LockstepVectorEnv(name, 5, mode, max_episode_steps=6)
     vectors.reset(seed=2)
     vectors.run(8)
     kept = ["state", "s", "lastaction", "last_u", "fickle_step", "steps_beyond_terminated", "player", "dealer"]
@@ -42,7 +42,7 @@ def test_sub_environments_go_on_where_they_stood(name, mode):
 
 
 def test_what_is_assigned_counts():
-    vectors = Vectors("MountainCar-v0", 3)
+    vectors = LockstepVectorEnv("MountainCar-v0", 3)
     vectors.reset(seed=0)
     for env in (vectors.ours, vectors.theirs):
         env.set_attr("gravity", 0.001)
@@ -51,20 +51,20 @@ def test_what_is_assigned_counts():
         with pytest.raises(ValueError, match="length equal to the number of environments"):
             env.set_attr("force", [0.1])
     vectors.run(30)
-    vectors = Vectors("CartPole-v1", 2)
+    vectors = LockstepVectorEnv("CartPole-v1", 2)
     for env in (vectors.ours, vectors.theirs):  # before the first reset, too
         env.set_attr("gravity", 20.0)
     vectors.reset(seed=0)
     vectors.run(30)
     assert [type(env.unwrapped).__module__ for env in vectors.ours.envs] == ["qtab.envs.classic_control"] * 2
-    taxis = Vectors("Taxi-v4", 2)
+    taxis = LockstepVectorEnv("Taxi-v4", 2)
     taxis.reset(seed=3)
     mine, gymnasiums = (env.call("action_mask", 7) for env in (taxis.ours, taxis.theirs))
     assert data_equivalence(mine, gymnasiums, exact=True)
 
 
 def test_sub_environments_that_were_asked_for_before_the_first_reset_are_reset_like_others():
-    vectors = Vectors("CartPole-v1", 3, AutoresetMode.SAME_STEP)
+    vectors = LockstepVectorEnv("CartPole-v1", 3, AutoresetMode.SAME_STEP)
     for env in (vectors.ours, vectors.theirs):
         env.set_attr("force_mag", 5.0)
     with pytest.raises(gym.error.ResetNeeded, match="leave out sub-environment 2"):
@@ -80,7 +80,7 @@ def test_a_table_that_rust_refuses_is_stepped_in_python():
         ("FrozenLake-v1", {"reward_schedule": (float("inf"), 0, 0)}),
         ("Taxi-v4", {"is_rainy": True, "rainy_probability": 1.5}),
     ):
-        vectors = Vectors(name, 2, **kwargs)
+        vectors = LockstepVectorEnv(name, 2, **kwargs)
         assert not vectors.ours.is_native
         vectors.reset(seed=0)
         vectors.run(30)
@@ -91,7 +91,7 @@ def test_a_constant_that_rust_does_not_know_is_stepped_in_python():
         ("MountainCar-v0", {"goal_velocity": np.float32(0.01)}),
         ("Pendulum-v1", {"g": np.float32(9)}),
     ):
-        vectors = Vectors(name, 3, **kwargs)
+        vectors = LockstepVectorEnv(name, 3, **kwargs)
         assert not vectors.ours.is_native
         vectors.reset(seed=1)
         vectors.run(20)
@@ -107,7 +107,7 @@ def test_a_constant_that_rust_does_not_know_is_stepped_in_python():
 )
 @pytest.mark.filterwarnings("ignore:.*:UserWarning")
 def test_far_out_is_gymnasiums_to_compute(options, name):
-    vectors = Vectors(name, 2)
+    vectors = LockstepVectorEnv(name, 2)
     vectors.reset(seed=0, options=options)
     assert not vectors.ours.is_native
     vectors.run(10)

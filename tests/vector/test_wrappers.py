@@ -7,19 +7,21 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
-from support import lockstep
-from support.vector import Vectors, ours, theirs
+from support import classic_control
+from support.vector import LockstepVectorEnv, ours, theirs
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 
 
 TEXTS = ["FrozenLake-v1", "CliffWalking-v1", "Taxi-v4"]
-FRAMES = [(name, mode) for name in [*lockstep.IDS, *TEXTS, "Blackjack-v1"] for mode in ("rgb_array", "rgb_array_list")]
+FRAMES = [
+    (name, mode) for name in [*classic_control.IDS, *TEXTS, "Blackjack-v1"] for mode in ("rgb_array", "rgb_array_list")
+]
 
 
 @pytest.mark.parametrize(("name", "mode"), [*FRAMES, *((name, "ansi") for name in TEXTS)])
 def test_frames_are_gymnasiums(name, mode):
-    vectors = Vectors(name, 2, render_mode=mode, max_episode_steps=4)
+    vectors = LockstepVectorEnv(name, 2, render_mode=mode, max_episode_steps=4)
     assert vectors.ours.render_mode == mode
     assert vectors.ours.is_native == (mode != "rgb_array_list" and name != "Taxi-v4")
     if mode != "rgb_array_list":
@@ -36,7 +38,7 @@ def test_frames_are_gymnasiums(name, mode):
 
 @pytest.mark.filterwarnings("ignore:.*human.*")
 def test_a_window_is_gymnasiums_too():
-    vectors = Vectors("FrozenLake-v1", 1, render_mode="human")
+    vectors = LockstepVectorEnv("FrozenLake-v1", 1, render_mode="human")
     assert not vectors.ours.is_native
     vectors.reset(seed=0)
     vectors.run(2)

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from qtab._utils.suggestions import did_you_mean
+
 LARGEST_COUNT = 2**63 - 1
 """Episodes and steps are counted in 64 bits."""
 MOST_THREADS = 1024
@@ -107,7 +109,7 @@ def choice(name: str, value: Any, choices: Collection[str]) -> str:
     if not isinstance(value, str):
         raise TypeError(f"{name} must be one of {listed}, got {value!r}")
     if value not in choices:
-        raise ValueError(f"{name} must be one of {listed}, got {value!r}")
+        raise ValueError(f"{name} must be one of {listed}, got {value!r}{did_you_mean(value, choices)}")
     return value
 
 

@@ -1,8 +1,31 @@
-"""Optional libraries: where one is missing, the error names the ``pip install`` that brings it."""
+"""Optional libraries: the error where one is not installed, with the command that installs it."""
+
+from importlib.metadata import PackageNotFoundError, requires
 
 
-def missing(error: ModuleNotFoundError, extra: str) -> ModuleNotFoundError:
-    """Returns the error to raise where a library of an extra is not installed."""
-    return ModuleNotFoundError(
-        f"this needs {error.name}, which is not installed; run: pip install 'qtab[{extra}]'", name=error.name
-    )
+def missing(error: ModuleNotFoundError, extra: str | None = None) -> ModuleNotFoundError:
+    """Returns the error to raise in place of one for an optional library.
+
+    Its message names a ``pip install`` of the libraries themselves, which helps wherever qtab was installed from.
+
+    Args:
+        error: The error of the import.
+        extra: The extra of this package that lists the library; None if none does.
+    """
+    requirements = _requirements(extra) or [str(error.name)]
+    command = " ".join(["pip install", *requirements])
+    return ModuleNotFoundError(f"this needs {error.name}, which is not installed; run: {command}", name=error.name)
+
+
+def _requirements(extra: str | None) -> list[str]:
+    """Returns the requirements of an extra, quoted for a shell."""
+    try:
+        declared = requires("qtab") or []
+    except PackageNotFoundError:
+        return []
+    separated = (requirement.partition(";") for requirement in declared)
+    return [
+        f"'{name.strip()}'"
+        for name, _, marker in separated
+        if marker.strip().replace('"', "'") == f"extra == '{extra}'"
+    ]

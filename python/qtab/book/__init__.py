@@ -1,4 +1,4 @@
-"""The book's experiments at the book's run counts (Sutton & Barto, *Reinforcement Learning*, 2nd edition, 2018).
+"""Experiments of Sutton & Barto, *Reinforcement Learning*, 2nd edition (2018), with the book's numbers of runs.
 
     import qtab
 
@@ -6,11 +6,13 @@
     print(result)
     result.plot()
 
-Each experiment is a module of this package that says its settings, and what the book leaves open.
+Each experiment is a module of :mod:`qtab.book.figures`, which states its settings and what the book leaves open.
 """
 
-from qtab.book.experiment import Experiment, Line, Result, Setting
+from qtab.book.experiment import Experiment
 from qtab.book.registry import EXPERIMENTS, find, run
+from qtab.book.result import Line, Result
+from qtab.book.setting import Setting
 from qtab.envs.grid_worlds import dyna_maze, windy_grid_world
 
 __all__ = [

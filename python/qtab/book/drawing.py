@@ -1,4 +1,4 @@
-"""The figures of the book's experiments."""
+"""Drawing of the figures of the book's experiments."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -6,25 +6,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab._utils.extras import missing
-from qtab._utils.files import replacing
-from qtab.book.experiment import Numbers, Result
-from qtab.plots.axes import color, finish, own_axes
+from qtab.book.result import Result
+from qtab.book.runner import FloatArray
+from qtab.plots.axes import axes_or_new, color, finish, new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 DOTS_PER_INCH = 100
-MOST_MARKED = 40
-"""A line of more points is drawn without marking them."""
+MAX_MARKERS = 40
+"""A line with more points than this is drawn without markers."""
 
 
 def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
-    """Draws the lines, with a band of two standard errors on each side."""
+    """Draws the lines of a result with bands of two standard errors on each side, and returns the axes."""
     experiment = result.experiment
-    ax = own_axes(ax)
+    ax = axes_or_new(ax)
     for index, line in enumerate(line for line in result.lines if line.drawn):
-        marker: dict[str, Any] = {"marker": "o", "markersize": 4} if len(line.x) <= MOST_MARKED else {}
+        marker: dict[str, Any] = {"marker": "o", "markersize": 4} if len(line.x) <= MAX_MARKERS else {}
         error = np.nan_to_num(line.error)
         low, high = line.mean - 2 * error, line.mean + 2 * error
         ax.fill_between(line.x, low, high, color=color(index), alpha=0.25, linewidth=0)
@@ -37,44 +36,40 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
         ax.set_xlim(*experiment.x_range)
     if experiment.y_range is not None:
         ax.set_ylim(*experiment.y_range)
-    return finish(ax, experiment.x, experiment.y, _title(result))
+    return finish(ax, experiment.x_label, experiment.y_label, experiment.heading)
 
 
-def draw_surfaces(result: Result, x: Numbers, y: Numbers, surfaces: Mapping[str, Numbers]) -> "Axes":
-    """Draws each surface over position and velocity; returns the last of the axes."""
-    try:
-        from matplotlib.figure import Figure
-    except ModuleNotFoundError as error:
-        raise missing(error, "plot") from None
-    figure = Figure(figsize=(9, 5.5), layout="constrained")
-    figure.suptitle(_title(result))
-    positions, velocities = np.meshgrid(x, y, indexing="ij")
+def draw_surfaces(
+    title: str, positions: FloatArray, velocities: FloatArray, surfaces: Mapping[str, FloatArray]
+) -> "Axes":
+    """Draws each surface, (positions, velocities), in 3D axes of its own in a new figure; returns the last axes.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+    """
+    figure = new_figure(9, 5.5)
+    figure.suptitle(title)
+    x, y = np.meshgrid(positions, velocities, indexing="ij")
+    x_ticks, y_ticks = (positions[0], -0.5, positions[-1]), (velocities[0], 0, velocities[-1])
     ax: Any = None
     for index, (name, surface) in enumerate(surfaces.items()):
-        points = {"rcount": len(x), "ccount": len(y)}
+        points = {"rcount": len(positions), "ccount": len(velocities)}
         ax = figure.add_subplot(2, 3, index + 1, projection="3d")
-        ax.plot_surface(positions, velocities, surface, cmap="viridis", linewidth=0, **points)
+        ax.plot_surface(x, y, surface, cmap="viridis", linewidth=0, **points)
         ax.set_title(f"{name}: up to {surface.max():.0f}", fontsize="medium")
-        ax.set(xlabel="position", ylabel="velocity", xticks=(x[0], -0.5, x[-1]), yticks=(y[0], 0, y[-1]))
+        ax.set(xlabel="position", ylabel="velocity", xticks=x_ticks, yticks=y_ticks)
         ax.tick_params(labelsize="x-small")
         ax.set_box_aspect(None, zoom=0.8)
     axes: Axes = ax
     return axes
 
 
-def _title(result: Result) -> str:
-    experiment = result.experiment
-    kind, _, number = experiment.name.partition("-")
-    return f"{kind.capitalize()} {number}: {experiment.title}"
-
-
 def save_plot(result: Result, path: Path) -> None:
-    """Draws a result to a file, whole or not at all; its ending gives the format.
+    """Draws a result to a file, completely or not at all; the suffix of the path determines the format.
 
     Raises:
-        ModuleNotFoundError: without matplotlib; it names the ``pip install``.
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         OSError: if the file cannot be written.
     """
     figure: Any = result.plot().figure
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=DOTS_PER_INCH)
+    save_figure(figure, path, DOTS_PER_INCH)

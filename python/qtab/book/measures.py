@@ -1,45 +1,45 @@
-"""What is measured of a setting's runs: from an outcome to (runs, points)."""
+"""Measures of runs: from the episodes of many runs to (runs, points)."""
 
 import numpy as np
 
-from qtab.book.experiment import Measure, Numbers
-from qtab.book.trials import Outcome
+from qtab.book.runner import EpisodeLog, FloatArray
+from qtab.book.setting import Measure
 from qtab.results.summary import FINAL_EPISODES
 
 
-def lengths(outcome: Outcome) -> Numbers:
-    """Returns the steps of each episode."""
-    return outcome.lengths.astype(np.float64)
+def lengths(log: EpisodeLog) -> FloatArray:
+    """Returns (runs, episodes): the number of steps of each episode."""
+    return log.lengths.astype(np.float64)
 
 
-def returns(outcome: Outcome) -> Numbers:
-    """Returns the sum of rewards of each episode."""
-    return outcome.returns
+def returns(log: EpisodeLog) -> FloatArray:
+    """Returns (runs, episodes): the undiscounted return of each episode."""
+    return log.returns
 
 
-def mean_length(outcome: Outcome) -> Numbers:
-    """Returns the steps an episode takes on average."""
-    means: Numbers = outcome.lengths.mean(axis=1, keepdims=True)
+def mean_length(log: EpisodeLog) -> FloatArray:
+    """Returns (runs, 1): the mean number of steps per episode."""
+    means: FloatArray = log.lengths.mean(axis=1, keepdims=True)
     return means
 
 
-def mean_return(outcome: Outcome) -> Numbers:
-    """Returns the reward an episode brings on average."""
-    means: Numbers = outcome.returns.mean(axis=1, keepdims=True)
+def mean_return(log: EpisodeLog) -> FloatArray:
+    """Returns (runs, 1): the mean return."""
+    means: FloatArray = log.returns.mean(axis=1, keepdims=True)
     return means
 
 
-def final_return(outcome: Outcome) -> Numbers:
-    """Returns the reward that each of the last 100 episodes brings on average."""
-    means: Numbers = outcome.returns[:, -FINAL_EPISODES:].mean(axis=1, keepdims=True)
+def final_return(log: EpisodeLog) -> FloatArray:
+    """Returns (runs, 1): the mean return of the last 100 episodes."""
+    means: FloatArray = log.returns[:, -FINAL_EPISODES:].mean(axis=1, keepdims=True)
     return means
 
 
 def episodes_by(times: tuple[int, ...]) -> Measure:
-    """Returns the measure of how many episodes are finished after so many time steps each."""
+    """Returns the measure (runs, times): the number of episodes that are over after each number of time steps."""
 
-    def measure(outcome: Outcome) -> Numbers:
-        ends = outcome.lengths.cumsum(axis=1)
+    def measure(log: EpisodeLog) -> FloatArray:
+        ends = log.lengths.cumsum(axis=1)
         return np.stack([(ends <= time).sum(axis=1) for time in times], axis=1).astype(np.float64)
 
     return measure

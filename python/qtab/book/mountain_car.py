@@ -1,9 +1,9 @@
-"""Mountain Car as the book has it (Example 10.1), for its chapters 10 and 12."""
+"""Mountain Car with the book's tile coding (Example 10.1), as chapters 10 and 12 use it."""
 
 from typing import Any
 
 ENV = "MountainCar-v0"
-"""Gymnasium's: the book's dynamics, -1 a step, the goal at 0.5. The book has no time limit; the cap stands for none."""
+"""Gymnasium's environment: the book's dynamics, a reward of -1 per step, the goal at 0.5."""
 
 TILE_CODING: dict[str, Any] = {
     "discretizer": "tiles",
@@ -17,10 +17,10 @@ TILE_CODING: dict[str, Any] = {
     "ties": "random",
     "initial_q": 0.0,
 }
-"""8 tilings of 8 by 8 tiles with asymmetric offsets. Values of zero are optimistic: no exploration is needed."""
+"""8 tilings of 8 x 8 tiles with asymmetric offsets. Initial values of zero are optimistic, so ε = 0 explores enough."""
 
-OPEN = (
-    "how ties are broken (at random here), and what becomes of an episode that does not end (capped here). The book's "
-    "tiles are hashed, ours are not"
+UNSPECIFIED = (
+    "how ties are broken (at random here), and what happens to an episode that does not end (truncated here). The "
+    "book hashes its tiles; here they are not hashed"
 )
-"""What the book leaves open of all of them."""
+"""What the book does not state for any of these experiments."""

@@ -1,8 +1,8 @@
-"""The experiments there are, and how one is found by its number."""
+"""All experiments of the book, by name and by number."""
 
 from collections.abc import Mapping
 
-from qtab.book.experiment import Experiment, Result
+from qtab.book.experiment import Experiment
 from qtab.book.figures import (
     example_6_5,
     example_6_6,
@@ -16,6 +16,7 @@ from qtab.book.figures import (
     figure_12_10,
     figure_12_11,
 )
+from qtab.book.result import Result
 
 EXPERIMENTS: Mapping[str, Experiment] = {
     module.EXPERIMENT.name: module.EXPERIMENT
@@ -33,27 +34,27 @@ EXPERIMENTS: Mapping[str, Experiment] = {
         figure_12_11,
     )
 }
-"""By their names, in the book's order."""
+"""The experiments by name, ordered by chapter."""
 
 
 def find(name: str) -> Experiment:
-    """Returns an experiment by its name ("figure-10.4"), or by its number ("10.4") where only one has it.
+    """Returns an experiment by its name ("figure-10.4"), or by its number ("10.4") if that is unique.
 
     Raises:
-        TypeError: if the name is no string.
-        ValueError: if there is none, or more than one; it lists them.
+        TypeError: if the name is not a string.
+        ValueError: if no experiment or more than one matches; the message lists the choices.
     """
     if not isinstance(name, str):
         raise TypeError(f"name must be one of {', '.join(EXPERIMENTS)}, got {name!r}")
     wanted = name.strip().lower().replace(" ", "-")
     if wanted in EXPERIMENTS:
         return EXPERIMENTS[wanted]
-    found = [experiment for experiment in EXPERIMENTS.values() if experiment.number == wanted]
-    if len(found) > 1:
-        raise ValueError(f"name must be {' or '.join(one.name for one in found)}, got {name!r}, which is both")
-    if not found:
+    matches = [experiment for experiment in EXPERIMENTS.values() if experiment.number == wanted]
+    if len(matches) > 1:
+        raise ValueError(f"name must be {' or '.join(match.name for match in matches)}, got {name!r}, which is both")
+    if not matches:
         raise ValueError(f"name must be one of {', '.join(EXPERIMENTS)}, got {name!r}")
-    return found[0]
+    return matches[0]
 
 
 def run(
@@ -62,15 +63,15 @@ def run(
     """Runs an experiment of the book.
 
     Args:
-        name: Its name ("figure-10.4"), or its number ("10.4") where only one has it.
-        runs: How many runs of each setting; None means as many as in the book.
-        seed: The seed of each setting's first run; the others follow it.
-        threads: How many threads; None means one a core. The numbers do not depend on it.
-        progress: Whether to show a progress bar; None shows one on a terminal, to what takes more than a second.
+        name: Its name ("figure-10.4"), or its number ("10.4") if that is unique.
+        runs: The number of runs of each setting; None means as many as in the book.
+        seed: The seed of the first run of each setting; the other runs have the seeds after it.
+        threads: The number of threads; None means one per core. It does not change the results.
+        progress: Whether to show a progress bar; None shows one on a terminal if it takes longer than a second.
 
     Raises:
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or an experiment that there is not.
+        ValueError: for an argument out of range, or an unknown experiment.
         KeyboardInterrupt: on Ctrl-C.
     """
     return find(name).run(runs, seed, threads=threads, progress=progress)

@@ -1,24 +1,119 @@
-"""A result as text for a person, and as CSV for everything else."""
+"""The result of an experiment: the lines of its figure, its table as text, and its points as CSV."""
 
 import csv
 import math
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+from numpy.typing import NDArray
 
 from qtab._utils.files import replacing
-from qtab.book.experiment import Line, Result
+from qtab.book.description import Description
+from qtab.book.runner import FloatArray
 
-WIDTH = 100
-COLUMNS = ("line", "x", "mean", "standard_error", "runs", "capped_episodes", "diverged_runs")
+if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.axes import Axes
+
+TEXT_WIDTH = 100
+CSV_COLUMNS = ("line", "x", "mean", "standard_error", "runs", "capped_episodes", "diverged_runs")
+
+Draw: TypeAlias = Callable[["Result", "Axes | None"], "Axes"]
+"""Draws a result on axes, or on a new figure, and returns the axes."""
 
 
-def table(result: Result) -> str:
-    """Returns the settings, the counts, and a row for each point that the experiment shows."""
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A line of a figure; all arrays are (points,)."""
+
+    name: str
+    x: FloatArray
+    mean: FloatArray
+    """The mean over the runs."""
+    error: FloatArray
+    """The standard error of the mean; NaN with a single run."""
+    runs: int
+    truncated: "NDArray[np.int64]"
+    """The number of episodes behind the point that the time limit ended."""
+    diverged: "NDArray[np.int64]"
+    """The number of runs of the setting that diverged."""
+    drawn: bool = True
+    """Whether the figure shows the line."""
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """The result of an experiment. ``str(result)`` is a table with the settings above it."""
+
+    experiment: Description
+    lines: tuple[Line, ...]
+    runs: int
+    """The number of runs of each setting; less for a setting whose ``max_runs`` is smaller."""
+    seed: int
+    """The seed of the first run of each setting."""
+    seconds: float
+    """The wall-clock time of the experiment."""
+    draw: Draw = field(repr=False)
+    """Draws the figure."""
+    surfaces: Mapping[str, FloatArray] = field(default_factory=dict, repr=False)
+    """The surfaces of a figure that has them, by title."""
+
+    def __str__(self) -> str:
+        return "\n".join([*_head(self), "", *_rows(self)])
+
+    def save(self, path: Path | str) -> None:
+        """Writes all points of all lines to a CSV file, completely or not at all.
+
+        Raises:
+            OSError: if the file cannot be written.
+        """
+        with replacing(Path(path)) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(CSV_COLUMNS)
+            for line in self.lines:
+                columns = line.x, line.mean, line.error, line.truncated, line.diverged
+                for x, mean, error, truncated, diverged in zip(*(column.tolist() for column in columns), strict=True):
+                    standard_error = "" if math.isnan(error) else error
+                    writer.writerow((line.name, x, mean, standard_error, line.runs, truncated, diverged))
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draws the figure and returns the axes.
+
+        Args:
+            ax: The axes to draw on; None creates a new figure.
+
+        Raises:
+            ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        """
+        return self.draw(self, ax)
+
+
+def _head(result: Result) -> Iterator[str]:
     experiment = result.experiment
-    rows = [("", experiment.x, experiment.y, "std. error", "capped", "diverged")]
+    yield experiment.heading
+    for name, text in (("the book", experiment.book), ("unspecified", experiment.unspecified)):
+        yield from _wrapped(f"{name}: {text}")
+    counts = sorted({line.runs for line in result.lines}, reverse=True)
+    runs = f"{' and '.join(f'{count:,}' for count in counts)} {'run' if counts == [1] else 'runs'} of each setting"
+    if result.runs != experiment.runs:
+        comparison = "FEWER" if result.runs < experiment.runs else "more"
+        runs += f" ({comparison} than the {experiment.runs:,} of the full figure)"
+    limit = f"episodes are truncated at {experiment.max_episode_steps:,} steps"
+    yield from _wrapped(f"{runs}, seeds from {result.seed}; {limit}; {result.seconds:.1f} s")
+
+
+def _wrapped(text: str) -> list[str]:
+    return textwrap.wrap(text, TEXT_WIDTH, initial_indent="  ", subsequent_indent="    ")
+
+
+def _rows(result: Result) -> list[str]:
+    experiment = result.experiment
+    rows = [("", experiment.x_label, experiment.y_label, "std. error", "truncated", "diverged")]
     for line in result.lines:
-        for index in _shown(result, line):
+        for index in _table_points(result, line):
             error = line.error[index]
             rows.append(
                 (
@@ -26,48 +121,21 @@ def table(result: Result) -> str:
                     f"{line.x[index]:g}",
                     _rounded(line.mean[index], error),
                     "-" if math.isnan(error) else _rounded(error, error),
-                    str(line.capped[index]),
+                    str(line.truncated[index]),
                     str(line.diverged[index]),
                 )
             )
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
-    return "\n".join([*_head(result), "", *lines])
+    return ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
 
 
-def save(result: Result, path: Path) -> None:
-    """Writes every point of every line, whole or not at all."""
-    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(COLUMNS)
-        for line in result.lines:
-            columns = line.x, line.mean, line.error, line.capped, line.diverged
-            for x, mean, error, capped, diverged in zip(*(column.tolist() for column in columns), strict=True):
-                writer.writerow((line.name, x, mean, "" if math.isnan(error) else error, line.runs, capped, diverged))
+def _table_points(result: Result, line: Line) -> list[int]:
+    table_x = result.experiment.table_x
+    return [index for index, x in enumerate(line.x) if table_x is None or x in table_x]
 
 
-def _head(result: Result) -> Iterator[str]:
-    experiment = result.experiment
-    yield f"{experiment.name.replace('-', ' ').capitalize()}: {experiment.title}"
-    for name, text in (("the book", experiment.book), ("it leaves open", experiment.silent)):
-        yield from textwrap.wrap(f"{name}: {text}", WIDTH, initial_indent="  ", subsequent_indent="    ")
-    counts = " and ".join(f"{count:,}" for count in sorted({line.runs for line in result.lines}, reverse=True))
-    runs = f"{counts} {'run' if counts == '1' else 'runs'} of each setting"
-    if result.runs != experiment.runs:
-        runs += (
-            f" ({'FEWER' if result.runs < experiment.runs else 'more'} than the {experiment.runs:,} of a whole figure)"
-        )
-    rest = f"seeds from {result.seed}; episodes are capped at {experiment.cap:,} steps; {result.seconds:.1f} s"
-    yield from textwrap.wrap(f"{runs}, {rest}", WIDTH, initial_indent="  ", subsequent_indent="    ")
-
-
-def _shown(result: Result, line: Line) -> list[int]:
-    shown = result.experiment.shown
-    return [index for index, x in enumerate(line.x) if shown is None or x in shown]
-
-
-def _rounded(mean: float, error: float) -> str:
-    """As far as the first two digits of the standard error."""
+def _rounded(value: float, error: float) -> str:
+    """Returns a number rounded to the first two digits of its standard error."""
     if math.isnan(error) or error <= 0:
-        return f"{mean:.5g}"
-    return f"{mean:,.{max(0, 1 - math.floor(math.log10(error)))}f}"
+        return f"{value:.5g}"
+    return f"{value:,.{max(0, 1 - math.floor(math.log10(error)))}f}"

@@ -11,7 +11,7 @@ from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
 from qtab.cli.usage import UsageError, refusing
-from qtab.plots.run import check_format
+from qtab.plots.axes import check_format
 
 COMMAND = "qtab book"
 
@@ -50,7 +50,7 @@ def run(arguments: list[str]) -> int:
             check_writable("plot", asked.plot)
         if asked.save is not None:
             check_writable("save", asked.save)
-        experiment.check(asked.runs, asked.seed, asked.threads)
+        experiment.check_arguments(asked.runs, asked.seed, asked.threads)
     result = experiment.run(asked.runs, asked.seed, threads=asked.threads)
     print_above(str(result))
     if asked.save is not None:

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 import tyro
 
 from qtab._utils.progress import print_above
+from qtab.cli.constructors import PAIRS
 from qtab.cli.parsing import parse
-from qtab.cli.settings import PAIRS
 from qtab.cli.usage import refusing
 from qtab.config import Config
 from qtab.planning import optimum

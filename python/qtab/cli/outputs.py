@@ -9,7 +9,8 @@ from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
 from qtab.config import Config
 from qtab.planning import Optimum
-from qtab.plots.run import check_format, save_plot
+from qtab.plots.axes import check_format
+from qtab.plots.run import save_plot
 from qtab.rendering.replay import replay_all
 from qtab.rendering.video import Recorder
 from qtab.rendering.window import open_window

@@ -8,7 +8,7 @@ import tyro
 from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
 from qtab.cli.usage import refusing
-from qtab.sweeps.loading import load_sweep
+from qtab.sweeps import load_sweep
 from qtab.sweeps.report import report
 
 COMMAND = "qtab report"

@@ -1,203 +1,122 @@
-"""Every field of the config as a flag, its default what the environment's preset and the ``--config`` file make it."""
+"""The settings of a run as flags, with the explanations of the API's docstrings, and as a TOML file."""
 
-import ast
-import json
 import sys
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from types import NoneType
+from typing import Annotated, Any, get_args, get_type_hints
 
 import numpy as np
 import tyro
+from typing_extensions import TypedDict
 
-from qtab.config import Config, known_fields
-from qtab.config.presets import preset
+from qtab.cli import constructors
+from qtab.config import DEFAULTS, Config
+from qtab.config.choices import CHOICES
+from qtab.config.explanations import applicability, explanations, groups
+from qtab.config.unknown import check_names
 from qtab.discretizers.tile_coding import Tiling
-from qtab.envs.registry import spec_of, versioned
 from qtab.results.storage import load
-from qtab.training.resolve import merge
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
 
-
-def _value(text: str) -> Any:
-    for read in (json.loads, ast.literal_eval):
-        try:
-            return read(text)
-        except (ValueError, SyntaxError):
-            pass
-    return text
-
-
-def _pairs(words: list[str]) -> dict[str, Any]:
-    if len(words) % 2:
-        raise ValueError(f"{words[-1]!r} has no value")
-    return {key: _value(text) for key, text in zip(words[::2], words[1::2], strict=True)}
-
-
-PAIRS = tyro.constructors.PrimitiveConstructorSpec[Mapping[str, Any]](
-    nargs="*",
-    metavar="[KEY VALUE ...]",
-    instance_from_str=_pairs,
-    is_instance=lambda value: isinstance(value, Mapping),
-    str_from_instance=lambda value: [word for key, item in value.items() for word in (key, json.dumps(item))],
-)
+_BY_NAME: Mapping[str, Any] = {
+    "env_kwargs": ("[KEY VALUE ...]", "*", constructors.read_pairs),
+    "edges": ("[NUMBER,...] ...", "*", constructors.read_edges),
+    "actions": ("COUNT|ACTION ACTION ...", "*", constructors.read_actions),
+    "initial_q": ("LOW HIGH|VALUE|FILE", "*", constructors.read_initial_q),
+}
+_BY_TYPE: Mapping[Any, Any] = {
+    float: ("FLOAT", 1, constructors.read_float),
+    int: ("INT", 1, constructors.read_int),
+    str: ("STR", 1, constructors.read_str),
+    tuple[float, ...]: ("[FLOAT ...]", "*", constructors.read_floats),
+    tuple[int, ...]: ("[INT ...]", "*", constructors.read_ints),
+}
+"""What ``--help`` shows after the flag, how many words follow it, and how they are read."""
+_EXPLANATIONS = {
+    "edges": "The inner edges between the bins of each component of the observation, such as [-0.5,0,0.5] [0].",
+    "actions": "The actions to choose from if the action space is a Box: the number of evenly spaced values along each "
+    "component, or the actions themselves, [X,Y] if they have several components.",
+    "initial_q": "The initial Q table: drawn uniformly from a range, one number everywhere, or that of a saved run.",
+}
+"""The settings whose values look different on the command line."""
 
 
-def _first_values(words: list[str]) -> tuple[float, float] | float | Path:
-    if len(words) == 1:
-        try:
-            return float(words[0])
-        except ValueError:
-            return Path(words[0])
-    if len(words) != 2:
-        raise ValueError(f"it takes LOW HIGH, VALUE or FILE, got {' '.join(words)!r}")
-    return float(words[0]), float(words[1])
+def flag_groups(defaults: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the flags of each group of settings, by its title: a type that tyro reads as a dictionary.
 
-
-_FIRST_VALUES = tyro.constructors.PrimitiveConstructorSpec[tuple[float, float] | float | Path](
-    nargs="*",
-    metavar="LOW HIGH|VALUE|FILE",
-    instance_from_str=_first_values,
-    is_instance=lambda value: isinstance(value, tuple | float | Path),
-    str_from_instance=lambda value: list(map(str, value)) if isinstance(value, tuple) else [str(value)],
-)
-
-
-def _words(value: Any) -> list[str]:
-    if value is None:
-        return ["None"]
-    return [json.dumps(part) for part in (value if isinstance(value, tuple | list) else (value,))]
-
-
-def _edge_rows(words: list[str]) -> Any:
-    rows = [_value(word) for word in words]
-    if rows == [None]:
-        return None
-    if not all(isinstance(row, list) for row in rows):
-        raise ValueError(f"it takes a row such as [-0.5,0,0.5] for each component, got {' '.join(words)!r}")
-    return tuple(rows)
-
-
-_EDGES = tyro.constructors.PrimitiveConstructorSpec[Any](
-    nargs="*",
-    metavar="[NUMBER,...] ...",
-    instance_from_str=_edge_rows,
-    is_instance=lambda value: value is None or isinstance(value, tuple),
-    str_from_instance=_words,
-)
-
-
-def _chosen_actions(words: list[str]) -> Any:
-    values = [_value(word) for word in words]
-    if values == [None]:
-        return None
-    if any(isinstance(value, str) for value in values):
-        raise ValueError(f"it takes a count or the actions themselves, got {' '.join(words)!r}")
-    return values[0] if len(values) == 1 and isinstance(values[0], int) else tuple(values)
-
-
-_ACTIONS = tyro.constructors.PrimitiveConstructorSpec[Any](
-    nargs="*",
-    metavar="COUNT|ACTION ACTION ...",
-    instance_from_str=_chosen_actions,
-    is_instance=lambda value: value is None or isinstance(value, int | tuple),
-    str_from_instance=_words,
-)
-
-
-@dataclass(frozen=True, eq=False)
-class Settings(Config):
-    """The config as it is typed; the checks wait until it is resolved."""
-
-    env: tyro.conf.Positional[str] = Config.env
-    """Gymnasium's id of the environment (--env ID does as well)."""
-    env_kwargs: Annotated[Mapping[str, Any], PAIRS] = field(default_factory=dict)
-    """Keyword arguments of the environment's constructor."""
-    edges: Annotated[Any, _EDGES] = None
-    """For each component of the observation the rising numbers between its bins, such as [-0.5,0,0.5] [0]."""
-    actions: Annotated[Any, _ACTIONS] = None
-    """What to choose from where the action space is a Box: how many equal steps from its low to its high, or the
-    actions themselves, [X,Y] where they have several components."""
-    initial_q: Annotated[Any, _FIRST_VALUES] = Config.initial_q
-    """The first Q table: drawn uniformly from a range, one value everywhere, or a saved run to go on from."""
-
-    def __post_init__(self) -> None:
-        """Checks nothing yet: these may be the defaults of another environment."""
-
-    def overrides(self) -> dict[str, Any]:
-        """Returns all settings but the environment, for :func:`qtab.training.resolve.resolve`.
-
-        Raises:
-            OSError: if the run to go on from cannot be read.
-            ValueError: if it is no run.
-        """
-        # What the preset says is left to it: it yields where it has no meaning beside what was asked for.
-        _, start = preset(self.env, self.preset)
-        values = {
-            name: value
-            for name, value in vars(self).items()
-            if name != "env" and not (name in start and start[name] == value)
-        }
-        if isinstance(self.initial_q, Path):
-            run = load(self.initial_q)
-            values["initial_q"] = run.tables if isinstance(run.grid, Tiling) or len(run.tables) > 1 else run.q_table
-        return values
-
-
-def defaults(env: str | None, preset: str | None, config: Path | None) -> Settings:
-    """Returns the settings before any flag: the environment's preset, the named one over it, the file over both.
+    The dictionary holds only the settings that are given on the command line.
 
     Args:
-        env: The environment; None takes the file's, or the config's default.
-        preset: The named preset; None takes the file's, or the environment's own.
-        config: A TOML file of settings.
+        defaults: The defaults that ``--help`` shows.
+    """
+    types = get_type_hints(Config)
+    make: Any = TypedDict
+    return {
+        title: make(title, {name: _flag(name, types[name], defaults[name]) for name in names}, total=False)
+        for title, names in groups(DEFAULTS.keys() - {"env"}).items()
+    }
+
+
+def _flag(name: str, type_: Any, default: Any) -> Any:
+    optional = NoneType in get_args(type_)
+    if name in CHOICES:
+        words = CHOICES[name]
+        kind: Any = f"{{{','.join(words)}}}", 1, partial(constructors.read_choice, choices=words)
+    else:
+        kind = _BY_NAME.get(name) or _BY_TYPE[get_args(type_)[0] if optional else type_]
+    argument = tyro.conf.arg(
+        help=f"{_EXPLANATIONS.get(name, explanations().get(name, ''))} {applicability(name)}".strip(),
+        prefix_name=False,
+        help_behavior_hint=f"(default: {_shown(default)})",
+    )
+    return Annotated[Any, constructors.constructor(*kind, optional=optional), argument]
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        return f"an array of shape {value.shape}"
+    return constructors.words_of(value) or "none"
+
+
+def read_config(path: Path) -> dict[str, Any]:
+    """Returns the settings in a TOML file.
 
     Raises:
-        gymnasium.error.Error: for an environment that Gymnasium does not know.
         OSError: if the file cannot be read.
-        TypeError: for a mistyped setting.
-        ValueError: for an unknown setting, or one out of range.
+        ValueError: if it is not TOML, or holds an unknown setting.
     """
-    layer = {} if config is None else _read(config)
-    named = layer.pop("env", Config.env)
-    if not isinstance(named, str):
-        raise TypeError(f"env must be an environment id, got {named!r}")
-    env = versioned(env or named)
-    start = layer.pop("initial_q", None)
-    if start is not None and not isinstance(start, str):
-        layer["initial_q"] = np.array(start) if np.ndim(start) > 1 else start
-        start = None
-    if preset is not None:
-        layer["preset"] = preset
-    merged = merge(env, {"env_kwargs": dict(spec_of(env).kwargs)}, layer)
-    changes = {} if start is None else {"initial_q": Path(start)}
-    return Settings(**{**vars(merged), **changes})
-
-
-def _read(path: Path) -> dict[str, Any]:
     with path.open("rb") as file:
         try:
-            layer = tomllib.load(file)
+            settings = tomllib.load(file)
         except ValueError as error:
             raise ValueError(f"config must be a TOML file, got {str(path)!r}: {error}") from None
     try:
-        known_fields(layer)
+        check_names(settings, DEFAULTS)
     except TypeError as error:
         raise ValueError(f"{path}: {error}") from None
-    return layer
+    initial_q = settings.get("initial_q")
+    if isinstance(initial_q, str):
+        settings["initial_q"] = Path(initial_q)
+    elif isinstance(initial_q, list) and np.ndim(initial_q) > 1:
+        settings["initial_q"] = np.array(initial_q)
+    return settings
 
 
-def last_value(arguments: Sequence[str], flag: str) -> str | None:
-    """Returns what a flag is given, before the flags are parsed; None without it."""
-    value = None
-    for word, following in zip(arguments, [*arguments[1:], None], strict=True):
-        if word == flag:
-            value = following
-        elif word.startswith(f"{flag}="):
-            value = word.removeprefix(f"{flag}=")
-    return value
+def with_initial_q(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the settings with the Q table of a saved run where ``initial_q`` is its file.
+
+    Raises:
+        OSError: if the file cannot be read.
+        ValueError: if it is not a run.
+    """
+    path = settings.get("initial_q")
+    if not isinstance(path, Path):
+        return dict(settings)
+    run = load(path)
+    return {**settings, "initial_q": run.tables if isinstance(run.grid, Tiling) or len(run.tables) > 1 else run.q_table}

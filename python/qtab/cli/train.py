@@ -1,54 +1,66 @@
 """``qtab train``."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, make_dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, TypeAlias
 
 import tyro
 
 from qtab._utils.progress import print_above
 from qtab.cli.outputs import Outputs
 from qtab.cli.parsing import parse
-from qtab.cli.settings import Settings, defaults, last_value
-from qtab.cli.usage import refusing
-from qtab.envs.registry import versioned
+from qtab.cli.settings import flag_groups, read_config, with_initial_q
+from qtab.cli.usage import UsageError, refusing
+from qtab.config import DEFAULTS, Config
+from qtab.config.explanations import default, groups
+from qtab.config.options import is_set
+from qtab.envs.registry import spec_of, versioned
 from qtab.planning import Optimum, optimum
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES, default_block
 from qtab.training.callbacks import Progress
-from qtab.training.resolve import Resolved, limit, resolve
+from qtab.training.resolve import Resolved, limit, merge, resolve
 from qtab.training.train import train_resolved
 
 COMMAND = "qtab train"
 QUICK = 10**8
-"""So many looks at a state and an action take less than a second: the optimum is computed unasked."""
+"""The number of updates up to which the optimum is computed without being asked for: less than a second."""
+_HELP = ("-h", "--help")
+_File: TypeAlias = Annotated[Path | None, tyro.conf.arg(metavar="FILE")]
 
 
 @dataclass(frozen=True)
 class Arguments:
     """Train a tabular agent. The defaults shown are those of the environment, the preset and the file given."""
 
-    settings: Annotated[Settings, tyro.conf.arg(name="")]
-    config: Path | None = None
-    """A TOML file of the settings below; flags win over it."""
-    plot: Path | None = None
-    """Draw the learning curve to this file; its ending gives the format."""
-    save: Path | None = None
+    env: Annotated[
+        str | None,
+        tyro.conf.Positional,
+        tyro.conf.arg(metavar="[ENV]", help_behavior_hint=f"(default: {Config.env})"),
+    ] = None
+    """The environment's id in Gymnasium; --env ENV does as well."""
+    env_flag: Annotated[str | None, tyro.conf.arg(name="env", metavar="ENV")] = None
+    """The environment's id in Gymnasium."""
+    config: _File = None
+    """A TOML file of settings. Those given on the command line win over it."""
+    plot: _File = None
+    """Draw the learning curve to this file. Its ending gives the format."""
+    save: _File = None
     """Save the run to this file, for qtab.load, qtab verify and --initial-q."""
-    watch: int | None = None
+    watch: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
     """Show this many of the last training episodes on the screen."""
-    record: Path | None = None
-    """Write the last training episodes, 20 or as many as --watch says, to videos in this folder."""
+    record: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER")] = None
+    """Write the last training episodes, 20 or the number given by --watch, to videos in this folder."""
     optimum: bool = False
-    """Say how far the run is from the optimum, and draw it; from a table, where it is quick, this is done unasked."""
+    """Report how far the run is from the optimum, and draw it. Small tables do this anyway."""
 
 
 def run(arguments: list[str]) -> int:
-    """Trains as the arguments say; returns the exit code."""
-    asked = _parse(arguments)
+    """Trains and reports; returns the exit code."""
+    asked, env, settings = _parse(arguments)
     with refusing():
-        resolved = resolve(asked.settings.env, asked.settings.overrides())
+        resolved = resolve(env, with_initial_q(settings))
     try:
         with refusing():
             outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record)
@@ -61,31 +73,51 @@ def run(arguments: list[str]) -> int:
     return 0
 
 
-def _parse(arguments: list[str]) -> Arguments:
-    """Reads the arguments twice where need be: the environment that they name decides the defaults."""
-    named = last_value(arguments, "--env")
-    if named is not None:
-        arguments = _without_env(arguments)
-        arguments.insert(0, named)
-    preset, file = last_value(arguments, "--preset"), last_value(arguments, "--config")
-    env = arguments[0] if arguments and not arguments[0].startswith("-") else None
-    while True:
+def _parse(arguments: list[str]) -> tuple[Arguments, str, dict[str, Any]]:
+    """Returns the arguments, the environment and the settings given, in the file or as flags."""
+    words = [word for word in arguments if word not in _HELP]
+    help_wanted = len(words) < len(arguments)
+    try:
+        asked = _read(words, DEFAULTS)
+    except UsageError:
+        if not help_wanted:
+            raise
+        asked = _read([], DEFAULTS)
+    with refusing():
+        env, settings = _given(asked)
+    if help_wanted:
         with refusing():
-            start = defaults(env, preset, Path(file) if file is not None else None)
-        asked = parse(Arguments, COMMAND, arguments, default=Arguments(start))
-        with refusing():
-            env = versioned(asked.settings.env)
-        if env == start.env:
-            return replace(asked, settings=replace(asked.settings, env=env))
+            shown = _effective_defaults(env, settings)
+        _read(["--help"], shown)  # leaves
+    return asked, env, settings
 
 
-def _without_env(arguments: list[str]) -> list[str]:
-    kept, skip = [], False
-    for word in arguments:
-        if not skip and word != "--env" and not word.startswith("--env="):
-            kept.append(word)
-        skip = word == "--env"
-    return kept
+def _read(words: list[str], shown: Mapping[str, Any]) -> Arguments:
+    fields: list[Any] = [
+        (title.lower(), flags, field(default_factory=dict)) for title, flags in flag_groups(shown).items()
+    ]
+    namespace = {"__doc__": Arguments.__doc__}
+    with_settings = make_dataclass("Arguments", fields, bases=(Arguments,), frozen=True, namespace=namespace)
+    return parse(with_settings, COMMAND, words, known=DEFAULTS)
+
+
+def _given(asked: Arguments) -> tuple[str, dict[str, Any]]:
+    settings = {} if asked.config is None else read_config(asked.config)
+    for title in groups(DEFAULTS):
+        settings |= getattr(asked, title.lower())
+    if asked.env is not None and asked.env_flag is not None:
+        raise ValueError(f"env must be given once, got {asked.env!r} and {asked.env_flag!r}")
+    named = settings.pop("env", Config.env)
+    return asked.env or asked.env_flag or named, settings
+
+
+def _effective_defaults(env: str, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the values of the settings that are not given as flags."""
+    env = versioned(env)
+    given = {name: value for name, value in settings.items() if not isinstance(value, Path)}
+    merged = vars(merge(env, {"env_kwargs": dict(spec_of(env).kwargs)}, given))
+    shown = {name: value if is_set(value) else default(name) for name, value in merged.items()}
+    return {**shown, **{name: settings[name] for name in settings.keys() - given.keys()}}
 
 
 def _header(resolved: Resolved) -> str:

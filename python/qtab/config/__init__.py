@@ -1,5 +1,5 @@
 """The settings of a run: what may be given, what it means, and what stands where nothing is given."""
 
-from qtab.config.config import Config, known_fields
+from qtab.config.config import DEFAULTS, Config
 
-__all__ = ["Config", "known_fields"]
+__all__ = ["DEFAULTS", "Config"]

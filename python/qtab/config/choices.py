@@ -1,9 +1,7 @@
-"""The words that a config's choices take."""
+"""The names that settings choose from: the only list of the algorithms, schedules and discretizers in Python."""
 
-from typing import Literal, TypeAlias
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Mapping
+from typing import Literal, TypeAlias, get_args
 
 Algorithm: TypeAlias = Literal[
     "q_learning",
@@ -22,10 +20,23 @@ Exploration: TypeAlias = Literal["epsilon_greedy", "softmax"]
 EpsilonSchedule: TypeAlias = Literal["constant", "linear", "exponential"]
 Ties: TypeAlias = Literal["first", "random"]
 Traces: TypeAlias = Literal["accumulating", "replacing", "clearing"]
-Discretizer: TypeAlias = Literal["round", "bins", "edges", "tiles", "identity"]
+DiscretizerName: TypeAlias = Literal["round", "bins", "edges", "tiles", "identity"]
 TerminalUpdate: TypeAlias = Literal["target", "assign"]
 OnTruncation: TypeAlias = Literal["bootstrap", "terminate"]
 BitGenerator: TypeAlias = Literal["PCG64", "MT19937"]
 Backend: TypeAlias = Literal["auto", "rust", "gymnasium"]
-Actions: TypeAlias = int | tuple[float | tuple[float, ...], ...]
-InitialQ: TypeAlias = float | tuple[float, float] | NDArray[np.float64]
+
+CHOICES: Mapping[str, tuple[str, ...]] = {
+    "algorithm": get_args(Algorithm),
+    "learning_rate_schedule": get_args(LearningRateSchedule),
+    "exploration": get_args(Exploration),
+    "epsilon_schedule": get_args(EpsilonSchedule),
+    "ties": get_args(Ties),
+    "traces": get_args(Traces),
+    "discretizer": get_args(DiscretizerName),
+    "terminal_update": get_args(TerminalUpdate),
+    "on_truncation": get_args(OnTruncation),
+    "bit_generator": get_args(BitGenerator),
+    "backend": get_args(Backend),
+}
+"""The names that each setting chooses from."""

@@ -1,30 +1,32 @@
-"""Options that belong to a choice: the default of each, once, and the refusal of those that belong to another."""
+"""Settings that apply only beside certain choices: the default of each, and the check that it applies."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
+
+from qtab.config.choices import CHOICES
 
 
 @dataclass(frozen=True)
 class Option:
-    """A field of the config that means something for some values of another field only."""
+    """A setting that applies only for some values of another setting, such as the trace decay of Sarsa(λ)."""
 
     choice: str
-    """The field that decides whether it has a meaning …"""
+    """The other setting."""
     values: tuple[str, ...]
-    """… and the values for which it has."""
+    """The values of the other setting for which this one applies."""
     default: Any
-    """What stands for None, which means "not given"."""
+    """The default where it applies. None: it has none, or is found from the observation space."""
 
 
-_TRACES = ("sarsa_lambda", "watkins_q_lambda")
+_WITH_TRACES = ("sarsa_lambda", "watkins_q_lambda")
 _FALLING = ("linear", "exponential")
 
-# A choice stands before the options that belong to it.
+# A choice comes before the options that depend on it.
 OPTIONS: Mapping[str, Option] = {
-    "trace_decay": Option("algorithm", (*_TRACES, "true_online_sarsa_lambda"), 0.9),
-    "traces": Option("algorithm", _TRACES, "replacing"),
-    "trace_cutoff": Option("algorithm", (*_TRACES, "true_online_sarsa_lambda"), 0.0),
+    "trace_decay": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda"), 0.9),
+    "traces": Option("algorithm", _WITH_TRACES, "replacing"),
+    "trace_cutoff": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda"), 0.0),
     "n_steps": Option("algorithm", ("n_step_sarsa",), 4),
     "planning_steps": Option("algorithm", ("dyna_q", "dyna_q_plus"), 10),
     "time_weight": Option("algorithm", ("dyna_q_plus",), 1e-3),
@@ -49,69 +51,84 @@ OPTIONS: Mapping[str, Option] = {
 }
 
 ONE_STEP = ("q_learning", "sarsa", "expected_sarsa", "double_q_learning", "dyna_q", "dyna_q_plus")
-"""The algorithms that know the article's rule for terminal states, with a table."""
+"""The algorithms that can assign a value at a terminal state, as the article does, if they learn a table."""
 TABLES_ONLY = ("dyna_q", "dyna_q_plus")
+"""The algorithms that do not work with tile coding."""
 
 
-def tables(algorithm: str) -> int:
+def n_tables(algorithm: str) -> int:
     """Returns how many tables an algorithm learns."""
     return 2 if algorithm == "double_q_learning" else 1
 
 
-def refuse_strangers(fields: Mapping[str, Any]) -> None:
-    """Refuses options that do not belong to the choices made.
+def check_options(fields: Mapping[str, Any]) -> None:
+    """Refuses options that do not apply to the choices made, and choices that do not go together.
 
     Raises:
-        ValueError: names the option, what it belongs to, and what was chosen.
+        ValueError: names the option, what it applies to, and what was chosen.
     """
     for name in OPTIONS:
-        if _given(fields[name]) and (reason := stranger(name, fields[name], fields)):
+        if is_set(fields[name]) and (reason := mismatch(name, fields[name], fields)):
             raise ValueError(reason)
     for name in ("terminal_update", "learning_rate_schedule", "algorithm"):
-        if reason := stranger(name, fields[name], fields):
+        if reason := mismatch(name, fields[name], fields):
             raise ValueError(reason)
 
 
-def stranger(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
-    """Returns why a value of an option does not go with the choices in ``fields``; None where it does."""
+def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
+    """Returns why a value of a setting does not go with the other settings, ``fields``; None if it does."""
     if name in OPTIONS:
         option = OPTIONS[name]
-        chosen = _chosen(option.choice, fields)
+        chosen = _effective(option.choice, fields)
+        if chosen is None and option.choice in OPTIONS:  # the choice is itself an option that does not apply
+            option = OPTIONS[option.choice]
+            chosen = fields[option.choice]
         if chosen not in option.values:
-            return f"{name} belongs to {option.choice} {_listed(option.values)}, not to {chosen!r}, got {value!r}"
-    if name == "terminal_update" and value == "assign":
-        if fields["algorithm"] not in ONE_STEP:
-            return f"terminal_update must be 'target' for algorithm {fields['algorithm']!r}, got 'assign'"
-        if fields["discretizer"] == "tiles":
+            return f"{name} applies to {option.choice} {listed(option.values)}, not to {chosen!r}, got {value!r}"
+    algorithm = fields["algorithm"]
+    with_tiles = fields["discretizer"] == "tiles"
+    if (name, value) == ("terminal_update", "assign"):
+        if algorithm not in ONE_STEP:
+            return f"terminal_update must be 'target' for algorithm {algorithm!r}, got 'assign'"
+        if with_tiles:
             return "terminal_update must be 'target' for discretizer 'tiles', got 'assign'"
-    if (name, value) == ("learning_rate_schedule", "visits") and fields["algorithm"] == "true_online_sarsa_lambda":
-        return "learning_rate_schedule must be another for algorithm 'true_online_sarsa_lambda', got 'visits'"
-    if name == "algorithm" and value in TABLES_ONLY and fields["discretizer"] == "tiles":
-        return f"algorithm must be one that needs no table for discretizer 'tiles', got {value!r}"
+    if (name, value, algorithm) == ("learning_rate_schedule", "visits", "true_online_sarsa_lambda"):
+        return other_choice(name, value, ("visits",), f"for algorithm {algorithm!r}")
+    if name == "algorithm" and value in TABLES_ONLY and with_tiles:
+        return other_choice(name, value, TABLES_ONLY, "for discretizer 'tiles'")
     return None
 
 
+def other_choice(name: str, value: str, excluded: Sequence[str], where: str) -> str:
+    """Returns the message for a choice that is excluded where something else was chosen."""
+    possible = [word for word in CHOICES[name] if word not in excluded]
+    return f"{name} must be {listed(possible)} {where}, got {value!r}"
+
+
+def listed(words: Sequence[str]) -> str:
+    """Returns words as English lists them: ``'a', 'b' or 'c'``."""
+    *others, last = map(repr, words)
+    return f"{', '.join(others)} or {last}" if others else last
+
+
 def defaults(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the values of the options that belong to the choices made and are not given."""
+    """Returns the defaults of the options that apply and are not set."""
     filled: dict[str, Any] = {}
     for name, option in OPTIONS.items():
-        if not _given(fields[name]) and _chosen(option.choice, {**fields, **filled}) in option.values:
+        if not is_set(fields[name]) and _effective(option.choice, {**fields, **filled}) in option.values:
             filled[name] = option.default
     return {name: value for name, value in filled.items() if value is not None}
 
 
-def _given(value: Any) -> bool:
-    return value is not None and value != ()
+def is_set(value: Any) -> bool:
+    """Returns whether a setting has a value: None, and an empty scale, mean "not given"."""
+    return value is not None and not (isinstance(value, tuple) and not value)
 
 
-def _chosen(choice: str, fields: Mapping[str, Any]) -> Any:
-    """The value of a choice, which may be an option itself, and not given."""
+def _effective(choice: str, fields: Mapping[str, Any]) -> Any:
+    """The value of a choice, or its default if it is itself an option that applies and is not given."""
     value = fields[choice]
-    if value is None:
+    if value is None and choice in OPTIONS:
         option = OPTIONS[choice]
-        return option.default if _chosen(option.choice, fields) in option.values else None
+        return option.default if _effective(option.choice, fields) in option.values else None
     return value
-
-
-def _listed(values: tuple[str, ...]) -> str:
-    return " or ".join(map(repr, values))

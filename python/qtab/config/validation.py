@@ -1,16 +1,16 @@
-"""The checks of the config's fields: bad values are refused, NumPy's numbers become Python's."""
+"""The checks of the settings: bad values are refused, NumPy's numbers become Python's."""
 
 import math
 from collections.abc import Callable, Mapping
 from itertools import pairwise
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
-from qtab.config import choices as names
-from qtab.config.options import OPTIONS, refuse_strangers
+from qtab.config.choices import CHOICES
+from qtab.config.options import OPTIONS, check_options, other_choice
 
 LARGEST_MT19937_SEED = 2**32 - 1
 MAX_TILINGS = 32
@@ -19,11 +19,11 @@ MAX_ACTIONS = 2**16
 
 
 def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the fields of a config, checked; None stays None where it means "not given".
+    """Returns the fields of a config, checked. None stays None where it means "not given".
 
     Raises:
         TypeError: for a value of the wrong type.
-        ValueError: for a value that is out of range, or does not go with another.
+        ValueError: for a value that is out of range, or that does not go with another.
     """
     checked = dict(fields)
     for name, check in _CHECKS.items():
@@ -32,11 +32,11 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
     if checked["seed"] is not None:
         most = LARGEST_MT19937_SEED if checked["bit_generator"] == "MT19937" else None
         checked["seed"] = checks.integer("seed", checked["seed"], least=0, most=most)
-    refuse_strangers(checked)
+    check_options(checked)
     if isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any():
         for name, bad in (("algorithm", "dyna_q_plus"), ("exploration", "softmax"), ("discretizer", "tiles")):
             if checked[name] == bad:
-                raise ValueError(f"{name} must be another for an initial_q with -inf in it, got {bad!r}")
+                raise ValueError(other_choice(name, bad, (bad,), "for an initial_q that contains -inf"))
     most_rate = 2 if checked["discretizer"] == "tiles" else 1
     checks.real("learning_rate", checked["learning_rate"], 0, most_rate)
     _at_most(checked, "min_epsilon", "epsilon", OPTIONS["epsilon"].default)
@@ -90,8 +90,8 @@ def _count(name: str, value: Any) -> int:
     return checks.count(name, value, least=1)
 
 
-def _choice(choices: Any) -> Callable[[str, Any], str]:
-    return lambda name, value: checks.choice(name, value, get_args(choices))
+def _choice(name: str, value: Any) -> str:
+    return checks.choice(name, value, CHOICES[name])
 
 
 def _keywords(name: str, value: Any) -> dict[str, Any]:
@@ -131,7 +131,7 @@ def _edges(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
         raise TypeError(f"{name} must hold a row of numbers for each component of the observation, got {value!r}")
     rows = tuple(_each(checks.finite)(name, row) for row in value)
     if any(left >= right for row in rows for left, right in pairwise(row)):
-        raise ValueError(f"{name} must hold rows of rising numbers, got {value!r}")
+        raise ValueError(f"{name} must hold rows of ascending numbers, got {value!r}")
     return rows
 
 
@@ -168,37 +168,31 @@ def _initial_q(name: str, value: Any) -> float | tuple[float, float] | NDArray[n
     if not (np.isfinite(table) | np.isneginf(table)).all():
         raise ValueError(f"{name} must hold finite numbers (or -inf: no such action), got a table with nan or infinity")
     if table.size and table.ndim and np.isneginf(table).all(axis=-1).any():
-        raise ValueError(f"{name} must leave an action to every state, got a row of -inf alone")
+        raise ValueError(f"{name} must leave every state at least one action, got a row of -inf only")
     table.flags.writeable = False
     return table
 
 
 _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
+    **dict.fromkeys(CHOICES, _choice),
     "env": _text,
     "env_kwargs": _keywords,
     "episodes": _count,
-    "algorithm": _choice(names.Algorithm),
     "learning_rate": _real(0, 2),
     "discount": _real(0, 1),
-    "learning_rate_schedule": _choice(names.LearningRateSchedule),
     "min_learning_rate": _real(0, 2),
     "learning_rate_decay": _real(0, 1),
     "learning_rate_warm_up": _integer(0, checks.LARGEST_COUNT),
-    "exploration": _choice(names.Exploration),
     "epsilon": _real(0, 1),
-    "epsilon_schedule": _choice(names.EpsilonSchedule),
     "min_epsilon": _real(0, 1),
     "epsilon_decay": _real(0, 1),
     "epsilon_warm_up": _integer(0, checks.LARGEST_COUNT),
-    "ties": _choice(names.Ties),
     "temperature": _above_zero,
     "trace_decay": _real(0, 1),
-    "traces": _choice(names.Traces),
     "trace_cutoff": _real(0, 1),
     "n_steps": _integer(1, 1_000_000),
     "planning_steps": _integer(0, 1_000_000),
     "time_weight": _not_negative,
-    "discretizer": _choice(names.Discretizer),
     "scale": _scale,
     "tilings": _integer(1, MAX_TILINGS),
     "tiles": _counts(1, None),
@@ -209,11 +203,7 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "high": _each(checks.finite),
     "actions": _actions,
     "initial_q": _initial_q,
-    "terminal_update": _choice(names.TerminalUpdate),
-    "on_truncation": _choice(names.OnTruncation),
     "max_episode_steps": _count,
-    "bit_generator": _choice(names.BitGenerator),
-    "backend": _choice(names.Backend),
     "preset": _text,
 }
 _OPTIONAL = OPTIONS.keys() - {"scale"} | {"actions", "max_episode_steps", "preset"}

@@ -1,6 +1,6 @@
-"""Pictures of many runs: every function takes an axis, draws on it and returns it.
+"""Plots of many runs. Every function draws on the axes it is given, or on a new figure, and returns the axes.
 
-Needs the extras ``plot`` and, for the intervals, ``stats``.
+They need the extra ``plot``; those with confidence intervals also need ``stats``.
 """
 
 from qtab.plots.distribution import distribution

@@ -1,4 +1,4 @@
-"""How the final returns of many runs are distributed."""
+"""The distribution of the final returns of many runs."""
 
 import math
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qtab.plots.axes import color, finish, own_axes
+from qtab.plots.axes import axes_or_new, color, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,21 +21,22 @@ def distribution(
     threshold: float | None = None,
     title: str = "",
 ) -> "Axes":
-    """Draws a histogram of returns, one a run, with the median of each setting.
+    """Draws a histogram of returns with their median.
 
     Args:
-        returns: (runs,), such as ``runs.final_returns()``; several by name share their bins.
-        ax: Where to draw; None makes a figure of its own.
-        bins: How many; None means the square root of the largest number of runs, at most 40.
-        threshold: A return to mark, such as the one from which the environment counts as solved.
-        title: The picture's.
+        returns: (runs,): one return per run, such as ``runs.final_returns()``; or several such arrays by name, whose
+            histograms share their bins.
+        ax: The axes to draw on; None creates a new figure.
+        bins: The number of bins; None means the square root of the largest number of runs, at most 40.
+        threshold: A return to mark, such as the one at which Gymnasium considers the environment solved.
+        title: The title of the axes.
 
     Raises:
-        ModuleNotFoundError: without matplotlib; it names the ``pip install``.
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
     """
     named = returns if isinstance(returns, Mapping) else {"": returns}
     samples = {name: np.asarray(values, dtype=np.float64) for name, values in named.items()}
-    ax = own_axes(ax)
+    ax = axes_or_new(ax)
     count = bins or min(40, math.isqrt(max(map(len, samples.values()))) + 1)
     edges = np.histogram_bin_edges(np.concatenate(list(samples.values())), count).tolist()
     for index, (name, values) in enumerate(samples.items()):

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qtab.plots.axes import color, finish, own_axes
+from qtab.plots.axes import axes_or_new, color, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LEVELS = 200
+"""The number of thresholds if none are given."""
 
 
 def profile(
@@ -21,31 +22,30 @@ def profile(
     thresholds: ArrayLike | None = None,
     title: str = "",
 ) -> "Axes":
-    """Draws, for each setting, the share of runs that score above each threshold: higher is better everywhere.
+    """Draws, for each setting, the proportion of runs that score above each threshold. Higher curves are better.
 
     Args:
-        scores: By name (runs,), or (runs, environments), or a mapping of environments to (runs,).
-        ax: Where to draw; None makes a figure of its own.
-        thresholds: Where to look; None spans all scores.
-        title: The picture's.
+        scores: For each setting its scores: (runs,), (runs, environments), or a mapping of environments to (runs,).
+        ax: The axes to draw on; None creates a new figure.
+        thresholds: (thresholds,) float; None spans all scores.
+        title: The title of the axes.
 
     Raises:
-        ModuleNotFoundError: without matplotlib or scipy; it names the ``pip install``.
+        ModuleNotFoundError: without matplotlib or SciPy; the message names the ``pip install``.
         ValueError: for scores of another shape.
     """
     from qtab import stats
 
-    tables = {name: _by_environment(values) for name, values in scores.items()}
-    every = np.concatenate([np.asarray(row).ravel() for table in tables.values() for row in table.values()])
-    levels = np.linspace(every.min(), every.max(), LEVELS) if thresholds is None else np.asarray(thresholds)
-    ax = own_axes(ax)
-    for index, (name, table) in enumerate(tables.items()):
-        ax.step(
-            levels, stats.performance_profile(table, levels), where="post", color=color(index), linewidth=2, label=name
-        )
+    settings = {name: _by_environment(values) for name, values in scores.items()}
+    pooled = np.concatenate([np.ravel(runs) for environments in settings.values() for runs in environments.values()])
+    levels = np.linspace(pooled.min(), pooled.max(), LEVELS) if thresholds is None else np.asarray(thresholds)
+    ax = axes_or_new(ax)
+    for index, (name, environments) in enumerate(settings.items()):
+        proportions = stats.performance_profile(environments, levels)
+        ax.step(levels, proportions, where="post", color=color(index), linewidth=2, label=name)
     ax.set_ylim(-0.02, 1.02)
     ax.yaxis.set_major_formatter("{x:.0%}")
-    return finish(ax, "Score τ", "Share of runs with a score above τ", title)
+    return finish(ax, "Score τ", "Proportion of runs with a score above τ", title)
 
 
 def _by_environment(values: Any) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from qtab._utils.files import check_writable, replacing
 from qtab.config import Config
-from qtab.config.options import defaults, tables
+from qtab.config.options import defaults, n_tables
 from qtab.discretizers import bins
 from qtab.discretizers.actions import FLOATS, Actions
 from qtab.discretizers.base import Features
@@ -179,7 +179,7 @@ def _check_shapes(config: Config, features: Features, arrays: dict[str, Any]) ->
         raise ValueError("its bounds do not fit its tiles")
     if not _are_actions_of(config, features.choices):
         raise ValueError("its actions are not those of its config")
-    shape, expected = arrays["tables"].shape, (tables(config.algorithm), features.rows, features.actions)
+    shape, expected = arrays["tables"].shape, (n_tables(config.algorithm), features.rows, features.actions)
     if shape != expected or features.actions < 1:
         raise ValueError(f"its tables have shape {shape}, which does not fit the grid {features.shape}")
     if isinstance(config.initial_q, np.ndarray) and config.initial_q.shape not in (

@@ -1,6 +1,6 @@
-"""Honest statistics over many runs, by scipy. It takes arrays: ``stats.iqm(runs.final_returns())``.
+"""Statistics of many runs, with confidence intervals: ``stats.iqm(runs.final_returns())``.
 
-Needs the extra ``stats``.
+All functions take arrays. They need SciPy, which the extra ``stats`` installs.
 """
 
 from qtab._utils.extras import missing

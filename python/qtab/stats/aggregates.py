@@ -1,4 +1,4 @@
-"""Scores over several environments, as rliable computes them (Agarwal et al., 2021)."""
+"""Statistics of scores on several environments, as in rliable (Agarwal et al., 2021)."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -8,27 +8,28 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
 from qtab._utils import checks
-from qtab.stats.intervals import CONFIDENCE, TRIMMED, Interval, sample
+from qtab.stats.intervals import CONFIDENCE, TRIM_FRACTION, Interval, as_sample
 
 AGGREGATE_RESAMPLES = 2000
 
 Scores = Mapping[str, ArrayLike] | ArrayLike
+"""The scores of each environment by name, (runs,) each, or an array (runs, environments)."""
 
 
-def _mean(*tasks: NDArray[np.float64]) -> float:
-    return float(np.mean([np.mean(scores) for scores in tasks]))
+def _mean(*samples: NDArray[np.float64]) -> float:
+    return float(np.mean([np.mean(sample) for sample in samples]))
 
 
-def _median(*tasks: NDArray[np.float64]) -> float:
-    return float(np.median([np.mean(scores) for scores in tasks]))
+def _median(*samples: NDArray[np.float64]) -> float:
+    return float(np.median([np.mean(sample) for sample in samples]))
 
 
-def _iqm(*tasks: NDArray[np.float64]) -> float:
-    return float(stats.trim_mean(np.concatenate(tasks), TRIMMED))
+def _iqm(*samples: NDArray[np.float64]) -> float:
+    return float(stats.trim_mean(np.concatenate(samples), TRIM_FRACTION))
 
 
 AGGREGATES: Mapping[str, Callable[..., float]] = {"mean": _mean, "median": _median, "iqm": _iqm}
-"""Mean and median of the tasks' means, and the interquartile mean of all runs of all tasks."""
+"""The mean and the median of the environments' means, and the interquartile mean of all runs on all environments."""
 
 
 def aggregate(
@@ -39,13 +40,15 @@ def aggregate(
     resamples: int = AGGREGATE_RESAMPLES,
     seed: int = 0,
 ) -> Interval:
-    """Returns an aggregate over environments with its stratified bootstrap interval: each is resampled by itself.
+    """Returns an aggregate over environments with its stratified bootstrap interval.
+
+    The bootstrap is stratified: it resamples the runs of each environment separately.
 
     Args:
-        scores: The normalised scores of each environment's runs, by name, or (runs, environments).
+        scores: The normalized scores of each environment by name, (runs,) each, or an array (runs, environments).
         statistic: ``"iqm"``, ``"mean"`` or ``"median"``.
-        confidence: How often such an interval holds what it estimates.
-        resamples: How many resamples the bootstrap takes.
+        confidence: The coverage probability of the interval, in [0, 1].
+        resamples: The number of bootstrap resamples.
         seed: Seeds the bootstrap.
 
     Raises:
@@ -53,7 +56,7 @@ def aggregate(
         ValueError: for an argument out of range.
     """
     function = AGGREGATES[checks.choice("statistic", statistic, AGGREGATES)]
-    return _stratified(_tasks(scores), function, confidence, resamples, seed)
+    return _stratified(_samples(scores), function, confidence, resamples, seed)
 
 
 def optimality_gap(
@@ -64,7 +67,9 @@ def optimality_gap(
     resamples: int = AGGREGATE_RESAMPLES,
     seed: int = 0,
 ) -> Interval:
-    """Returns by how much the scores fall short of ``best`` on average, with its stratified bootstrap interval.
+    """Returns the mean amount by which scores fall short of ``best``, with its stratified bootstrap interval.
+
+    Scores above ``best`` count as ``best``. See :func:`aggregate` for the other arguments.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -72,62 +77,67 @@ def optimality_gap(
     """
     best = checks.finite("best", best)
 
-    def gap(*tasks: NDArray[np.float64]) -> float:
-        return best - float(np.mean(np.minimum(np.concatenate(tasks), best)))
+    def gap(*samples: NDArray[np.float64]) -> float:
+        return best - float(np.mean(np.minimum(np.concatenate(samples), best)))
 
-    return _stratified(_tasks(scores), gap, confidence, resamples, seed)
+    return _stratified(_samples(scores), gap, confidence, resamples, seed)
 
 
 def performance_profile(scores: Scores, thresholds: ArrayLike) -> NDArray[np.float64]:
-    """Returns, for each threshold, the share of runs that score above it, averaged over the environments.
+    """Returns (thresholds,): the proportion of runs that score above each threshold, averaged over the environments.
+
+    Args:
+        scores: The scores of each environment by name, (runs,) each, or an array (runs, environments).
+        thresholds: (thresholds,) float.
 
     Raises:
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """
-    levels = sample("thresholds", thresholds)
-    above = [np.mean(task[:, np.newaxis] > levels, axis=0) for task in _tasks(scores)]
+    levels = as_sample("thresholds", thresholds)
+    above = [np.mean(sample[:, np.newaxis] > levels, axis=0) for sample in _samples(scores)]
     profile: NDArray[np.float64] = np.mean(above, axis=0)
     return profile
 
 
-def _tasks(scores: Scores) -> list[NDArray[np.float64]]:
+def _samples(scores: Scores) -> list[NDArray[np.float64]]:
+    """Returns the scores of each environment."""
     if isinstance(scores, Mapping):
-        tasks = [sample(f"scores[{name!r}]", values) for name, values in scores.items()]
+        samples = [as_sample(f"scores[{name!r}]", values) for name, values in scores.items()]
     else:
         array = np.asarray(scores, dtype=np.float64)
         if array.ndim != 2:
             raise ValueError(f"scores must have the shape (runs, environments), got {array.shape}")
-        tasks = [sample("scores", column) for column in array.T]
-    if not tasks:
+        samples = [as_sample("scores", column) for column in array.T]
+    if not samples:
         raise ValueError("scores must hold at least one environment")
-    return tasks
+    return samples
 
 
 def _stratified(
-    tasks: list[NDArray[np.float64]], function: Callable[..., float], confidence: float, resamples: int, seed: int
+    samples: list[NDArray[np.float64]], function: Callable[..., float], confidence: float, resamples: int, seed: int
 ) -> Interval:
     confidence = checks.real("confidence", confidence, 0, 1)
     resamples = checks.integer("resamples", resamples, least=1)
-    estimate = function(*tasks)
-    if all(np.ptp(task) == 0 for task in tasks):
+    estimate = function(*samples)
+    if all(np.ptp(sample) == 0 for sample in samples):
         return Interval(estimate, estimate, estimate, confidence, "constant")
-    # scipy takes no sample of one number; resampled, it stays what it is.
-    free = [index for index, task in enumerate(tasks) if len(task) > 1]
+    # SciPy refuses samples of one number. Resampling would not change them, so they are left out and put back.
+    several = [index for index, sample in enumerate(samples) if len(sample) > 1]
 
-    def of_free(*resampled: NDArray[np.float64]) -> Any:
-        mixed = list(tasks)
-        for index, task in zip(free, resampled, strict=True):
-            mixed[index] = task
-        return function(*mixed)
+    def statistic(*resampled: NDArray[np.float64]) -> Any:
+        completed = list(samples)
+        for index, sample in zip(several, resampled, strict=True):
+            completed[index] = sample
+        return function(*completed)
 
-    found = stats.bootstrap(
-        [tasks[index] for index in free],
-        of_free,
+    interval = stats.bootstrap(
+        [samples[index] for index in several],
+        statistic,
         vectorized=False,
         n_resamples=resamples,
         confidence_level=confidence,
         method="percentile",
         rng=np.random.default_rng(checks.integer("seed", seed, least=0)),
     ).confidence_interval
-    return Interval(estimate, float(found.low), float(found.high), confidence, "stratified percentile")
+    return Interval(estimate, float(interval.low), float(interval.high), confidence, "stratified percentile")

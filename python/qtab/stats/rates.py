@@ -1,15 +1,20 @@
-"""Shares of runs."""
+"""Proportions of runs with confidence intervals."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
 from qtab._utils import checks
-from qtab.stats.intervals import CONFIDENCE, Interval, sample
+from qtab.stats.intervals import CONFIDENCE, Interval, as_sample
 
 
 def rate(successes: int, count: int, *, confidence: float = CONFIDENCE) -> Interval:
-    """Returns a share with its Wilson interval, which stays within [0, 1] and has a width at 0 and 1 too.
+    """Returns a proportion with its Wilson interval, which lies within [0, 1] and has a positive width even at 0 and 1.
+
+    Args:
+        successes: The number of successes.
+        count: The number of trials.
+        confidence: The coverage probability of the interval, in [0, 1].
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -18,16 +23,21 @@ def rate(successes: int, count: int, *, confidence: float = CONFIDENCE) -> Inter
     count = checks.integer("count", count, least=1)
     successes = checks.integer("successes", successes, least=0, most=count)
     confidence = checks.real("confidence", confidence, 0, 1)
-    found = stats.binomtest(successes, count).proportion_ci(confidence, method="wilson")
-    return Interval(successes / count, float(found.low), float(found.high), confidence, "Wilson")
+    interval = stats.binomtest(successes, count).proportion_ci(confidence, method="wilson")
+    return Interval(successes / count, float(interval.low), float(interval.high), confidence, "Wilson")
 
 
 def solved_rate(returns: ArrayLike, threshold: float, *, confidence: float = CONFIDENCE) -> Interval:
-    """Returns the share of returns, one a run, that are at or above a threshold, with its Wilson interval.
+    """Returns the proportion of runs whose return is at least a threshold, with its Wilson interval.
+
+    Args:
+        returns: (runs,): one return per run.
+        threshold: The return from which a run counts as solved.
+        confidence: The coverage probability of the interval, in [0, 1].
 
     Raises:
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """
-    solved = sample("returns", returns) >= checks.finite("threshold", threshold)
+    solved = as_sample("returns", returns) >= checks.finite("threshold", threshold)
     return rate(int(np.count_nonzero(solved)), len(solved), confidence=confidence)

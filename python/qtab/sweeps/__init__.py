@@ -1,8 +1,7 @@
-"""Sweeps: many settings, many seeds each, in a store that survives being killed."""
+"""Sweeps: many settings with many seeds each, kept in a store that survives interruption."""
 
-from qtab.sweeps.loading import load_sweep
-from qtab.sweeps.results import Sweep
-from qtab.sweeps.store import StoreError
+from qtab.sweeps.database import StoreError
+from qtab.sweeps.results import Sweep, load_sweep
 from qtab.sweeps.sweep import SweepProgress, sweep
 
 __all__ = ["StoreError", "Sweep", "SweepProgress", "load_sweep", "sweep"]

@@ -1,4 +1,4 @@
-"""Which settings a sweep tries: a full grid, random points, or Sobol's well-spread ones."""
+"""``qtab.designs``: the settings of a sweep as a full grid, as random points or as a Sobol sequence."""
 
 import itertools
 from collections.abc import Mapping, Sequence
@@ -10,16 +10,19 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.extras import missing
 
-Setting = dict[str, Any]
 Space = Mapping[str, Any]
+"""For each name ``(low, high)``, ``(low, high, "log")``, a range or a list of choices."""
 
 
-def grid(values: Mapping[str, Sequence[Any]]) -> list[Setting]:
-    """Returns every combination of the values, the last name changing fastest.
+def grid(values: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
+    """Returns every combination of the values; the last name varies fastest.
+
+    Args:
+        values: For each name a list of values.
 
     Raises:
-        TypeError: if a name has no list of values.
-        ValueError: if there is no name, or a name has no value, or one twice.
+        TypeError: if the values of a name are not a list.
+        ValueError: if there is no name, or a name has no value or the same value twice.
     """
     if not values:
         raise ValueError("grid must name at least one setting to vary, got none")
@@ -35,13 +38,14 @@ def grid(values: Mapping[str, Sequence[Any]]) -> list[Setting]:
     return [dict(zip(lists, point, strict=True)) for point in itertools.product(*lists.values())]
 
 
-def random(space: Space, points: int, seed: int = 0) -> list[Setting]:
-    """Returns independent uniform points of a space.
+def random(space: Space, points: int, seed: int = 0) -> list[dict[str, Any]]:
+    """Returns points drawn independently and uniformly from a space.
 
     Args:
-        space: For each name ``(low, high)``, ``(low, high, "log")``, ``range(...)`` or a list of choices.
-        points: How many.
-        seed: Seeds the draws.
+        space: For each name ``(low, high)``, ``(low, high, "log")`` for a log-uniform distribution, ``range(...)`` or a
+            list of choices.
+        points: The number of points.
+        seed: Seeds NumPy's ``default_rng``.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -52,13 +56,18 @@ def random(space: Space, points: int, seed: int = 0) -> list[Setting]:
     return _settings(space, rng.random((points, len(space))))
 
 
-def sobol(space: Space, points: int, seed: int = 0) -> list[Setting]:
-    """Returns the scrambled Sobol points of a space, which cover it more evenly than random ones; see :func:`random`.
+def sobol(space: Space, points: int, seed: int = 0) -> list[dict[str, Any]]:
+    """Returns the points of a scrambled Sobol sequence, which cover a space more evenly than random points.
+
+    Args:
+        space: As for :func:`random`.
+        points: The number of points, a power of two.
+        seed: Seeds the scrambling.
 
     Raises:
-        ModuleNotFoundError: without scipy; it names the ``pip install``.
+        ModuleNotFoundError: without scipy; the message names the ``pip install``.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range; Sobol's balance asks for a power of two.
+        ValueError: for an argument out of range.
     """
     try:
         from scipy.stats import qmc
@@ -71,14 +80,14 @@ def sobol(space: Space, points: int, seed: int = 0) -> list[Setting]:
     return _settings(space, qmc.Sobol(max(len(space), 1), rng=rng).random(points)[:, : len(space)])
 
 
-def _settings(space: Space, points: NDArray[np.float64]) -> list[Setting]:
+def _settings(space: Space, points: NDArray[np.float64]) -> list[dict[str, Any]]:
     if not isinstance(space, Mapping) or not space:
         raise ValueError(f"space must map at least one name to a range or choices, got {space!r}")
     return [{name: _value(name, space[name], u) for name, u in zip(space, point, strict=True)} for point in points]
 
 
 def _value(name: str, axis: Any, u: float) -> Any:
-    """The value at ``u`` in [0, 1) along an axis."""
+    """Returns the value of an axis at the quantile ``u``, in [0, 1)."""
     if isinstance(axis, list | range):
         if not axis:
             raise ValueError(f"space[{name!r}] must hold at least one choice")

@@ -1,4 +1,4 @@
-"""A sweep's store as tables, pictures and one HTML page."""
+"""``qtab report``: a sweep as CSV tables, plots and one HTML page."""
 
 import base64
 import csv
@@ -12,8 +12,8 @@ import numpy as np
 from qtab._utils.files import replacing
 from qtab.sweeps.results import Sweep
 
-SHOWN_SETTINGS = 5
-"""So many of the best settings have their learning curves drawn."""
+BEST_SETTINGS = 5
+"""The number of settings with the best mean final return that the plots show."""
 _STYLE = (
     "body{font:15px/1.5 system-ui,sans-serif;max-width:64rem;margin:2rem auto;padding:0 1rem;color:#222}"
     "table{border-collapse:collapse}td,th{padding:.25rem .7rem;text-align:right;border-bottom:1px solid #ddd}"
@@ -22,28 +22,35 @@ _STYLE = (
 
 
 def report(sweep: Sweep, folder: Path) -> list[Path]:
-    """Writes ``runs.csv``, ``settings.csv``, the pictures, and ``report.html``, which holds all but the runs.
+    """Writes ``runs.csv``, ``settings.csv``, the plots as PNG, and ``report.html``, which contains all but the runs.
+
+    Args:
+        sweep: What to report.
+        folder: Where to write; created if it does not exist.
+
+    Returns:
+        The files written, ``report.html`` last.
 
     Raises:
-        ModuleNotFoundError: without matplotlib or scipy; it names the ``pip install``.
+        ModuleNotFoundError: without matplotlib or scipy; the message names the ``pip install``.
         OSError: if the folder cannot be written to.
-        ValueError: if no run has finished.
+        ValueError: if there is no run that succeeded.
     """
     if len(sweep) == sweep.failed:
-        raise ValueError("the store must hold at least one run that finished, got none")
+        raise ValueError("the store must have at least one run that succeeded, got none")
     folder.mkdir(parents=True, exist_ok=True)
-    header, rows = _settings(sweep)
-    pictures = _pictures(sweep, [row[0] for row in rows])
+    header, rows = _settings_table(sweep)
+    plots = _plots(sweep, [row[0] for row in rows])
     written = [
         _write(folder / "runs.csv", _csv(list(sweep.columns), zip(*sweep.columns.values(), strict=True)).encode()),
         _write(folder / "settings.csv", _csv(header, rows).encode()),
     ]
-    written += [_write(folder / f"{name}.png", picture) for name, picture in pictures.items()]
-    return [*written, _write(folder / "report.html", _page(sweep, header, rows, pictures).encode())]
+    written += [_write(folder / f"{name}.png", png) for name, png in plots.items()]
+    return [*written, _write(folder / "report.html", _page(sweep, header, rows, plots).encode())]
 
 
-def _settings(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
-    """A row a setting, the best first."""
+def _settings_table(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
+    """Returns the header and one row per setting, sorted by the mean final return, best first."""
     from qtab import stats
 
     names = list(sweep.settings[0])
@@ -51,31 +58,33 @@ def _settings(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
     rows = []
     for setting in range(len(sweep.settings)):
         values = sweep.values("final_return", setting)
-        here = np.flatnonzero(sweep.columns["setting"] == setting)
+        runs = np.flatnonzero(sweep.columns["setting"] == setting)
         if len(values):
             mean = stats.mean(values)
-            cells = [sweep.columns[name][here[0]] for name in names]
+            cells = [sweep.columns[name][runs[0]] for name in names]
             others = [stats.median(values).estimate, stats.iqm(values).estimate]
-            failed = len(here) - len(values)
+            failed = len(runs) - len(values)
             rows.append([setting, *cells, len(values), failed, mean.estimate, mean.low, mean.high, *others])
-    return header, sorted(rows, key=lambda row: -row[-5])
+    mean_column = header.index("mean")
+    return header, sorted(rows, key=lambda row: -row[mean_column])
 
 
-def _pictures(sweep: Sweep, order: list[int]) -> dict[str, bytes]:
+def _plots(sweep: Sweep, ranking: list[int]) -> dict[str, bytes]:
+    """Returns the plots as PNG, by name; ``ranking`` lists the settings, best first."""
     from qtab import plots
 
-    def name(setting: int) -> str:
-        return ", ".join(f"{key} {value}" for key, value in _rounded(sweep, setting).items())
+    def label(setting: int) -> str:
+        return ", ".join(f"{name} {value}" for name, value in _rounded(sweep, setting).items())
 
-    best = order[:SHOWN_SETTINGS]
-    finals = {name(setting): sweep.values("final_return", setting) for setting in best}
-    axes = {"distribution": plots.distribution(finals), "profile": plots.profile(finals)}
+    best = ranking[:BEST_SETTINGS]
+    final_returns = {label(setting): sweep.values("final_return", setting) for setting in best}
+    axes = {"distribution": plots.distribution(final_returns), "profile": plots.profile(final_returns)}
     curves = None
     for index, setting in enumerate(best):
         if sweep.curves(setting).size:
-            # Means of blocks, each standing for its episodes.
+            # The store has only the mean of each block; learning_curves averages the same blocks again.
             returns = np.repeat(sweep.curves(setting), sweep.block, axis=1)
-            curves = plots.learning_curves(returns, curves, block=sweep.block, label=name(setting), index=index)
+            curves = plots.learning_curves(returns, curves, block=sweep.block, label=label(setting), index=index)
     if curves is not None:
         axes["learning_curves"] = curves
     for parameter in sweep.settings[0]:
@@ -104,7 +113,7 @@ def _csv(header: list[str], rows: Any) -> str:
     return buffer.getvalue()
 
 
-def _page(sweep: Sweep, header: list[str], rows: list[list[Any]], pictures: dict[str, bytes]) -> str:
+def _page(sweep: Sweep, header: list[str], rows: list[list[Any]], plots: dict[str, bytes]) -> str:
     def cell(value: Any) -> str:
         return html.escape(f"{value:.6g}" if isinstance(value, float) else str(value))
 
@@ -112,8 +121,8 @@ def _page(sweep: Sweep, header: list[str], rows: list[list[Any]], pictures: dict
     body = "\n".join("<tr>" + "".join(f"<td>{cell(value)}</td>" for value in row) + "</tr>" for row in rows)
     images = "\n".join(
         f"<h2>{html.escape(name.replace('_', ' ', 1).capitalize())}</h2>\n"
-        f'<img alt="{html.escape(name)}" src="data:image/png;base64,{base64.b64encode(picture).decode()}">'
-        for name, picture in pictures.items()
+        f'<img alt="{html.escape(name)}" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
+        for name, png in plots.items()
     )
     env = html.escape(sweep.env)
     return (

@@ -1,13 +1,20 @@
-"""What a sweep brings: a tidy table, a row a run."""
+"""``qtab.Sweep``: the results of a sweep as a table with one row per run, and how they are read from a store."""
 
+import json
+import os
+import sqlite3
 from collections.abc import Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.extras import missing
+from qtab.sweeps.database import SUMMARY_COLUMNS, StoredRun, damaged, read_fingerprint, read_runs
+from qtab.sweeps.study import to_cell
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -16,18 +23,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """The runs of every setting. Equal sweeps have equal tables, whatever happened on the way."""
+    """The finished runs of all settings. The same sweep gives the same table, whether or not it was interrupted."""
 
     env: str
     """The environment's id."""
     settings: Sequence[Mapping[str, Any]]
-    """What the grid gave to each setting."""
+    """The values that the grid gives to each setting."""
     seeds: tuple[int, ...]
-    """The seeds that every setting was run with."""
+    """The seeds of every setting."""
     columns: Mapping[str, NDArray[Any]]
-    """(runs,) each: ``setting`` (its index), the grid's names, ``seed``, the summary of the run, and ``error``."""
+    """(runs,) each: ``setting`` (its index), the names in the grid, ``seed``, the summary of the run, and ``error``."""
     block: int
-    """Learning curves are the means of so many episodes."""
+    """The number of episodes that each point of a learning curve averages."""
     _curves: Sequence[bytes]
 
     def __len__(self) -> int:
@@ -35,29 +42,29 @@ class Sweep:
 
     @property
     def failed(self) -> int:
-        """How many runs failed; ``error`` says why."""
+        """The number of runs that failed; the column ``error`` has the reasons."""
         return sum(error is not None for error in self.columns["error"])
 
     def values(self, column: str, setting: int) -> NDArray[Any]:
-        """Returns a column of one setting, in the order of the seeds, without the runs that failed.
+        """Returns a column for the runs of one setting that did not fail, ordered as the seeds.
 
         Raises:
-            KeyError: if there is no such column.
+            KeyError: for an unknown column.
         """
-        found: NDArray[Any] = self.columns[column][self._rows(setting)]
-        return found
+        values: NDArray[Any] = self.columns[column][self._rows(setting)]
+        return values
 
     def curves(self, setting: int) -> NDArray[np.float64]:
-        """Returns (runs, blocks): the mean returns of one setting's runs, without those that failed."""
+        """Returns (runs, blocks): the learning curves of the runs of one setting that did not fail."""
         curves = [np.frombuffer(self._curves[row]) for row in self._rows(setting).tolist()]
         return np.array(curves) if curves else np.empty((0, 0))
 
     def _rows(self, setting: int) -> NDArray[np.intp]:
-        whole = np.array([error is None for error in self.columns["error"]], dtype=np.bool_)
-        return np.flatnonzero((self.columns["setting"] == setting) & whole)
+        succeeded = np.array([error is None for error in self.columns["error"]], dtype=np.bool_)
+        return np.flatnonzero((self.columns["setting"] == setting) & succeeded)
 
     def to_pandas(self) -> "pd.DataFrame":
-        """Returns the table as a data frame.
+        """Returns the table as a pandas data frame.
 
         Raises:
             ModuleNotFoundError: without pandas.
@@ -65,11 +72,11 @@ class Sweep:
         try:
             import pandas as pd
         except ModuleNotFoundError as error:
-            raise missing(error, "stats") from None
+            raise missing(error) from None
         return pd.DataFrame(dict(self.columns))
 
     def to_arrow(self) -> "pa.Table":
-        """Returns the table for Arrow, polars (``polars.from_arrow``) and Parquet.
+        """Returns the table as an Arrow table, which polars (``polars.from_arrow``) and Parquet files take.
 
         Raises:
             ModuleNotFoundError: without pyarrow.
@@ -77,6 +84,43 @@ class Sweep:
         try:
             import pyarrow as pa
         except ModuleNotFoundError as error:
-            raise missing(error, "stats") from None
+            raise missing(error) from None
         texts = {"error": pa.string()}
         return pa.table({name: pa.array(column, texts.get(name)) for name, column in self.columns.items()})
+
+
+def load_sweep(path: "str | os.PathLike[str]") -> Sweep:
+    """Returns the finished runs of a store, which may belong to a sweep that is still running.
+
+    Raises:
+        OSError: if the file does not exist.
+        StoreError: if it is not a store, is damaged, or has another format version.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"store not found: {str(path)!r}")
+    try:
+        with closing(sqlite3.connect(path)) as connection:
+            study = json.loads(read_fingerprint(connection, path))
+            runs = read_runs(connection)
+        env = study["configs"][0]["env"]
+        return build_sweep(env, study["settings"], tuple(study["seeds"]), study["block"], runs)
+    except (sqlite3.DatabaseError, KeyError, json.JSONDecodeError) as error:
+        raise damaged(path, error) from error
+
+
+def build_sweep(
+    env: str, settings: Sequence[Mapping[str, Any]], seeds: tuple[int, ...], block: int, runs: Sequence[StoredRun]
+) -> Sweep:
+    """Returns the table of the stored runs of a study."""
+    count = len(seeds)
+    columns: dict[str, Any] = {"setting": np.array([run[0] // count for run in runs], dtype=np.int64)}
+    for name in settings[0]:
+        cells = [to_cell(setting[name]) for setting in settings]
+        columns[name] = np.array([cells[run[0] // count] for run in runs])
+    columns["seed"] = np.array([seeds[run[0] % count] for run in runs])
+    for position, name in enumerate(SUMMARY_COLUMNS, start=1):
+        values = [np.nan if run[position] is None else run[position] for run in runs]
+        columns[name] = np.array(values, dtype=np.float64)
+    columns["error"] = np.array([run[-1] for run in runs], dtype=object)
+    return Sweep(env, settings, seeds, columns, block, [run[-2] for run in runs])

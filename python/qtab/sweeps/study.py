@@ -1,4 +1,4 @@
-"""What a sweep will do, known whole before it starts: settings, seeds, pieces."""
+"""The plan of a sweep, complete before it starts: its settings, its seeds, and the chunks of its runs."""
 
 import hashlib
 import json
@@ -11,143 +11,156 @@ from typing import Any
 import numpy as np
 
 from qtab._utils.memory import BYTES_AN_EPISODE, check_memory
-from qtab.config import known_fields
+from qtab.config import DEFAULTS
+from qtab.config.layers import Base, over
+from qtab.config.unknown import check_names
 from qtab.sweeps import designs
 from qtab.training.resolve import Resolved
 from qtab.training.train_many import resolve_one, seed_numbers
 
-PIECE_STEPS = 2**26
-"""A piece is about so many steps, a second of Rust on one core …"""
-PYTHON_PIECE_STEPS = 2**16
-"""… or of a Python environment."""
-LIKELY_STEPS = 1000
-"""Episodes with a longer time limit than this are taken to end by themselves."""
-PIECE_RUNS = 4096
-"""A piece holds no more runs than this."""
+CHUNK_STEPS = 2**26
+"""The steps of a chunk, which Rust takes in about a second on one core."""
+PYTHON_CHUNK_STEPS = 2**16
+"""The steps of a chunk for an environment stepped in Python."""
+TYPICAL_MAX_STEPS = 1000
+"""Episodes with a longer time limit are expected to end before this many steps."""
+MAX_CHUNK_RUNS = 4096
+"""The most runs in a chunk."""
 
 
 @dataclass(frozen=True)
-class Piece:
-    """Runs that are done, and stored, together: from ``start`` up to ``stop``, counted through the whole sweep."""
+class Chunk:
+    """Consecutive runs of a study, ``start`` to ``stop`` - 1, that are trained and stored together."""
 
     number: int
     start: int
     stop: int
 
+    @property
+    def runs(self) -> range:
+        """The indices of the runs."""
+        return range(self.start, self.stop)
+
 
 @dataclass(frozen=True)
 class Study:
-    """Run ``i`` is of setting ``i // len(seeds)`` and seed ``i % len(seeds)``: every setting has the same seeds."""
+    """All runs of a sweep. Run ``i`` has setting ``i // len(seeds)`` and seed ``seeds[i % len(seeds)]``."""
 
     env: Any
-    fixed: Mapping[str, Any]
     settings: Sequence[Mapping[str, Any]]
+    """The points of the grid: the config fields by which the settings differ."""
+    overrides: Sequence[Mapping[str, Any]]
+    """All that is given for each setting, the fields that all of them share included."""
     seeds: tuple[int, ...]
+    """The seeds of every setting."""
     resolved: Sequence[Resolved]
-    """What each setting comes to."""
+    """The resolved config of each setting."""
     block: int
-    """Learning curves are kept as the means of so many episodes."""
+    """The number of episodes that each point of a learning curve averages."""
 
     @property
     def runs(self) -> int:
-        """How many there are."""
+        """The number of runs."""
         return len(self.settings) * len(self.seeds)
 
     @cached_property
-    def pieces(self) -> list[Piece]:
-        """The runs, cut by what they are and not by how long they take: the same at every call."""
-        found: list[Piece] = []
-        start, load = 0, 0.0
+    def chunks(self) -> list[Chunk]:
+        """The runs in chunks of similar work, estimated from the settings so that every process finds the same ones."""
+        chunks: list[Chunk] = []
+        start, work = 0, 0.0
         for run in range(self.runs):
-            if load >= 1 or run - start >= PIECE_RUNS:
-                found.append(Piece(len(found), start, run))
-                start, load = run, 0.0
-            load += _load(self.resolved[run // len(self.seeds)])
-        return [*found, Piece(len(found), start, self.runs)]
+            if work >= 1 or run - start >= MAX_CHUNK_RUNS:
+                chunks.append(Chunk(len(chunks), start, run))
+                start, work = run, 0.0
+            work += _work(self.resolved[run // len(self.seeds)])
+        return [*chunks, Chunk(len(chunks), start, self.runs)]
 
     def check_memory(self, limit: int) -> None:
-        """Refuses a setting of which a single run needs more than the limit.
+        """Checks that a single run of each setting fits into the memory limit, in bytes.
 
         Raises:
-            MemoryError: says how much it needs.
+            MemoryError: if it does not; the message says how much it needs.
         """
         for resolved in self.resolved:
             episodes = resolved.config.episodes
-            # The trainer's own lists, and the arrays that they are copied to.
+            # The trainer's lists, and the arrays to which they are copied.
             needed = 2 * episodes * BYTES_AN_EPISODE + 8 * math.prod(resolved.grid.shape)
             check_memory(f"runs of {episodes} episodes", needed, limit)
 
     @cached_property
-    def identity(self) -> str:
-        """A text that is equal for equal sweeps alone."""
+    def fingerprint(self) -> str:
+        """JSON text that is equal for equal studies only. It is part of the store format."""
         configs = [
             {name: value for name, value in vars(resolved.config).items() if name != "seed"}
             for resolved in self.resolved
         ]
         settings = [dict(setting) for setting in self.settings]
         content: dict[str, Any] = {"configs": configs, "settings": settings, "seeds": self.seeds, "block": self.block}
-        content |= {"pieces": len(self.pieces)}
-        return json.dumps(content, sort_keys=True, default=_described)
+        content |= {"pieces": len(self.chunks)}
+        return json.dumps(content, sort_keys=True, default=_jsonable)
 
-    def share(self, piece: Piece) -> list[tuple[int, list[int]]]:
-        """Returns the settings of a piece, and the seeds of each."""
+    def split(self, chunk: Chunk) -> list[tuple[int, list[int]]]:
+        """Returns the settings of a chunk by their index, each with its seeds."""
         count = len(self.seeds)
-        shares = []
-        for setting in range(piece.start // count, (piece.stop - 1) // count + 1):
-            first, last = max(piece.start - setting * count, 0), min(piece.stop - setting * count, count)
-            shares.append((setting, list(self.seeds[first:last])))
-        return shares
+        parts = []
+        for setting in range(chunk.start // count, (chunk.stop - 1) // count + 1):
+            first, last = max(chunk.start - setting * count, 0), min(chunk.stop - setting * count, count)
+            parts.append((setting, list(self.seeds[first:last])))
+        return parts
 
 
-def study(env: Any, grid: Any, seeds: Any, block: int, fixed: Mapping[str, Any]) -> Study:
-    """Checks what was asked for, every setting of it.
+def plan_study(
+    env: Any, grid: Any, seeds: Any, block: int, shared: Mapping[str, Any], base: Base | None = None
+) -> Study:
+    """Returns the study of a grid of settings, after resolving the config of each.
 
     Raises:
-        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
-        TypeError: for an argument of the wrong type, or an unknown one.
+        gymnasium.error.Error: from Gymnasium, for an unknown id.
+        TypeError: for an argument of the wrong type, or an unknown setting.
         ValueError: for an argument out of range.
     """
     numbers = seed_numbers(seeds)
-    settings = _settings(grid)
+    settings = _settings_of(grid)
     names = list(settings[0])
-    known_fields({**fixed, **settings[0]})
+    check_names({**shared, **settings[0]}, DEFAULTS)
     for setting in settings:
         if list(setting) != names:
-            raise ValueError(f"grid must give every setting the same names, got {names} and {list(setting)}")
-    for name in ("seed", "env"):
-        if name in names or name in fixed:
-            raise TypeError(f"{name} is no part of a grid: it is given by {name}{'s' * (name == 'seed')}=...")
-    twice = set(names) & set(fixed)
-    if twice:
-        raise TypeError(f"{sorted(twice)[0]} is both in the grid and fixed")
-    resolved = [resolve_one(env, {**fixed, **setting, "seed": max(numbers)}) for setting in settings]
-    return Study(env, dict(fixed), settings, numbers, resolved, block)
+            raise ValueError(f"every setting in grid must have the same names, got {names} and {list(setting)}")
+    for name, argument in (("seed", "seeds"), ("env", "env")):
+        if name in names or name in shared:
+            raise TypeError(f"{name} cannot be a setting of a sweep; use the argument {argument}")
+    in_both = sorted(set(names) & set(shared))
+    if in_both:
+        raise TypeError(f"{in_both[0]} must be either in the grid or shared by all settings, got both")
+    overrides = [over(base or {}, {**shared, **setting}) for setting in settings]
+    resolved = [resolve_one(env, {**given, "seed": max(numbers)}) for given in overrides]
+    return Study(env, settings, overrides, numbers, resolved, block)
 
 
-def _settings(grid: Any) -> list[dict[str, Any]]:
+def _settings_of(grid: Any) -> list[dict[str, Any]]:
     if isinstance(grid, Mapping):
         return designs.grid(grid)
     if isinstance(grid, (str, bytes)) or not isinstance(grid, Sequence):
-        raise TypeError(f"grid must map names to lists of values, or be a list of settings, got {grid!r}")
+        raise TypeError(f"grid must map names to lists of values, or be a list of mappings, got {grid!r}")
     if not grid:
         raise ValueError("grid must hold at least one setting, got none")
     for setting in grid:
         if not isinstance(setting, Mapping):
             raise TypeError(f"grid must hold mappings of names to values, got {setting!r}")
-    if len({json.dumps(dict(setting), sort_keys=True, default=_described) for setting in grid}) < len(grid):
-        raise ValueError("grid must hold different settings, got one twice")
+    if len({json.dumps(dict(setting), sort_keys=True, default=_jsonable) for setting in grid}) < len(grid):
+        raise ValueError("grid must hold different settings, got the same one twice")
     return [dict(setting) for setting in grid]
 
 
-def _load(resolved: Resolved) -> float:
-    """The share of a piece that a run makes up."""
+def _work(resolved: Resolved) -> float:
+    """Returns the estimated work of a run as a fraction of a chunk."""
     config = resolved.config
-    steps = config.episodes * min(config.max_episode_steps or LIKELY_STEPS, LIKELY_STEPS)
-    return steps / (PYTHON_PIECE_STEPS if resolved.model is None else PIECE_STEPS)
+    steps = config.episodes * min(config.max_episode_steps or TYPICAL_MAX_STEPS, TYPICAL_MAX_STEPS)
+    return steps / (PYTHON_CHUNK_STEPS if resolved.model is None else CHUNK_STEPS)
 
 
-def _described(value: Any) -> Any:
-    """What JSON has no word for."""
+def _jsonable(value: Any) -> Any:
+    """Returns a value that JSON cannot represent as one that it can. It is part of the store format."""
     if isinstance(value, np.ndarray):
         return {"shape": value.shape, "sha256": hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()}
     if isinstance(value, np.generic):
@@ -157,12 +170,12 @@ def _described(value: Any) -> Any:
     return repr(value)
 
 
-def plain(value: Any) -> Any:
-    """Returns a setting's value as a table's cell: a number, a text, a boolean or None."""
+def to_cell(value: Any) -> Any:
+    """Returns the value of a setting as a number, string, boolean or None, which a column of a table can hold."""
     if isinstance(value, np.generic):
         value = value.item()
     if value is None or isinstance(value, bool | int | str):
         return value
     if isinstance(value, float):
         return value if math.isfinite(value) else repr(value)
-    return json.dumps(value, default=_described)
+    return json.dumps(value, default=_jsonable)

@@ -10,9 +10,10 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from qtab import _core, _spec
-from qtab.config import Config, known_fields
-from qtab.config.options import defaults, stranger, tables
+from qtab.config import DEFAULTS, Config
+from qtab.config.options import defaults, mismatch, n_tables
 from qtab.config.presets import preset
+from qtab.config.unknown import check_names
 from qtab.discretizers.actions import Actions, actions
 from qtab.discretizers.base import Features
 from qtab.discretizers.bins import Bins, bins
@@ -100,15 +101,15 @@ def merge(env: str, *layers: Mapping[str, Any]) -> Config:
     """
     explicit: dict[str, Any] = {}
     for layer in layers:
-        known_fields(layer)
+        check_names(layer, DEFAULTS)
         explicit.update(layer)
     name = explicit.pop("preset", None)
     if name is not None and not isinstance(name, str):
         raise TypeError(f"preset must be a name, got {name!r}")
     name, values = preset(env, name)
     # A preset is a start: of what it says, that falls away which has no meaning beside what was asked for.
-    wanted = {**vars(Config()), **values, **explicit}
-    values = {field: value for field, value in values.items() if not stranger(field, value, wanted)}
+    wanted = {**DEFAULTS, **values, **explicit}
+    values = {field: value for field, value in values.items() if not mismatch(field, value, wanted)}
     return Config(**{**values, **explicit, "env": env, "preset": name})
 
 
@@ -216,7 +217,7 @@ def _complete(config: Config, table: Features, backend: str, steps: int | None) 
         changes |= {name: tuple(limit.tolist()) for name, limit in zip(("low", "high"), table.limits, strict=True)}
         changes["bins"] = table.shape[:-1]
     if isinstance(config.initial_q, np.ndarray):
-        count = tables(config.algorithm)
+        count = n_tables(config.algorithm)
         shape = table.shape if count == 1 else (count, *table.shape)
         if config.initial_q.shape == table.shape and count > 1:
             changes["initial_q"] = np.stack([config.initial_q] * count)

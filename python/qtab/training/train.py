@@ -1,18 +1,23 @@
 """``qtab.train``: from an environment and a config to a run."""
 
 import time
+from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
+from typing_extensions import Unpack
 
 from qtab import _core
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
+from qtab.config.layers import collect, over
+from qtab.config.settings import Settings
+from qtab.config.signature import with_settings
 from qtab.rendering.replay import starts
 from qtab.results.run import Recording, Run
 from qtab.training.callbacks import Callback, Finished
@@ -21,43 +26,52 @@ from qtab.training.resolve import Resolved, log_default_limit, resolve
 CALLBACK_EVERY = 100
 
 
+@with_settings
 def train(
-    env: str | EnvSpec | gym.Env,
+    env: str | EnvSpec | gym.Env | None = None,
     *,
+    config: Config | Mapping[str, Any] | None = None,
     callback: Callback | None = None,
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
     progress: bool | None = None,
-    **overrides: Any,
+    **settings: Unpack[Settings],
 ) -> Run:
-    """Trains a tabular agent; the same seed gives the table that Gymnasium and NumPy would have given, bit for bit.
+    """Trains a tabular agent. The same seed gives the table that Gymnasium and NumPy would give, bit for bit.
+
+    A setting comes from the first of these that has it: a keyword, ``config``, the preset named by ``preset``, the
+    environment's first preset, the default.
 
     Args:
-        env: An environment's id, its EnvSpec, or an environment (which is stepped as it stands, and not closed).
-        callback: Called every ``callback_every`` episodes, and after the last; returning False stops the run.
-        callback_every: How many episodes lie between two calls.
-        record: How many of the last episodes to keep for playing again (``run.recordings``).
-        progress: Whether to show a progress bar; None shows one on a terminal, to runs of more than a second.
-        **overrides: The fields of :class:`qtab.Config`, ``algorithm=``, ``discretizer=`` and ``preset=`` among them;
-            ``qtab train --help`` says what each means. An explicit one wins over the preset, the preset over the
-            default.
+        env: An environment's id, its EnvSpec, or an environment, which is used as it is and not closed. None takes the
+            environment of ``config``.
+        config: The settings to start from: the config of a run, ``qtab.train(config=run.config)``, repeats the run
+            exactly. Of a Config, the settings that do not apply beside the keywords are ignored, and with another
+            environment its ``env_kwargs`` and ``preset`` as well. A mapping gives only some settings, as keywords do.
+        callback: Called with a :class:`qtab.Progress` after every ``callback_every`` episodes and after the last one.
+            It stops the run by returning False.
+        callback_every: The number of episodes between two calls.
+        record: The number of last episodes to keep for replay, in ``run.recordings``.
+        progress: Whether to show a progress bar. None shows one on a terminal if the run takes more than a second.
+        **settings: The settings of the run, explained below.
 
     Returns:
-        The run. ``run.completed`` is False where a callback stopped it.
+        The run. ``run.completed`` is False if a callback stopped it.
 
     Raises:
-        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
+        gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
         TypeError: for an argument of the wrong type, or an unknown one.
         ValueError: for an argument out of range, or spaces that do not fit.
         OverflowError: if the values diverge; it names the episode and the likely cause.
-        KeyboardInterrupt: on Ctrl-C. It, and whatever the environment or the callback raises, carries the run so far
-            as ``.run``.
+        KeyboardInterrupt: on Ctrl-C. Like any exception raised by the environment or the callback, it carries the run
+            so far as ``.run``.
     """
     callback_every = checks.integer("callback_every", callback_every, least=1)
     if callback is not None and not callable(callback):
         raise TypeError(f"callback must be callable, got {callback!r}")
     record = checks.count("record", record, least=0)
-    resolved = resolve(env, overrides)
+    env, base = collect(train, env, config, settings)
+    resolved = resolve(env, over(base, settings))
     log_default_limit(resolved)
     try:
         return train_resolved(resolved, callback, callback_every, record, progress)

@@ -2,57 +2,64 @@
 
 import os
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeAlias
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
+from typing_extensions import Unpack
 
 from qtab import _core, _spec
 from qtab._utils import checks
 from qtab._utils.memory import BYTES_AN_EPISODE, check_memory, memory_limit
 from qtab._utils.versions import versions
+from qtab.config import Config
+from qtab.config.layers import collect, over
+from qtab.config.settings import SharedSettings
+from qtab.config.signature import with_settings
 from qtab.results.runs import Runs
 from qtab.training.resolve import Resolved, log_default_limit, resolve
 
 MakeEnv: TypeAlias = Callable[[], gym.Env]
 
 
+@with_settings
 def train_many(
-    env: str | EnvSpec | MakeEnv,
+    env: str | EnvSpec | MakeEnv | None = None,
     seeds: int | Iterable[int] = 1000,
     *,
+    config: Config | Mapping[str, Any] | None = None,
     threads: int | None = None,
     tables: bool = False,
     memory_limit: int | None = None,
-    **overrides: Any,
+    **settings: Unpack[SharedSettings],
 ) -> Runs:
-    """Trains one agent a seed; run ``i`` equals ``train(env, seed=seeds[i], ...)`` to the bit, whatever the threads.
+    """Trains one agent per seed. Run ``i`` equals ``train(env, seed=seeds[i], ...)`` to the bit for any ``threads``.
 
-    Environments in Rust run on threads of this call's own, the interpreter released. Those stepped in Python run in
-    processes of its own; as everywhere in :mod:`multiprocessing`, a script then keeps its call behind
-    ``if __name__ == "__main__":``.
+    Environments in Rust run on threads, without Python's interpreter lock. Those stepped in Python run in processes. As
+    always with :mod:`multiprocessing`, a script then needs ``if __name__ == "__main__":`` around its call.
 
     Args:
-        env: An environment's id, its EnvSpec, or a function that makes one.
+        env: An environment's id, its EnvSpec, or a function that makes one. None takes the environment of ``config``.
         seeds: The seeds of the runs; an integer N means 0 to N - 1.
-        threads: How many threads or processes; None means one a core.
+        config: The settings to start from, as for :func:`qtab.train`, without the seed.
+        threads: The number of threads or processes; None means one per core.
         tables: Whether to keep the Q tables.
-        memory_limit: The bytes that it may take; None means half of the machine's memory.
-        **overrides: The fields of :class:`qtab.Config`, as for :func:`qtab.train`.
+        memory_limit: The number of bytes that the runs may take; None means half of the machine's memory.
+        **settings: The settings that all runs share, explained below.
 
     Raises:
-        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
-        MemoryError: if it would take more than ``memory_limit``, before it begins.
-        TypeError: for an argument of the wrong type, an unknown one, or a single environment.
-        ValueError: for an argument out of range, or a seed that comes twice.
-        KeyboardInterrupt: on Ctrl-C. It, and whatever a run raises, carries the finished runs as ``.run``.
+        gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
+        MemoryError: before the first run, if they would take more than ``memory_limit``.
+        TypeError: for an argument of the wrong type, an unknown one, or an environment instead of a function.
+        ValueError: for an argument out of range, or a repeated seed.
+        KeyboardInterrupt: on Ctrl-C. Like any exception that a run raises, it carries the finished runs as ``.run``.
     """
     numbers = seed_numbers(seeds)
     workers = thread_count(threads)
-    if "seed" in overrides:
-        raise TypeError("seed is what seeds=... gives to each run")
+    env, base = collect(train_many, env, config, settings)
+    overrides = over(base, settings)
     resolved = resolve_one(env, {**overrides, "seed": numbers[0]})
     log_default_limit(resolved)
     resolved.config.replace(seed=max(numbers))

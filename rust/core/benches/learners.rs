@@ -1,7 +1,7 @@
-//! What each learner costs a step, on the article's grid and on eight tilings.
+//! The time per step of each learner on `MountainCar`, on a grid and on eight tilings.
 //!
-//! `cargo bench --bench learners`, or with `-- tilings` for the tilings alone. Policies and rates are those chosen at run
-//! time, the same for all.
+//! `cargo bench --bench learners`, or `cargo bench --bench learners -- tilings` for the tilings only. All learners use the
+//! policy and the learning rate that are chosen at run time.
 
 mod mountain_car_task;
 
@@ -9,7 +9,7 @@ use std::fmt::Debug;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput};
-use mountain_car_task::{INSIDE, MountainCarTask, rounding, task};
+use mountain_car_task::{IN_BOUNDS, MountainCarTask, rounding, task};
 use qtab_core::features::{Features, TileCoding};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
@@ -26,7 +26,7 @@ const TILINGS: usize = 8;
 const TRACE_DECAY: f64 = 0.9;
 const CUTOFF: f64 = 1e-3;
 
-/// Sutton & Barto's setting for the valley: values of zero are optimistic there, so that nothing need be explored.
+/// The settings of Sutton & Barto, section 10.1. Values of 0 are optimistic, so that ε can be 0.
 fn agent(rows: usize, n_active: usize) -> Agent {
     Agent {
         table: QTable::new(vec![0.0; rows * ACTIONS], ACTIONS),
@@ -37,7 +37,7 @@ fn agent(rows: usize, n_active: usize) -> Agent {
     }
 }
 
-/// Learners over one kind of features.
+/// The benchmarks of all learners with the same features.
 struct Bench<'a, F> {
     group: BenchmarkGroup<'a, WallTime>,
     features: F,
@@ -49,22 +49,25 @@ where
     F: Features<[f32; 2]> + Clone,
     MountainCarTask<F>: Task<Active = F::Active, Error: Debug>,
 {
+    /// Benchmarks a learner given by its update rule.
     fn rule<U: UpdateRule<F::Active, Agent>>(&mut self, name: &str, rule: impl Fn(&Agent) -> U) {
         self.learner(name, |agent| TdLearner { rule: rule(&agent), agent });
     }
 
+    /// Benchmarks a learner.
     fn learner<L: Learner<F::Active>>(&mut self, name: &str, learner: impl Fn(Agent) -> L) {
         let (features, n_active) = (&self.features, self.n_active);
         let run = || {
             let learner = learner(agent(features.len(), n_active));
             let mut trainer = Trainer::new(task(features.clone()), learner, mountain_car_task::agent_rng());
-            trainer.advance(Budget { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
+            trainer.advance(Budget { episodes: EPISODES, steps: u64::MAX }).expect(IN_BOUNDS);
             trainer.episodes().lengths.iter().sum::<i64>() as u64
         };
         self.group.throughput(Throughput::Elements(run()));
         self.group.bench_function(name, |bencher| bencher.iter(run));
     }
 
+    /// Benchmarks all learners that work with any features.
     fn all(&mut self) {
         let traces = |agent: &Agent, cutoff| Traces::new(agent.table.values().len(), cutoff);
         let (kind, trace_decay) = (TraceKind::Replacing, TRACE_DECAY);

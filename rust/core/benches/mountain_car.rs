@@ -1,14 +1,14 @@
-//! `MountainCar`'s speed in steps a second: the parts of a step, the article's run, and the floor under it.
+//! The speed of `MountainCar` in steps per second: the parts of a step, the article's training run, and its lower bound.
 //!
-//! `cargo bench`, or `cargo bench -- run` for the run alone.
+//! `cargo bench --bench mountain_car`, or `cargo bench --bench mountain_car -- run` for the training run only.
 
 mod mountain_car_task;
 
 use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, Throughput};
-use mountain_car_task::{INSIDE, LIMIT, MountainCarTask, agent_rng, rounding, task};
-use qtab_core::batch::{Article, BatchedRun, LANES};
+use mountain_car_task::{IN_BOUNDS, MAX_EPISODE_STEPS, MountainCarTask, agent_rng, rounding, task};
+use qtab_core::batch::{BatchedRun, LANES};
 use qtab_core::envs::classic_control::{MountainCar, MountainCarState};
 use qtab_core::learners::{Agent, QLearning, TdLearner};
 use qtab_core::policies::EpsilonGreedy;
@@ -18,9 +18,10 @@ use qtab_core::tasks::{Next, Task};
 use qtab_core::{Budget, Env, Features, Learner, QTable, Trainer};
 
 const EPISODES: usize = 500;
-/// Small enough to stay in the first cache, large enough to train no branch predictor by heart.
+/// Small enough for the first-level cache, large enough that a branch predictor cannot memorize it.
 const BATCH: usize = 4096;
 
+type QLearningRun<R> = Trainer<MountainCarTask, QLearner, R>;
 type QLearner = TdLearner<QLearning, Agent<3, EpsilonGreedy, f64>>;
 
 fn learner(rng: &mut impl Rng) -> QLearner {
@@ -34,14 +35,14 @@ fn learner(rng: &mut impl Rng) -> QLearner {
     TdLearner { agent, rule: QLearning }
 }
 
-/// States all over the valley, an action for each.
+/// Random states and actions.
 fn states(rng: &mut Pcg64) -> Vec<(MountainCarState, usize)> {
     let state =
         |rng: &mut Pcg64| MountainCarState { position: rng.uniform(-1.2, 0.6), velocity: rng.uniform(-0.07, 0.07) };
     (0..BATCH).map(|_| (state(rng), rng.integers(3) as usize)).collect()
 }
 
-/// One step of each of many cars: nothing waits for anything.
+/// One step of many independent cars.
 fn physics(criterion: &mut Criterion) {
     let mut rng = agent_rng();
     let (car, states) = (MountainCar::default(), states(&mut rng));
@@ -57,7 +58,7 @@ fn physics(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Observations into rows.
+/// From observations to rows.
 fn discretizer(criterion: &mut Criterion) {
     let (car, rounding) = (MountainCar::default(), rounding());
     let observations: Vec<_> = states(&mut agent_rng()).iter().map(|(state, _)| car.observe(state)).collect();
@@ -73,20 +74,20 @@ fn discretizer(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The update and the choice of the next action, along the rows of a random walk through the valley.
+/// The update and the choice of the next action, along a random walk.
 fn update(criterion: &mut Criterion) {
     let mut rng = agent_rng();
     let (mut task, mut learner) = (task(rounding()), learner(&mut rng));
-    let (mut state, mut active) = task.reset().expect(INSIDE);
+    let (mut state, mut active) = task.reset().expect(IN_BOUNDS);
     let mut walk = Vec::with_capacity(BATCH);
     while walk.len() < BATCH {
         let action = rng.integers(3) as usize;
-        let transition = task.step(&mut state, action).expect(INSIDE);
+        let transition = task.step(&mut state, action).expect(IN_BOUNDS);
         walk.push((active, action, transition));
         if let Next::NonTerminal(next_active) = transition.next {
             active = next_active;
         } else {
-            (state, active) = task.reset().expect(INSIDE);
+            (state, active) = task.reset().expect(IN_BOUNDS);
         }
     }
     let mut group = criterion.benchmark_group("update");
@@ -101,17 +102,18 @@ fn update(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn trainer<D: Rng + Clone>(mut rng: D) -> Trainer<MountainCarTask, QLearner, D> {
+fn trainer<R: Rng + Clone>(mut rng: R) -> QLearningRun<R> {
     let learner = learner(&mut rng);
     Trainer::new(task(rounding()), learner, rng)
 }
 
-fn train<D: Rng + Clone>(mut trainer: Trainer<MountainCarTask, QLearner, D>) -> u64 {
-    trainer.advance(Budget { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
+/// Trains to the end and returns the number of steps.
+fn train<R: Rng + Clone>(mut trainer: QLearningRun<R>) -> u64 {
+    trainer.advance(Budget { episodes: EPISODES, steps: u64::MAX }).expect(IN_BOUNDS);
     trainer.episodes().lengths.iter().sum::<i64>() as u64
 }
 
-fn batch_of_runs() -> [Article; LANES] {
+fn batch_of_runs() -> [QLearningRun<Pcg64>; LANES] {
     std::array::from_fn(|seed| {
         let mut rng = Pcg64::new(&SeedSequence::new(&[seed as u32]).child(0));
         let learner = learner(&mut rng);
@@ -119,28 +121,28 @@ fn batch_of_runs() -> [Article; LANES] {
     })
 }
 
-/// Budget the first of them is finished; returns the steps taken by all.
-fn batch(runs: &mut [Article; LANES]) -> u64 {
-    Article::advance_all(runs, Budget { episodes: EPISODES, steps: u64::MAX }).expect(INSIDE);
+/// Trains until the first run is finished and returns the number of steps of all.
+fn train_batch(runs: &mut [QLearningRun<Pcg64>; LANES]) -> u64 {
+    QLearningRun::advance_all(runs, Budget { episodes: EPISODES, steps: u64::MAX }).expect(IN_BOUNDS);
     runs.iter().flat_map(|run| &run.episodes().lengths).sum::<i64>() as u64
 }
 
-/// The same physics with the actions known beforehand and nobody learning: what no run can be faster than.
-fn chain(steps: u64, actions: &[usize], rng: &mut Pcg64) -> f64 {
+/// The dynamics only, with actions known in advance and no learning: a lower bound for a training run.
+fn lower_bound(steps: u64, actions: &[usize], rng: &mut Pcg64) -> f64 {
     let car = black_box(MountainCar::default());
     let start = MountainCarState { position: -0.5, velocity: 0.0 };
     let (mut state, mut travelled) = (start, 0.0);
     for step in 0..steps {
         state = car.step(state, actions[step as usize % BATCH], rng).state;
         travelled += state.velocity;
-        if step % LIMIT == LIMIT - 1 {
+        if step % MAX_EPISODE_STEPS == MAX_EPISODE_STEPS - 1 {
             state = start;
         }
     }
     travelled
 }
 
-/// The article's run, and its floor over as many steps.
+/// The article's training run, and the lower bound for as many steps.
 fn run(criterion: &mut Criterion) {
     let steps = train(trainer(agent_rng()));
     let mut rng = agent_rng();
@@ -148,11 +150,11 @@ fn run(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("run");
     group.throughput(Throughput::Elements(steps));
     group.bench_function("article, PCG64", |bencher| bencher.iter(|| train(trainer(agent_rng()))));
-    group.bench_function("floor", |bencher| bencher.iter(|| chain(steps, &actions, &mut rng)));
-    let steps = batch(&mut batch_of_runs());
+    group.bench_function("lower bound", |bencher| bencher.iter(|| lower_bound(steps, &actions, &mut rng)));
+    let steps = train_batch(&mut batch_of_runs());
     group.throughput(Throughput::Elements(steps));
     group.bench_function("article, a batch of 8 on one core", |bencher| {
-        bencher.iter_batched_ref(batch_of_runs, batch, BatchSize::PerIteration);
+        bencher.iter_batched_ref(batch_of_runs, train_batch, BatchSize::PerIteration);
     });
     let steps = train(trainer(Mt19937::new(0)));
     group.throughput(Throughput::Elements(steps));

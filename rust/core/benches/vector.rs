@@ -1,4 +1,4 @@
-//! What a step of a sub-environment costs, where many are stepped together on one thread.
+//! The time per step of a sub-environment in a vector environment on one thread.
 //!
 //! `cargo bench --bench vector`. Finished episodes are reset in the same step.
 
@@ -8,30 +8,30 @@ use qtab_core::envs::classic_control::{CartPole, MountainCar};
 use qtab_core::random::{Pcg64, Rng, SeedSequence};
 use qtab_core::vector::{Autoreset, StepBuffers, VectorEnv};
 
-const LANES: usize = 4096;
+const NUM_ENVS: usize = 4096;
 const LIMIT: u64 = 200;
 
 fn step<E>(criterion: &mut Criterion, name: &str, env: E)
 where
     E: Env<Action = usize, Observation: Copy + Default + Send, State: Send> + Sync,
 {
-    let mut rngs: Vec<_> = (0..LANES as u32).map(|seed| Pcg64::new(&SeedSequence::new(&[seed]))).collect();
+    let mut rngs: Vec<_> = (0..NUM_ENVS as u32).map(|seed| Pcg64::new(&SeedSequence::new(&[seed]))).collect();
     let actions: Vec<_> = rngs.iter_mut().map(|rng| rng.integers(env.num_actions() as u32) as usize).collect();
-    let mut vector = VectorEnv::new(env, LANES, Some(LIMIT), Autoreset::SameStep, 1);
-    rngs.iter_mut().enumerate().for_each(|(lane, rng)| vector.reset(lane, None, rng));
-    let (mut observations, mut rewards) = (vec![E::Observation::default(); LANES], vec![0.0; LANES]);
-    let (mut terminated, mut truncated) = (vec![false; LANES], vec![false; LANES]);
+    let mut vector = VectorEnv::new(env, NUM_ENVS, Some(LIMIT), Autoreset::SameStep, 1);
+    rngs.iter_mut().enumerate().for_each(|(index, rng)| vector.reset(index, None, rng));
+    let (mut observations, mut rewards) = (vec![E::Observation::default(); NUM_ENVS], vec![0.0; NUM_ENVS]);
+    let (mut terminated, mut truncated) = (vec![false; NUM_ENVS], vec![false; NUM_ENVS]);
     let mut group = criterion.benchmark_group("vector");
-    group.throughput(Throughput::Elements(LANES as u64));
+    group.throughput(Throughput::Elements(NUM_ENVS as u64));
     group.bench_function(name, |bencher| {
         bencher.iter(|| {
-            let batch = StepBuffers {
+            let buffers = StepBuffers {
                 observations: &mut observations,
                 rewards: &mut rewards,
                 terminated: &mut terminated,
                 truncated: &mut truncated,
             };
-            vector.step(&actions, &mut rngs, batch);
+            vector.step(&actions, &mut rngs, buffers);
         });
     });
     group.finish();

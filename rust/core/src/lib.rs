@@ -5,6 +5,9 @@
 //! owns its table, its policy and its schedules. A [`Trainer`] holds a task, a learner and a random generator, and
 //! [`Trainer::advance`] is the only training loop.
 //!
+//! "The article" is G. Hayes, *Getting Started with Reinforcement Learning and Open AI Gym*, 2019, a widely read
+//! introduction to Q-learning on `MountainCar`, whose training loop this crate can reproduce.
+//!
 //! ```
 //! use qtab_core::envs::classic_control::MountainCar;
 //! use qtab_core::features::{Axis, Rounding};

@@ -1,1 +1,1 @@
-"""The book's figures and examples, one a file."""
+"""The experiments of the book, one module per figure or example."""

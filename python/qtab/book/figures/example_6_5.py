@@ -2,15 +2,16 @@
 
 import numpy as np
 
-from qtab.book.experiment import Experiment, Numbers, Setting
+from qtab.book.experiment import Experiment
 from qtab.book.measures import episodes_by
-from qtab.book.trials import Outcome
+from qtab.book.runner import EpisodeLog, FloatArray
+from qtab.book.setting import Setting
 from qtab.envs.grid_worlds import windy_grid_world
 
 STEPS = 8000
-"""As far as the book's picture goes."""
-SHORTEST = 15
-LAST = 1000
+"""The last time step of the book's figure."""
+SHORTEST_PATH = 15
+LAST_STEPS = 1000
 
 _SARSA = {
     "algorithm": "sarsa",
@@ -20,31 +21,31 @@ _SARSA = {
     "epsilon_schedule": "constant",
     "ties": "random",
     "initial_q": 0.0,
-    # As many as could be finished in so many steps.
-    "episodes": STEPS // SHORTEST + 1,
+    # No run can finish more episodes in so many steps.
+    "episodes": STEPS // SHORTEST_PATH + 1,
 }
 _TIMES = tuple(range(200, STEPS + 1, 200))
 
 
-def last_lengths(outcome: Outcome) -> Numbers:
-    """Returns how long the episodes are on average that end within the last 1,000 of the 8,000 steps."""
-    ends = outcome.lengths.cumsum(axis=1)
-    late = (ends > STEPS - LAST) & (ends <= STEPS)
-    means: Numbers = np.where(late, outcome.lengths, 0).sum(axis=1, keepdims=True) / late.sum(axis=1, keepdims=True)
+def last_lengths(log: EpisodeLog) -> FloatArray:
+    """Returns (runs, 1): the mean length of the episodes that end within the last 1,000 of the 8,000 steps."""
+    ends = log.lengths.cumsum(axis=1)
+    late = (ends > STEPS - LAST_STEPS) & (ends <= STEPS)
+    means: FloatArray = np.where(late, log.lengths, 0).sum(axis=1, keepdims=True) / late.sum(axis=1, keepdims=True)
     return means
 
 
 EXPERIMENT = Experiment(
     name="example-6.5",
     title="Sarsa on the windy grid world",
-    book="ε = 0.1, α = 0.5, values of zero; the picture shows one run of 8,000 steps",
-    silent="how ties are broken (at random here). Of one run there is no standard error: 100 are the default",
+    book="ε = 0.1, α = 0.5, initial values of zero; the figure shows one run of 8,000 steps",
+    unspecified="how ties are broken (at random here). One run has no standard error, so the default is 100 runs",
     settings=(
         Setting("episodes finished", windy_grid_world, _SARSA, episodes_by(_TIMES), x=_TIMES),
-        Setting("steps an episode, last 1,000", windy_grid_world, _SARSA, last_lengths, x=(STEPS,), drawn=False),
+        Setting("steps per episode, last 1,000", windy_grid_world, _SARSA, last_lengths, x=(STEPS,), drawn=False),
     ),
     runs=100,
-    x="time steps",
-    y="episodes",
-    shown=(1000, 2000, 4000, 6000, 8000),
+    x_label="time steps",
+    y_label="episodes",
+    table_x=(1000, 2000, 4000, 6000, 8000),
 )

@@ -1,7 +1,8 @@
 """Example 6.6: Sarsa and Q-learning on the cliff."""
 
-from qtab.book.experiment import Experiment, Setting
+from qtab.book.experiment import Experiment
 from qtab.book.measures import final_return, returns
+from qtab.book.setting import Setting
 
 _ALGORITHMS = {"Sarsa": "sarsa", "Q-learning": "q_learning"}
 _EPISODES = 500
@@ -19,8 +20,8 @@ EXPERIMENT = Experiment(
     name="example-6.6",
     title="Sarsa and Q-learning on the cliff",
     book="ε = 0.1, γ = 1, 500 episodes",
-    silent="α (0.5 here), values of zero, ties (at random here), and how many runs its smoothed curves stand for "
-    "(500 here)",
+    unspecified="α (0.5 here), the initial values (zero here), how ties are broken (at random here), and the number of "
+    "runs behind the smoothed curves (500 here)",
     settings=(
         *(
             Setting(name, "CliffWalking-v1", {**_COMMON, "algorithm": algorithm}, returns)
@@ -39,8 +40,8 @@ EXPERIMENT = Experiment(
         ),
     ),
     runs=500,
-    x="episode",
-    y="sum of rewards during the episode",
-    shown=(1, 10, 25, 50, 100, 200, 300, 400, 500),
+    x_label="episode",
+    y_label="sum of rewards during the episode",
+    table_x=(1, 10, 25, 50, 100, 200, 300, 400, 500),
     y_range=(-100, -10),
 )

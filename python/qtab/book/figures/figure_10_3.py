@@ -1,14 +1,15 @@
 """Figure 10.3: one-step and eight-step semi-gradient Sarsa on Mountain Car."""
 
-from qtab.book.experiment import Experiment, Setting
+from qtab.book.experiment import Experiment
 from qtab.book.measures import lengths
-from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
+from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
+from qtab.book.setting import Setting
 
 EXPERIMENT = Experiment(
     name="figure-10.3",
     title="one-step and eight-step Sarsa on Mountain Car",
     book="n = 1 with α = 0.5/8, n = 8 with α = 0.3/8; 500 episodes, 100 runs",
-    silent=OPEN,
+    unspecified=UNSPECIFIED,
     settings=tuple(
         Setting(
             f"n = {n}",
@@ -19,10 +20,10 @@ EXPERIMENT = Experiment(
         for n, alpha in ((1, 0.5), (8, 0.3))
     ),
     runs=100,
-    x="episode",
-    y="steps per episode",
-    shown=(1, 2, 5, 10, 20, 50, 100, 200, 300, 400, 500),
-    cap=20_000,
+    x_label="episode",
+    y_label="steps per episode",
+    table_x=(1, 2, 5, 10, 20, 50, 100, 200, 300, 400, 500),
+    max_episode_steps=20_000,
     log_y=True,
     y_range=(100, 1000),
 )

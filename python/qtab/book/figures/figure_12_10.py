@@ -1,8 +1,9 @@
 """Figure 12.10: Sarsa(λ) with replacing traces on Mountain Car, early performance by λ and α."""
 
-from qtab.book.experiment import Experiment, Setting
+from qtab.book.experiment import Experiment
 from qtab.book.measures import mean_length
-from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
+from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
+from qtab.book.setting import Setting
 
 ALPHAS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.6)
 TRACE_DECAYS = (0.0, 0.68, 0.84, 0.92, 0.96, 0.98, 0.99)
@@ -10,9 +11,9 @@ TRACE_DECAYS = (0.0, 0.68, 0.84, 0.92, 0.96, 0.98, 0.99)
 EXPERIMENT = Experiment(
     name="figure-12.10",
     title="Sarsa(λ) with replacing traces on Mountain Car, by λ and α",
-    book="λ of 0, 0.68, 0.84, 0.92, 0.96, 0.98 and 0.99; the first 50 episodes, 100 runs; beside it, Figure 10.4 "
-    "once more",
-    silent=f"which values of α (ten here); {OPEN}",
+    book="λ of 0, 0.68, 0.84, 0.92, 0.96, 0.98 and 0.99; the first 50 episodes, 100 runs. The book "
+    "shows Figure 10.4 beside it",
+    unspecified=f"the values of α (ten here); {UNSPECIFIED}",
     settings=tuple(
         Setting(
             f"λ = {trace_decay:g}",
@@ -32,7 +33,7 @@ EXPERIMENT = Experiment(
         for alpha in ALPHAS
     ),
     runs=100,
-    x="α × number of tilings (8)",
-    y="steps per episode",
+    x_label="α × number of tilings (8)",
+    y_label="steps per episode",
     y_range=(170, 300),
 )

@@ -2,9 +2,10 @@
 
 from typing import Any
 
-from qtab.book.experiment import Experiment, Setting
+from qtab.book.experiment import Experiment
 from qtab.book.measures import mean_return
-from qtab.book.mountain_car import ENV, OPEN, TILE_CODING
+from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
+from qtab.book.setting import Setting
 
 ALPHAS = tuple(round(0.2 * fifth, 1) for fifth in range(1, 11))
 KINDS: dict[str, dict[str, Any]] = {
@@ -17,9 +18,9 @@ KINDS: dict[str, dict[str, Any]] = {
 EXPERIMENT = Experiment(
     name="figure-12.11",
     title="Sarsa(λ) with four kinds of traces on Mountain Car",
-    book="true online Sarsa(λ), and Sarsa(λ) with replacing traces, with replacing traces that clear those of the "
-    "other actions, and with accumulating traces; the first 20 episodes, 100 runs",
-    silent=f"λ (0.9 here); {OPEN}",
+    book="true online Sarsa(λ), and Sarsa(λ) with replacing traces, with replacing traces that clear the traces of "
+    "the other actions, and with accumulating traces; the first 20 episodes, 100 runs",
+    unspecified=f"λ (0.9 here); {UNSPECIFIED}",
     settings=tuple(
         Setting(
             name,
@@ -32,7 +33,7 @@ EXPERIMENT = Experiment(
         for alpha in ALPHAS
     ),
     runs=100,
-    x="α × number of tilings (8)",
-    y="reward per episode",
+    x_label="α × number of tilings (8)",
+    y_label="reward per episode",
     y_range=(-550, -150),
 )

@@ -1,7 +1,8 @@
 """Figure 6.3: interim and asymptotic performance on the cliff, as a function of α."""
 
-from qtab.book.experiment import Experiment, Setting
+from qtab.book.experiment import Experiment
 from qtab.book.measures import mean_return
+from qtab.book.setting import Setting
 
 ALPHAS = tuple(round(0.1 * tenth, 1) for tenth in range(1, 11))
 _ALGORITHMS = {"Sarsa": "sarsa", "Q-learning": "q_learning", "Expected Sarsa": "expected_sarsa"}
@@ -12,7 +13,7 @@ EXPERIMENT = Experiment(
     title="interim and asymptotic performance on the cliff",
     book="ε = 0.1; interim: the first 100 episodes, 50,000 runs; asymptotic: 100,000 episodes, 10 runs (after van "
     "Seijen et al., 2009)",
-    silent="values of zero and ties (at random here); 10 values of α here",
+    unspecified="the initial values (zero here), how ties are broken (at random here), and the values of α (10 here)",
     settings=tuple(
         Setting(
             f"{name}, {kind}",
@@ -20,14 +21,14 @@ EXPERIMENT = Experiment(
             {**_COMMON, "algorithm": algorithm, "learning_rate": alpha, "episodes": episodes},
             mean_return,
             x=(alpha,),
-            most_runs=most_runs,
+            max_runs=max_runs,
         )
-        for kind, episodes, most_runs in (("interim", 100, None), ("asymptotic", 100_000, 10))
+        for kind, episodes, max_runs in (("interim", 100, None), ("asymptotic", 100_000, 10))
         for name, algorithm in _ALGORITHMS.items()
         for alpha in ALPHAS
     ),
     runs=50_000,
-    x="α",
-    y="sum of rewards an episode",
+    x_label="α",
+    y_label="sum of rewards per episode",
     y_range=(-160, 0),
 )

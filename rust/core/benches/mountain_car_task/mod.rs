@@ -1,4 +1,4 @@
-//! What the benches share: the article's valley, its grid, and the streams of seed 0.
+//! What the benchmarks share: the task of the article (`MountainCar` on its grid) and the random generators of seed 0.
 
 use qtab_core::envs::classic_control::MountainCar;
 use qtab_core::features::{Axis, Features, Rounding};
@@ -6,8 +6,9 @@ use qtab_core::random::{Pcg64, SeedSequence};
 use qtab_core::tasks::NativeTask;
 
 /// Gymnasium's time limit.
-pub(crate) const LIMIT: u64 = 200;
-pub(crate) const INSIDE: &str = "the valley lies inside the box";
+pub(crate) const MAX_EPISODE_STEPS: u64 = 200;
+/// Why a reset or a step cannot fail.
+pub(crate) const IN_BOUNDS: &str = "every state of the car is in bounds";
 
 pub(crate) type AnyGrid = Rounding<f32, [Axis<f32>; 2]>;
 pub(crate) type MountainCarTask<F = AnyGrid> = NativeTask<MountainCar, F>;
@@ -17,10 +18,10 @@ pub(crate) fn rounding() -> AnyGrid {
 }
 
 pub(crate) fn task<F: Features<[f32; 2]>>(features: F) -> MountainCarTask<F> {
-    NativeTask::new(MountainCar::default(), features, Some(LIMIT), Pcg64::new(&SeedSequence::new(&[0])))
+    NativeTask::new(MountainCar::default(), features, Some(MAX_EPISODE_STEPS), Pcg64::new(&SeedSequence::new(&[0])))
 }
 
-/// The agent's stream of seed 0.
+/// The agent's generator of seed 0.
 pub(crate) fn agent_rng() -> Pcg64 {
     Pcg64::new(&SeedSequence::new(&[0]).child(0))
 }

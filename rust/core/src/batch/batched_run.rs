@@ -1,19 +1,63 @@
 //! The trait of runs that can be trained in batches.
 
-use crate::features::OutOfBounds;
+use super::SimdTrainer;
+use super::batch_loop::BatchLoop;
+use crate::envs::{Env, SimdEnv};
+use crate::features::{BatchFeatures, Features, OutOfBounds};
+use crate::schedules::StepSize;
 use crate::trainer::Budget;
 
-/// A run that several of can be trained together.
+/// With rewards of at most 1 per step, values below this bound cannot reach infinity, so a batch need not check for
+/// divergence.
+const FAR_FROM_OVERFLOW: f64 = 1e300;
+
+/// A run that can be trained together with others of its type.
 pub trait BatchedRun: Sized {
-    /// Advances every run by up to `budget.steps` steps, until one of them has `budget.episodes` episodes. Afterwards
-    /// each run is in the state it would be in had it taken as many steps alone, and can be continued in any batch or
-    /// alone.
+    /// Advances every run by up to `budget.steps` steps, until one of them has finished `budget.episodes` episodes.
+    /// Afterwards each run is in the state that it would have after as many steps alone. It can be continued alone or in
+    /// any batch.
     ///
-    /// Runs advance one after the other if they differ in more than their seeds, tables and learning rates, or when one
-    /// of them reaches an observation without a row.
+    /// Runs that differ in more than their seeds, tables and learning rates advance one after the other. So do all runs
+    /// once one of them reaches an observation without a row.
     ///
     /// # Errors
     /// As [`Trainer::advance`](crate::Trainer::advance), with the index of the run that failed. The others can be
     /// continued.
     fn advance_all<const K: usize>(runs: &mut [Self; K], budget: Budget) -> Result<(), (usize, OutOfBounds)>;
+}
+
+impl<E, F, A, const N: usize, const M: usize> BatchedRun for SimdTrainer<E, F, N, A>
+where
+    E: SimdEnv<M> + Env<Observation = [f32; M]>,
+    F: BatchFeatures<M>,
+    A: StepSize,
+{
+    fn advance_all<const K: usize>(runs: &mut [Self; K], budget: Budget) -> Result<(), (usize, OutOfBounds)> {
+        if runs.iter().any(|run| run.episodes.returns.len() >= budget.episodes) {
+            return Ok(());
+        }
+        let mut steps = budget.steps;
+        if runs[0].task.env.is_exact() && runs.iter().all(|run| compatible(run, &runs[0])) {
+            steps = pulp::Arch::new().dispatch(BatchLoop { runs, budget })?;
+        }
+        let mut lanes = runs.iter_mut().enumerate();
+        lanes.try_for_each(|(lane, run)| run.advance(Budget { steps, ..budget }).map_err(|error| (lane, error)))
+    }
+}
+
+/// Whether two runs share all that a batch reads once, and neither can overflow.
+fn compatible<E, F, A, const N: usize>(one: &SimdTrainer<E, F, N, A>, other: &SimdTrainer<E, F, N, A>) -> bool
+where
+    E: Env<Action = usize> + PartialEq,
+    F: Features<E::Observation> + PartialEq,
+{
+    let (task, agent) = (&one.task, &one.learner.agent);
+    let other_agent = &other.learner.agent;
+    task.env == other.task.env
+        && task.features == other.task.features
+        && task.max_episode_steps == other.task.max_episode_steps
+        && agent.discount == other_agent.discount
+        && agent.terminal_update == other_agent.terminal_update
+        && agent.table.values().len() == other_agent.table.values().len()
+        && agent.table.values().iter().all(|value| value.abs() < FAR_FROM_OVERFLOW)
 }

@@ -15,13 +15,3 @@ pub use batched_run::BatchedRun;
 pub use simd_trainer::SimdTrainer;
 
 pub use crate::numeric::LANES;
-
-use crate::envs::classic_control::{CartPole, MountainCar};
-use crate::features::{Axis, Bins, Edges, Rounding};
-use crate::schedules::Schedule;
-
-/// `MountainCar` on a grid of rounded cells, with a constant learning rate.
-pub type Article = SimdTrainer<MountainCar, Rounding<f32, [Axis<f32>; 2]>, 3, f64>;
-
-/// `CartPole` on bins, with a scheduled learning rate.
-pub type Balance = SimdTrainer<CartPole, Bins<f32, [Edges; 4]>, 2, Schedule>;

@@ -1,52 +1,54 @@
-//! What an environment is: frozen parameters in `self`, the state by value, the draws passed in.
+//! The trait of all environments.
 
 use std::sync::Arc;
 
 use crate::random::Rng;
 
-/// What one step brings.
+/// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step<S> {
-    /// The state after the step.
+    /// The next state.
     pub state: S,
-    /// The reward of the step.
+    /// The reward.
     pub reward: f64,
-    /// Whether the state after the step is terminal (a time-out is not the environment's to say).
+    /// Whether the next state is terminal. Time limits belong to the task, not to the environment.
     pub terminated: bool,
 }
 
-/// An environment: physics without a clock, a renderer or a generator of its own.
+/// The dynamics of an environment: frozen parameters in `self`, the state passed by value, the random generator passed
+/// in.
 pub trait Env {
     /// All that changes from step to step.
     type State: Copy;
-    /// What `step` takes: an index for discrete actions.
+    /// An action: an index if the actions are discrete.
     type Action: Copy;
-    /// What the agent sees, in the dtype in which Gymnasium hands it out.
+    /// An observation, in Gymnasium's dtype.
     type Observation;
 
-    /// How many actions there are; 0 where they are continuous.
+    /// The number of actions, or 0 if they are continuous.
     fn num_actions(&self) -> usize;
 
-    /// The first state of an episode.
+    /// The initial state of an episode.
     fn reset(&self, rng: &mut impl Rng) -> Self::State;
 
-    /// The two numbers between which first states lie, under the names of Gymnasium's reset options.
+    /// The default bounds of the initial state, with the names of Gymnasium's reset options. `None` if the environment has
+    /// no such options.
     const RESET_BOUNDS: Option<[(&'static str, f64); 2]> = None;
 
-    /// The first state of an episode between other numbers than `START`'s; where it has none, any first state.
-    fn reset_within(&self, _start: [f64; 2], rng: &mut impl Rng) -> Self::State {
+    /// The initial state of an episode within other bounds. Without reset options, the same as `reset`.
+    fn reset_within(&self, _bounds: [f64; 2], rng: &mut impl Rng) -> Self::State {
         self.reset(rng)
     }
 
-    /// One step of the dynamics.
+    /// One step.
     ///
     /// # Panics
-    /// It may, where the action is none of the environment's: whoever takes actions from outside checks them.
+    /// May panic if the action is out of range. The caller checks actions that come from outside.
     fn step(&self, state: Self::State, action: Self::Action, rng: &mut impl Rng) -> Step<Self::State>;
 
-    /// One step in each of several lanes: its state moves on, its reward and its end are put in their places. Those that
-    /// are `idle` keep their states, whatever their actions are. It may be computed in another way where wide registers
-    /// pay, never with other results than `step`'s.
+    /// One step of each of several sub-environments, in place. Those that are `inactive` keep their state, whatever their
+    /// action, and their outputs are unspecified. An implementation may compute several at once, but with the results of
+    /// `step`.
     #[inline]
     fn step_batch(
         &self,
@@ -57,18 +59,18 @@ pub trait Env {
         terminated: &mut [bool],
         inactive: &[bool],
     ) {
-        let places = rewards.iter_mut().zip(terminated).zip(inactive);
-        for (((state, &action), rng), ((reward, end), &inactive)) in
-            states.iter_mut().zip(actions).zip(rngs).zip(places)
+        let outputs = rewards.iter_mut().zip(terminated).zip(inactive);
+        for (((state, &action), rng), ((reward, terminated), &inactive)) in
+            states.iter_mut().zip(actions).zip(rngs).zip(outputs)
         {
             if !inactive {
                 let step = self.step(*state, action, rng);
-                (*state, *reward, *end) = (step.state, step.reward, step.terminated);
+                (*state, *reward, *terminated) = (step.state, step.reward, step.terminated);
             }
         }
     }
 
-    /// What the agent sees of a state.
+    /// The observation of a state.
     fn observe(&self, state: &Self::State) -> Self::Observation;
 }
 

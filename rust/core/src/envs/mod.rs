@@ -1,4 +1,4 @@
-//! The environments, one per file, by Gymnasium's families.
+//! The environments, one per file, in folders by Gymnasium's families.
 
 pub mod classic_control;
 mod env;

@@ -1,25 +1,25 @@
-//! The constants of an environment by name.
+//! The trait of environments with named parameters.
 
-/// A constant that is one thing or the other, under Gymnasium's name.
+/// A parameter with two values, such as Gymnasium's `kinematics_integrator`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flag {
-    /// The name, as Gymnasium spells the attribute.
+    /// The name of Gymnasium's attribute.
     pub name: &'static str,
-    /// The word that turns it on; None where the attribute is a truth value.
+    /// The string that stands for true; `None` if the attribute is a bool.
     pub true_value: Option<&'static str>,
 }
 
-/// The constants of an environment by Gymnasium's names, for those who know them at run time only.
+/// Access to the parameters of an environment by the names of Gymnasium's attributes.
 pub trait Parameters: Default {
-    /// The names of the numbers, as Gymnasium spells its attributes.
+    /// The names of the numeric parameters.
     const NAMES: &'static [&'static str];
-    /// What is no number.
+    /// The parameters with two values.
     const FLAGS: &'static [Flag] = &[];
 
-    /// The number of that name.
+    /// The numeric parameter of that name.
     fn parameter(&mut self, name: &str) -> Option<&mut f64>;
 
-    /// The switch of that name.
+    /// The flag of that name.
     fn flag(&mut self, _name: &str) -> Option<&mut bool> {
         None
     }

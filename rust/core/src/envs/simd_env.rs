@@ -1,29 +1,28 @@
-//! Many environments at once, in the processor's wide registers: never with other results than one by one.
+//! The trait of environments that step in SIMD lanes.
 
-#![expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::Env;
+use crate::numeric::LANES;
 use crate::random::NoRng;
 
-/// How many environments go together best.
-pub(crate) const LANES: usize = 8;
-
-/// Physics of `M` numbers, without chance, computed in many lanes at once. The observation is the state in single
-/// precision.
+/// An environment whose deterministic dynamics can be computed in SIMD lanes. The state is `M` numbers, and the
+/// observation is the state in float32.
 pub trait SimdEnv<const M: usize>:
     Copy + PartialEq + Env<Action = usize, State: From<[f64; M]> + Into<[f64; M]>, Observation = [f32; M]>
 {
-    /// Whether the lanes' results are those of `step` with these constants, on this machine.
+    /// Whether `step_soa` has the results of `step` with these parameters on this platform.
     fn is_exact(&self) -> bool;
 
-    /// One step in `K` lanes: their states, field by field, move on. Returns which of them are terminal.
+    /// One step in `K` lanes, in place. `fields` holds the states as a structure of arrays: one array per component.
+    /// Returns whether each next state is terminal.
     fn step_soa<const K: usize>(&self, fields: &mut [[f64; K]; M], actions: &[usize; K]) -> [bool; K];
 
-    /// What a step brings that ends there, or not.
+    /// The reward of a step, which depends only on whether the next state is terminal.
     fn reward(&self, terminated: bool) -> f64;
 }
 
-/// [`Env::step_lanes`], for wide physics.
+/// [`Env::step_batch`] in SIMD lanes.
 pub(crate) fn step_batch<E: SimdEnv<M>, const M: usize>(
     env: &E,
     states: &mut [E::State],
@@ -32,23 +31,23 @@ pub(crate) fn step_batch<E: SimdEnv<M>, const M: usize>(
     terminated: &mut [bool],
     inactive: &[bool],
 ) {
-    let together = if env.is_exact() { states.len() / LANES * LANES } else { 0 };
-    let (wide, rest) = states.split_at_mut(together);
-    if together > 0 {
-        let (states, actions) = (wide.as_chunks_mut().0, actions.as_chunks().0);
+    let in_lanes = if env.is_exact() { states.len() / LANES * LANES } else { 0 };
+    let (chunks, rest) = states.split_at_mut(in_lanes);
+    if in_lanes > 0 {
+        let (states, actions) = (chunks.as_chunks_mut().0, actions.as_chunks().0);
         let (terminated, inactive) = (terminated.as_chunks_mut().0, inactive.as_chunks().0);
         pulp::Arch::new().dispatch(Chunks { env: *env, states, actions, terminated, inactive });
     }
-    for (lane, state) in (together..).zip(rest).filter(|(lane, _)| !inactive[*lane]) {
-        let step = env.step(*state, actions[lane], &mut NoRng);
-        (*state, terminated[lane]) = (step.state, step.terminated);
+    for (index, state) in (in_lanes..).zip(rest).filter(|(index, _)| !inactive[*index]) {
+        let step = env.step(*state, actions[index], &mut NoRng);
+        (*state, terminated[index]) = (step.state, step.terminated);
     }
-    for (reward, &end) in rewards.iter_mut().zip(&*terminated) {
-        *reward = env.reward(end);
+    for (reward, &terminated) in rewards.iter_mut().zip(&*terminated) {
+        *reward = env.reward(terminated);
     }
 }
 
-/// Compiled for each instruction set.
+/// Sub-environments in chunks of [`LANES`], as a closure that `pulp` compiles for each instruction set.
 struct Chunks<'a, E, S> {
     env: E,
     states: &'a mut [[S; LANES]],
@@ -67,8 +66,8 @@ where
     #[inline(always)]
     fn call(self) {
         let env = self.env;
-        let places = self.states.iter_mut().zip(self.terminated);
-        for ((states, terminated), (actions, inactive)) in places.zip(self.actions.iter().zip(self.inactive)) {
+        let outputs = self.states.iter_mut().zip(self.terminated);
+        for ((states, terminated), (actions, inactive)) in outputs.zip(self.actions.iter().zip(self.inactive)) {
             let actions = std::array::from_fn(|lane| if inactive[lane] { 0 } else { actions[lane] });
             let mut fields = [[0.0; LANES]; M];
             (0..LANES).for_each(|lane| scatter(&mut fields, lane, states[lane]));
@@ -80,7 +79,7 @@ where
     }
 }
 
-/// Puts a state in its lane.
+/// Writes a state to a lane.
 #[inline(always)]
 pub(crate) fn scatter<S: Into<[f64; M]>, const K: usize, const M: usize>(
     fields: &mut [[f64; K]; M],
@@ -92,7 +91,7 @@ pub(crate) fn scatter<S: Into<[f64; M]>, const K: usize, const M: usize>(
     }
 }
 
-/// The state of a lane.
+/// Reads the state of a lane.
 #[inline(always)]
 pub(crate) fn gather<S: From<[f64; M]>, const K: usize, const M: usize>(fields: &[[f64; K]; M], lane: usize) -> S {
     std::array::from_fn(|field| fields[field][lane]).into()

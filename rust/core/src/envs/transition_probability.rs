@@ -1,11 +1,11 @@
-//! Environments that know the probability of each step.
+//! The trait of environments that know the probability of each step.
 
 use super::{Env, Step};
 use crate::random::Rng;
 
-/// An environment whose steps have probabilities.
+/// An environment that knows the probability of each step, as Gymnasium's toy text environments report it in `info`.
 pub trait TransitionProbability: Env {
-    /// One step, and how likely it was.
+    /// One step, and the probability of what was sampled.
     fn step_with_probability(
         &self,
         state: Self::State,

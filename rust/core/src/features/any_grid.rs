@@ -1,14 +1,14 @@
-//! A grid of either kind: cells rounded to, or bins between edges.
+//! A grid chosen at run time.
 
 use super::{Bins, Features, OutOfBounds, Rounding};
 use crate::numeric::Float;
 
-/// One row for each observation, by whichever rule was chosen at run time.
+/// One of the grids, chosen at run time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AnyGrid<T> {
-    /// The article's.
+    /// Cells by rounding, as in the article.
     Rounding(Rounding<T>),
-    /// `np.digitize`'s.
+    /// Bins between edges.
     Bins(Bins<T>),
 }
 

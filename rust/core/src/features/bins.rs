@@ -1,36 +1,36 @@
-//! Bins between edges, equal in width or not: `np.digitize`. What lies beyond the limits falls into the outermost bins.
+//! Bins between edges, as in `np.digitize`. Values beyond the limits belong to the outermost bins.
 
 use std::marker::PhantomData;
 
 use super::{BatchFeatures, Features, OutOfBounds};
 use crate::numeric::Float;
 
-/// Up to so many edges are counted without a branch, more are searched by halves.
+/// Up to this many edges are compared one by one, without a branch. More are binary searched.
 const LINEAR_SCAN_MAX: usize = 64;
 
-/// The inner edges of one component's bins. A single-precision edge is a double-precision one, and lies between the
-/// same numbers.
+/// The inner edges of the bins of one component, in ascending order. Edges in float32 are stored as f64, which changes
+/// no comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edges(Vec<f64>);
 
 impl Edges {
-    /// Edges as given.
+    /// Bins of any width.
     ///
     /// # Panics
-    /// If they fall, or one is NaN.
+    /// If the edges are not ascending, or one is NaN.
     pub fn new(edges: Vec<f64>) -> Self {
-        assert!(edges.is_sorted() && !edges.iter().any(|edge| edge.is_nan()), "edges must not fall");
+        assert!(edges.is_sorted() && !edges.iter().any(|edge| edge.is_nan()), "edges must be ascending");
         Self(edges)
     }
 
-    /// `np.linspace(low, high, bins + 1)[1:-1]`, computed in the dtype of the bounds: the edges of Gymnasium's
-    /// `DiscretizeObservation`.
+    /// Bins of equal width, as in Gymnasium's `DiscretizeObservation`: `np.linspace(low, high, bins + 1)[1:-1]`, computed
+    /// in the dtype of the bounds.
     pub fn equal_width<T: Float>(low: T, high: T, bins: u32) -> Self {
         let width = (high - low) / T::from_count(bins);
         Self::new((1..bins).map(|edge| (T::from_count(edge) * width + low).into()).collect())
     }
 
-    /// How many bins lie between and beyond the edges.
+    /// The number of bins, one more than edges.
     pub fn bins(&self) -> usize {
         self.0.len() + 1
     }
@@ -44,10 +44,10 @@ impl Edges {
         self.0.partition_point(|&edge| edge <= value) as u32
     }
 
-    /// The same in `K` lanes: edge by edge, as wide registers want it.
-    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    /// [`bin`](Self::bin) of `K` values. Edge by edge, because that loop compiles to SIMD code.
+    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn bins_of_lanes<const K: usize>(&self, values: &[f32; K]) -> [usize; K] {
+    fn bin_batch<const K: usize>(&self, values: &[f32; K]) -> [usize; K] {
         let values = values.map(f64::from);
         if self.0.len() > LINEAR_SCAN_MAX {
             return values.map(|value| self.bin(value) as usize);
@@ -62,7 +62,7 @@ impl Edges {
     }
 }
 
-/// A grid of bins over the axes `A`, rows in C order, for observations of dtype `T`.
+/// A grid of bins for observations of dtype `T`: one row per cell, in C order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bins<T, A = Vec<Edges>> {
     axes: A,
@@ -70,7 +70,7 @@ pub struct Bins<T, A = Vec<Edges>> {
 }
 
 impl<T: Float, A: AsRef<[Edges]>> Bins<T, A> {
-    /// The grid over these axes.
+    /// The grid with these edges along each component.
     pub fn new(axes: A) -> Self {
         Self { axes, dtype: PhantomData }
     }
@@ -79,7 +79,7 @@ impl<T: Float, A: AsRef<[Edges]>> Bins<T, A> {
 impl<T: Float, A: AsRef<[Edges]>, O: AsRef<[T]> + ?Sized> Features<O> for Bins<T, A> {
     type Active = [u32; 1];
 
-    #[expect(clippy::inline_always, reason = "a call a step costs a tenth of it")]
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     fn active_rows(&self, observation: &O) -> Result<[u32; 1], OutOfBounds> {
         let mut row = 0;
@@ -99,13 +99,13 @@ impl<T: Float, A: AsRef<[Edges]>, O: AsRef<[T]> + ?Sized> Features<O> for Bins<T
 }
 
 impl<const M: usize> BatchFeatures<M> for Bins<f32, [Edges; M]> {
-    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {
         let mut rows = [0; K];
         let mut nan = false;
         for (edges, values) in self.axes.iter().zip(observations) {
-            let bins = edges.bins_of_lanes(values);
+            let bins = edges.bin_batch(values);
             for lane in 0..K {
                 rows[lane] = rows[lane] * edges.bins() + bins[lane];
                 nan |= values[lane].is_nan();
@@ -126,14 +126,14 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_beyond_the_limits_falls_into_the_outermost_bins() {
+    fn values_beyond_the_limits_belong_to_the_outermost_bins() {
         let grid = Bins::new([Edges::equal_width(-1.0_f32, 1.0, 4)]);
         assert_eq!(grid.active_rows(&[-9.0_f32]), Ok([0]));
         assert_eq!(grid.active_rows(&[f32::INFINITY]), Ok([3]));
     }
 
     #[test]
-    fn many_edges_are_searched_as_few_are_counted() {
+    fn the_binary_search_agrees_with_the_linear_scan() {
         let many = Edges::new((0..200).map(f64::from).collect());
         for value in [-1.0, 0.0, 0.5, 77.0, 198.99, 199.0, 1e9] {
             assert_eq!(many.bin(value), many.0.iter().map(|&edge| u32::from(edge <= value)).sum::<u32>());
@@ -146,8 +146,8 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "must not fall")]
-    fn edges_that_fall_are_refused() {
+    #[should_panic(expected = "must be ascending")]
+    fn descending_edges_are_refused() {
         Edges::new(vec![1.0, 0.0]);
     }
 }

@@ -1,8 +1,8 @@
-//! A discrete observation is its own row; of several numbers each combination has one.
+//! Discrete observations as row indices.
 
 use super::{Features, OutOfBounds};
 
-/// One row for each of so many observations.
+/// One row for each of this many discrete observations: an observation is its own row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Identity(pub u32);
 
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_observation_has_a_row_and_the_next_has_none() {
+    fn the_last_observation_has_a_row_and_a_larger_one_has_none() {
         assert_eq!(Identity(3).active_rows(&2), Ok([2]));
         assert!(Identity(3).active_rows(&3).is_err());
     }

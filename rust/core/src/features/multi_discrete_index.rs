@@ -1,8 +1,9 @@
-//! Several discrete numbers as one row index.
+//! Observations of several discrete numbers as row indices.
 
 use super::{Features, OutOfBounds};
 
-/// One row for each combination of numbers below so many each, the last one running fastest: `np.ravel_multi_index`.
+/// One row for each combination of discrete numbers, in C order: `np.ravel_multi_index`. Holds how many values each
+/// number can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MultiDiscreteIndex<C>(pub C);
 
@@ -44,11 +45,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn combinations_are_counted_in_c_order() {
-        let cells = MultiDiscreteIndex([2, 3, 4]);
-        assert_eq!(Features::<[u32]>::len(&cells), 24);
-        assert_eq!(cells.active_rows(&[0, 0, 3]), Ok([3]));
-        assert_eq!(cells.active_rows(&[1, 2, 3]), Ok([23]));
-        assert_eq!(cells.active_rows(&[1, 3, 0]), Err(OutOfBounds { axis: 1, value: 3.0 }));
+    fn combinations_are_in_c_order() {
+        let index = MultiDiscreteIndex([2, 3, 4]);
+        assert_eq!(Features::<[u32]>::len(&index), 24);
+        assert_eq!(index.active_rows(&[0, 0, 3]), Ok([3]));
+        assert_eq!(index.active_rows(&[1, 2, 3]), Ok([23]));
+        assert_eq!(index.active_rows(&[1, 3, 0]), Err(OutOfBounds { axis: 1, value: 3.0 }));
     }
 }

@@ -1,15 +1,15 @@
-//! The article's discretizer: `round((observation - low) * scale)`, half to even, as `NumPy` computes it.
+//! A grid of rounded cells, the article's discretizer: `np.round((observation - low) * scale)`.
 
 use std::marker::PhantomData;
 
 use super::{BatchFeatures, Features, OutOfBounds};
 use crate::numeric::Float;
 
-/// Adding this to |x| < 2⁵¹ leaves round-half-even(x) in the low bits of the sum: `rint` without a call, and the integer
-/// for nothing.
+/// Adding this to a number below 2⁵¹ in magnitude rounds it, half to even, and leaves the integer in the low bits of the
+/// sum. That is faster than a call of `rint` and a conversion.
 const ROUND_TO_INTEGER: f64 = 6_755_399_441_055_744.0; // 1.5 × 2⁵²
 
-/// One component of the observation, in the dtype `T` of the space's bounds.
+/// The cells of one component of the observation, in the dtype `T` of its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis<T> {
     low: T,
@@ -18,33 +18,35 @@ pub struct Axis<T> {
 }
 
 impl<T: Float> Axis<T> {
-    /// An axis from `low` to `high`, both included, with `scale` cells a unit.
+    /// Cells from `low` to `high`, both included, with `scale` cells per unit.
     pub fn new(low: T, high: T, scale: f64) -> Self {
         let last = ((high - low).into() * scale).round_ties_even();
         Self { low, scale, size: last as u32 + 1 }
     }
 
-    /// How many cells it has.
+    /// The number of cells.
     pub fn size(&self) -> usize {
         self.size as usize
     }
 
-    /// The subtraction is made in `T`, the product in f64: `NumPy`'s promotion of f32 with an array of numbers.
+    /// The cell of a value, if it has one. The subtraction is in `T` and the product in f64, as `NumPy` promotes them.
     #[inline]
     fn cell(&self, value: T) -> Option<u32> {
-        let cell = self.shifted(value);
-        // One comparison: what is negative, NaN or too large to round so lies far beyond any size as an integer.
+        let cell = self.rounded(value);
+        // One comparison suffices: negative numbers, NaN and numbers too large to round become huge integers.
         (cell < u64::from(self.size)).then_some(cell as u32)
     }
 
+    /// The rounded product as an integer, before the range check.
     #[inline]
-    fn shifted(&self, value: T) -> u64 {
-        let shifted = (value - self.low).into() * self.scale + ROUND_TO_INTEGER;
-        shifted.to_bits().wrapping_sub(ROUND_TO_INTEGER.to_bits())
+    fn rounded(&self, value: T) -> u64 {
+        let sum = (value - self.low).into() * self.scale + ROUND_TO_INTEGER;
+        sum.to_bits().wrapping_sub(ROUND_TO_INTEGER.to_bits())
     }
 }
 
-/// A grid over the axes `A` (an array, or a `Vec` where their count is known at run time only), rows in C order.
+/// A grid of rounded cells for observations of dtype `T`: one row per cell, in C order. `A` is an array of axes, or a
+/// `Vec` if their number is known at run time only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rounding<T, A = Vec<Axis<T>>> {
     axes: A,
@@ -52,17 +54,17 @@ pub struct Rounding<T, A = Vec<Axis<T>>> {
 }
 
 impl<T: Float, A: AsRef<[Axis<T>]>> Rounding<T, A> {
-    /// The grid over these axes.
+    /// The grid with these axes.
     pub fn new(axes: A) -> Self {
         Self { axes, dtype: PhantomData }
     }
 
-    /// How many components an observation has.
+    /// The number of components of an observation.
     pub fn dimensions(&self) -> usize {
         self.axes.as_ref().len()
     }
 
-    /// How many cells each axis has.
+    /// The number of cells along each axis.
     pub fn shape(&self) -> Vec<usize> {
         self.axes.as_ref().iter().map(Axis::size).collect()
     }
@@ -89,7 +91,7 @@ impl<T: Float, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Roun
 }
 
 impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
-    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {
         let mut rows = [0_u64; K];
@@ -97,9 +99,9 @@ impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
         for (axis, values) in self.axes.iter().zip(observations) {
             let size = u64::from(axis.size);
             for (row, &value) in rows.iter_mut().zip(values) {
-                let cell = axis.shifted(value);
+                let cell = axis.rounded(value);
                 inside &= cell < size;
-                // A cell outside may be any number.
+                // Out of bounds, the cell may be any integer.
                 *row = row.wrapping_mul(size).wrapping_add(cell);
             }
         }
@@ -130,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn halves_go_to_the_even_cell() {
+    fn halves_round_to_even() {
         let halves = Rounding::new([Axis::new(0.0_f64, 10.0, 1.0)]);
         for (value, row) in [(0.5, 0), (1.5, 2), (2.5, 2), (3.5, 4)] {
             assert_eq!(halves.active_rows(&[value]), Ok([row]));
@@ -138,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_outside_is_refused_and_named() {
+    fn out_of_bounds_names_the_component() {
         for value in [-1.4_f32, 0.8, 1e30, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             assert!(matches!(article().active_rows(&[value, 0.0]), Err(OutOfBounds { axis: 0, .. })));
         }
@@ -146,7 +148,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_cell_is_the_rounded_product_or_none(value in prop_oneof![-2.0..12.0, any::<f64>()], size in 1_u32..12) {
+        fn a_cell_is_the_rounded_product_if_it_is_in_range(value in prop_oneof![-2.0..12.0, any::<f64>()], size in 1_u32..12) {
             let axis = Axis { low: 0.0, scale: 1.0, size };
             let rounded = f64::round_ties_even(value);
             let inside = rounded >= 0.0 && rounded < f64::from(size);

@@ -1,18 +1,21 @@
-//! Dyna-Q: Q-learning that also learns from what it remembers (Sutton, 1990; Sutton & Barto, the box in section 8.2).
+//! Dyna-Q: Q-learning that also learns from a model (R. Sutton, 1990; Sutton & Barto, the box in section 8.2).
 
-use super::common::single_row;
-use super::common::{Agent, Model, ModelEntry, UpdateRule};
+use super::common::{Agent, Model, ModelEntry, UpdateRule, single_row};
 use crate::random::Rng;
-
 use crate::tasks::Next;
 
-/// After every step: Q-learning's update, the model, then the same update for pairs drawn from the model. A state is one
-/// row of a table.
+/// At every step:
+///
+/// 1. Q(S, A) ← Q(S, A) + α [R + γ maxₐ Q(S′, a) - Q(S, A)];
+/// 2. Model(S, A) ← R, S′;
+/// 3. n times: S ← a random visited state, A ← a random action tried in S, R, S′ ← Model(S, A), and update 1.
+///
+/// A state must have one active row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynaQ {
-    /// What followed each pair the last time.
+    /// The model.
     pub model: Model,
-    /// n: how many updates follow each step.
+    /// The number of planning updates per step, n.
     pub planning_steps: u32,
 }
 
@@ -27,14 +30,14 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        let (row, outcome) = (single_row(&state), ModelEntry::new(reward, &next));
-        agent.update_from_entry(row, action, outcome);
-        self.model.remember(row, action, outcome);
+        let (row, entry) = (single_row(&state), ModelEntry::new(reward, &next));
+        agent.update_from_entry(row, action, entry);
+        self.model.record(row, action, entry);
         for _ in 0..self.planning_steps {
             let row = self.model.sample_state(rng);
             let action = self.model.sample_action(row, rng);
-            if let Some(outcome) = self.model.outcome(row, action) {
-                agent.update_from_entry(row, action, outcome);
+            if let Some(entry) = self.model.entry(row, action) {
+                agent.update_from_entry(row, action, entry);
             }
         }
         agent.next_action(next, rng)
@@ -48,11 +51,11 @@ mod tests {
     use crate::learners::common::{Learner, TdLearner};
 
     #[test]
-    fn planning_repeats_the_only_thing_that_happened() {
+    fn planning_repeats_the_only_transition() {
         let rule = DynaQ { model: Model::new(2, 2), planning_steps: 2 };
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng());
-        // Three times half the way to -1 + 0.5 · 3: 0.75, 0.625, 0.5625
+        // Three updates with α = 0.5 towards -1 + 0.5 · 3: 0.75, 0.625, 0.5625
         assert_eq!(learner.agent.table.values(), [0.5625, 0.0, 2.0, 3.0]);
     }
 }

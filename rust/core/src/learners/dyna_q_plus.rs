@@ -1,29 +1,30 @@
-//! Dyna-Q+: Dyna-Q that grows curious of what it has not tried for long (Sutton, 1990; Sutton & Barto, section 8.3).
+//! Dyna-Q+: Dyna-Q with an exploration bonus (R. Sutton, 1990; Sutton & Barto, section 8.3).
 
-use super::common::single_row;
-use super::common::{Agent, Model, ModelEntry, UpdateRule};
+use super::common::{Agent, Model, ModelEntry, UpdateRule, single_row};
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// Dyna-Q, whose planning adds κ √τ to a reward, τ being the steps since the pair was last tried. Actions that were
-/// never tried are considered as well: they are taken to lead back with a reward of zero (the book's footnote), and τ
-/// counts from the run's beginning.
+/// Dyna-Q whose planning updates use the reward R + κ √τ, where τ is the number of steps since the pair was last tried in
+/// the environment. Planning considers all actions of a visited state. An action that was never tried is assumed to lead
+/// back to the same state with a reward of 0 (the book's footnote), and its τ counts from the start of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynaQPlus {
-    /// What followed each pair the last time.
+    /// The model.
     pub model: Model,
-    /// n: how many updates follow each step.
+    /// The number of planning updates per step, n.
     pub planning_steps: u32,
-    /// κ.
+    /// The weight of the bonus, κ.
     pub time_weight: f64,
+    /// The number of steps taken.
     now: u64,
+    /// The step at which each pair was last tried.
     last_tried: Vec<u64>,
 }
 
 impl DynaQPlus {
-    /// A rule for an agent that has tried nothing yet.
+    /// An update rule before the first step.
     pub fn new(model: Model, planning_steps: u32, time_weight: f64) -> Self {
-        let last_tried = vec![0; model.pairs()];
+        let last_tried = vec![0; model.num_pairs()];
         Self { model, planning_steps, time_weight, now: 0, last_tried }
     }
 }
@@ -39,19 +40,19 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        let (row, outcome) = (single_row(&state), ModelEntry::new(reward, &next));
+        let (row, entry) = (single_row(&state), ModelEntry::new(reward, &next));
         self.now += 1;
         self.last_tried[agent.table.weight_index(row, action)] = self.now;
-        agent.update_from_entry(row, action, outcome);
-        self.model.remember(row, action, outcome);
+        agent.update_from_entry(row, action, entry);
+        self.model.record(row, action, entry);
         for _ in 0..self.planning_steps {
             let row = self.model.sample_state(rng);
             let action = rng.integers(agent.table.num_actions() as u32) as usize;
             let ModelEntry { reward, next } =
-                self.model.outcome(row, action).unwrap_or(ModelEntry { reward: 0.0, next: Some(row) });
+                self.model.entry(row, action).unwrap_or(ModelEntry { reward: 0.0, next: Some(row) });
             let elapsed = (self.now - self.last_tried[agent.table.weight_index(row, action)]) as f64;
-            let curious = reward + self.time_weight * elapsed.sqrt();
-            agent.update_from_entry(row, action, ModelEntry { reward: curious, next });
+            let reward = reward + self.time_weight * elapsed.sqrt();
+            agent.update_from_entry(row, action, ModelEntry { reward, next });
         }
         agent.next_action(next, rng)
     }
@@ -64,11 +65,11 @@ mod tests {
     use crate::learners::common::{Learner, TdLearner};
 
     #[test]
-    fn what_was_not_tried_for_long_gains() {
+    fn an_action_that_was_not_tried_for_long_gains_value() {
         let rule = DynaQPlus::new(Model::new(1, 2), 64, 1.0);
         let mut learner = TdLearner { agent: agent(&[0.0, 0.0]), rule };
         learner.learn([0], 0, 0.0, Next::Terminal, &mut rng());
-        // Action 1, never tried, is taken to lead back with κ √1: its value v = 1 + 0.5 v, so 2 in the end.
+        // Action 1 was never tried: it is assumed to lead back with κ √1, so its value tends to v = 1 + 0.5 v = 2.
         let &[tried, untried] = learner.agent.table.values() else { unreachable!("two actions") };
         assert_eq!(tried, 0.0);
         assert!((untried - 2.0).abs() < 1e-3);

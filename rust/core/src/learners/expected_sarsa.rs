@@ -1,4 +1,4 @@
-//! Expected Sarsa (van Seijen et al., 2009; Sutton & Barto, equation 6.9).
+//! Expected Sarsa (H. van Seijen et al., 2009; Sutton & Barto, equation 6.9).
 
 use super::common::{Agent, UpdateRule};
 use crate::policies::Policy;
@@ -28,8 +28,8 @@ where
     ) -> usize {
         match next {
             Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
-                let target =
-                    reward + agent.discount * agent.policy.expected(agent.table.action_values(next_state.as_ref()));
+                let target = reward
+                    + agent.discount * agent.policy.expected_value(agent.table.action_values(next_state.as_ref()));
                 agent.update(state, action, target);
             }
             Next::Terminal => agent.update_terminal(state, action, reward),

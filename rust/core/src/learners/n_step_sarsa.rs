@@ -6,7 +6,7 @@ use super::common::{Agent, UpdateRule};
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// A pair on its way to its update, and the reward that followed it.
+/// A state-action pair that awaits its update, and the reward that followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Visit<R> {
     rows: R,
@@ -14,33 +14,36 @@ struct Visit<R> {
     reward: f64,
 }
 
-/// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [Rₜ₊₁ + γ Rₜ₊₂ + … + γⁿ⁻¹ Rₜ₊ₙ + γⁿ Q(Sₜ₊ₙ, Aₜ₊ₙ) - Q(Sₜ, Aₜ)], added from the left, the
-/// powers of γ as a running product.
+/// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [G - Q(Sₜ, Aₜ)] with the n-step return
+/// G = Rₜ₊₁ + γ Rₜ₊₂ + … + γⁿ⁻¹ Rₜ₊ₙ + γⁿ Q(Sₜ₊ₙ, Aₜ₊ₙ).
+///
+/// The sum runs from left to right, and the powers of γ are a running product. At the end of an episode the last n pairs
+/// are updated with shorter returns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NStepSarsa<R> {
-    steps: usize,
-    /// The last visits, oldest first: never more than n.
+    n: usize,
+    /// The last visits, oldest first, at most n.
     visits: VecDeque<Visit<R>>,
 }
 
 impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
-    /// Targets of `steps` rewards.
+    /// Targets of `n` rewards.
     ///
     /// # Panics
-    /// If `steps` is zero.
-    pub fn new(steps: usize) -> Self {
-        assert!(steps > 0, "a target has at least one reward");
-        Self { steps, visits: VecDeque::with_capacity(steps) }
+    /// If `n` is 0.
+    pub fn new(n: usize) -> Self {
+        assert!(n > 0, "n_steps must be at least 1, got 0");
+        Self { n, visits: VecDeque::with_capacity(n) }
     }
 
-    /// The update of the oldest visit; `end` is what follows the newest, unless nothing does.
-    fn update_oldest(&mut self, agent: &mut Agent, end: Option<(R, usize)>) {
+    /// Updates the oldest pair. `bootstrap` is the pair after the newest reward, or `None` after a terminal state.
+    fn update_oldest(&mut self, agent: &mut Agent, bootstrap: Option<(R, usize)>) {
         let (mut target, mut power) = (0.0, 1.0);
         for visit in &self.visits {
             target += power * visit.reward;
             power *= agent.discount;
         }
-        if let Some((rows, action)) = end {
+        if let Some((rows, action)) = bootstrap {
             target += power * agent.value(rows, action);
         }
         if let Some(Visit { rows, action, .. }) = self.visits.pop_front() {
@@ -48,9 +51,9 @@ impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
         }
     }
 
-    fn update_all(&mut self, agent: &mut Agent, end: Option<(R, usize)>) {
+    fn update_all(&mut self, agent: &mut Agent, bootstrap: Option<(R, usize)>) {
         while !self.visits.is_empty() {
-            self.update_oldest(agent, end);
+            self.update_oldest(agent, bootstrap);
         }
     }
 }
@@ -67,13 +70,13 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for NStepSarsa<R> {
         rng: &mut impl Rng,
     ) -> usize {
         self.visits.push_back(Visit { rows: state, action, reward });
-        let end = agent.sample_next(next, rng);
+        let bootstrap = agent.sample_next(next, rng);
         if !matches!(next, Next::NonTerminal(_)) {
-            self.update_all(agent, end);
-        } else if self.visits.len() == self.steps {
-            self.update_oldest(agent, end);
+            self.update_all(agent, bootstrap);
+        } else if self.visits.len() == self.n {
+            self.update_oldest(agent, bootstrap);
         }
-        end.map_or(0, |(_, next_action)| next_action)
+        bootstrap.map_or(0, |(_, next_action)| next_action)
     }
 }
 
@@ -84,7 +87,7 @@ mod tests {
     use crate::learners::common::{Learner, TdLearner};
 
     #[test]
-    fn two_rewards_and_what_follows_by_hand() {
+    fn one_update_by_hand() {
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0, 4.0, 8.0]), rule: NStepSarsa::new(2) };
         assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);
         assert_eq!(learner.agent.table.values()[0], 1.0);
@@ -94,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_visits_are_updated_when_the_episode_ends() {
+    fn the_last_pairs_are_updated_when_the_episode_ends() {
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: NStepSarsa::new(5) };
         learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng());
         learner.learn([1], 1, -2.0, Next::Terminal, &mut rng());

@@ -1,4 +1,4 @@
-//! Q-learning: off-policy temporal-difference control (Watkins, 1989; Sutton & Barto, equation 6.8).
+//! Q-learning: off-policy temporal-difference control (C. Watkins, 1989; Sutton & Barto, equation 6.8).
 
 use super::common::{Agent, UpdateRule};
 use crate::numeric::maximum;
@@ -7,7 +7,7 @@ use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
 
-/// Q(S, A) ← Q(S, A) + α [R + γ maxₐ Q(S′, a) - Q(S, A)], evaluated from the left.
+/// Q(S, A) ← Q(S, A) + α [R + γ maxₐ Q(S′, a) - Q(S, A)].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QLearning;
 
@@ -27,7 +27,7 @@ where
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        // Each case is written out: shared, the article's run would lose a twentieth of its speed.
+        // The cases repeat the target: shared code would slow the specialized run down by a twentieth.
         match next {
             Next::NonTerminal(next_state) => {
                 let target = reward + agent.discount * maximum(agent.table.action_values(next_state.as_ref()));
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_lit_together_share_an_update() {
+    fn active_rows_share_an_update() {
         let mut agent = agent(&[1.0, 0.0, 2.0, 3.0, 0.0, 4.0]);
         agent.learning_rate = LearningRate::scheduled(Schedule::constant(0.5), 2);
         agent.discount = 1.0;

@@ -1,4 +1,4 @@
-//! Sarsa: on-policy temporal-difference control (Rummery & Niranjan, 1994; Sutton & Barto, equation 6.7).
+//! Sarsa: on-policy temporal-difference control (G. Rummery and M. Niranjan, 1994; Sutton & Barto, equation 6.7).
 
 use super::common::{Agent, UpdateRule};
 use crate::policies::Policy;
@@ -6,7 +6,7 @@ use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
 
-/// Q(S, A) ← Q(S, A) + α [R + γ Q(S′, A′) - Q(S, A)], A′ chosen before the update.
+/// Q(S, A) ← Q(S, A) + α [R + γ Q(S′, A′) - Q(S, A)]. A′ is chosen before the update.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sarsa;
 
@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_out_bootstraps_and_a_terminal_state_does_not() {
+    fn a_truncated_episode_bootstraps_and_a_terminal_state_does_not() {
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: Sarsa };
         learner.learn([0], 0, -1.0, Next::Truncated([1]), &mut rng());
         learner.learn([1], 0, -1.0, Next::Terminal, &mut rng());

@@ -1,17 +1,21 @@
-//! Sarsa(λ) (Rummery & Niranjan, 1994; Sutton & Barto, the box in section 12.7).
+//! Sarsa(λ) (G. Rummery and M. Niranjan, 1994; Sutton & Barto, the box in section 12.7).
 
 use super::common::{Agent, TraceKind, Traces, UpdateRule};
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// δ = R + γ Q(S′, A′) - Q(S, A); w ← w + α δ z; z ← γλ z. A visit marks the traces of its rows first.
+/// With the weights w (the Q table) and the traces z, after z has changed for the visit of (S, A):
+///
+/// - δ = R + γ Q(S′, A′) - Q(S, A)
+/// - w ← w + α δ z
+/// - z ← γλ z
 #[derive(Clone, Debug, PartialEq)]
 pub struct SarsaLambda {
-    /// z.
+    /// The traces z.
     pub traces: Traces,
-    /// How a visit marks it.
+    /// How a visit changes them.
     pub kind: TraceKind,
-    /// λ.
+    /// The trace decay λ.
     pub trace_decay: f64,
 }
 
@@ -54,7 +58,7 @@ mod tests {
     use crate::learners::common::{Learner, TdLearner};
 
     #[test]
-    fn an_error_reaches_back_along_the_traces() {
+    fn an_error_updates_earlier_pairs_along_the_traces() {
         let rule = SarsaLambda { traces: Traces::new(4, 0.0), kind: TraceKind::Accumulating, trace_decay: 0.5 };
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         // δ = -1 + 0.5 · 3 - 1

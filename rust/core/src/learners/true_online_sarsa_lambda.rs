@@ -1,24 +1,30 @@
-//! True online Sarsa(λ), with dutch traces (van Seijen et al., 2016; Sutton & Barto, the box in section 12.7).
+//! True online Sarsa(λ), with dutch traces (H. van Seijen et al., 2016; Sutton & Barto, the box in section 12.7).
 
 use super::common::{Agent, Traces, UpdateRule};
 use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
 
-/// z ← γλ z + (1 - αγλ zᵀx) x; w ← w + α (δ + Q - Qₒ) z - α (Q - Qₒ) x; Qₒ ← Q′, the old value.
+/// With the weights w (the Q table), the traces z, the binary features x of (S, A), Q = wᵀx and Q′ = wᵀx′:
+///
+/// - δ = R + γ Q′ - Q
+/// - z ← γλ z + (1 - αγλ zᵀx) x
+/// - w ← w + α (δ + Q - Qₒ) z - α (Q - Qₒ) x
+/// - Qₒ ← Q′
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrueOnlineSarsaLambda {
-    /// z.
+    /// The dutch traces z.
     pub traces: Traces,
-    /// λ.
+    /// The trace decay λ.
     pub trace_decay: f64,
-    old: f64,
+    /// Q′ of the step before.
+    q_old: f64,
 }
 
 impl TrueOnlineSarsaLambda {
-    /// A rule that has seen nothing yet.
+    /// An update rule before the first step.
     pub fn new(traces: Traces, trace_decay: f64) -> Self {
-        Self { traces, trace_decay, old: 0.0 }
+        Self { traces, trace_decay, q_old: 0.0 }
     }
 }
 
@@ -40,28 +46,28 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
         };
         let value = agent.value(state, action);
         let error = reward + agent.discount * next_value - value;
-        let change = value - self.old;
-        // Its step size is the same for every weight: visits do not count.
-        let step = agent.learning_rate.at(0);
+        let change = value - self.q_old;
+        // The algorithm needs one step size for all weights, so visit counts are not supported.
+        let step_size = agent.learning_rate.at(0);
         let decay = agent.discount * self.trace_decay;
 
-        let uniform = rows.iter().fold(0.0, |sum, &row| sum + traces.get(agent.table.weight_index(row, action)));
-        let mark = 1.0 - step * decay * uniform;
+        let trace_sum = rows.iter().fold(0.0, |sum, &row| sum + traces.get(agent.table.weight_index(row, action)));
+        let increment = 1.0 - step_size * decay * trace_sum;
         traces.decay(decay);
         for &row in rows {
-            traces.update(agent.table.weight_index(row, action), |trace| trace + mark);
+            traces.update(agent.table.weight_index(row, action), |trace| trace + increment);
         }
         agent.table.check_finite(error);
         traces.apply_td_error(&mut agent.table, &agent.learning_rate, error + change);
         for &row in rows {
-            *agent.table.value_mut(row, action) -= step * change;
+            *agent.table.value_mut(row, action) -= step_size * change;
         }
-        self.old = next_value;
+        self.q_old = next_value;
         next_action
     }
 
     fn end_episode(&mut self) {
-        self.old = 0.0;
+        self.q_old = 0.0;
         self.traces.clear();
     }
 }
@@ -77,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_update_corrects_for_the_old_value_of_zero() {
+    fn two_updates_by_hand() {
         let mut learner = learner(&[1.0, 0.0, 2.0, 3.0]);
         // z = 1; δ = -1 + 0.5 · 3 - 1; 1 + 0.5 (δ + 1 - 0) - 0.5 (1 - 0)
         learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng());
@@ -88,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_visit_adds_less_than_a_whole_trace() {
+    fn a_second_visit_adds_less_than_one() {
         let mut learner = learner(&[0.0, 0.0]);
         for _ in 0..2 {
             learner.learn([0], 0, 0.0, Next::NonTerminal([0]), &mut rng());

@@ -1,18 +1,22 @@
-//! Watkins's Q(λ) (Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
+//! Watkins's Q(λ) (C. Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
 
 use super::common::{Agent, TraceKind, Traces, UpdateRule};
 use crate::numeric::maximum;
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// δ = R + γ maxₐ Q(S′, a) - Q(S, A); w ← w + α δ z; z ← γλ z while A′ is greedy, 0 otherwise.
+/// With the weights w (the Q table) and the traces z, after z has changed for the visit of (S, A):
+///
+/// - δ = R + γ maxₐ Q(S′, a) - Q(S, A)
+/// - w ← w + α δ z
+/// - z ← γλ z if A′ is greedy, otherwise z ← 0
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatkinsQLambda {
-    /// z.
+    /// The traces z.
     pub traces: Traces,
-    /// How a visit marks it.
+    /// How a visit changes them.
     pub kind: TraceKind,
-    /// λ.
+    /// The trace decay λ.
     pub trace_decay: f64,
 }
 
@@ -34,7 +38,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
             Some((next_state, next_action)) => {
                 let values = agent.table.action_values(next_state.as_ref());
                 let largest = maximum(values);
-                // An action that ties for the largest value is greedy, whether it was explored or not.
+                // An action that ties for the maximum is greedy, even if it was chosen by exploring.
                 (next_action, reward + agent.discount * largest, values[next_action] == largest)
             }
             None => (0, reward, false),
@@ -71,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_reaches_back_while_actions_are_greedy() {
+    fn an_error_updates_earlier_pairs_while_actions_are_greedy() {
         let mut learner = learner(0.0);
         assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);
         // δ = -1 - 3, and the first pair's trace is 1/4
@@ -80,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn an_action_that_is_not_greedy_ends_the_traces() {
+    fn a_non_greedy_action_clears_the_traces() {
         let mut learner = learner(1.0);
         let mut rng = rng();
         while learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng) == 1 {

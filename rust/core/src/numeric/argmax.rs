@@ -1,18 +1,18 @@
-//! The maximum of some values, and where it is.
+//! The maximum of some values, and its index.
 
-/// The first of the largest values: `np.argmax`.
+/// The index of the maximum, the first one of several: `np.argmax`.
 #[inline]
 pub(crate) fn argmax(values: &[f64]) -> usize {
-    // The largest value is carried along: looked up by index, it would add a load to the chain of comparisons.
+    // The pairs carry the value along: looking it up by index would add a load to the chain of comparisons.
     let larger = |one: (usize, f64), other: (usize, f64)| if other.1 > one.1 { other } else { one };
     let mut best = (0, values[0]);
     if values.len() < 4 {
-        for (action, &value) in values.iter().enumerate().skip(1) {
-            best = larger(best, (action, value));
+        for (index, &value) in values.iter().enumerate().skip(1) {
+            best = larger(best, (index, value));
         }
         return best.0;
     }
-    // By pairs, so that fewer comparisons wait for each other.
+    // Comparing pairs first shortens the chain of dependent comparisons.
     for (pair, values) in values.chunks(2).enumerate() {
         let first = (2 * pair, values[0]);
         let of_pair = if let &[_, second] = values { larger(first, (2 * pair + 1, second)) } else { first };
@@ -21,7 +21,7 @@ pub(crate) fn argmax(values: &[f64]) -> usize {
     best.0
 }
 
-/// `np.max`.
+/// The maximum: `np.max`.
 #[inline]
 pub(crate) fn maximum(values: &[f64]) -> f64 {
     values[1..].iter().fold(values[0], |largest, &value| if value > largest { value } else { largest })

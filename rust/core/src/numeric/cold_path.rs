@@ -1,6 +1,7 @@
-//! What the compiler cannot know about how often something happens.
+//! A hint for the compiler about rare branches.
 
-/// Called in a branch that is seldom taken, it keeps the branch a branch: the processor predicts it and goes on, where a
-/// select would make every step wait for the comparison. (`std::hint::cold_path`, once the oldest supported Rust has it.)
+/// Marks the branch that calls it as rare, so that the compiler keeps it a branch. The processor then predicts it,
+/// whereas a conditional move would make every step wait for the comparison. To be replaced by `std::hint::cold_path`
+/// once the minimum supported Rust version has it.
 #[cold]
 pub(crate) fn cold_path() {}

@@ -1,8 +1,8 @@
-//! The dtypes of Gymnasium's boxes.
+//! The floating-point dtypes of Gymnasium's `Box` spaces.
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// f32 or f64, with `NumPy` 2's promotion: a box's arithmetic stays in the dtype of its bounds.
+/// f32 or f64. Under `NumPy` 2's promotion rules, arithmetic on a `Box` stays in the dtype of its bounds.
 pub trait Float:
     Copy
     + PartialOrd
@@ -14,7 +14,7 @@ pub trait Float:
     + Send
     + Sync
 {
-    /// The nearest number to a count.
+    /// The nearest representable number to an integer.
     fn from_count(count: u32) -> Self;
 }
 

@@ -1,4 +1,4 @@
-//! Arithmetic with the rounding of Python, `NumPy` and the platform's C library, and numeric helpers.
+//! Arithmetic that rounds as Python, `NumPy` and the platform's C library do, and small numeric helpers.
 
 mod argmax;
 mod cold_path;
@@ -17,5 +17,5 @@ pub(crate) use python_float::{clip, modulo, squared};
 pub use scalar::Scalar;
 pub(crate) use sum::sum;
 
-/// How many lanes the SIMD code computes at once: eight f64 numbers fill two registers of AVX2.
+/// The number of SIMD lanes that are computed together: eight f64 numbers fill two AVX2 registers.
 pub const LANES: usize = 8;

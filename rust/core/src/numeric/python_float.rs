@@ -1,31 +1,31 @@
-//! Arithmetic of Python and `NumPy` where Rust's operators would round differently.
+//! Float operations of Python and `NumPy` that differ from Rust's.
 
 use std::hint::black_box;
 
-/// Python's `x**2`: the platform's `pow`, which differs from `x * x` in about one call in a thousand.
+/// Python's `x**2`: the platform's `pow`, which differs from `x * x` in the last bit in about one call in a thousand.
 #[inline]
 pub(crate) fn squared(x: f64) -> f64 {
-    // A visible exponent would be folded into `x * x` when optimised.
+    // With a constant exponent the optimiser would turn this into `x * x`.
     x.powf(black_box(2.0))
 }
 
-/// `np.clip`: NaN stays NaN.
+/// `np.clip(value, low, high)`. NaN stays NaN.
 #[inline]
 pub(crate) fn clip(value: f64, low: f64, high: f64) -> f64 {
     let raised = if value < low { low } else { value };
     if raised > high { high } else { raised }
 }
 
-/// Python's and `NumPy`'s `a % b` for b > 0.
+/// `a % b` in Python and `NumPy`, for `b > 0`: the result has the sign of the divisor.
 #[inline]
 pub(crate) fn modulo(a: f64, b: f64) -> f64 {
-    let rest = a % b;
-    if rest == 0.0 {
+    let remainder = a % b;
+    if remainder == 0.0 {
         0.0
-    } else if rest < 0.0 {
-        rest + b
+    } else if remainder < 0.0 {
+        remainder + b
     } else {
-        rest
+        remainder
     }
 }
 
@@ -34,13 +34,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_square_is_the_platforms_power() {
+    fn a_square_is_computed_by_the_platforms_pow() {
         let two = black_box(2.0);
         let differ = (1..100_000).map(|n| f64::from(n) / 977.0).filter(|x| {
             assert_eq!(squared(*x), x.powf(two));
             squared(*x) != x * x
         });
-        // Where the platform's power is exact to the last bit there are none.
+        // A platform whose `pow` is correctly rounded has none.
         assert!(differ.count() < 1000);
     }
 

@@ -5,10 +5,10 @@ use std::ops::{Add, Mul, Sub};
 
 use super::squared;
 
-/// A number with the dtype that decides how `NumPy` 2 promotes it (NEP 50).
+/// A scalar together with its dtype.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scalar {
-    /// A Python float, which takes on the dtype of whatever it meets.
+    /// A Python float: it adopts the dtype of the other operand.
     Python(f64),
     /// `np.float32`
     Single(f32),
@@ -17,7 +17,7 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// Both in the dtype in which `NumPy` brings them together.
+    /// Applies `single` or `double` to both numbers, promoted to their common dtype.
     #[inline]
     fn with<T>(self, other: Self, single: impl Fn(f32, f32) -> T, double: impl Fn(f64, f64) -> T) -> T {
         match (self, other) {
@@ -28,6 +28,7 @@ impl Scalar {
         }
     }
 
+    /// The same, with the result as a scalar of the common dtype.
     #[inline]
     fn combine(self, other: Self, single: impl Fn(f32, f32) -> f32, double: impl Fn(f64, f64) -> f64) -> Self {
         let python = matches!((self, other), (Self::Python(_), Self::Python(_)));
@@ -53,7 +54,7 @@ impl Scalar {
         self.with(other, |a, b| a == b, |a, b| a == b)
     }
 
-    /// `self**2`, in its own dtype.
+    /// `self**2`, which keeps the dtype.
     #[inline]
     #[must_use]
     pub fn squared(self) -> Self {
@@ -117,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_python_float_takes_on_the_dtype_that_it_meets() {
+    fn a_python_float_adopts_the_dtype_of_the_other_operand() {
         let (python, single) = (Scalar::Python(0.07), Scalar::Single(0.07));
         assert!(python.equal(single));
         assert!(!Scalar::Double(0.07).equal(single));

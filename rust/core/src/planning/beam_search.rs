@@ -1,8 +1,7 @@
-//! The best known ways out of the valley: a beam search over the car's exact dynamics.
+//! The shortest known routes of `MountainCar`: a beam search over the exact dynamics.
 //!
-//! From a start all three actions are tried, again and again, each on real states; of the states reached after so many
-//! steps only the most promising are followed. The first step that reaches the goal makes a route that can be driven.
-//! That no shorter one exists is not proved.
+//! From an initial state it tries all three actions, step by step, and keeps the most promising states after each step.
+//! The first step that reaches the goal completes a route, which can be driven. The route is not proven to be shortest.
 
 use std::mem::swap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,119 +10,120 @@ use super::{CostToGo, PlanningError};
 use crate::envs::Env;
 use crate::envs::classic_control::{MOUNTAIN_CAR_RESET_BOUNDS, MountainCar, MountainCarState};
 
-/// How many starts stand for the uniform distribution: each in the middle of an equal share of it.
+/// The default number of initial positions, which represent the uniform distribution.
 pub const STARTS: u32 = 1000;
-/// How many states are followed at a time; 1,024 save a hundredth of a step, in a hundred times the time.
+/// The default beam width. A width of 1,024 shortens routes by a hundredth of a step and takes a hundred times as long.
 pub const BEAM: usize = 16;
-/// States as near as this to each other, in parts of the whole range, count as one.
+/// States within the same cell count as equal. The cell is this fraction of the range of positions and velocities.
 const CELL: f64 = 1e-4;
 
-/// The middles of equal shares of the starting positions.
+/// `count` initial positions: the midpoints of equal parts of their range.
 pub fn starts(count: u32) -> Vec<f64> {
-    let [low, high] = MOUNTAIN_CAR_RESET_BOUNDS.map(|(_, number)| number);
+    let [low, high] = MOUNTAIN_CAR_RESET_BOUNDS.map(|(_, bound)| bound);
     (0..count).map(|index| low + (high - low) * ((f64::from(index) + 0.5) / f64::from(count))).collect()
 }
 
-/// The actions that lead from a standing start to the goal, the fewest that the beam finds; None where it finds no way
-/// within the limit.
+/// The shortest sequence of actions found from an initial position, at rest, to the goal; `None` if none is found within
+/// `max_steps` steps.
 ///
 /// # Errors
 /// `Stopped` after `stop` was set.
 pub fn beam_search(
     heuristic: &CostToGo,
     position: f64,
-    limit: u64,
+    max_steps: u64,
     beam: usize,
     stop: &AtomicBool,
 ) -> Result<Option<Vec<u8>>, PlanningError> {
     let car = heuristic.car();
     let start = MountainCarState { position, velocity: 0.0 };
-    let mut layer = vec![Node { state: start, left: 0.0, cell: (0, 0), way: (0, 0) }];
-    let mut next = Vec::new();
-    // Of each state that was followed, layer by layer.
-    let mut ways: Vec<Vec<Parent>> = Vec::new();
-    let steps = if heuristic.reachable(start) { limit } else { 0 };
-    for _ in 0..steps {
+    let mut layer = vec![Node { state: start, steps_to_go: 0.0, cell: (0, 0), parent: (0, 0) }];
+    let mut next_layer = Vec::new();
+    // The parents of the nodes kept in each layer.
+    let mut parents: Vec<Vec<Parent>> = Vec::new();
+    let max_steps = if heuristic.is_reachable(start) { max_steps } else { 0 };
+    for _ in 0..max_steps {
         if stop.load(Ordering::Acquire) {
             return Err(PlanningError::Stopped);
         }
-        next.clear();
-        for (parent, reached) in layer.iter().enumerate() {
+        next_layer.clear();
+        for (index, node) in layer.iter().enumerate() {
             for action in 0..car.num_actions() {
-                let after = car.transition(reached.state, action);
-                let way = (parent as u32, action as u8);
-                if after.terminated {
-                    return Ok(Some(backtrack(&ways, way)));
+                let next = car.transition(node.state, action);
+                let parent = (index as u32, action as u8);
+                if next.terminated {
+                    return Ok(Some(backtrack(&parents, parent)));
                 }
-                let (state, left) = (after.state, heuristic.steps(after.state));
-                next.push(Node { state, left, cell: cell(car, state), way });
+                let (state, steps_to_go) = (next.state, heuristic.steps(next.state));
+                next_layer.push(Node { state, steps_to_go, cell: cell(car, state), parent });
             }
         }
-        // Stable sorts: of equals the first stays first.
-        next.sort_by(|one, other| one.cell.cmp(&other.cell).then(one.left.total_cmp(&other.left)));
-        next.dedup_by_key(|reached| reached.cell);
-        next.sort_by(|one, other| one.left.total_cmp(&other.left));
-        next.truncate(beam);
-        swap(&mut layer, &mut next);
-        ways.push(layer.iter().map(|reached| reached.way).collect());
+        // The sorts are stable: of equal nodes the first stays first.
+        next_layer.sort_by(|a, b| a.cell.cmp(&b.cell).then(a.steps_to_go.total_cmp(&b.steps_to_go)));
+        next_layer.dedup_by_key(|node| node.cell);
+        next_layer.sort_by(|a, b| a.steps_to_go.total_cmp(&b.steps_to_go));
+        next_layer.truncate(beam);
+        swap(&mut layer, &mut next_layer);
+        parents.push(layer.iter().map(|node| node.parent).collect());
     }
     Ok(None)
 }
 
-/// How many steps the car takes when at each it does what the heuristic says of the observation; the limit where it does
-/// not arrive.
+/// The number of steps to the goal of the greedy policy for the heuristic, which sees the float32 observation;
+/// `max_steps` if it does not reach the goal.
 ///
 /// # Errors
 /// `Stopped` after `stop` was set.
 pub fn greedy_rollout(
     heuristic: &CostToGo,
     position: f64,
-    limit: u64,
+    max_steps: u64,
     stop: &AtomicBool,
 ) -> Result<u64, PlanningError> {
     let car = heuristic.car();
     let mut state = MountainCarState { position, velocity: 0.0 };
-    let steps = if heuristic.reachable(state) { limit } else { 0 };
+    let steps = if heuristic.is_reachable(state) { max_steps } else { 0 };
     for taken in 1..=steps {
         if stop.load(Ordering::Acquire) {
             return Err(PlanningError::Stopped);
         }
         let [position, velocity] = car.observe(&state).map(f64::from);
-        let after = car.transition(state, heuristic.best_action(MountainCarState { position, velocity }));
-        if after.terminated {
+        let next = car.transition(state, heuristic.best_action(MountainCarState { position, velocity }));
+        if next.terminated {
             return Ok(taken);
         }
-        state = after.state;
+        state = next.state;
     }
-    Ok(limit)
+    Ok(max_steps)
 }
 
-/// The place of the state before in its layer, and the action.
+/// The index of the parent in the layer before, and the action taken there.
 type Parent = (u32, u8);
 
-/// A state that was reached.
+/// A state in the beam.
 #[derive(Clone, Copy)]
 struct Node {
     state: MountainCarState,
-    /// The heuristic's steps from here on.
-    left: f64,
+    /// The heuristic number of steps to the goal.
+    steps_to_go: f64,
     cell: (i32, i32),
-    way: Parent,
+    parent: Parent,
 }
 
+/// The cell of a state.
 fn cell(car: &MountainCar, state: MountainCarState) -> (i32, i32) {
     let position = (state.position - car.min_position) / ((car.max_position - car.min_position) * CELL);
     let velocity = state.velocity / (2.0 * car.max_speed * CELL);
     (position as i32, velocity.floor() as i32)
 }
 
-/// The actions that led to a state of the last layer, and one more.
-fn backtrack(ways: &[Vec<Parent>], (mut place, last): Parent) -> Vec<u8> {
+/// The actions that lead from the start to a node of the last layer, followed by `last`.
+fn backtrack(parents: &[Vec<Parent>], (mut index, last): Parent) -> Vec<u8> {
     let mut actions = vec![last];
-    for layer in ways.iter().rev() {
-        let (parent, action) = layer[place as usize];
+    for layer in parents.iter().rev() {
+        let (parent, action) = layer[index as usize];
         actions.push(action);
-        place = parent;
+        index = parent;
     }
     actions.reverse();
     actions
@@ -133,14 +133,14 @@ fn backtrack(ways: &[Vec<Parent>], (mut place, last): Parent) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    static GO: AtomicBool = AtomicBool::new(false);
+    static NO_STOP: AtomicBool = AtomicBool::new(false);
 
-    fn heuristic(car: MountainCar) -> CostToGo {
-        CostToGo::new(car, 200, &GO).expect("it settles")
+    fn cost_to_go(car: MountainCar) -> CostToGo {
+        CostToGo::new(car, 200, &NO_STOP).expect("not stopped")
     }
 
-    /// How many steps the actions take to the goal, if their last one reaches it.
-    fn driven(car: &MountainCar, position: f64, actions: &[u8]) -> Option<usize> {
+    /// The number of actions, if exactly the last one reaches the goal.
+    fn steps_to_goal(car: &MountainCar, position: f64, actions: &[u8]) -> Option<usize> {
         let mut state = MountainCarState { position, velocity: 0.0 };
         for (taken, &action) in actions.iter().enumerate() {
             let step = car.transition(state, action.into());
@@ -152,61 +152,62 @@ mod tests {
         None
     }
 
-    /// The fewest steps by trying every sequence of actions.
-    fn fewest(car: &MountainCar, state: MountainCarState, most: usize) -> Option<usize> {
-        if most == 0 {
+    /// The fewest steps to the goal, by trying all sequences of up to `max_steps` actions.
+    fn fewest_steps(car: &MountainCar, state: MountainCarState, max_steps: usize) -> Option<usize> {
+        if max_steps == 0 {
             return None;
         }
         let steps = (0..car.num_actions()).map(|action| car.transition(state, action));
-        let rest = steps.map(|step| if step.terminated { Some(0) } else { fewest(car, step.state, most - 1) });
+        let rest =
+            steps.map(|step| if step.terminated { Some(0) } else { fewest_steps(car, step.state, max_steps - 1) });
         rest.flatten().min().map(|rest| rest + 1)
     }
 
     #[test]
     fn every_route_reaches_the_goal_with_its_last_action() {
         let car = MountainCar::default();
-        let heuristic = heuristic(car);
+        let heuristic = cost_to_go(car);
         let mut sum = 0;
         for position in starts(50) {
-            let beam_search = beam_search(&heuristic, position, 200, BEAM, &GO).expect("no stop").expect("a way");
-            let steps = driven(&car, position, &beam_search).expect("the goal");
-            assert!(steps as u64 <= greedy_rollout(&heuristic, position, 200, &GO).expect("no stop"));
+            let route = beam_search(&heuristic, position, 200, BEAM, &NO_STOP).expect("not stopped").expect("a route");
+            let steps = steps_to_goal(&car, position, &route).expect("the goal");
+            assert!(steps as u64 <= greedy_rollout(&heuristic, position, 200, &NO_STOP).expect("not stopped"));
             sum += steps;
         }
-        // Seen: 4,883. The book's agents, and any that is published, take more.
+        // The sum was 4,883 when this was written. Published agents need more steps.
         assert!(sum <= 50 * 98, "{sum}");
     }
 
     #[test]
-    fn where_every_sequence_can_be_tried_none_is_shorter() {
+    fn routes_are_shortest_where_all_sequences_can_be_tried() {
         let car = MountainCar { force: 0.01, goal_position: -0.2, ..MountainCar::default() };
-        let heuristic = heuristic(car);
+        let heuristic = cost_to_go(car);
         for position in starts(7) {
-            let beam_search = beam_search(&heuristic, position, 200, BEAM, &GO).expect("no stop").expect("a way");
+            let route = beam_search(&heuristic, position, 200, BEAM, &NO_STOP).expect("not stopped").expect("a route");
             let state = MountainCarState { position, velocity: 0.0 };
-            assert_eq!(Some(beam_search.len()), fewest(&car, state, beam_search.len()), "from {position}");
+            assert_eq!(Some(route.len()), fewest_steps(&car, state, route.len()), "from {position}");
         }
     }
 
     #[test]
     fn an_unreachable_goal_has_no_route() {
-        let heuristic = heuristic(MountainCar { goal_velocity: 1.0, ..MountainCar::default() });
-        assert_eq!(beam_search(&heuristic, -0.5, 200, BEAM, &GO), Ok(None));
-        assert_eq!(greedy_rollout(&heuristic, -0.5, 200, &GO), Ok(200));
+        let heuristic = cost_to_go(MountainCar { goal_velocity: 1.0, ..MountainCar::default() });
+        assert_eq!(beam_search(&heuristic, -0.5, 200, BEAM, &NO_STOP), Ok(None));
+        assert_eq!(greedy_rollout(&heuristic, -0.5, 200, &NO_STOP), Ok(200));
     }
 
     #[test]
-    fn a_limit_ends_the_search() {
-        let heuristic = heuristic(MountainCar::default());
-        assert_eq!(beam_search(&heuristic, -0.5, 50, BEAM, &GO), Ok(None));
-        assert_eq!(greedy_rollout(&heuristic, -0.5, 50, &GO), Ok(50));
+    fn the_time_limit_ends_the_search() {
+        let heuristic = cost_to_go(MountainCar::default());
+        assert_eq!(beam_search(&heuristic, -0.5, 50, BEAM, &NO_STOP), Ok(None));
+        assert_eq!(greedy_rollout(&heuristic, -0.5, 50, &NO_STOP), Ok(50));
     }
 
     #[test]
-    fn who_is_told_to_stop_stops() {
+    fn the_stop_flag_stops_the_search() {
         let stop = AtomicBool::new(true);
         assert_eq!(CostToGo::new(MountainCar::default(), 200, &stop), Err(PlanningError::Stopped));
-        let heuristic = heuristic(MountainCar::default());
+        let heuristic = cost_to_go(MountainCar::default());
         assert_eq!(beam_search(&heuristic, -0.5, 200, BEAM, &stop), Err(PlanningError::Stopped));
     }
 }

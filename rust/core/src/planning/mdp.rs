@@ -1,113 +1,123 @@
-//! What is planned on: a table, and what an agent sees of its states.
+//! Environments as Markov decision processes for planning.
 
 use crate::envs::Env;
 use crate::envs::tabular::{InvalidMdp, Outcome, TabularMdp};
 use crate::envs::toy_text::{Blackjack, Hand, Taxi};
 
-/// A table whose states an agent may not tell apart by what they show; one who remembers can.
+/// A Markov decision process and what an agent observes of it. Its states hold all that the dynamics depend on, so
+/// several of them can look the same to an agent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mdp {
-    /// All that matters is in its state.
+    /// The transition table.
     pub table: TabularMdp,
-    /// For each state the row of an agent's table that it lights.
+    /// For each state the row of the agent's Q table that its observation activates.
     pub rows: Vec<usize>,
 }
 
+/// Every state is observed as it is.
 impl From<TabularMdp> for Mdp {
     fn from(table: TabularMdp) -> Self {
-        let rows = (0..table.states()).collect();
+        let rows = (0..table.num_states()).collect();
         Self { table, rows }
     }
 }
 
-/// The table twice: before the passenger had the occasion to change their mind, and after. Who remembers whether the
-/// taxi has moved with them knows which.
+/// With fickle passengers the table is doubled: first the states in which the passenger may still change the destination,
+/// then those after the taxi has moved with them. An agent that remembers whether it did can tell them apart.
 impl TryFrom<&Taxi> for Mdp {
     type Error = InvalidMdp;
 
     fn try_from(taxi: &Taxi) -> Result<Self, InvalidMdp> {
         let Some(fickle) = taxi.fickle else { return Ok(taxi.table.clone().into()) };
-        let (states, actions) = (taxi.table.states(), taxi.table.num_actions());
-        let mut rows = Vec::with_capacity(2 * states * actions);
-        for settled in [false, true] {
-            for (state, action) in (0..states).flat_map(|state| (0..actions).map(move |action| (state, action))) {
+        let (num_states, num_actions) = (taxi.table.num_states(), taxi.table.num_actions());
+        let mut pairs = Vec::with_capacity(2 * num_states * num_actions);
+        for decided in [false, true] {
+            for pair in 0..num_states * num_actions {
+                let (state, action) = (pair / num_actions, pair % num_actions);
                 let mut outcomes = Vec::new();
                 for (probability, step) in taxi.table.outcomes(state, action) {
                     let next = step.state as usize;
-                    let place = |next: usize, probability: f64, settled: bool| {
-                        outcome(probability, next + states * usize::from(settled), step.reward, step.terminated)
+                    let outcome_at = |next: usize, probability: f64, decided: bool| {
+                        outcome(probability, next + num_states * usize::from(decided), step.reward, step.terminated)
                     };
-                    if settled || !Taxi::carries(state as u32, step.state) {
-                        outcomes.push(place(next, probability, settled));
+                    if decided || !Taxi::moves_passenger(state as u32, step.state) {
+                        outcomes.push(outcome_at(next, probability, decided));
                         continue;
                     }
-                    outcomes.push(place(next, probability * (1.0 - fickle), true));
-                    let others = Taxi::elsewhere(step.state);
+                    outcomes.push(outcome_at(next, probability * (1.0 - fickle), true));
+                    let others = Taxi::with_other_destinations(step.state);
                     let share = fickle / others.len() as f64;
-                    outcomes.extend(others.iter().map(|&other| place(other as usize, probability * share, true)));
+                    outcomes.extend(others.iter().map(|&other| outcome_at(other as usize, probability * share, true)));
                 }
-                rows.push(outcomes);
+                pairs.push(outcomes);
             }
         }
-        let mut start = taxi.table.initial().to_vec();
-        start.resize(2 * states, 0.0);
-        let table = TabularMdp::new(actions, &start, &rows)?;
-        Ok(Self { table, rows: (0..2 * states).map(|state| state % states).collect() })
+        let mut initial_distribution = taxi.table.initial_distribution().to_vec();
+        initial_distribution.resize(2 * num_states, 0.0);
+        let table = TabularMdp::new(num_actions, &initial_distribution, &pairs)?;
+        Ok(Self { table, rows: (0..2 * num_states).map(|state| state % num_states).collect() })
     }
 }
 
-/// Gymnasium's cells, (sum, open card, usable ace), and after them the naturals, by the open card: they show what three
-/// cards may show, too, and are paid otherwise.
+/// The states are Gymnasium's observations (player's sum, dealer's card, usable ace), followed by the naturals, one for
+/// each card of the dealer. A natural looks like a 21 of three cards but pays differently.
 impl TryFrom<&Blackjack> for Mdp {
     type Error = InvalidMdp;
 
     fn try_from(rules: &Blackjack) -> Result<Self, InvalidMdp> {
-        let [sums, cards, aces] = Blackjack::OBSERVATION_SHAPE;
-        let cells = sums * cards * aces;
-        let cell = |hand: &Hand, shown: usize| {
-            if hand.natural() {
-                return cells + shown;
+        let [num_sums, num_cards, num_aces] = Blackjack::OBSERVATION_SHAPE;
+        let num_observations = num_sums * num_cards * num_aces;
+        let num_states = num_observations + num_cards;
+        let state_of = |hand: &Hand, shown: usize| {
+            if hand.is_natural() {
+                return num_observations + shown;
             }
-            (hand.sum() as usize * cards + shown) * aces + usize::from(hand.usable_ace())
+            (hand.sum() as usize * num_cards + shown) * num_aces + usize::from(hand.usable_ace())
         };
-        let dealt: Vec<Vec<(f64, Hand)>> = (0..cards).map(|shown| Blackjack::dealers_hands(shown as u32)).collect();
-        let mut rows = Vec::new();
-        for state in 0..cells + cards {
-            let shown = if state < cells { state / aces % cards } else { state - cells };
-            let hand = if state < cells {
-                Hand::showing((state / aces / cards) as u32, state % aces == 1)
-            } else {
+        let dealer_hands: Vec<Vec<(f64, Hand)>> =
+            (0..num_cards).map(|shown| Blackjack::dealer_hands(shown as u32)).collect();
+        let mut pairs = Vec::new();
+        for state in 0..num_states {
+            let is_natural = state >= num_observations;
+            let shown = if is_natural { state - num_observations } else { state / num_aces % num_cards };
+            let hand = if is_natural {
                 Some(Hand::default().with(1).with(10))
+            } else {
+                Hand::showing((state / num_aces / num_cards) as u32, state % num_aces == 1)
             };
-            let Some(hand) = hand.filter(|hand| shown > 0 && !hand.bust()) else {
-                // No hand shows this.
-                rows.extend([0, 1].map(|_| vec![outcome(1.0, state, 0.0, true)]));
+            let Some(hand) = hand.filter(|hand| shown > 0 && !hand.is_bust()) else {
+                // An observation that never occurs.
+                pairs.extend([0, 1].map(|_| vec![outcome(1.0, state, 0.0, true)]));
                 continue;
             };
             let stick =
                 |(probability, dealer): &(f64, Hand)| outcome(*probability, state, rules.payoff(&hand, dealer), true);
-            rows.push(dealt[shown].iter().map(stick).collect());
+            pairs.push(dealer_hands[shown].iter().map(stick).collect());
             let hit = Blackjack::cards().map(|(probability, card)| {
                 let hand = hand.with(card);
-                if hand.bust() {
+                if hand.is_bust() {
                     outcome(probability, state, -1.0, true)
                 } else {
-                    outcome(probability, cell(&hand, shown), 0.0, false)
+                    outcome(probability, state_of(&hand, shown), 0.0, false)
                 }
             });
-            rows.push(hit.collect());
+            pairs.push(hit.collect());
         }
-        let mut start = vec![0.0; cells + cards];
-        for (open, shown) in Blackjack::cards() {
-            for (first, one) in Blackjack::cards() {
-                for (second, two) in Blackjack::cards() {
-                    start[cell(&Hand::default().with(one).with(two), shown as usize)] += open * first * second;
+        let mut initial_distribution = vec![0.0; num_states];
+        for (shown_probability, shown) in Blackjack::cards() {
+            for (first_probability, first) in Blackjack::cards() {
+                for (second_probability, second) in Blackjack::cards() {
+                    let hand = Hand::default().with(first).with(second);
+                    initial_distribution[state_of(&hand, shown as usize)] +=
+                        shown_probability * first_probability * second_probability;
                 }
             }
         }
-        let shows = |state: usize| if state < cells { state } else { ((21 * cards) + state - cells) * aces + 1 };
-        let seen = (0..cells + cards).map(shows).collect();
-        Ok(Self { table: TabularMdp::new(rules.num_actions(), &start, &rows)?, rows: seen })
+        let row_of = |state: usize| {
+            if state < num_observations { state } else { (21 * num_cards + state - num_observations) * num_aces + 1 }
+        };
+        let table = TabularMdp::new(rules.num_actions(), &initial_distribution, &pairs)?;
+        Ok(Self { table, rows: (0..num_states).map(row_of).collect() })
     }
 }
 
@@ -124,62 +134,66 @@ mod tests {
     use crate::planning::{finite_horizon, policy_return};
     use crate::random::{Pcg64, SeedSequence};
 
-    static GO: AtomicBool = AtomicBool::new(false);
+    static NO_STOP: AtomicBool = AtomicBool::new(false);
 
-    /// The mean return of an environment under a policy over its rows, and its standard error.
-    fn played<E: Env<Action = usize>>(env: &E, row: impl Fn(&E::State) -> usize, policy: &[usize]) -> (f64, f64) {
+    /// The mean return of a policy over the rows of a Q table, and its standard error, from simulated episodes.
+    fn simulated_return<E: Env<Action = usize>>(
+        env: &E,
+        row: impl Fn(&E::State) -> usize,
+        policy: &[usize],
+    ) -> (f64, f64) {
         let mut rng = Pcg64::new(&SeedSequence::new(&[1]));
         let episodes = 100_000;
         let (mut sum, mut squares) = (0.0, 0.0);
         for _ in 0..episodes {
-            let (mut state, mut total) = (env.reset(&mut rng), 0.0);
+            let (mut state, mut episode_return) = (env.reset(&mut rng), 0.0);
             for _ in 0..50 {
                 let step = env.step(state, policy[row(&state)], &mut rng);
-                (state, total) = (step.state, total + step.reward);
+                (state, episode_return) = (step.state, episode_return + step.reward);
                 if step.terminated {
                     break;
                 }
             }
-            sum += total;
-            squares += total * total;
+            sum += episode_return;
+            squares += episode_return * episode_return;
         }
         let mean = sum / f64::from(episodes);
         (mean, ((squares / f64::from(episodes) - mean * mean) / f64::from(episodes)).sqrt())
     }
 
     #[test]
-    fn blackjacks_table_is_its_rules() {
+    fn the_mdp_of_blackjack_has_the_returns_of_the_environment() {
         for rules in
             [Blackjack { natural: false, sab: true }, Blackjack { natural: true, sab: false }, Blackjack::default()]
         {
-            let process = Mdp::try_from(&rules).expect("a table");
-            let best = finite_horizon(&process.table, 1.0, 50, &GO).expect("it ends");
+            let mdp = Mdp::try_from(&rules).expect("a valid table");
+            let best = finite_horizon(&mdp.table, 1.0, 50, &NO_STOP).expect("not stopped");
             let row = |state: &<Blackjack as Env>::State| {
                 let [sum, shown, ace] = rules.observe(state).map(|number| number as usize);
                 (sum * 11 + shown) * 2 + ace
             };
-            let (mean, error) = played(&rules, row, &best.policy);
+            let (mean, error) = simulated_return(&rules, row, &best.policy);
             assert!((mean - best.expected_return).abs() < 4.0 * error, "{mean} ± {error}, {}", best.expected_return);
         }
     }
 
     #[test]
-    fn a_fickle_passengers_table_is_the_taxis() {
-        // Drives about in circles with the passenger, and lets them out at every second square.
+    fn the_mdp_of_a_fickle_taxi_has_the_returns_of_the_environment() {
+        // A taxi that drives in a circle with its passenger, under a policy that drops them off on every second square.
         let to =
             |state: i64, reward: f64, terminated: bool| vec![Outcome { probability: 1.0, state, reward, terminated }];
         let rows: Vec<_> = (0..500_i64)
             .flat_map(|state| [to((state + 20) % 500, -1.0, false), to(state, f64::from((state % 4) as i32), true)])
             .collect();
-        let table = TabularMdp::new(2, &[1.0 / 500.0; 500], &rows).expect("a table");
+        let table = TabularMdp::new(2, &[1.0 / 500.0; 500], &rows).expect("a valid table");
         let taxi = Taxi { table, fickle: Some(0.7) };
-        let process = Mdp::try_from(&taxi).expect("a table");
+        let mdp = Mdp::try_from(&taxi).expect("a valid table");
         let policy: Vec<usize> = (0..500).map(|cell| usize::from(cell / 20 % 2 == 0)).collect();
-        let everywhere: Vec<usize> = process.rows.iter().map(|&row| policy[row]).collect();
-        let expected = policy_return(&process.table, &everywhere, 50, &GO).expect("it ends");
-        let (mean, error) = played(&taxi, |state: &TaxiState| state.cell as usize, &policy);
+        let by_state: Vec<usize> = mdp.rows.iter().map(|&row| policy[row]).collect();
+        let expected = policy_return(&mdp.table, &by_state, 50, &NO_STOP).expect("not stopped");
+        let (mean, error) = simulated_return(&taxi, |state: &TaxiState| state.cell as usize, &policy);
         assert!((mean - expected).abs() < 4.0 * error, "{mean} ± {error}, {expected}");
         let steady = Taxi { fickle: None, ..taxi };
-        assert_eq!(Mdp::try_from(&steady).map(|process| process.table), Ok(steady.table));
+        assert_eq!(Mdp::try_from(&steady).map(|mdp| mdp.table), Ok(steady.table));
     }
 }

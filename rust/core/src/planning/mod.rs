@@ -14,11 +14,11 @@ mod tests;
 mod value_iteration;
 
 pub use beam_search::{BEAM, STARTS, beam_search, greedy_rollout, starts};
-pub use bellman::MAX_SWEEPS;
+
 pub use cost_to_go::CostToGo;
 pub use finite_horizon::{FiniteHorizon, PolicyChange, finite_horizon, policy_return};
 pub use mdp::Mdp;
-pub use planning_error::PlanningError;
+pub use planning_error::{MAX_SWEEPS, PlanningError};
 pub use policy_iteration::policy_iteration;
 pub use solution::Solution;
 pub use value_iteration::value_iteration;

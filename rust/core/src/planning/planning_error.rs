@@ -3,30 +3,29 @@
 use std::error::Error;
 use std::fmt;
 
-use super::MAX_SWEEPS;
+/// The number of sweeps after which values that still change count as growing without bound.
+pub const MAX_SWEEPS: u64 = 200_000;
 
-/// Why there is no solution.
+/// Why planning found no solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlanningError {
-    /// The caller asked to stop.
+    /// The caller set the stop flag.
     Stopped,
-    /// The values still change after [`MAX_SWEEPS`].
+    /// The values still change after [`MAX_SWEEPS`] sweeps.
     NotConverged,
-    /// From this state no episode ends, and its rewards add up without a discount.
+    /// No policy is proper: from this state no episode ends, and undiscounted rewards add up without bound.
     NoProperPolicy(usize),
-    /// From this state rewards can be collected for ever.
+    /// From this state a policy collects an unbounded return.
     UnboundedReturn(usize),
 }
 
 impl fmt::Display for PlanningError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Stopped => write!(formatter, "it was stopped"),
+            Self::Stopped => write!(formatter, "planning was stopped"),
             Self::NotConverged => write!(formatter, "the values still change after {MAX_SWEEPS} sweeps"),
             Self::NoProperPolicy(state) => write!(formatter, "from state {state} no episode ends"),
-            Self::UnboundedReturn(state) => {
-                write!(formatter, "from state {state} rewards can be collected without an end")
-            }
+            Self::UnboundedReturn(state) => write!(formatter, "from state {state} the return is unbounded"),
         }
     }
 }

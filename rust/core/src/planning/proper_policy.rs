@@ -1,4 +1,4 @@
-//! Policies that end: without a discount only they have a value.
+//! Proper policies, which end every episode. Without discounting only they have finite values.
 
 use std::sync::atomic::AtomicBool;
 
@@ -8,58 +8,62 @@ use crate::envs::tabular::TabularMdp;
 use crate::envs::{Env, Step};
 use crate::numeric::argmax;
 
-/// What an end is worth a step later, where the soonest is looked for.
+/// The discount per step on ending an episode, so that ending sooner is better.
 const STEP_DISCOUNT: f64 = 0.999;
 
-/// For each state, of the actions that are best without a discount, the one that ends the episode soonest; the first
-/// where none ends it. Many are as good as each other, and some of them lead round in circles for ever.
-pub(crate) fn shortest(
-    table: &TabularMdp,
+/// For each state the action that ends the episode soonest among the optimal ones without discounting, or the first
+/// optimal action if none ends it. Many actions can be optimal, and some of them lead around in circles forever.
+pub(super) fn shortest(
+    mdp: &TabularMdp,
     values: &[f64],
     q_values: &[f64],
     stop: &AtomicBool,
 ) -> Result<Vec<usize>, PlanningError> {
-    let (actions, tie_tolerance) = (table.num_actions(), tie_tolerance(values));
-    let worth = |state: usize, action: usize, ends: &[f64]| {
-        if q_values[state * actions + action] < values[state] - tie_tolerance {
+    let (num_actions, tie_tolerance) = (mdp.num_actions(), tie_tolerance(values));
+    // The discounted probability of ending the episode; -∞ if the action is not optimal.
+    let ending_value = |state: usize, action: usize, ending_values: &[f64]| {
+        if q_values[state * num_actions + action] < values[state] - tie_tolerance {
             return f64::NEG_INFINITY;
         }
-        let end = |probability: f64, step: &Step<u32>| {
-            probability * if step.terminated { 1.0 } else { STEP_DISCOUNT * ends[step.state as usize] }
+        let outcome_value = |probability: f64, step: &Step<u32>| {
+            probability * if step.terminated { 1.0 } else { STEP_DISCOUNT * ending_values[step.state as usize] }
         };
-        table.outcomes(state, action).fold(0.0, |sum, (probability, step)| sum + end(probability, &step))
+        mdp.outcomes(state, action).fold(0.0, |sum, (probability, step)| sum + outcome_value(probability, &step))
     };
-    let mut ends = vec![0.0; table.states()];
-    converge(&mut ends, stop, |state, ends| (0..actions).map(|action| worth(state, action, ends)).fold(0.0, f64::max))?;
-    let best = |state: usize| {
-        let worth: Vec<f64> = (0..actions).map(|action| worth(state, action, &ends)).collect();
-        argmax(&worth)
+    let mut ending_values = vec![0.0; mdp.num_states()];
+    converge(&mut ending_values, stop, |state, ending_values| {
+        (0..num_actions).map(|action| ending_value(state, action, ending_values)).fold(0.0, f64::max)
+    })?;
+    let best_action = |state: usize| {
+        let action_values: Vec<f64> =
+            (0..num_actions).map(|action| ending_value(state, action, &ending_values)).collect();
+        argmax(&action_values)
     };
-    Ok((0..table.states()).map(best).collect())
+    Ok((0..mdp.num_states()).map(best_action).collect())
 }
 
-/// For each state one of the `allowed` actions that may end the episode, or lead to a state that has one; None where no
-/// allowed action ever does. Whoever follows it ends with probability 1, or comes to where nothing ends.
-pub(crate) fn proper_policy(table: &TabularMdp, allowed: impl Fn(usize, usize) -> bool) -> Vec<Option<usize>> {
-    let mut chosen: Vec<Option<usize>> = vec![None; table.states()];
-    let last = table.states() - 1;
+/// For each state an allowed action that may end the episode or lead to a state that has such an action; `None` if no
+/// allowed action does. Following it ends the episode with probability 1, or reaches a state from which nothing ends it.
+pub(super) fn proper_policy(mdp: &TabularMdp, allowed: impl Fn(usize, usize) -> bool) -> Vec<Option<usize>> {
+    let mut policy: Vec<Option<usize>> = vec![None; mdp.num_states()];
+    let last = mdp.num_states() - 1;
     loop {
-        let mut more = false;
-        // There and back, so that a corridor takes no longer one way than the other.
+        let mut changed = false;
+        // Forwards and backwards, so that a corridor takes as few sweeps in either direction.
         for state in (0..=last).chain((0..=last).rev()) {
-            let leads = |&action: &usize| {
+            let may_end = |&action: &usize| {
                 allowed(state, action)
-                    && table.outcomes(state, action).any(|(probability, step)| {
-                        probability > 0.0 && (step.terminated || chosen[step.state as usize].is_some())
+                    && mdp.outcomes(state, action).any(|(probability, step)| {
+                        probability > 0.0 && (step.terminated || policy[step.state as usize].is_some())
                     })
             };
-            if chosen[state].is_none() {
-                chosen[state] = (0..table.num_actions()).find(leads);
-                more |= chosen[state].is_some();
+            if policy[state].is_none() {
+                policy[state] = (0..mdp.num_actions()).find(may_end);
+                changed |= policy[state].is_some();
             }
         }
-        if !more {
-            return chosen;
+        if !changed {
+            return policy;
         }
     }
 }

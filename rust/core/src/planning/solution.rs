@@ -1,14 +1,14 @@
 //! The result of planning without a time limit.
 
-/// A policy that never changes, and what it is worth.
+/// A stationary policy and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// For each state the discounted return to come.
+    /// The value of each state: the expected discounted return.
     pub values: Vec<f64>,
-    /// The same for each state and action, the actions of state 0 first.
+    /// The value of each state-action pair, the actions of state 0 first.
     pub q_values: Vec<f64>,
-    /// For each state the best action.
+    /// The best action of each state.
     pub policy: Vec<usize>,
-    /// How often all states were looked at.
+    /// The number of sweeps over all states.
     pub sweeps: u64,
 }

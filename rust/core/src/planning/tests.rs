@@ -1,140 +1,159 @@
-//! The methods on tables whose answers are known, and against each other.
+//! The methods on tables with known solutions, and compared with each other.
 
 use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
 
 use super::*;
-use crate::envs::Env;
 use crate::envs::tabular::{Outcome, TabularMdp};
+use crate::envs::{Env, Step};
 
-static GO: AtomicBool = AtomicBool::new(false);
+static NO_STOP: AtomicBool = AtomicBool::new(false);
 
-fn sure(state: i64, reward: f64, terminated: bool) -> Vec<Outcome> {
+fn deterministic(state: i64, reward: f64, terminated: bool) -> Vec<Outcome> {
     vec![Outcome { probability: 1.0, state, reward, terminated }]
 }
 
-fn chance(outcomes: &[(f64, i64, f64, bool)]) -> Vec<Outcome> {
+fn stochastic(outcomes: &[(f64, i64, f64, bool)]) -> Vec<Outcome> {
     let outcome = |&(probability, state, reward, terminated)| Outcome { probability, state, reward, terminated };
     outcomes.iter().map(outcome).collect()
 }
 
-fn table(actions: usize, rows: &[Vec<Outcome>]) -> TabularMdp {
-    let states = rows.len() / actions;
-    let mut start = vec![0.0; states];
-    start[0] = 1.0;
-    TabularMdp::new(actions, &start, rows).expect("a table")
+/// A table whose episodes begin in state 0.
+fn table(num_actions: usize, pairs: &[Vec<Outcome>]) -> TabularMdp {
+    let num_states = pairs.len() / num_actions;
+    let mut initial_distribution = vec![0.0; num_states];
+    initial_distribution[0] = 1.0;
+    TabularMdp::new(num_actions, &initial_distribution, pairs).expect("a valid table")
 }
 
-/// A corridor of three: left or right, each step costs one, right of the last is the end.
+/// A corridor of three states: actions left and right, a reward of -1 per step, the end to the right of the last state.
 fn corridor() -> TabularMdp {
-    let row = |state: i64| [sure((state - 1).max(0), -1.0, false), sure((state + 1).min(2), -1.0, state == 2)];
+    let row = |state: i64| {
+        [deterministic((state - 1).max(0), -1.0, false), deterministic((state + 1).min(2), -1.0, state == 2)]
+    };
     table(2, &(0..3).flat_map(row).collect::<Vec<_>>())
 }
 
-/// Stand still for nothing, or leave at once for `reward`.
-fn door(reward: f64) -> TabularMdp {
-    table(2, &[sure(0, 0.0, false), sure(0, reward, true)])
+/// One state: stay with a reward of 0, or end the episode with `reward`.
+fn stay_or_leave(reward: f64) -> TabularMdp {
+    table(2, &[deterministic(0, 0.0, false), deterministic(0, reward, true)])
 }
 
 #[test]
-fn the_corridor_costs_its_length() {
-    let solution = value_iteration(&corridor(), 1.0, &GO).expect("it settles");
+fn a_corridor_costs_its_length() {
+    let solution = value_iteration(&corridor(), 1.0, &NO_STOP).expect("a solution");
     assert_eq!(solution.values, [-3.0, -2.0, -1.0]);
     assert_eq!(solution.q_values, [-4.0, -3.0, -4.0, -2.0, -3.0, -1.0]);
     assert_eq!(solution.policy, [1, 1, 1]);
-    let same = policy_iteration(&corridor(), 1.0, &GO).expect("it settles");
-    assert_eq!((same.values, same.q_values, same.policy), (solution.values, solution.q_values, solution.policy));
+    let policies = policy_iteration(&corridor(), 1.0, &NO_STOP).expect("a solution");
+    assert_eq!(
+        (policies.values, policies.q_values, policies.policy),
+        (solution.values, solution.q_values, solution.policy)
+    );
 }
 
 #[test]
-fn a_discount_counts_the_steps_to_a_reward() {
-    // 1 after three steps.
-    let row = |state: i64| [sure(0, 0.0, false), sure((state + 1).min(2), f64::from(u8::from(state == 2)), state == 2)];
+fn values_are_discounted_by_the_steps_to_a_reward() {
+    // A reward of 1 at the third step to the right.
+    let row = |state: i64| {
+        [deterministic(0, 0.0, false), deterministic((state + 1).min(2), f64::from(u8::from(state == 2)), state == 2)]
+    };
     let table = table(2, &(0..3).flat_map(row).collect::<Vec<_>>());
     for solve in [value_iteration, policy_iteration] {
-        let solution = solve(&table, 0.5, &GO).expect("it settles");
+        let solution = solve(&table, 0.5, &NO_STOP).expect("a solution");
         assert_eq!(solution.values, [0.25, 0.5, 1.0]);
         assert_eq!(solution.policy, [1, 1, 1]);
     }
 }
 
 #[test]
-fn the_best_policy_does_not_put_off_what_is_worth_the_same_later() {
+fn the_best_policy_does_not_postpone_a_reward() {
     for solve in [value_iteration, policy_iteration] {
-        let solution = solve(&door(1.0), 1.0, &GO).expect("it settles");
+        let solution = solve(&stay_or_leave(1.0), 1.0, &NO_STOP).expect("a solution");
         assert_eq!((solution.values, solution.policy), (vec![1.0], vec![1]));
     }
-    let horizon = finite_horizon(&door(1.0), 1.0, 5, &GO).expect("it ends");
+    let horizon = finite_horizon(&stay_or_leave(1.0), 1.0, 5, &NO_STOP).expect("a solution");
     assert_eq!(horizon.policy, [1]);
     assert_eq!(horizon.changes, [PolicyChange { steps_to_go: 1, state: 0, action: 1 }]);
     assert_eq!(horizon.sweeps, 2);
 }
 
 #[test]
-fn not_to_end_may_be_best_but_is_no_policy_that_ends() {
-    assert_eq!(value_iteration(&door(-1.0), 1.0, &GO).map(|solution| solution.values), Ok(vec![0.0]));
-    assert_eq!(policy_iteration(&door(-1.0), 1.0, &GO).map(|solution| solution.values), Ok(vec![-1.0]));
+fn never_ending_may_be_best_but_is_not_proper() {
+    assert_eq!(value_iteration(&stay_or_leave(-1.0), 1.0, &NO_STOP).map(|solution| solution.values), Ok(vec![0.0]));
+    assert_eq!(policy_iteration(&stay_or_leave(-1.0), 1.0, &NO_STOP).map(|solution| solution.values), Ok(vec![-1.0]));
 }
 
 #[test]
-fn rewards_without_an_end_are_noticed() {
-    let mint = table(2, &[sure(0, 1.0, false), sure(0, 0.0, true)]);
-    assert_eq!(value_iteration(&mint, 1.0, &GO), Err(PlanningError::NotConverged));
-    assert_eq!(policy_iteration(&mint, 1.0, &GO), Err(PlanningError::UnboundedReturn(0)));
-    let trap = table(1, &[sure(0, -1.0, false)]);
-    assert_eq!(policy_iteration(&trap, 1.0, &GO), Err(PlanningError::NoProperPolicy(0)));
-    let solution = value_iteration(&mint, 0.5, &GO).expect("a discount makes an end");
+fn unbounded_returns_are_errors() {
+    let unbounded = table(2, &[deterministic(0, 1.0, false), deterministic(0, 0.0, true)]);
+    assert_eq!(value_iteration(&unbounded, 1.0, &NO_STOP), Err(PlanningError::NotConverged));
+    assert_eq!(policy_iteration(&unbounded, 1.0, &NO_STOP), Err(PlanningError::UnboundedReturn(0)));
+    let no_exit = table(1, &[deterministic(0, -1.0, false)]);
+    assert_eq!(policy_iteration(&no_exit, 1.0, &NO_STOP), Err(PlanningError::NoProperPolicy(0)));
+    let solution = value_iteration(&unbounded, 0.5, &NO_STOP).expect("a solution");
     assert_eq!(solution.values, [2.0]);
-    assert_eq!(finite_horizon(&mint, 1.0, 7, &GO).expect("it ends").expected_return, 7.0);
+    assert_eq!(finite_horizon(&unbounded, 1.0, 7, &NO_STOP).expect("a solution").expected_return, 7.0);
 }
 
 #[test]
-fn walls_are_worth_nothing() {
-    let walled = table(1, &[sure(0, -1.0, true), sure(1, 0.0, false)]);
-    assert_eq!(policy_iteration(&walled, 1.0, &GO).map(|solution| solution.values), Ok(vec![-1.0, 0.0]));
+fn walls_have_a_value_of_zero() {
+    let with_wall = table(1, &[deterministic(0, -1.0, true), deterministic(1, 0.0, false)]);
+    assert_eq!(policy_iteration(&with_wall, 1.0, &NO_STOP).map(|solution| solution.values), Ok(vec![-1.0, 0.0]));
 }
 
 #[test]
-fn what_is_best_depends_on_the_steps_left() {
-    // 1 now, or 3 at the third step.
-    let rows = [sure(0, 1.0, true), sure(1, 0.0, false), sure(1, 0.0, true), sure(2, 0.0, false)];
-    let table = table(2, &[rows.to_vec(), vec![sure(2, 3.0, true), sure(2, 3.0, true)]].concat());
+fn the_best_action_depends_on_the_steps_to_go() {
+    // A reward of 1 now, or 3 at the third step.
+    let rows = [
+        deterministic(0, 1.0, true),
+        deterministic(1, 0.0, false),
+        deterministic(1, 0.0, true),
+        deterministic(2, 0.0, false),
+    ];
+    let table = table(2, &[rows.to_vec(), vec![deterministic(2, 3.0, true), deterministic(2, 3.0, true)]].concat());
     for (steps, expected, action) in [(1, 1.0, 0), (2, 1.0, 0), (3, 3.0, 1), (9, 3.0, 1)] {
-        let horizon = finite_horizon(&table, 1.0, steps, &GO).expect("it ends");
+        let horizon = finite_horizon(&table, 1.0, steps, &NO_STOP).expect("a solution");
         assert_eq!((horizon.expected_return, horizon.policy[0]), (expected, action), "{steps} steps");
     }
-    let horizon = finite_horizon(&table, 1.0, 9, &GO).expect("it ends");
+    let horizon = finite_horizon(&table, 1.0, 9, &NO_STOP).expect("a solution");
     let first: Vec<_> = horizon.changes.iter().filter(|change| change.state == 0).collect();
     assert_eq!(
         first,
         [&PolicyChange { steps_to_go: 1, state: 0, action: 0 }, &PolicyChange { steps_to_go: 3, state: 0, action: 1 }]
     );
-    assert_eq!(policy_return(&table, &[1, 1, 0], 2, &GO), Ok(0.0));
-    assert_eq!(policy_return(&table, &[1, 1, 0], 3, &GO), Ok(3.0));
+    assert_eq!(policy_return(&table, &[1, 1, 0], 2, &NO_STOP), Ok(0.0));
+    assert_eq!(policy_return(&table, &[1, 1, 0], 3, &NO_STOP), Ok(3.0));
 }
 
 #[test]
-fn a_discounted_policy_is_still_judged_without_a_discount() {
-    // Impatient: 1 now instead of 3 in two steps, at a discount of 0.5.
-    let rows = [sure(0, 1.0, true), sure(1, 0.0, false), sure(1, 3.0, true), sure(1, 3.0, true)];
-    let horizon = finite_horizon(&table(2, &rows), 0.25, 2, &GO).expect("it ends");
+fn the_expected_return_is_undiscounted() {
+    // A reward of 1 now is better than 3 in the next step with a discount of 0.25, and worse with 0.5.
+    let rows = [
+        deterministic(0, 1.0, true),
+        deterministic(1, 0.0, false),
+        deterministic(1, 3.0, true),
+        deterministic(1, 3.0, true),
+    ];
+    let horizon = finite_horizon(&table(2, &rows), 0.25, 2, &NO_STOP).expect("a solution");
     assert_eq!((horizon.values[0], horizon.expected_return), (1.0, 1.0));
-    let patient = finite_horizon(&table(2, &rows), 0.5, 2, &GO).expect("it ends");
+    let patient = finite_horizon(&table(2, &rows), 0.5, 2, &NO_STOP).expect("a solution");
     assert_eq!((patient.values[0], patient.expected_return), (1.5, 3.0));
 }
 
 #[test]
-fn who_is_told_to_stop_stops() {
+fn the_stop_flag_stops_every_method() {
     let stop = AtomicBool::new(true);
-    let slow = table(1, &[chance(&[(0.999, 0, 1.0, false), (0.001, 0, 1.0, true)])]);
+    let slow = table(1, &[stochastic(&[(0.999, 0, 1.0, false), (0.001, 0, 1.0, true)])]);
     assert_eq!(value_iteration(&slow, 1.0, &stop), Err(PlanningError::Stopped));
     assert_eq!(policy_iteration(&slow, 1.0, &stop), Err(PlanningError::Stopped));
     assert_eq!(finite_horizon(&slow, 1.0, 100, &stop), Err(PlanningError::Stopped));
     assert_eq!(policy_return(&slow, &[0], 100, &stop), Err(PlanningError::Stopped));
 }
 
-fn tables() -> impl Strategy<Value = TabularMdp> {
+/// Random transition tables.
+fn mdps() -> impl Strategy<Value = TabularMdp> {
     let entry = |states: i64| (1_u32..5, 0..states, -3_i32..4, prop::bool::weighted(0.3));
     (1_i64..6, 1_usize..4).prop_flat_map(move |(states, actions)| {
         let row = prop::collection::vec(entry(states), 1..4);
@@ -142,9 +161,9 @@ fn tables() -> impl Strategy<Value = TabularMdp> {
             let rows: Vec<Vec<Outcome>> = rows
                 .into_iter()
                 .map(|entries| {
-                    let whole: u32 = entries.iter().map(|entry| entry.0).sum();
+                    let total: u32 = entries.iter().map(|entry| entry.0).sum();
                     let outcome = |(weight, state, reward, terminated)| Outcome {
-                        probability: f64::from(weight) / f64::from(whole),
+                        probability: f64::from(weight) / f64::from(total),
                         state,
                         reward: f64::from(reward),
                         terminated,
@@ -152,83 +171,84 @@ fn tables() -> impl Strategy<Value = TabularMdp> {
                     entries.into_iter().map(outcome).collect()
                 })
                 .collect();
-            let start = vec![1.0 / states as f64; states as usize];
-            TabularMdp::new(actions, &start, &rows).expect("a table")
+            let initial_distribution = vec![1.0 / states as f64; states as usize];
+            TabularMdp::new(actions, &initial_distribution, &rows).expect("a valid table")
         })
     })
 }
 
-/// The best return over all histories: every branch looked at.
-fn by_hand(table: &TabularMdp, state: usize, discount: f64, left: u32) -> f64 {
-    if left == 0 {
+/// The best return over all histories, by trying every branch.
+fn best_return(mdp: &TabularMdp, state: usize, discount: f64, steps_to_go: u32) -> f64 {
+    if steps_to_go == 0 {
         return 0.0;
     }
     let value = |action| {
-        table.outcomes(state, action).fold(0.0, |sum, (probability, step)| {
-            let next = if step.terminated { 0.0 } else { by_hand(table, step.state as usize, discount, left - 1) };
+        mdp.outcomes(state, action).fold(0.0, |sum, (probability, step)| {
+            let next =
+                if step.terminated { 0.0 } else { best_return(mdp, step.state as usize, discount, steps_to_go - 1) };
             sum + probability * (step.reward + discount * next)
         })
     };
-    (0..table.num_actions()).map(value).fold(f64::NEG_INFINITY, f64::max)
+    (0..mdp.num_actions()).map(value).fold(f64::NEG_INFINITY, f64::max)
 }
 
-fn near(left: &[f64], right: &[f64]) -> bool {
+fn close(left: &[f64], right: &[f64]) -> bool {
     left.iter().zip(right).all(|(left, right)| (left - right).abs() < 1e-8 * (1.0 + right.abs()))
 }
 
 proptest! {
     #[test]
-    fn a_finite_horizon_is_the_best_of_all_histories(table in tables(), discount in 0.0..=1.0, steps in 0_u32..5) {
-        let horizon = finite_horizon(&table, discount, steps.into(), &GO).expect("it ends");
-        let expected: Vec<f64> = (0..table.states()).map(|state| by_hand(&table, state, discount, steps)).collect();
+    fn a_finite_horizon_is_the_best_of_all_histories(mdp in mdps(), discount in 0.0..=1.0, steps in 0_u32..5) {
+        let horizon = finite_horizon(&mdp, discount, steps.into(), &NO_STOP).expect("a solution");
+        let expected: Vec<f64> = (0..mdp.num_states()).map(|state| best_return(&mdp, state, discount, steps)).collect();
         prop_assert_eq!(horizon.values, expected);
     }
 
     #[test]
-    fn both_iterations_find_the_same_values(table in tables(), discount in 0.0..0.99) {
-        let values = value_iteration(&table, discount, &GO).expect("it settles");
-        let policies = policy_iteration(&table, discount, &GO).expect("it settles");
-        prop_assert!(near(&values.values, &policies.values), "{:?} {:?}", values.values, policies.values);
+    fn both_iterations_find_the_same_values(mdp in mdps(), discount in 0.0..0.99) {
+        let values = value_iteration(&mdp, discount, &NO_STOP).expect("a solution");
+        let policies = policy_iteration(&mdp, discount, &NO_STOP).expect("a solution");
+        prop_assert!(close(&values.values, &policies.values), "{:?} {:?}", values.values, policies.values);
     }
 
     #[test]
-    fn a_long_horizon_comes_to_the_same(table in tables(), discount in 0.0..0.95) {
-        let horizon = finite_horizon(&table, discount, 2_000, &GO).expect("it ends");
-        let values = value_iteration(&table, discount, &GO).expect("it settles").values;
-        prop_assert!(near(&horizon.values, &values), "{:?} {values:?}", horizon.values);
+    fn a_long_horizon_has_the_values_without_a_time_limit(mdp in mdps(), discount in 0.0..0.95) {
+        let horizon = finite_horizon(&mdp, discount, 2_000, &NO_STOP).expect("a solution");
+        let values = value_iteration(&mdp, discount, &NO_STOP).expect("a solution").values;
+        prop_assert!(close(&horizon.values, &values), "{:?} {values:?}", horizon.values);
     }
 
     #[test]
-    fn no_policy_returns_more_than_the_best(table in tables(), seed: usize, steps in 0_u64..30) {
-        let best = finite_horizon(&table, 1.0, steps, &GO).expect("it ends").expected_return;
-        let policy: Vec<usize> = (0..table.states()).map(|state| (seed >> (2 * state)) % table.num_actions()).collect();
-        prop_assert!(policy_return(&table, &policy, steps, &GO).expect("it ends") <= best + 1e-12 * best.abs());
+    fn no_policy_returns_more_than_the_best(mdp in mdps(), seed: usize, steps in 0_u64..30) {
+        let best = finite_horizon(&mdp, 1.0, steps, &NO_STOP).expect("a solution").expected_return;
+        let policy: Vec<usize> = (0..mdp.num_states()).map(|state| (seed >> (2 * state)) % mdp.num_actions()).collect();
+        prop_assert!(policy_return(&mdp, &policy, steps, &NO_STOP).expect("a solution") <= best + 1e-12 * best.abs());
     }
 
     #[test]
-    fn without_a_discount_a_policy_that_ends_has_its_values(table in tables()) {
-        // Every reward costs: whoever does not end pays for ever, and both methods agree.
-        let cost = |(probability, step): (f64, crate::envs::Step<u32>)| Outcome {
+    fn without_discounting_both_iterations_agree_on_costs(mdp in mdps()) {
+        // Every reward is negative, so that never ending costs without bound.
+        let cost = |(probability, step): (f64, Step<u32>)| Outcome {
             probability,
             state: step.state.into(),
             reward: step.reward - 4.0,
             terminated: step.terminated,
         };
-        let rows: Vec<Vec<Outcome>> = (0..table.states() * table.num_actions())
-            .map(|row| table.outcomes(row / table.num_actions(), row % table.num_actions()).map(cost).collect())
+        let rows: Vec<Vec<Outcome>> = (0..mdp.num_states() * mdp.num_actions())
+            .map(|row| mdp.outcomes(row / mdp.num_actions(), row % mdp.num_actions()).map(cost).collect())
             .collect();
-        let table = TabularMdp::new(table.num_actions(), table.initial(), &rows).expect("a table");
-        match policy_iteration(&table, 1.0, &GO) {
+        let mdp = TabularMdp::new(mdp.num_actions(), mdp.initial_distribution(), &rows).expect("a valid table");
+        match policy_iteration(&mdp, 1.0, &NO_STOP) {
             Ok(policies) => {
-                let values = value_iteration(&table, 1.0, &GO).expect("it settles");
-                prop_assert!(near(&values.values, &policies.values), "{:?} {:?}", values.values, policies.values);
-                let long = policy_return(&table, &values.policy, 20_000, &GO).expect("it ends");
-                let first: f64 = values.values.iter().sum::<f64>() / table.states() as f64;
-                prop_assert!(near(&[long], &[first]), "{long} {first}");
+                let values = value_iteration(&mdp, 1.0, &NO_STOP).expect("a solution");
+                prop_assert!(close(&values.values, &policies.values), "{:?} {:?}", values.values, policies.values);
+                let long = policy_return(&mdp, &values.policy, 20_000, &NO_STOP).expect("a solution");
+                let first: f64 = values.values.iter().sum::<f64>() / mdp.num_states() as f64;
+                prop_assert!(close(&[long], &[first]), "{long} {first}");
             }
-            Err(unsolved) => {
-                prop_assert!(matches!(unsolved, PlanningError::NoProperPolicy(_)));
-                prop_assert_eq!(value_iteration(&table, 1.0, &GO), Err(PlanningError::NotConverged));
+            Err(error) => {
+                prop_assert!(matches!(error, PlanningError::NoProperPolicy(_)));
+                prop_assert_eq!(value_iteration(&mdp, 1.0, &NO_STOP), Err(PlanningError::NotConverged));
             }
         }
     }

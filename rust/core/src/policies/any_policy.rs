@@ -1,44 +1,40 @@
-//! How actions are chosen from their values.
+//! A policy chosen at run time.
 
-use super::Policy;
-use super::Softmax;
-use super::TieBreaking;
-use super::tie_breaking::any;
-use crate::numeric::sum;
-
+use super::tie_breaking::random_action;
+use super::{Policy, Softmax, TieBreaking};
 use crate::random::Rng;
 use crate::schedules::Schedule;
 
-/// Any of the ways, chosen at run time.
+/// One of the policies, chosen at run time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AnyPolicy {
-    /// Mostly the greedy action, sometimes any (Sutton & Barto, section 2.2).
+    /// The ε-greedy policy (Sutton & Barto, section 2.2).
     EpsilonGreedy {
-        /// ε.
+        /// The exploration rate ε.
         epsilon: Schedule,
         /// Which of several greedy actions.
         ties: TieBreaking,
     },
-    /// The same among the actions that a state has: a value of -∞ stands for one that it has not.
+    /// The ε-greedy policy over the available actions only. The value of an unavailable action is -∞.
     MaskedEpsilonGreedy {
-        /// ε.
+        /// The exploration rate ε.
         epsilon: Schedule,
         /// Which of several greedy actions.
         ties: TieBreaking,
     },
-    /// Each action by exp(Q / τ) (Sutton & Barto, equation 2.11, with a temperature).
+    /// The softmax policy (Sutton & Barto, equation 2.11).
     Softmax(Softmax),
 }
 
 impl AnyPolicy {
-    /// Softmax over so many actions.
-    pub fn softmax(temperature: f64, actions: usize) -> Self {
-        Self::Softmax(Softmax { temperature, shares: vec![0.0; actions] })
+    /// The softmax policy over `num_actions` actions.
+    pub fn softmax(temperature: f64, num_actions: usize) -> Self {
+        Self::Softmax(Softmax::new(temperature, num_actions))
     }
 }
 
 impl Policy for AnyPolicy {
-    /// One `random()` at every decision; then one `integers` where it explores, or to choose among equals.
+    /// Draws one `random()`. The ε-greedy policies then draw one `integers` if they explore, or to break a tie.
     #[inline]
     fn choose(&mut self, values: &[f64], rng: &mut impl Rng) -> usize {
         match self {
@@ -51,7 +47,7 @@ impl Policy for AnyPolicy {
             }
             Self::MaskedEpsilonGreedy { epsilon, ties } => {
                 if rng.random() >= 1.0 - epsilon.value() {
-                    any(values, is_there, rng)
+                    random_action(values, is_available, rng)
                 } else {
                     ties.greedy(values, rng)
                 }
@@ -61,15 +57,13 @@ impl Policy for AnyPolicy {
     }
 
     #[inline]
-    fn expected(&mut self, values: &[f64]) -> f64 {
+    fn expected_value(&mut self, values: &[f64]) -> f64 {
         match self {
-            Self::EpsilonGreedy { epsilon, ties } => ties.expected(epsilon.value(), values.iter().copied()),
+            Self::EpsilonGreedy { epsilon, ties } => ties.expected_value(epsilon.value(), values.iter().copied()),
             Self::MaskedEpsilonGreedy { epsilon, ties } => {
-                ties.expected(epsilon.value(), values.iter().copied().filter(is_there))
+                ties.expected_value(epsilon.value(), values.iter().copied().filter(is_available))
             }
-            Self::Softmax(softmax) => {
-                sum(softmax.shares(values).iter().zip(values).map(|(share, value)| share * value))
-            }
+            Self::Softmax(softmax) => softmax.expected_value(values),
         }
     }
 
@@ -80,10 +74,10 @@ impl Policy for AnyPolicy {
     }
 }
 
-/// Whether a state has the action of this value.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "filters hand out references")]
+/// Whether an action with this value is available.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "`Iterator::filter` passes references")]
 #[inline]
-fn is_there(value: &f64) -> bool {
+fn is_available(value: &f64) -> bool {
     *value != f64::NEG_INFINITY
 }
 
@@ -93,34 +87,27 @@ mod tests {
     use crate::policies::EpsilonGreedy;
     use crate::random::{Pcg64, SeedSequence};
 
-    fn greedy(ties: TieBreaking) -> AnyPolicy {
+    fn epsilon_greedy(ties: TieBreaking) -> AnyPolicy {
         AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.25), ties }
     }
 
     #[test]
     fn the_expected_value_weighs_the_greedy_action_most() {
         // (1/16 + 3/4) 4 + 1/16 (2 + 0 - 1)
-        assert_eq!(greedy(TieBreaking::First).expected(&[2.0, 4.0, 0.0, -1.0]), 3.3125);
-        assert_eq!(EpsilonGreedy::linear(0.25, 0.25, 1).expected(&[2.0, 4.0, 0.0, -1.0]), 3.3125);
+        assert_eq!(epsilon_greedy(TieBreaking::First).expected_value(&[2.0, 4.0, 0.0, -1.0]), 3.3125);
+        assert_eq!(EpsilonGreedy::linear(0.25, 0.25, 1).expected_value(&[2.0, 4.0, 0.0, -1.0]), 3.3125);
     }
 
     #[test]
-    fn softmax_weighs_by_the_exponential() {
-        let mut softmax = AnyPolicy::softmax(1.0, 2);
-        let expected = softmax.expected(&[0.0, 3.0_f64.ln()]);
-        assert!((expected - 0.75 * 3.0_f64.ln()).abs() < 1e-15);
-    }
-
-    #[test]
-    fn an_action_that_is_not_there_is_neither_chosen_nor_counted() {
+    fn an_unavailable_action_is_neither_chosen_nor_counted() {
         let values = [2.0, f64::NEG_INFINITY, -1.0, f64::NEG_INFINITY];
-        let mut some = AnyPolicy::MaskedEpsilonGreedy { epsilon: Schedule::constant(1.0), ties: TieBreaking::First };
+        let mut masked = AnyPolicy::MaskedEpsilonGreedy { epsilon: Schedule::constant(1.0), ties: TieBreaking::First };
         let mut rng = Pcg64::new(&SeedSequence::new(&[1]));
         let mut counts = [0; 4];
         for _ in 0..1000 {
-            counts[some.choose(&values, &mut rng)] += 1;
+            counts[masked.choose(&values, &mut rng)] += 1;
         }
         assert!(counts[0] > 400 && counts[2] > 400 && counts[1] + counts[3] == 0);
-        assert_eq!(some.expected(&values), 0.5);
+        assert_eq!(masked.expected_value(&values), 0.5);
     }
 }

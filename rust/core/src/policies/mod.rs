@@ -1,4 +1,4 @@
-//! Policies: how an action is chosen from action values.
+//! Policies: choosing an action by its value.
 
 mod any_policy;
 mod epsilon_greedy;

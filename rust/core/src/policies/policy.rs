@@ -2,13 +2,13 @@
 
 use crate::random::Rng;
 
-/// A way of choosing actions.
+/// A policy π over action values.
 pub trait Policy {
-    /// Chooses among the actions of these values.
+    /// Samples an action from π, given the values of all actions.
     fn choose(&mut self, values: &[f64], rng: &mut impl Rng) -> usize;
 
-    /// Σₐ π(a) Q(a), from the left: what the choice is worth on average.
-    fn expected(&mut self, values: &[f64]) -> f64;
+    /// The expected value Σₐ π(a) Q(a), summed from left to right.
+    fn expected_value(&mut self, values: &[f64]) -> f64;
 
     /// Called after every episode.
     fn end_episode(&mut self);

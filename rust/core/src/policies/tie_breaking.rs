@@ -1,20 +1,21 @@
-//! Which of several equally good actions is the greedy one.
+//! The greedy action when several actions have the maximal value.
 
 use std::hint::select_unpredictable;
 
 use crate::numeric::{argmax, sum};
 use crate::random::Rng;
 
-/// Which of several largest values is the greedy one.
+/// Which of several actions with the maximal value is the greedy one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TieBreaking {
-    /// The first, as `np.argmax` has it.
+    /// The first: `np.argmax`.
     First,
-    /// Any of them, by one more draw; none where the largest is alone.
+    /// A random one, which takes one more draw. A unique maximum draws nothing.
     Random,
 }
 
 impl TieBreaking {
+    /// The greedy action.
     #[inline]
     pub(super) fn greedy(self, values: &[f64], rng: &mut impl Rng) -> usize {
         match self {
@@ -22,46 +23,45 @@ impl TieBreaking {
             Self::Random => {
                 let best = argmax(values);
                 let largest = values[best];
-                // Mostly it is alone, and no draw is due.
-                let equals = values.iter().filter(|&&value| value == largest).count();
-                if equals == 1 { best } else { any(values, |&value| value == largest, rng) }
+                let ties = values.iter().filter(|&&value| value == largest).count();
+                if ties == 1 { best } else { random_action(values, |&value| value == largest, rng) }
             }
         }
     }
 
-    /// Σₐ π(a) Q(a) of the ε-greedy policy over these values.
+    /// The expected value Σₐ π(a) Q(a) of the ε-greedy policy.
     #[inline]
-    pub(super) fn expected(self, epsilon: f64, values: impl Iterator<Item = f64> + Clone) -> f64 {
+    pub(super) fn expected_value(self, epsilon: f64, values: impl Iterator<Item = f64> + Clone) -> f64 {
         let largest = values.clone().reduce(|largest, value| if value > largest { value } else { largest });
         let is_largest = |value| value == largest.unwrap_or(f64::NAN);
-        let any = epsilon / values.clone().count() as f64;
+        let other = epsilon / values.clone().count() as f64;
         match self {
             Self::First => {
-                let (greedy, mut found) = (any + (1.0 - epsilon), false);
+                let (greedy, mut found) = (other + (1.0 - epsilon), false);
                 sum(values.map(|value| {
                     let first = is_largest(value) && !found;
                     found |= first;
-                    (if first { greedy } else { any }) * value
+                    (if first { greedy } else { other }) * value
                 }))
             }
             Self::Random => {
-                let equals = values.clone().filter(|&value| is_largest(value)).count();
-                // A division less where it changes nothing.
-                let share = if equals == 1 { 1.0 - epsilon } else { (1.0 - epsilon) / equals as f64 };
-                let greedy = any + share;
-                sum(values.map(|value| select_unpredictable(is_largest(value), greedy, any) * value))
+                let ties = values.clone().filter(|&value| is_largest(value)).count();
+                // Dividing by 1 would give the same share, but takes time.
+                let share = if ties == 1 { 1.0 - epsilon } else { (1.0 - epsilon) / ties as f64 };
+                let greedy = other + share;
+                sum(values.map(|value| select_unpredictable(is_largest(value), greedy, other) * value))
             }
         }
     }
 }
 
-/// Any of those that fit.
+/// A random action among those whose values satisfy `eligible`.
 #[inline]
-pub(super) fn any(values: &[f64], fits: impl Fn(&f64) -> bool, rng: &mut impl Rng) -> usize {
-    let fitting = || values.iter().enumerate().filter(|(_, value)| fits(value)).map(|(action, _)| action);
-    // Where nothing equals the largest, it is NaN, and the run is about to stop.
-    let chosen = rng.integers(fitting().count() as u32) as usize;
-    fitting().nth(chosen).unwrap_or(0)
+pub(super) fn random_action(values: &[f64], eligible: impl Fn(&f64) -> bool, rng: &mut impl Rng) -> usize {
+    let actions = || values.iter().enumerate().filter(|(_, value)| eligible(value)).map(|(action, _)| action);
+    let chosen = rng.integers(actions().count() as u32) as usize;
+    // No action is eligible if the maximum is NaN. The run has then diverged and stops after this episode.
+    actions().nth(chosen).unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -70,7 +70,7 @@ mod tests {
     use crate::random::{Pcg64, SeedSequence};
 
     #[test]
-    fn random_ties_take_each_of_the_largest_and_no_other() {
+    fn random_tie_breaking_chooses_each_maximum_and_nothing_else() {
         let mut rng = Pcg64::new(&SeedSequence::new(&[1]));
         let mut counts = [0; 3];
         for _ in 0..1000 {
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lone_maximum_draws_nothing_more() {
+    fn a_unique_maximum_draws_nothing() {
         let mut rng = Pcg64::new(&SeedSequence::new(&[1]));
         let before = rng.clone();
         assert_eq!(TieBreaking::Random.greedy(&[0.0, 2.0], &mut rng), 1);

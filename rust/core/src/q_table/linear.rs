@@ -1,22 +1,22 @@
-//! Values of observations that light several rows: a value is the sum over its rows, from the first (Sutton & Barto,
-//! equation 9.8 with binary features). A grid lights one row, and its value is that row's.
+//! Linear function approximation with binary features: an action value is the sum over the active rows, from left to
+//! right (Sutton & Barto, equation 9.8). With one active row, as on a grid, it is the value of that row.
 
 use super::{QTable, TerminalUpdate};
 use crate::schedules::StepSize;
 
 impl<const N: usize> QTable<N> {
-    /// The action values of these rows.
+    /// The action values of an observation with these active rows.
     #[inline]
     pub fn action_values(&mut self, rows: &[u32]) -> &[f64] {
         if let &[row] = rows {
             return self.row(row);
         }
         match self.num_actions() {
-            2 => self.add_up::<2>(rows),
-            3 => self.add_up::<3>(rows),
-            4 => self.add_up::<4>(rows),
-            actions => {
-                for action in 0..actions {
+            2 => self.sum_rows::<2>(rows),
+            3 => self.sum_rows::<3>(rows),
+            4 => self.sum_rows::<4>(rows),
+            num_actions => {
+                for action in 0..num_actions {
                     self.sums[action] = self.value(rows, action);
                 }
             }
@@ -24,9 +24,9 @@ impl<const N: usize> QTable<N> {
         &self.sums
     }
 
-    /// The sums of `A` actions side by side, in registers.
+    /// Sums the rows of `A` values, all actions at once, in registers.
     #[inline]
-    fn add_up<const A: usize>(&mut self, rows: &[u32]) {
+    fn sum_rows<const A: usize>(&mut self, rows: &[u32]) {
         let mut values = rows.iter().filter_map(|&row| self.values[row as usize * A..].first_chunk::<A>());
         let mut sums = values.next().copied().unwrap_or([0.0; A]);
         for values in values {
@@ -37,7 +37,7 @@ impl<const N: usize> QTable<N> {
         self.sums.copy_from_slice(&sums);
     }
 
-    /// One action value of these rows.
+    /// The value of one action with these active rows.
     #[inline]
     pub fn value(&self, rows: &[u32], action: usize) -> f64 {
         let mut values = rows.iter().map(|&row| self.row(row)[action]);
@@ -45,19 +45,19 @@ impl<const N: usize> QTable<N> {
         values.fold(first, |sum, value| sum + value)
     }
 
-    /// The weight of an action in a row, as step sizes and traces count them.
+    /// The index of the weight of an action in a row, as step sizes and traces use it.
     #[inline]
     pub fn weight_index(&self, row: u32, action: usize) -> usize {
         row as usize * self.num_actions() + action
     }
 
-    /// The value of a weight.
+    /// The weight at an index.
     #[inline]
     pub fn weight_mut(&mut self, weight_index: usize) -> &mut f64 {
         &mut self.values[weight_index]
     }
 
-    /// Q ← Q + α (target - Q), evaluated from the left; the rows share it.
+    /// Q ← Q + α (target - Q). The step size is the share of each row.
     #[inline]
     pub fn update(&mut self, rows: &[u32], action: usize, target: f64, step_size: &mut impl StepSize) {
         let error = target - self.value(rows, action);
@@ -72,10 +72,10 @@ impl<const N: usize> QTable<N> {
         }
     }
 
-    /// The update at a terminal state.
+    /// The update of the last state-action pair of an episode.
     ///
     /// # Panics
-    /// If several rows are to be assigned to.
+    /// With [`TerminalUpdate::Assign`] and several active rows.
     #[inline]
     pub fn update_terminal(
         &mut self,
@@ -88,19 +88,21 @@ impl<const N: usize> QTable<N> {
         match update {
             TerminalUpdate::Target => self.update(rows, action, reward, step_size),
             TerminalUpdate::Assign => {
-                assert!(rows.len() == 1, "only a lone row can be assigned to");
+                assert!(rows.len() == 1, "TerminalUpdate::Assign needs exactly one active row");
                 *self.value_mut(rows[0], action) = reward;
             }
         }
     }
 
-    /// Remembers an error that is infinite or NaN. A lone row needs no watch: its value stays between its targets.
+    /// Records an error that is infinite or NaN. With one active row this is unnecessary: a value never leaves the range
+    /// of its targets.
     #[inline]
     pub fn check_finite(&mut self, error: f64) {
+        // 0 for a finite error, NaN otherwise.
         self.divergence += error * 0.0;
     }
 
-    /// Whether an error was infinite or NaN.
+    /// Whether a recorded error was infinite or NaN.
     #[inline]
     pub fn diverged(&self) -> bool {
         self.divergence != 0.0
@@ -112,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_is_the_sum_over_its_rows() {
+    fn a_value_is_the_sum_over_the_active_rows() {
         let mut table = QTable::<2>::new(vec![1.0, 2.0, 10.0, 20.0, 100.0, 200.0], 2);
         assert_eq!(table.action_values(&[0, 2]), [101.0, 202.0]);
         assert_eq!(table.action_values(&[1]), [10.0, 20.0]);
@@ -120,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_that_is_lit_twice_counts_twice() {
+    fn a_row_that_is_active_twice_counts_twice() {
         let mut table = QTable::<1>::new(vec![3.0], 1);
         assert_eq!(table.action_values(&[0, 0]), [6.0]);
         table.update(&[0, 0], 0, 7.0, &mut 0.5);
@@ -128,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn an_overflow_is_remembered() {
+    fn an_overflow_is_recorded() {
         let mut table = QTable::<1>::new(vec![1e308, 1e308], 1);
         table.update(&[0, 1], 0, 0.0, &mut 0.5);
         assert!(table.diverged());

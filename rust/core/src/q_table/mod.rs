@@ -1,4 +1,4 @@
-//! The Q table: action values per row, sums over active rows, and updates.
+//! The Q table: action values and their updates, for one active row or several.
 
 mod linear;
 mod table;

@@ -1,35 +1,37 @@
-//! The Q table: rows of action values in one block, C order.
+//! The storage of a Q table.
 
 use crate::random::Rng;
 
-/// Action values, `N` a row; `N` = 0 leaves their count to run time. Where it is known, the searches are unrolled.
+/// A Q table: rows of `N` action values in C order. With `N = 0` the number of actions is known at run time only; with a
+/// known number the compiler unrolls the loops over a row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QTable<const N: usize = 0> {
     pub(super) values: Vec<f64>,
-    actions: usize,
-    /// Where the values of an observation that lights several rows are added up.
+    num_actions: usize,
+    /// A buffer for the sums over several active rows.
     pub(super) sums: Vec<f64>,
-    /// Zero while all is well; NaN from the first update on that was infinite.
+    /// 0, or NaN after an error that was infinite or NaN.
     pub(super) divergence: f64,
 }
 
 impl<const N: usize> QTable<N> {
-    /// A table to go on from, in C order.
+    /// A table with these values, in C order.
     ///
     /// # Panics
-    /// If `actions` is not `N` (where `N` is not 0), is 0, or does not divide the number of values.
-    pub fn new(values: Vec<f64>, actions: usize) -> Self {
-        assert!(N == 0 || N == actions, "a table of {N} actions a row was given {actions}");
-        assert!(values.len().is_multiple_of(actions), "{} values are no rows of {actions}", values.len());
-        Self { values, actions, sums: vec![0.0; actions], divergence: 0.0 }
+    /// If `num_actions` is 0, differs from a non-zero `N`, or does not divide the number of values.
+    pub fn new(values: Vec<f64>, num_actions: usize) -> Self {
+        assert!(N == 0 || N == num_actions, "num_actions must be {N}, got {num_actions}");
+        let len = values.len();
+        assert!(len.is_multiple_of(num_actions), "the table must have rows of {num_actions} values, got {len} values");
+        Self { values, num_actions, sums: vec![0.0; num_actions], divergence: 0.0 }
     }
 
-    /// `rng.uniform(low, high, (rows, actions))`.
-    pub fn uniform(rows: usize, actions: usize, low: f64, high: f64, rng: &mut impl Rng) -> Self {
-        Self::new((0..rows * actions).map(|_| rng.uniform(low, high)).collect(), actions)
+    /// A table of random values: `rng.uniform(low, high, (rows, num_actions))`.
+    pub fn uniform(rows: usize, num_actions: usize, low: f64, high: f64, rng: &mut impl Rng) -> Self {
+        Self::new((0..rows * num_actions).map(|_| rng.uniform(low, high)).collect(), num_actions)
     }
 
-    /// All values, rows first.
+    /// All values, row by row.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -38,10 +40,10 @@ impl<const N: usize> QTable<N> {
         &mut self.values
     }
 
-    /// How many values a row has.
+    /// The number of values per row.
     #[inline]
     pub fn num_actions(&self) -> usize {
-        if N == 0 { self.actions } else { N }
+        if N == 0 { self.num_actions } else { N }
     }
 
     /// The action values of a row.
@@ -54,7 +56,7 @@ impl<const N: usize> QTable<N> {
         &self.values[row as usize * actions..][..actions]
     }
 
-    /// One action value.
+    /// The value of an action in a row.
     #[inline]
     pub fn value_mut(&mut self, row: u32, action: usize) -> &mut f64 {
         if N > 0 {
@@ -70,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    #[should_panic(expected = "no rows of 3")]
+    #[should_panic(expected = "rows of 3 values")]
     fn a_ragged_table_is_refused() {
         QTable::<3>::new(vec![0.0; 4], 3);
     }

@@ -1,10 +1,10 @@
-//! The update at the end of an episode.
+//! The update at a terminal state.
 
-/// What an update does at a terminal state.
+/// The update at a terminal state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TerminalUpdate {
-    /// Q ← R, the article's rule: right where the last reward is always the same.
+    /// Q ← R, the article's rule. It is right only if the last reward is always the same.
     Assign,
-    /// Q ← Q + α (R - Q), the book's: the value of a terminal state is zero.
+    /// Q ← Q + α (R - Q): the value of a terminal state is zero (Sutton & Barto, section 6.1).
     Target,
 }

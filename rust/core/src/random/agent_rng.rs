@@ -1,8 +1,8 @@
-//! A stream chosen at run time.
+//! The agent's random generator, chosen at run time.
 
 use super::{Mt19937, Pcg64, Rng, SeedSequence};
 
-/// The agent's stream, by the name of its bit generator.
+/// The agent's random generator, one variant per bit generator.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AgentRng {
     /// `numpy.random.Generator(PCG64(…))`
@@ -12,12 +12,12 @@ pub enum AgentRng {
 }
 
 impl AgentRng {
-    /// The agent's PCG64: `default_rng(SeedSequence(seed).spawn(1)[0])`.
+    /// PCG64 for an agent: `default_rng(SeedSequence(seed).spawn(1)[0])`.
     pub fn pcg64(seed: &SeedSequence) -> Self {
         Self::Pcg64(Pcg64::new(&seed.child(0)))
     }
 
-    /// The agent's MT19937: `RandomState(seed)`.
+    /// MT19937 for an agent: `RandomState(seed)`.
     pub fn mt19937(seed: u32) -> Self {
         Self::Mt19937(Box::new(Mt19937::new(seed)))
     }
@@ -27,16 +27,16 @@ impl Rng for AgentRng {
     #[inline]
     fn random(&mut self) -> f64 {
         match self {
-            Self::Pcg64(stream) => stream.random(),
-            Self::Mt19937(stream) => stream.random(),
+            Self::Pcg64(rng) => rng.random(),
+            Self::Mt19937(rng) => rng.random(),
         }
     }
 
     #[inline]
     fn integers(&mut self, below: u32) -> u32 {
         match self {
-            Self::Pcg64(stream) => stream.integers(below),
-            Self::Mt19937(stream) => stream.integers(below),
+            Self::Pcg64(rng) => rng.integers(below),
+            Self::Mt19937(rng) => rng.integers(below),
         }
     }
 }

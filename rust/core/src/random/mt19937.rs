@@ -1,4 +1,4 @@
-//! `numpy.random.RandomState(seed)`: what `np.random.seed(seed)` sets, and what the article draws from.
+//! `numpy.random.RandomState(seed)`, the generator behind `np.random.seed(seed)` and `np.random.random()`.
 
 use rand_mt::Mt;
 
@@ -11,14 +11,14 @@ pub struct Mt19937 {
 }
 
 impl Mt19937 {
-    /// `numpy.random.RandomState(seed)`. Not the same stream as `Generator(MT19937(seed))`.
+    /// `numpy.random.RandomState(seed)`. Its numbers differ from those of `Generator(MT19937(seed))`.
     pub fn new(seed: u32) -> Self {
         Self { engine: Mt::new(seed) }
     }
 }
 
 impl Rng for Mt19937 {
-    /// 53 bits from two words: `random_sample()`.
+    /// `random_sample()`: 53 bits from two 32-bit words.
     #[inline]
     fn random(&mut self) -> f64 {
         let high = f64::from(self.engine.next_u32() >> 5);
@@ -26,7 +26,7 @@ impl Rng for Mt19937 {
         (high * 67_108_864.0 + low) / 9_007_199_254_740_992.0
     }
 
-    /// Masks and rejects, as `randint(0, below)` does.
+    /// `randint(0, below)`: masked rejection sampling.
     #[inline]
     fn integers(&mut self, below: u32) -> u32 {
         if below <= 1 {
@@ -48,11 +48,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_draws_of_seed_zero_are_numpys() {
+    fn the_first_draws_of_seed_0_match_numpy() {
         // rng = np.random.RandomState(0); rng.random(), rng.randint(0, 3), rng.random()
-        let mut stream = Mt19937::new(0);
-        assert_eq!(stream.random(), 0.548_813_503_927_324_8);
-        assert_eq!(stream.integers(3), 1);
-        assert_eq!(stream.random(), 0.844_265_748_581_017_3);
+        let mut rng = Mt19937::new(0);
+        assert_eq!(rng.random(), 0.548_813_503_927_324_8);
+        assert_eq!(rng.integers(3), 1);
+        assert_eq!(rng.random(), 0.844_265_748_581_017_3);
     }
 }

@@ -1,14 +1,14 @@
-//! `numpy.random.Generator(PCG64(…))`: the stream of Gymnasium's environments and the agents' default.
+//! `numpy.random.Generator(PCG64(…))`, the generator of Gymnasium's environments and the agents' default.
 
 use rand_core::Rng as _;
 
 use super::{Rng, SeedSequence, TWO_POW_53};
 
-/// PCG-XSL-RR 128/64 with `NumPy`'s seeding and `NumPy`'s buffer of one 32-bit half.
+/// PCG-XSL-RR 128/64 with `NumPy`'s seeding and its buffer of one 32-bit half.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pcg64 {
     engine: rand_pcg::Pcg64,
-    /// The upper half of a 64-bit word whose lower half is used up; `random()` leaves it alone.
+    /// The upper half of a 64-bit word whose lower half has been used. `random()` does not touch it.
     buffered_u32: Option<u32>,
     words_drawn: u64,
 }
@@ -21,12 +21,12 @@ impl Pcg64 {
         Self { engine, buffered_u32: None, words_drawn: 0 }
     }
 
-    /// How many 64-bit words have been drawn since seeding: what `bit_generator.advance` takes to come here.
+    /// The number of 64-bit words drawn since seeding: `bit_generator.advance(words_drawn)` restores this state.
     pub fn words_drawn(&self) -> u64 {
         self.words_drawn
     }
 
-    /// The buffered 32-bit half, `NumPy`'s `uinteger` where its `has_uint32` is set.
+    /// The buffered 32-bit half: `NumPy`'s `uinteger` if `has_uint32` is set.
     pub fn buffered_u32(&self) -> Option<u32> {
         self.buffered_u32
     }
@@ -60,7 +60,7 @@ impl Rng for Pcg64 {
 
     #[inline]
     fn random_u53(&mut self) -> u64 {
-        random_u53(self.next_u64())
+        upper_53_bits(self.next_u64())
     }
 
     #[inline]
@@ -69,19 +69,20 @@ impl Rng for Pcg64 {
     }
 }
 
-/// A float in [0, 1) from a word's upper 53 bits.
+/// A float in [0, 1) from the upper 53 bits of a word.
 #[inline]
 pub(crate) fn u64_to_f64(word: u64) -> f64 {
-    random_u53(word) as f64 * (1.0 / TWO_POW_53)
+    upper_53_bits(word) as f64 * (1.0 / TWO_POW_53)
 }
 
-/// A word's upper 53 bits.
+/// The upper 53 bits of a word.
 #[inline]
-fn random_u53(word: u64) -> u64 {
+fn upper_53_bits(word: u64) -> u64 {
     word >> 11
 }
 
-/// Lemire's multiply-shift with rejection, as `Generator.integers` does for ranges under 2³².
+/// An unbiased integer in [0, `below`), by multiplication and rejection, as `Generator.integers` does for ranges below
+/// 2³² (D. Lemire, "Fast random integer generation in an interval", 2019).
 #[inline]
 pub(crate) fn lemire_bounded(below: u32, mut next: impl FnMut() -> u32) -> u32 {
     if below <= 1 {
@@ -103,16 +104,16 @@ mod tests {
     use crate::random::Mt19937;
 
     #[test]
-    fn the_first_draws_of_seed_zero_are_numpys() {
+    fn the_first_draws_of_seed_0_match_numpy() {
         // rng = np.random.default_rng(0); rng.random(), rng.integers(0, 3), rng.random()
-        let mut stream = Pcg64::new(&SeedSequence::new(&[0]));
-        assert_eq!(stream.random(), 0.636_961_687_321_454_3);
-        assert_eq!(stream.integers(3), 1);
-        assert_eq!(stream.random(), 0.040_973_523_936_194_69);
+        let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
+        assert_eq!(rng.random(), 0.636_961_687_321_454_3);
+        assert_eq!(rng.integers(3), 1);
+        assert_eq!(rng.random(), 0.040_973_523_936_194_69);
     }
 
     #[test]
-    fn a_fraction_is_the_float_as_a_whole_number() {
+    fn random_u53_is_random_as_an_integer() {
         let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
         let mut other = Mt19937::new(0);
         for _ in 0..1000 {
@@ -122,9 +123,9 @@ mod tests {
     }
 
     #[test]
-    fn one_choice_draws_nothing() {
-        let mut stream = Pcg64::new(&SeedSequence::new(&[0]));
-        assert_eq!(stream.integers(1), 0);
-        assert_eq!(stream.words_drawn(), 0);
+    fn a_range_of_one_integer_draws_nothing() {
+        let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
+        assert_eq!(rng.integers(1), 0);
+        assert_eq!(rng.words_drawn(), 0);
     }
 }

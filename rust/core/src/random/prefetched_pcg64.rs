@@ -1,4 +1,4 @@
-//! A stream whose words are drawn ahead, so that taking one more or one fewer needs no branch.
+//! A PCG64 that draws its words in advance, so that exploring or not needs no branch.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 #![expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be an unpredictable branch")]
@@ -7,79 +7,82 @@ use super::pcg64::{lemire_bounded, u64_to_f64};
 use super::{Pcg64, Rng};
 use crate::numeric::cold_path;
 
-const PREFETCHED: usize = 64;
+/// The number of words drawn in advance.
+const CAPACITY: usize = 64;
 
-/// What `Pcg64` would draw, drawn already.
+/// A [`Pcg64`] with a buffer of its next words. Its draws are those of the [`Pcg64`].
 pub(crate) struct PrefetchedPcg64 {
-    /// The stream at the first of the words.
+    /// The generator before the first buffered word.
     start: Pcg64,
-    /// The stream after the last of them.
+    /// The generator after the last buffered word.
     end: Pcg64,
-    ahead: [u64; PREFETCHED],
-    taken: usize,
+    words: [u64; CAPACITY],
+    /// The number of buffered words used.
+    used: usize,
     buffered_u32: u32,
     has_uint32: bool,
 }
 
 impl PrefetchedPcg64 {
-    pub(crate) fn new(stream: &Pcg64) -> Self {
-        let buffered_u32 = stream.buffered_u32();
-        let mut end = stream.clone();
-        let ahead = std::array::from_fn(|_| end.next_u64());
+    /// Continues the draws of `rng`.
+    pub(crate) fn new(rng: &Pcg64) -> Self {
+        let buffered_u32 = rng.buffered_u32();
+        let mut end = rng.clone();
+        let words = std::array::from_fn(|_| end.next_u64());
         Self {
-            start: stream.clone(),
+            start: rng.clone(),
             end,
-            ahead,
-            taken: 0,
+            words,
+            used: 0,
             buffered_u32: buffered_u32.unwrap_or(0),
             has_uint32: buffered_u32.is_some(),
         }
     }
 
-    /// The stream as it would be had the words been drawn from it one by one.
+    /// The generator after the draws made so far.
     pub(crate) fn into_pcg64(self) -> Pcg64 {
-        let mut stream = self.start.clone();
-        for _ in 0..self.taken {
-            stream.next_u64();
+        let mut rng = self.start;
+        for _ in 0..self.used {
+            rng.next_u64();
         }
-        stream.set_buffered_u32(self.has_uint32.then_some(self.buffered_u32));
-        stream
+        rng.set_buffered_u32(self.has_uint32.then_some(self.buffered_u32));
+        rng
     }
 
-    /// Whether `random()` is at least `greedy`, and what `integers(below)` gives if it is, drawn only then; `below` is
-    /// more than 1.
+    /// An ε-greedy decision: whether `random()` is at least `greedy_below` (explore), and if so `integers(below)`, which
+    /// is drawn only then. `below` must be greater than 1.
     #[inline(always)]
-    pub(crate) fn explore(&mut self, greedy: f64, below: u32) -> (bool, u32) {
-        if self.taken + 2 > PREFETCHED {
+    pub(crate) fn explore(&mut self, greedy_below: f64, below: u32) -> (bool, u32) {
+        if self.used + 2 > CAPACITY {
             self.refill();
         }
-        let explores = u64_to_f64(self.ahead[self.taken]) >= greedy;
-        let word = self.ahead[self.taken + 1];
+        let explores = u64_to_f64(self.words[self.used]) >= greedy_below;
+        let word = self.words[self.used + 1];
         let buffered_u32 = std::hint::select_unpredictable(self.has_uint32, self.buffered_u32, word as u32);
         let product = u64::from(buffered_u32) * u64::from(below);
         if (product as u32) < below {
-            // One in a billion: it may have to be rejected. Seldom whether it explores or not, so that is asked later.
+            // The word may have to be rejected. This is so rare, exploring or not, that a branch costs nothing.
             cold_path();
             if !explores {
-                self.taken += 1;
+                self.used += 1;
                 return (false, 0);
             }
-            self.taken += 1;
+            self.used += 1;
             return (true, self.integers(below));
         }
-        let draws = explores & !self.has_uint32;
-        self.taken += 1 + usize::from(draws);
-        self.buffered_u32 = std::hint::select_unpredictable(draws, (word >> 32) as u32, self.buffered_u32);
+        let uses_word = explores & !self.has_uint32;
+        self.used += 1 + usize::from(uses_word);
+        self.buffered_u32 = std::hint::select_unpredictable(uses_word, (word >> 32) as u32, self.buffered_u32);
         self.has_uint32 ^= explores;
         (explores, (product >> 32) as u32)
     }
 
     fn next_u64(&mut self) -> u64 {
-        if self.taken == PREFETCHED {
+        if self.used == CAPACITY {
             self.refill();
         }
-        self.taken += 1;
-        self.ahead[self.taken - 1]
+        self.used += 1;
+        self.words[self.used - 1]
     }
 
     fn next_u32(&mut self) -> u32 {
@@ -93,17 +96,17 @@ impl PrefetchedPcg64 {
         word as u32
     }
 
-    /// Moves what is left to the front and draws the rest.
+    /// Moves the unused words to the front and draws the rest.
     #[cold]
     fn refill(&mut self) {
-        for _ in 0..self.taken {
+        for _ in 0..self.used {
             self.start.next_u64();
         }
-        self.ahead.copy_within(self.taken.., 0);
-        for word in &mut self.ahead[PREFETCHED - self.taken..] {
+        self.words.copy_within(self.used.., 0);
+        for word in &mut self.words[CAPACITY - self.used..] {
             *word = self.end.next_u64();
         }
-        self.taken = 0;
+        self.used = 0;
     }
 }
 
@@ -126,31 +129,31 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_draws_and_the_stream_are_those_of_the_stream_itself(
+        fn draws_and_final_state_match_pcg64(
             seed in any::<u32>(),
             before in 0_usize..3,
-            rngs in prop::collection::vec((0.0..1.1, 0_u32..9, 2_u32..20), 0..300),
+            draws in prop::collection::vec((0.0..1.1, 0_u32..9, 2_u32..20), 0..300),
         ) {
-            let mut stream = Pcg64::new(&SeedSequence::new(&[seed]));
+            let mut rng = Pcg64::new(&SeedSequence::new(&[seed]));
             (0..before).for_each(|_| {
-                stream.integers(7);
+                rng.integers(7);
             });
-            let mut words = PrefetchedPcg64::new(&stream);
-            for (greedy, kind, below) in rngs {
+            let mut prefetched = PrefetchedPcg64::new(&rng);
+            for (greedy, kind, below) in draws {
                 match kind {
-                    0 => prop_assert_eq!(words.random(), stream.random()),
-                    1 => prop_assert_eq!(words.integers(below), stream.integers(below)),
+                    0 => prop_assert_eq!(prefetched.random(), rng.random()),
+                    1 => prop_assert_eq!(prefetched.integers(below), rng.integers(below)),
                     _ => {
-                        let explores = stream.random() >= greedy;
-                        let (explored, action) = words.explore(greedy, below);
+                        let explores = rng.random() >= greedy;
+                        let (explored, action) = prefetched.explore(greedy, below);
                         prop_assert_eq!(explored, explores);
                         if explores {
-                            prop_assert_eq!(action, stream.integers(below));
+                            prop_assert_eq!(action, rng.integers(below));
                         }
                     }
                 }
             }
-            prop_assert_eq!(words.into_pcg64(), stream);
+            prop_assert_eq!(prefetched.into_pcg64(), rng);
         }
     }
 }

@@ -1,6 +1,6 @@
-//! `numpy.random.SeedSequence`: any amount of entropy into well-mixed seed words.
+//! `numpy.random.SeedSequence`, which mixes any amount of entropy into seed words.
 //!
-//! Source: `numpy/random/bit_generator.pyx`, after M. E. O'Neill's `seed_seq_fe`.
+//! Source: `numpy/random/bit_generator.pyx`, which follows M. E. O'Neill's `seed_seq_fe`.
 
 const POOL_SIZE: usize = 4;
 const XSHIFT: u32 = 16;
@@ -11,7 +11,7 @@ const MULT_B: u32 = 0x58f3_8ded;
 const MIX_MULT_L: u32 = 0xca01_f9dd;
 const MIX_MULT_R: u32 = 0x4973_f715;
 
-/// `numpy.random.SeedSequence(entropy)` and its spawned children.
+/// `numpy.random.SeedSequence(entropy)`, or a child spawned from one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SeedSequence {
     entropy: Vec<u32>,
@@ -20,7 +20,7 @@ pub struct SeedSequence {
 }
 
 impl SeedSequence {
-    /// The sequence of a non-negative integer given as 32-bit words, least significant first (zero is one word).
+    /// The sequence of a non-negative integer, given as 32-bit words with the least significant first. Zero is one word.
     pub fn new(entropy: &[u32]) -> Self {
         Self::with_spawn_key(entropy.to_vec(), Vec::new())
     }
@@ -36,7 +36,7 @@ impl SeedSequence {
     fn with_spawn_key(entropy: Vec<u32>, spawn_key: Vec<u32>) -> Self {
         let mut assembled = entropy.clone();
         if !spawn_key.is_empty() && assembled.len() < POOL_SIZE {
-            // NumPy pads, so that a short entropy with a spawn key never equals a longer entropy without one.
+            // NumPy pads short entropy, so that with a spawn key it never equals longer entropy without one.
             assembled.resize(POOL_SIZE, 0);
         }
         assembled.extend(&spawn_key);
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_words_of_seed_zero_are_numpys() {
+    fn the_words_of_seed_0_match_numpy() {
         // np.random.SeedSequence(0).generate_state(2, np.uint64)
         assert_eq!(SeedSequence::new(&[0]).generate_state(), [15_793_235_383_387_715_774, 12_390_638_538_380_655_177]);
     }

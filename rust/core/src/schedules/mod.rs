@@ -1,4 +1,4 @@
-//! Rates that change over a run: the exploration rate ε and the learning rate α.
+//! Schedules: rates that change over a run, such as the exploration rate ε and the learning rate α.
 
 mod learning_rate;
 mod schedule;

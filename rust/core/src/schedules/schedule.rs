@@ -1,19 +1,19 @@
-//! How a rate falls from episode to episode.
+//! Rates that change from episode to episode.
 
-/// The rule by which it falls.
+/// How a rate changes after an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Decay {
-    /// It stays.
+    /// Not at all.
     Constant,
-    /// By the same amount after every episode while it is above the least: the article's rule. Not clamped, as there: it
-    /// may end a few 1e-14 past the least.
+    /// Subtracts a constant while the rate is above its minimum. The result is not clamped, as in the article, so rounding
+    /// may leave it a few 1e-14 below the minimum.
     Linear {
-        /// The amount.
+        /// The amount subtracted after each episode.
         reduction: f64,
     },
-    /// By the same factor after every episode, one multiplication each, and not below the least.
+    /// Multiplies by a constant, down to the minimum.
     Exponential {
-        /// The factor.
+        /// The factor applied after each episode.
         factor: f64,
     },
 }
@@ -28,33 +28,33 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Always `value`.
+    /// The constant `value`.
     pub fn constant(value: f64) -> Self {
         Self { value, min: value, warm_up: 0, decay: Decay::Constant }
     }
 
-    /// From `value` down to `least` over the `episodes` that follow the `warm_up`.
+    /// `value` for the first `warm_up` episodes, then a linear decay to `min` over the rest of the `episodes`.
     ///
     /// # Panics
-    /// If the warm-up takes all the episodes.
+    /// If `warm_up` is not less than `episodes`.
     pub fn linear(value: f64, min: f64, episodes: u64, warm_up: u64) -> Self {
-        assert!(warm_up < episodes, "a warm-up of {warm_up} leaves none of {episodes} episodes");
+        assert!(warm_up < episodes, "warm_up must be less than episodes ({episodes}), got {warm_up}");
         let reduction = (value - min) / (episodes - warm_up) as f64;
         Self { value, min, warm_up, decay: Decay::Linear { reduction } }
     }
 
-    /// `value` times `factor` after each episode that follows the `warm_up`, down to `least`.
+    /// `value` for the first `warm_up` episodes, then multiplied by `factor` after each episode, down to `min`.
     pub fn exponential(value: f64, min: f64, factor: f64, warm_up: u64) -> Self {
         Self { value, min, warm_up, decay: Decay::Exponential { factor } }
     }
 
-    /// The rate now.
+    /// The rate of the current episode.
     #[inline]
     pub fn value(&self) -> f64 {
         self.value
     }
 
-    /// One episode later.
+    /// Moves on to the next episode.
     pub fn end_episode(&mut self) {
         if self.warm_up > 0 {
             self.warm_up -= 1;
@@ -72,7 +72,7 @@ impl Schedule {
 mod tests {
     use super::*;
 
-    fn course(mut schedule: Schedule) -> [f64; 4] {
+    fn first_four(mut schedule: Schedule) -> [f64; 4] {
         std::array::from_fn(|_| {
             let value = schedule.value();
             schedule.end_episode();
@@ -81,15 +81,15 @@ mod tests {
     }
 
     #[test]
-    fn each_rule_falls_as_it_says() {
-        assert_eq!(course(Schedule::constant(0.5)), [0.5; 4]);
-        assert_eq!(course(Schedule::linear(1.0, 0.5, 2, 0)), [1.0, 0.75, 0.5, 0.5]);
-        assert_eq!(course(Schedule::exponential(1.0, 0.2, 0.5, 0)), [1.0, 0.5, 0.25, 0.2]);
+    fn each_decay_follows_its_rule() {
+        assert_eq!(first_four(Schedule::constant(0.5)), [0.5; 4]);
+        assert_eq!(first_four(Schedule::linear(1.0, 0.5, 2, 0)), [1.0, 0.75, 0.5, 0.5]);
+        assert_eq!(first_four(Schedule::exponential(1.0, 0.2, 0.5, 0)), [1.0, 0.5, 0.25, 0.2]);
     }
 
     #[test]
-    fn nothing_falls_during_the_warm_up() {
-        assert_eq!(course(Schedule::linear(1.0, 0.0, 4, 2)), [1.0, 1.0, 1.0, 0.5]);
-        assert_eq!(course(Schedule::exponential(1.0, 0.0, 0.5, 1)), [1.0, 1.0, 0.5, 0.25]);
+    fn rates_are_constant_during_the_warm_up() {
+        assert_eq!(first_four(Schedule::linear(1.0, 0.0, 4, 2)), [1.0, 1.0, 1.0, 0.5]);
+        assert_eq!(first_four(Schedule::exponential(1.0, 0.0, 0.5, 1)), [1.0, 1.0, 0.5, 0.25]);
     }
 }

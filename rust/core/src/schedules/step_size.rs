@@ -1,20 +1,21 @@
-//! How far an update moves a weight: the learning rate, shared among the rows that an observation lights.
+//! The trait of all step sizes.
 
 use super::Schedule;
 
-/// The step size of a weight. A weight is counted rows first: `row * actions + action`.
+/// The step size of each weight of a Q table: the learning rate divided by the number of active rows. The index of a
+/// weight is `row * num_actions + action`.
 pub trait StepSize {
-    /// A weight's value is about to be corrected because its pair was visited.
+    /// Counts a visit of a weight, before its update.
     fn visit(&mut self, weight_index: usize);
 
-    /// The step size of a weight now: the learning rate over the number of rows lit.
+    /// The step size of a weight.
     fn at(&self, weight_index: usize) -> f64;
 
     /// Called after every episode.
     fn end_episode(&mut self);
 }
 
-/// The same for every weight and episode.
+/// A constant step size.
 impl StepSize for f64 {
     #[inline]
     fn visit(&mut self, _weight: usize) {}
@@ -27,7 +28,7 @@ impl StepSize for f64 {
     fn end_episode(&mut self) {}
 }
 
-/// The same for every weight, of a lone row each, and another after every episode.
+/// A scheduled step size for one active row, the same for every weight.
 impl StepSize for Schedule {
     #[inline]
     fn visit(&mut self, _weight: usize) {}

@@ -1,44 +1,45 @@
-//! Any world behind one type: what is not worth compiling whole goes through here.
+//! Any task behind one type.
 
 use super::{Task, Transition};
 
-/// A world that keeps its own place, so that its state's type does not show.
-struct StatefulTask<W: Task> {
-    task: W,
-    state: Option<W::State>,
+/// A task together with the state of its episode, so that the type of the state is hidden.
+struct StatefulTask<T: Task> {
+    task: T,
+    state: Option<T::State>,
 }
 
+/// [`Task`] without the state, for trait objects. `R` holds the active rows, `X` is the error.
 trait DynTask<R, X> {
     fn reset(&mut self) -> Result<R, X>;
     fn step(&mut self, action: usize) -> Result<Transition<R>, X>;
 }
 
-impl<W: Task, X: From<W::Error>> DynTask<W::Active, X> for StatefulTask<W> {
-    fn reset(&mut self) -> Result<W::Active, X> {
-        let (state, rows) = self.task.reset()?;
+impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
+    fn reset(&mut self) -> Result<T::Active, X> {
+        let (state, active) = self.task.reset()?;
         self.state = Some(state);
-        Ok(rows)
+        Ok(active)
     }
 
-    fn step(&mut self, action: usize) -> Result<Transition<W::Active>, X> {
-        let Some(state) = &mut self.state else { unreachable!("a trainer resets before it steps") };
+    fn step(&mut self, action: usize) -> Result<Transition<T::Active>, X> {
+        let Some(state) = &mut self.state else { unreachable!("a trainer resets a task before it steps it") };
         Ok(self.task.step(state, action)?)
     }
 }
 
-/// A boxed world with rows `R` and errors `X`.
+/// A boxed task with active rows `R` and errors `X`: generic code is compiled once for all tasks behind it.
 pub struct BoxedTask<R, X> {
-    steps: Box<dyn DynTask<R, X> + Send>,
+    task: Box<dyn DynTask<R, X> + Send>,
 }
 
 impl<R: Copy + AsRef<[u32]> + 'static, X: 'static> BoxedTask<R, X> {
-    /// Boxes a world; its errors become `X`.
-    pub fn new<W>(task: W) -> Self
+    /// Boxes a task and converts its errors to `X`.
+    pub fn new<T>(task: T) -> Self
     where
-        W: Task<Active = R, State: Send> + Send + 'static,
-        X: From<W::Error>,
+        T: Task<Active = R, State: Send> + Send + 'static,
+        X: From<T::Error>,
     {
-        Self { steps: Box::new(StatefulTask { task, state: None }) }
+        Self { task: Box::new(StatefulTask { task, state: None }) }
     }
 }
 
@@ -48,10 +49,10 @@ impl<R: Copy + AsRef<[u32]>, X> Task for BoxedTask<R, X> {
     type Error = X;
 
     fn reset(&mut self) -> Result<((), R), X> {
-        Ok(((), self.steps.reset()?))
+        Ok(((), self.task.reset()?))
     }
 
     fn step(&mut self, (): &mut (), action: usize) -> Result<Transition<R>, X> {
-        self.steps.step(action)
+        self.task.step(action)
     }
 }

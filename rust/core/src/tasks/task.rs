@@ -1,41 +1,42 @@
-//! What a learner meets: rows in, action index out.
+//! The trait of all tasks.
 
-/// What follows a step, as far as the update is concerned.
+/// What follows a step, as an update sees it. `R` holds the active rows of the next state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next<R> {
-    /// The episode goes on in these rows.
+    /// The episode continues.
     NonTerminal(R),
-    /// The time limit has come: the episode ends, the task does not, so the update bootstraps from these rows.
+    /// The episode was cut off by its time limit. The next state is not terminal, so an update bootstraps from it.
     Truncated(R),
-    /// A terminal state: nothing follows. It wins where a time-out coincides.
+    /// The next state is terminal, at the time limit or before it.
     Terminal,
 }
 
-/// What one step brings.
+/// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transition<R> {
-    /// The reward of the step.
+    /// The reward.
     pub reward: f64,
-    /// What follows it.
+    /// What follows.
     pub next: Next<R>,
 }
 
-/// An environment with its features and its time limit; fallible, because Python's environments are.
+/// An environment with its features and its time limit, as a learner sees it: active rows out, the index of an action
+/// in. It is fallible, because environments in Python are.
 pub trait Task {
-    /// Where an episode stands. Passed back at every step, so that a loop can keep it in registers.
+    /// The state of an episode. The caller keeps it and passes it to every step, so that it can stay in registers.
     type State: Copy;
-    /// The rows an observation lights.
+    /// The active rows of an observation.
     type Active: Copy + AsRef<[u32]>;
-    /// What can go wrong.
+    /// Why a reset or a step can fail.
     type Error;
 
-    /// Begins an episode.
+    /// Begins an episode. Returns its first state and the active rows.
     ///
     /// # Errors
-    /// Whatever the environment raises, or an observation that the features have no row for.
+    /// An error of the environment, or an observation without a row.
     fn reset(&mut self) -> Result<(Self::State, Self::Active), Self::Error>;
 
-    /// Takes one step of the episode.
+    /// Takes one step.
     ///
     /// # Errors
     /// As for `reset`.

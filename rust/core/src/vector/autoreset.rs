@@ -1,12 +1,12 @@
 //! What happens when an episode ends.
 
-/// What becomes of a sub-environment whose episode is over: Gymnasium's `AutoresetMode`.
+/// What happens to a sub-environment when its episode ends: Gymnasium's `AutoresetMode`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Autoreset {
-    /// Its next step is a reset, whatever its action.
+    /// The next step resets it and ignores its action.
     NextStep,
-    /// It is reset at once; what it showed last is among the [`VectorEnv::finals`].
+    /// The same step resets it. Its last state is in [`VectorEnv::final_states`](super::VectorEnv::final_states).
     SameStep,
-    /// Nothing: it must be reset before it is stepped again.
+    /// Nothing. The caller must reset it before the next step.
     Disabled,
 }

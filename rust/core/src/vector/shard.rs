@@ -1,25 +1,28 @@
 //! The sub-environments that one thread steps.
 
-use super::Autoreset;
-use super::StepBuffers;
 use super::vector_config::VectorConfig;
+use super::{Autoreset, StepBuffers};
 use crate::envs::Env;
 use crate::random::Rng;
 
-/// Where their episodes stand, field by field.
+/// The episodes of the sub-environments that one thread steps, as a structure of arrays.
 #[derive(Clone, Debug)]
 pub(super) struct Shard<S> {
     states: Vec<S>,
+    /// The number of steps since the last reset.
     elapsed: Vec<u64>,
+    /// Whether the episode has ended without a reset since.
     done: Vec<bool>,
-    /// The states in which episodes ended in the last step, where they were reset at once; there is room for all.
+    /// With `Autoreset::SameStep`, the index and the last state of each episode that ended in the last step. It has
+    /// capacity for all sub-environments, so that a step allocates nothing.
     final_states: Vec<(usize, S)>,
 }
 
 impl<S: Copy> Shard<S> {
-    pub(super) fn new(state: S, size: usize) -> Self {
+    /// `size` sub-environments that await their first reset. `placeholder` fills the states until then.
+    pub(super) fn new(placeholder: S, size: usize) -> Self {
         Self {
-            states: vec![state; size],
+            states: vec![placeholder; size],
             elapsed: vec![0; size],
             done: vec![false; size],
             final_states: Vec::with_capacity(size),
@@ -30,16 +33,16 @@ impl<S: Copy> Shard<S> {
         self.states.iter()
     }
 
-    pub(super) fn state(&self, lane: usize) -> &S {
-        &self.states[lane]
+    pub(super) fn state(&self, index: usize) -> &S {
+        &self.states[index]
     }
 
-    pub(super) fn elapsed(&self, lane: usize) -> u64 {
-        self.elapsed[lane]
+    pub(super) fn elapsed(&self, index: usize) -> u64 {
+        self.elapsed[index]
     }
 
-    pub(super) fn is_done(&self, lane: usize) -> bool {
-        self.done[lane]
+    pub(super) fn is_done(&self, index: usize) -> bool {
+        self.done[index]
     }
 
     pub(super) fn done(&self) -> impl Iterator<Item = bool> {
@@ -50,37 +53,39 @@ impl<S: Copy> Shard<S> {
         &self.final_states
     }
 
-    pub(super) fn begin(&mut self, lane: usize, state: S) {
-        self.states[lane] = state;
-        self.elapsed[lane] = 0;
-        self.done[lane] = false;
+    /// Begins an episode in this state.
+    pub(super) fn begin(&mut self, index: usize, state: S) {
+        self.states[index] = state;
+        self.elapsed[index] = 0;
+        self.done[index] = false;
     }
 
+    /// One step of all sub-environments.
     pub(super) fn step<E: Env<State = S>>(
         &mut self,
         env: &E,
         config: VectorConfig,
         actions: &[E::Action],
         rngs: &mut [impl Rng],
-        batch: StepBuffers<'_, E::Observation>,
+        buffers: StepBuffers<'_, E::Observation>,
     ) {
-        let StepBuffers { observations, rewards, terminated, truncated } = batch;
+        let StepBuffers { observations, rewards, terminated, truncated } = buffers;
         self.final_states.clear();
-        let waits = config.autoreset == Autoreset::NextStep;
-        assert!(waits || !self.done.contains(&true), "an episode that is over cannot go on");
+        let resets_done = config.autoreset == Autoreset::NextStep;
+        assert!(resets_done || !self.done.contains(&true), "a finished episode must be reset before the next step");
         env.step_batch(&mut self.states, actions, rngs, rewards, terminated, &self.done);
-        for (lane, rng) in rngs.iter_mut().enumerate() {
-            if self.done[lane] {
-                self.begin(lane, env.reset(rng));
-                (rewards[lane], terminated[lane], truncated[lane]) = (0.0, false, false);
+        for (index, rng) in rngs.iter_mut().enumerate() {
+            if self.done[index] {
+                self.begin(index, env.reset(rng));
+                (rewards[index], terminated[index], truncated[index]) = (0.0, false, false);
                 continue;
             }
-            self.elapsed[lane] += 1;
-            truncated[lane] = self.elapsed[lane] >= config.max_episode_steps;
-            self.done[lane] = terminated[lane] || truncated[lane];
-            if self.done[lane] && config.autoreset == Autoreset::SameStep {
-                self.final_states.push((lane, self.states[lane]));
-                self.begin(lane, env.reset(rng));
+            self.elapsed[index] += 1;
+            truncated[index] = self.elapsed[index] >= config.max_episode_steps;
+            self.done[index] = terminated[index] || truncated[index];
+            if self.done[index] && config.autoreset == Autoreset::SameStep {
+                self.final_states.push((index, self.states[index]));
+                self.begin(index, env.reset(rng));
             }
         }
         for (observation, state) in observations.iter_mut().zip(&self.states) {

@@ -1,24 +1,24 @@
 //! Where a step writes its results.
 
-/// What a step brings, a place for each sub-environment.
+/// Where a step writes its results: one element per sub-environment.
 #[derive(Debug)]
 pub struct StepBuffers<'a, O> {
-    /// What each shows after the step.
+    /// The observations after the step.
     pub observations: &'a mut [O],
-    /// 0 for a step that was a reset.
+    /// The rewards; 0 for a step that was a reset.
     pub rewards: &'a mut [f64],
-    /// Whether each has come to a terminal state …
+    /// Whether the next state is terminal.
     pub terminated: &'a mut [bool],
-    /// … or to its time limit. Both may be.
+    /// Whether the time limit was reached. Both flags can be set.
     pub truncated: &'a mut [bool],
 }
 
 impl<'a, O> StepBuffers<'a, O> {
-    /// The places of each block.
-    pub(super) fn chunks(self, length: usize) -> impl Iterator<Item = StepBuffers<'a, O>> {
-        let places = self.observations.chunks_mut(length).zip(self.rewards.chunks_mut(length));
-        let ends = self.terminated.chunks_mut(length).zip(self.truncated.chunks_mut(length));
-        places.zip(ends).map(|((observations, rewards), (terminated, truncated))| StepBuffers {
+    /// The buffers of each shard of `len` sub-environments.
+    pub(super) fn chunks(self, len: usize) -> impl Iterator<Item = StepBuffers<'a, O>> {
+        let values = self.observations.chunks_mut(len).zip(self.rewards.chunks_mut(len));
+        let flags = self.terminated.chunks_mut(len).zip(self.truncated.chunks_mut(len));
+        values.zip(flags).map(|((observations, rewards), (terminated, truncated))| StepBuffers {
             observations,
             rewards,
             terminated,

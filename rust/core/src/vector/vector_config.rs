@@ -2,7 +2,7 @@
 
 use super::Autoreset;
 
-/// The time limit and the autoreset mode.
+/// The settings that all sub-environments share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct VectorConfig {
     pub(super) max_episode_steps: u64,

@@ -1,126 +1,127 @@
-//! Many sub-environments of one kind that are stepped together, each with its own stream and its own clock.
+//! A vector environment.
 
-use super::Autoreset;
-use super::StepBuffers;
-use super::shard::Shard;
-use super::vector_config::VectorConfig;
 use std::thread;
 
+use super::shard::Shard;
+use super::vector_config::VectorConfig;
+use super::{Autoreset, StepBuffers};
 use crate::envs::Env;
 use crate::random::{NoRng, Rng};
 
-/// The states of all sub-environments, in as many shards as threads step them.
+/// Several sub-environments of one kind that step together, each with a random generator and a step count. Their
+/// results are those of the same environments stepped one by one.
 #[derive(Clone, Debug)]
 pub struct VectorEnv<E: Env> {
     env: E,
     config: VectorConfig,
+    /// One shard per thread.
     shards: Vec<Shard<E::State>>,
-    /// How many sub-environments a shard has; the last may have fewer.
-    length: usize,
+    /// The number of sub-environments per shard. The last shard can have fewer.
+    shard_len: usize,
 }
 
 impl<E: Env> VectorEnv<E> {
-    /// `size` sub-environments, to be reset before anything else. `threads` step them, and the results are the same for
-    /// any number; no episode is longer than `max_episode_steps`.
+    /// `size` sub-environments, stepped by `threads` threads, each of which must be reset before the first step. The
+    /// number of threads does not change the results. Episodes are truncated after `max_episode_steps` steps.
     pub fn new(env: E, size: usize, max_episode_steps: Option<u64>, autoreset: Autoreset, threads: usize) -> Self {
-        let length = size.div_ceil(threads.max(1)).max(1);
+        let shard_len = size.div_ceil(threads.max(1)).max(1);
         let placeholder = env.reset(&mut NoRng);
-        let shards = (0..size).step_by(length).map(|first| Shard::new(placeholder, length.min(size - first))).collect();
-        Self {
-            env,
-            config: VectorConfig { max_episode_steps: max_episode_steps.unwrap_or(u64::MAX), autoreset },
-            shards,
-            length,
-        }
+        let shards =
+            (0..size).step_by(shard_len).map(|first| Shard::new(placeholder, shard_len.min(size - first))).collect();
+        let config = VectorConfig { max_episode_steps: max_episode_steps.unwrap_or(u64::MAX), autoreset };
+        Self { env, config, shards, shard_len }
     }
 
-    /// The environment that each of them is.
+    /// The environment of all sub-environments.
     pub fn env(&self) -> &E {
         &self.env
     }
 
-    /// The state of each, in their order.
+    /// The states of all sub-environments.
     pub fn states(&self) -> impl Iterator<Item = &E::State> + Clone {
         self.shards.iter().flat_map(Shard::states)
     }
 
-    /// How many threads step them.
+    /// The number of threads.
     pub fn threads(&self) -> usize {
         self.shards.len()
     }
 
-    /// The state of one of them.
-    pub fn state(&self, lane: usize) -> &E::State {
-        self.shards[lane / self.length].state(lane % self.length)
+    /// The state of a sub-environment.
+    pub fn state(&self, index: usize) -> &E::State {
+        self.shards[index / self.shard_len].state(index % self.shard_len)
     }
 
-    /// How many steps its episode has had.
-    pub fn elapsed(&self, lane: usize) -> u64 {
-        self.shards[lane / self.length].elapsed(lane % self.length)
+    /// The number of steps since the last reset of a sub-environment.
+    pub fn elapsed(&self, index: usize) -> u64 {
+        self.shards[index / self.shard_len].elapsed(index % self.shard_len)
     }
 
-    /// Whether its episode is over and it was not reset since.
-    pub fn is_done(&self, lane: usize) -> bool {
-        self.shards[lane / self.length].is_done(lane % self.length)
+    /// Whether the episode of a sub-environment has ended without a reset since.
+    pub fn is_done(&self, index: usize) -> bool {
+        self.shards[index / self.shard_len].is_done(index % self.shard_len)
     }
 
-    /// Whether the episode of each is over.
+    /// [`is_done`](Self::is_done) of all sub-environments.
     pub fn done(&self) -> impl Iterator<Item = bool> {
         self.shards.iter().flat_map(Shard::done)
     }
 
-    /// With [`Autoreset::SameStep`], the episodes that the last step ended: which sub-environment, and its last state.
+    /// With [`Autoreset::SameStep`], the index and the last state of each sub-environment whose episode ended in the last
+    /// step.
     pub fn final_states(&self) -> impl Iterator<Item = (usize, &E::State)> + Clone {
         let shards = self.shards.iter().enumerate();
-        shards.flat_map(move |(index, shard)| {
-            shard.final_states().iter().map(move |(lane, state)| (index * self.length + lane, state))
+        shards.flat_map(move |(shard_index, shard)| {
+            shard.final_states().iter().map(move |(index, state)| (shard_index * self.shard_len + index, state))
         })
     }
 
-    /// Begins a new episode in one sub-environment, between the environment's own bounds if there are no others.
-    pub fn reset(&mut self, lane: usize, start: Option<[f64; 2]>, rng: &mut impl Rng) {
-        let state = match start {
-            Some(start) => self.env.reset_within(start, rng),
+    /// Begins an episode in a sub-environment, within these bounds or the environment's default ones.
+    pub fn reset(&mut self, index: usize, bounds: Option<[f64; 2]>, rng: &mut impl Rng) {
+        let state = match bounds {
+            Some(bounds) => self.env.reset_within(bounds, rng),
             None => self.env.reset(rng),
         };
-        self.shards[lane / self.length].begin(lane % self.length, state);
+        self.shards[index / self.shard_len].begin(index % self.shard_len, state);
     }
 
-    /// What each shows.
+    /// Writes the current observations.
     pub fn observe(&self, observations: &mut [E::Observation]) {
         for (observation, state) in observations.iter_mut().zip(self.states()) {
             *observation = self.env.observe(state);
         }
     }
 
-    /// One step of all of them. Nothing is allocated, but for threads where there is more than one.
+    /// One step of all sub-environments. It allocates nothing, except for threads if there are several.
     ///
     /// # Panics
-    /// With [`Autoreset::Disabled`], where an episode is over; and it may where an action is none of the environment's.
-    pub fn step<D>(&mut self, actions: &[E::Action], rngs: &mut [D], batch: StepBuffers<'_, E::Observation>)
+    /// With [`Autoreset::Disabled`], if an episode has ended. May panic if an action is out of range.
+    pub fn step<R>(&mut self, actions: &[E::Action], rngs: &mut [R], buffers: StepBuffers<'_, E::Observation>)
     where
-        D: Rng + Send,
+        R: Rng + Send,
         E: Sync,
         E::State: Send,
         E::Action: Sync,
         E::Observation: Send,
     {
-        let (env, config, length) = (&self.env, self.config, self.length);
+        let (env, config, shard_len) = (&self.env, self.config, self.shard_len);
         if let [shard] = &mut self.shards[..] {
-            return shard.step(env, config, actions, rngs, batch);
+            return shard.step(env, config, actions, rngs, buffers);
         }
-        let batches = batch.chunks(length);
-        let lanes = self.shards.iter_mut().zip(actions.chunks(length)).zip(rngs.chunks_mut(length)).zip(batches);
+        let chunks = actions.chunks(shard_len).zip(rngs.chunks_mut(shard_len)).zip(buffers.chunks(shard_len));
         thread::scope(|scope| {
-            let mut lanes =
-                lanes.map(|(((shard, actions), rngs), batch)| move || shard.step(env, config, actions, rngs, batch));
-            let own = lanes.next();
-            for work in lanes {
-                scope.spawn(work);
+            let mut jobs = self
+                .shards
+                .iter_mut()
+                .zip(chunks)
+                .map(|(shard, ((actions, rngs), buffers))| move || shard.step(env, config, actions, rngs, buffers));
+            let own_job = jobs.next();
+            for job in jobs {
+                scope.spawn(job);
             }
-            // One of them is the caller's.
-            if let Some(work) = own {
-                work();
+            // The calling thread does its share.
+            if let Some(job) = own_job {
+                job();
             }
         });
     }
@@ -136,64 +137,66 @@ mod tests {
 
     const STEPS: usize = 60;
 
-    fn streams(size: usize) -> Vec<Pcg64> {
+    /// One generator per sub-environment.
+    fn generators(size: usize) -> Vec<Pcg64> {
         (0..size as u32).map(|seed| Pcg64::new(&SeedSequence::new(&[seed]))).collect()
     }
 
-    /// What the lone loop brings: sub-environment by sub-environment, step by step.
+    /// Compares a vector environment with a loop over single environments.
     fn check<E>(env: &E, size: usize, threads: usize, limit: u64, autoreset: Autoreset, seed: u32)
     where
         E: Env<Action = usize, Observation: Send + Default + Copy + PartialEq + std::fmt::Debug> + Clone + Sync,
         E::State: Send + PartialEq + std::fmt::Debug,
     {
         let mut vector = VectorEnv::new(env.clone(), size, Some(limit), autoreset, threads);
-        let (mut rngs, mut own) = (streams(size), streams(size));
-        let mut states: Vec<_> = own.iter_mut().map(|rng| env.reset(rng)).collect();
+        let (mut rngs, mut reference_rngs) = (generators(size), generators(size));
+        let mut states: Vec<_> = reference_rngs.iter_mut().map(|rng| env.reset(rng)).collect();
         let mut elapsed = vec![0; size];
         let mut done = vec![false; size];
-        (0..size).for_each(|lane| vector.reset(lane, None, &mut rngs[lane]));
-        let mut choose = Pcg64::new(&SeedSequence::new(&[seed, 1]));
+        (0..size).for_each(|index| vector.reset(index, None, &mut rngs[index]));
+        let mut action_rng = Pcg64::new(&SeedSequence::new(&[seed, 1]));
         let mut observations = vec![E::Observation::default(); size];
         let (mut rewards, mut terminated, mut truncated) = (vec![0.0; size], vec![false; size], vec![false; size]);
         for _ in 0..STEPS {
-            let actions: Vec<_> = (0..size).map(|_| choose.integers(env.num_actions() as u32) as usize).collect();
-            let batch = StepBuffers {
+            let actions: Vec<_> = (0..size).map(|_| action_rng.integers(env.num_actions() as u32) as usize).collect();
+            let buffers = StepBuffers {
                 observations: &mut observations,
                 rewards: &mut rewards,
                 terminated: &mut terminated,
                 truncated: &mut truncated,
             };
-            vector.step(&actions, &mut rngs, batch);
+            vector.step(&actions, &mut rngs, buffers);
             let mut final_states = Vec::new();
-            for lane in 0..size {
+            for index in 0..size {
                 let mut expected = (0.0, false, false);
-                if done[lane] && autoreset == Autoreset::NextStep {
-                    (states[lane], elapsed[lane], done[lane]) = (env.reset(&mut own[lane]), 0, false);
+                if done[index] && autoreset == Autoreset::NextStep {
+                    (states[index], elapsed[index], done[index]) = (env.reset(&mut reference_rngs[index]), 0, false);
                 } else {
-                    let step = env.step(states[lane], actions[lane], &mut own[lane]);
-                    states[lane] = step.state;
-                    elapsed[lane] += 1;
-                    expected = (step.reward, step.terminated, elapsed[lane] >= limit);
-                    done[lane] = expected.1 || expected.2;
-                    if done[lane] && autoreset == Autoreset::SameStep {
-                        final_states.push((lane, states[lane]));
-                        (states[lane], elapsed[lane], done[lane]) = (env.reset(&mut own[lane]), 0, false);
+                    let step = env.step(states[index], actions[index], &mut reference_rngs[index]);
+                    states[index] = step.state;
+                    elapsed[index] += 1;
+                    expected = (step.reward, step.terminated, elapsed[index] >= limit);
+                    done[index] = expected.1 || expected.2;
+                    if done[index] && autoreset == Autoreset::SameStep {
+                        final_states.push((index, states[index]));
+                        (states[index], elapsed[index], done[index]) =
+                            (env.reset(&mut reference_rngs[index]), 0, false);
                     }
                 }
-                assert_eq!((rewards[lane], terminated[lane], truncated[lane]), expected);
-                assert_eq!(observations[lane], env.observe(&states[lane]));
+                assert_eq!((rewards[index], terminated[index], truncated[index]), expected);
+                assert_eq!(observations[index], env.observe(&states[index]));
             }
             assert!(vector.states().eq(&states));
-            assert!((0..size).all(|lane| vector.elapsed(lane) == elapsed[lane]));
+            assert!((0..size).all(|index| vector.elapsed(index) == elapsed[index]));
             assert!(vector.done().eq(done.iter().copied()));
-            assert!(vector.final_states().map(|(lane, state)| (lane, *state)).eq(final_states));
-            assert_eq!(rngs, own);
-            for lane in (0..size).filter(|_| autoreset == Autoreset::Disabled) {
-                if !done[lane] {
+            assert!(vector.final_states().map(|(index, state)| (index, *state)).eq(final_states));
+            assert_eq!(rngs, reference_rngs);
+            for index in (0..size).filter(|_| autoreset == Autoreset::Disabled) {
+                if !done[index] {
                     continue;
                 }
-                vector.reset(lane, None, &mut rngs[lane]);
-                (states[lane], elapsed[lane], done[lane]) = (env.reset(&mut own[lane]), 0, false);
+                vector.reset(index, None, &mut rngs[index]);
+                (states[index], elapsed[index], done[index]) = (env.reset(&mut reference_rngs[index]), 0, false);
             }
         }
     }
@@ -202,7 +205,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(60))]
 
         #[test]
-        fn each_sub_environment_is_as_it_would_be_alone(
+        fn a_vector_environment_equals_single_environments(
             size in 1_usize..40,
             threads in 1_usize..5,
             limit in 1_u64..50,
@@ -218,10 +221,10 @@ mod tests {
     }
 
     #[test]
-    fn no_sub_environments_are_no_trouble() {
-        let mut none = VectorEnv::new(CartPole::default(), 0, None, Autoreset::NextStep, 2);
-        let batch = StepBuffers { observations: &mut [], rewards: &mut [], terminated: &mut [], truncated: &mut [] };
-        none.step(&[], &mut [] as &mut [Pcg64], batch);
-        assert_eq!(none.states().count(), 0);
+    fn zero_sub_environments_are_allowed() {
+        let mut empty = VectorEnv::new(CartPole::default(), 0, None, Autoreset::NextStep, 2);
+        let buffers = StepBuffers { observations: &mut [], rewards: &mut [], terminated: &mut [], truncated: &mut [] };
+        empty.step(&[], &mut [] as &mut [Pcg64], buffers);
+        assert_eq!(empty.states().count(), 0);
     }
 }

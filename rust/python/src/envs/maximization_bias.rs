@@ -17,9 +17,9 @@ impl MaximizationBiasEnv {
     pub(crate) fn from_gymnasium(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
         let py = env.py();
         Ok(Arc::new(Self(MaximizationBias {
-            actions: env.getattr(intern!(py, "actions"))?.extract()?,
+            num_actions: env.getattr(intern!(py, "actions"))?.extract()?,
             mean: env.getattr(intern!(py, "mean"))?.extract()?,
-            deviation: env.getattr(intern!(py, "deviation"))?.extract()?,
+            standard_deviation: env.getattr(intern!(py, "deviation"))?.extract()?,
         })))
     }
 }

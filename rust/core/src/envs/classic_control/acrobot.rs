@@ -1,4 +1,5 @@
-//! `Acrobot-v1`: two links, a motor between them, swing the free end up (Sutton, 1996; Sutton & Barto, 1st ed., 11.3).
+//! `Acrobot-v1`: swing up two links with a motor at the joint between them (R. Sutton, 1996; Sutton & Barto, 1st ed.,
+//! section 11.3).
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,41 +7,41 @@ use crate::envs::{Env, Flag, Parameters, Step};
 use crate::numeric::squared;
 use crate::random::Rng;
 
-/// Each component of the first state is uniform over these.
+/// The bounds of each component of the initial state, which is uniform.
 const RESET_BOUNDS: [(&str, f64); 2] = [("low", -0.1), ("high", 0.1)];
 const GRAVITY: f64 = 9.8;
-/// Gymnasium takes turns off an angle one by one; a state so far out is none that the physics reach.
-const MOST_TURNS: f64 = 1e6;
+/// The largest angle that is wrapped. Gymnasium subtracts full turns one by one; the dynamics never reach such an angle.
+const MAX_ANGLE: f64 = 1e6;
 
-/// The constants of the dynamics, under Gymnasium's names in small letters.
+/// The parameters, with Gymnasium's names in lower case.
 #[derive(Clone, Copy, Debug)]
 pub struct Acrobot {
-    /// Seconds a step.
+    /// The time step, in seconds.
     pub dt: f64,
     /// The length of the first link.
     pub link_length_1: f64,
-    /// The mass of the first link …
+    /// The mass of the first link.
     pub link_mass_1: f64,
-    /// … and of the second.
+    /// The mass of the second link.
     pub link_mass_2: f64,
-    /// Where the first link's centre of mass is …
+    /// The distance of the first link's centre of mass from its joint.
     pub link_com_pos_1: f64,
-    /// … and the second's.
+    /// The distance of the second link's centre of mass from its joint.
     pub link_com_pos_2: f64,
     /// The moment of inertia of either link.
     pub link_moi: f64,
-    /// The first angular speed is bounded by this, both ways …
+    /// The maximum angular speed of the first link.
     pub max_vel_1: f64,
-    /// … and the second by this.
+    /// The maximum angular speed of the second link.
     pub max_vel_2: f64,
-    /// Every torque has noise uniform between this and its negative; no noise unless it is positive.
+    /// If positive, each torque has uniform noise between this and its negative.
     pub torque_noise_max: f64,
-    /// The equations of the NIPS paper, not the book's.
+    /// Whether to use the equations of the NIPS paper instead of the book's.
     pub nips: bool,
     /// The torque of each action.
     pub torques: [f64; 3],
-    /// The cosine and the sine of a single-precision angle, which a reset's observation is made of. `NumPy`'s are its
-    /// own, so whoever wants its bits hands them in; the default is the platform's.
+    /// Cosine and sine of a float32 angle, for the observation after a reset. `NumPy` has its own float32 functions, which
+    /// differ from the platform's. The default is the platform's.
     pub f32_cos_sin: fn(f32) -> [f32; 2],
 }
 
@@ -100,18 +101,18 @@ impl Parameters for Acrobot {
     }
 }
 
-/// The two angles and their speeds: f64 after a step.
+/// The angles and angular velocities of both links: float32 after a reset and float64 after a step, as in Gymnasium.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AcrobotState {
     /// The first link's angle from hanging down, in radians.
     pub theta1: f64,
     /// The second link's angle, relative to the first.
     pub theta2: f64,
-    /// The angular speed of the first.
+    /// The angular velocity of the first link.
     pub dtheta1: f64,
-    /// The angular speed of the second.
+    /// The angular velocity of the second link.
     pub dtheta2: f64,
-    /// Whether all of them are f32, as a reset leaves them: their sines and cosines are then f32's.
+    /// Whether the state is float32, so that its sines and cosines are computed in float32.
     pub is_f32: bool,
 }
 
@@ -128,7 +129,7 @@ impl From<AcrobotState> for [f64; 4] {
 }
 
 impl Acrobot {
-    /// One step under a torque, noise included.
+    /// One step under a torque that includes the noise.
     #[inline]
     pub fn transition(&self, state: AcrobotState, torque: f64) -> Step<AcrobotState> {
         let derivative = self.dynamics(torque);
@@ -143,22 +144,21 @@ impl Acrobot {
         Step { state: [theta1, theta2, dtheta1, dtheta2].into(), reward, terminated }
     }
 
-    /// The time derivative of a state, in the names and the order of Gymnasium's source.
+    /// The time derivative of a state, with the names and the order of operations of Gymnasium's source.
     fn dynamics(&self, a: f64) -> impl Fn([f64; 4]) -> [f64; 4] + use<> {
         let (m1, m2, l1, lc1, lc2) =
             (self.link_mass_1, self.link_mass_2, self.link_length_1, self.link_com_pos_1, self.link_com_pos_2);
         let (i1, i2, g, nips) = (self.link_moi, self.link_moi, GRAVITY, self.nips);
-        // `l1**2`, `lc1**2`, `lc2**2`
-        let [outer, com1, com2] = [l1, lc1, lc2].map(squared);
+        let [link_squared, com1_squared, com2_squared] = [l1, lc1, lc2].map(squared);
         move |[theta1, theta2, dtheta1, dtheta2]| {
             let (sine, cosine) = (theta2.sin(), theta2.cos());
-            let d1 = m1 * com1 + m2 * (outer + com2 + 2.0 * l1 * lc2 * cosine) + i1 + i2;
-            let d2 = m2 * (com2 + l1 * lc2 * cosine) + i2;
+            let d1 = m1 * com1_squared + m2 * (link_squared + com2_squared + 2.0 * l1 * lc2 * cosine) + i1 + i2;
+            let d2 = m2 * (com2_squared + l1 * lc2 * cosine) + i2;
             let phi2 = m2 * lc2 * g * (theta1 + theta2 - FRAC_PI_2).cos();
             let phi1 = -m2 * l1 * lc2 * squared(dtheta2) * sine - 2.0 * m2 * l1 * lc2 * dtheta2 * dtheta1 * sine
                 + (m1 * lc1 + m2 * l1) * g * (theta1 - FRAC_PI_2).cos()
                 + phi2;
-            let inertia = m2 * com2 + i2 - squared(d2) / d1;
+            let inertia = m2 * com2_squared + i2 - squared(d2) / d1;
             let ddtheta2 = if nips {
                 (a + d2 / d1 * phi1 - phi2) / inertia
             } else {
@@ -189,8 +189,8 @@ impl Env for Acrobot {
 
     #[inline]
     fn reset_within(&self, [low, high]: [f64; 2], rng: &mut impl Rng) -> AcrobotState {
-        let start = [(); 4].map(|()| f64::from(rng.uniform(low, high) as f32));
-        AcrobotState { is_f32: true, ..start.into() }
+        let state = [(); 4].map(|()| f64::from(rng.uniform(low, high) as f32));
+        AcrobotState { is_f32: true, ..state.into() }
     }
 
     #[inline]
@@ -205,30 +205,30 @@ impl Env for Acrobot {
     #[inline]
     fn observe(&self, state: &AcrobotState) -> [f32; 6] {
         let AcrobotState { theta1, theta2, dtheta1, dtheta2, is_f32 } = *state;
-        let angle = |theta: f64| {
+        let cos_sin = |theta: f64| {
             if is_f32 { (self.f32_cos_sin)(theta as f32) } else { [theta.cos() as f32, theta.sin() as f32] }
         };
-        let ([cos1, sin1], [cos2, sin2]) = (angle(theta1), angle(theta2));
+        let ([cos1, sin1], [cos2, sin2]) = (cos_sin(theta1), cos_sin(theta2));
         [cos1, sin1, cos2, sin2, dtheta1 as f32, dtheta2 as f32]
     }
 }
 
-/// One step of the classic fourth-order method.
+/// One step of the classical fourth-order Runge-Kutta method.
 #[inline]
 fn runge_kutta(derivative: impl Fn([f64; 4]) -> [f64; 4], start: [f64; 4], dt: f64) -> [f64; 4] {
     let half = dt / 2.0;
-    let along = |step: f64, slope: [f64; 4]| std::array::from_fn(|i| start[i] + step * slope[i]);
+    let advance = |step: f64, slope: [f64; 4]| std::array::from_fn(|i| start[i] + step * slope[i]);
     let k1 = derivative(start);
-    let k2 = derivative(along(half, k1));
-    let k3 = derivative(along(half, k2));
-    let k4 = derivative(along(dt, k3));
+    let k2 = derivative(advance(half, k1));
+    let k3 = derivative(advance(half, k2));
+    let k4 = derivative(advance(dt, k3));
     std::array::from_fn(|i| start[i] + dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
 }
 
-/// An angle between -π and π, turn by turn as Gymnasium does it; NaN where that would take for ever.
+/// An angle wrapped to [-π, π] by subtracting full turns, as Gymnasium does. NaN if there are too many.
 #[inline]
 fn wrap(mut angle: f64) -> f64 {
-    if angle.abs() > MOST_TURNS {
+    if angle.abs() > MAX_ANGLE {
         return f64::NAN;
     }
     while angle > PI {
@@ -240,10 +240,11 @@ fn wrap(mut angle: f64) -> f64 {
     angle
 }
 
+/// Gymnasium's `bound`: a velocity clipped to the maximum speed in both directions.
 #[inline]
-fn bound(speed: f64, most: f64) -> f64 {
-    let raised = if -most > speed { -most } else { speed };
-    if most < raised { most } else { raised }
+fn bound(velocity: f64, max: f64) -> f64 {
+    let raised = if -max > velocity { -max } else { velocity };
+    if max < raised { max } else { raised }
 }
 
 #[cfg(test)]
@@ -252,20 +253,20 @@ mod tests {
     use crate::random::{Pcg64, SeedSequence};
 
     #[test]
-    fn hanging_still_stays_still() {
+    fn hanging_at_rest_stays_at_rest() {
         let hanging = Acrobot::default().transition(AcrobotState::default(), 0.0);
         assert!(<[f64; 4]>::from(hanging.state).iter().all(|number| number.abs() < 1e-15));
         assert_eq!((hanging.reward, hanging.terminated), (-1.0, false));
     }
 
     #[test]
-    fn the_end_above_the_line_ends_an_episode_for_free() {
+    fn the_last_step_costs_nothing() {
         let up = Acrobot::default().transition([PI, 0.0, 0.0, 0.0].into(), 0.0);
         assert_eq!((up.reward, up.terminated), (0.0, true));
     }
 
     #[test]
-    fn angles_wrap_and_speeds_are_bounded() {
+    fn angles_are_wrapped_and_speeds_bounded() {
         let fast: [f64; 4] = Acrobot::default().transition([3.0, 3.0, 12.5, 28.0].into(), 1.0).state.into();
         assert!(fast[0].abs() <= PI && fast[1].abs() <= PI);
         assert!(fast[2].abs() <= 4.0 * PI && fast[3].abs() <= 9.0 * PI);
@@ -273,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_is_drawn_only_where_there_is_any() {
+    fn noise_is_drawn_only_if_enabled() {
         let seed = SeedSequence::new(&[0]);
         let (mut rng, untouched) = (Pcg64::new(&seed), Pcg64::new(&seed));
         let still = Acrobot::default().step(AcrobotState::default(), 1, &mut rng);
@@ -284,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reset_is_observed_in_single_precision() {
+    fn the_observation_after_a_reset_is_computed_in_float32() {
         let env = Acrobot { f32_cos_sin: |_| [0.25, 0.75], ..Acrobot::default() };
         let state = env.reset(&mut Pcg64::new(&SeedSequence::new(&[0])));
         assert_eq!(f64::from(state.theta1 as f32), state.theta1);

@@ -1,37 +1,38 @@
-//! `CartPole-v1`: a pole on a cart that is pushed left or right (Barto, Sutton & Anderson, 1983; R. V. Florian, "Correct
-//! equations for the dynamics of the cart-pole system", 2005).
+//! `CartPole-v1`: balance a pole on a cart by pushing the cart left or right (A. Barto, R. Sutton and C. Anderson, 1983).
+//! Gymnasium's dynamics follow R. Florian, "Correct equations for the dynamics of the cart-pole system", 2005.
 
 use crate::envs::{Env, Flag, Parameters, SimdEnv, Step, step_batch};
 use crate::random::Rng;
 
-/// Each component of the first state is uniform over these.
+/// The bounds of each component of the initial state, which is uniform.
 const RESET_BOUNDS: [(&str, f64); 2] = [("low", -0.05), ("high", 0.05)];
 
-/// The constants of the dynamics, under Gymnasium's names. Those that Gymnasium derives from others when it makes the
-/// environment (`total_mass`, `polemass_length`) are constants of their own afterwards, there as here.
+/// The parameters, with Gymnasium's names. `total_mass` and `polemass_length` are separate parameters, as in Gymnasium:
+/// assigning to `masspole` later does not change them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CartPole {
-    /// m/s²
+    /// The acceleration by gravity, in m/s².
     pub gravity: f64,
-    /// The pole's mass.
+    /// The mass of the pole.
     pub masspole: f64,
-    /// The mass of cart and pole.
+    /// The mass of cart and pole together.
     pub total_mass: f64,
-    /// Half the pole's length.
+    /// Half the length of the pole.
     pub length: f64,
-    /// The pole's mass times `length`.
+    /// `masspole * length`.
     pub polemass_length: f64,
-    /// The force of a push.
+    /// The magnitude of the force of a push.
     pub force_mag: f64,
-    /// Seconds a step.
+    /// The time step, in seconds.
     pub tau: f64,
-    /// An episode ends beyond this angle, both ways …
+    /// An episode ends when the angle exceeds this in either direction.
     pub theta_threshold_radians: f64,
-    /// … or beyond this position.
+    /// An episode ends when the position exceeds this in either direction.
     pub x_threshold: f64,
-    /// Positions move by the old speeds (Gymnasium's "euler"), not by the new ones.
+    /// Explicit Euler integration (Gymnasium's "euler"): positions move with the old velocities. Otherwise semi-implicit
+    /// Euler: they move with the new ones.
     pub euler: bool,
-    /// The reward is -1 at the fall and 0 before it, not 1 a step.
+    /// The reward is -1 in the last step and 0 before it, as in the book, instead of 1 per step.
     pub sutton_barto_reward: bool,
 }
 
@@ -94,16 +95,16 @@ impl Parameters for CartPole {
     }
 }
 
-/// Where cart and pole are, in f64.
+/// The state of cart and pole, in float64.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CartPoleState {
-    /// The cart's position.
+    /// The position of the cart.
     pub x: f64,
-    /// Its speed.
+    /// The velocity of the cart.
     pub x_dot: f64,
-    /// The pole's angle from upright, in radians.
+    /// The angle of the pole from upright, in radians.
     pub theta: f64,
-    /// Its angular speed.
+    /// The angular velocity of the pole.
     pub theta_dot: f64,
 }
 
@@ -125,10 +126,10 @@ impl CartPole {
         if action == 1 { self.force_mag } else { -self.force_mag }
     }
 
-    /// Moves `K` poles under a force each, and says which come to a terminal state.
+    /// One step of `K` cart-poles, in place. Returns whether each next state is terminal.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
-    #[expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be a branch in each of many lanes")]
+    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+    #[expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be an unpredictable branch")]
     fn transition<const K: usize>(
         &self,
         [x, x_dot, theta, theta_dot]: &mut [[f64; K]; 4],
@@ -139,17 +140,17 @@ impl CartPole {
         let mut terminated = [false; K];
         for lane in 0..K {
             let (costheta, sintheta) = (costheta[lane], sintheta[lane]);
-            let (speed, spin) = (x_dot[lane], theta_dot[lane]);
-            let temp = (force[lane] + self.polemass_length * (spin * spin) * sintheta) / self.total_mass;
+            let (old_x_dot, old_theta_dot) = (x_dot[lane], theta_dot[lane]);
+            let temp =
+                (force[lane] + self.polemass_length * (old_theta_dot * old_theta_dot) * sintheta) / self.total_mass;
             let thetaacc = (self.gravity * sintheta - costheta * temp)
                 / (self.length * (4.0 / 3.0 - self.masspole * (costheta * costheta) / self.total_mass));
             let xacc = temp - self.polemass_length * thetaacc * costheta / self.total_mass;
 
-            x_dot[lane] = speed + self.tau * xacc;
-            theta_dot[lane] = spin + self.tau * thetaacc;
-            // Semi-implicit, the positions move by the new speeds.
-            x[lane] += self.tau * if self.euler { speed } else { x_dot[lane] };
-            theta[lane] += self.tau * if self.euler { spin } else { theta_dot[lane] };
+            x_dot[lane] = old_x_dot + self.tau * xacc;
+            theta_dot[lane] = old_theta_dot + self.tau * thetaacc;
+            x[lane] += self.tau * if self.euler { old_x_dot } else { x_dot[lane] };
+            theta[lane] += self.tau * if self.euler { old_theta_dot } else { theta_dot[lane] };
             terminated[lane] = (x[lane] < -self.x_threshold)
                 | (x[lane] > self.x_threshold)
                 | (theta[lane] < -self.theta_threshold_radians)
@@ -181,13 +182,14 @@ impl Env for CartPole {
         [(); 4].map(|()| rng.uniform(low, high)).into()
     }
 
-    /// The reward is that of an episode under way: what Gymnasium gives for stepping on after the fall is not here.
-    #[expect(clippy::inline_always, reason = "a call a step costs a tenth of it")]
+    /// The reward is that of an unfinished episode. The caller handles steps after a terminal state, which Gymnasium
+    /// rewards differently.
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
-    fn step(&self, state: CartPoleState, action: usize, _draw: &mut impl Rng) -> Step<CartPoleState> {
-        let mut one = <[f64; 4]>::from(state).map(|number| [number]);
-        let [terminated] = self.transition(&mut one, [self.force(action)]);
-        Step { state: one.map(|[number]| number).into(), reward: self.reward(terminated), terminated }
+    fn step(&self, state: CartPoleState, action: usize, _rng: &mut impl Rng) -> Step<CartPoleState> {
+        let mut fields = <[f64; 4]>::from(state).map(|number| [number]);
+        let [terminated] = self.transition(&mut fields, [self.force(action)]);
+        Step { state: fields.map(|[number]| number).into(), reward: self.reward(terminated), terminated }
     }
 
     #[inline]
@@ -195,7 +197,7 @@ impl Env for CartPole {
         &self,
         states: &mut [CartPoleState],
         actions: &[usize],
-        _draws: &mut [impl Rng],
+        _rngs: &mut [impl Rng],
         rewards: &mut [f64],
         terminated: &mut [bool],
         inactive: &[bool],
@@ -209,13 +211,13 @@ impl Env for CartPole {
     }
 }
 
-/// The platform's sine and cosine one by one, the arithmetic in wide registers.
+/// Sine and cosine are the platform's, lane by lane; the rest of the arithmetic is SIMD code.
 impl SimdEnv<4> for CartPole {
     fn is_exact(&self) -> bool {
         true
     }
 
-    #[expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
+    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn step_soa<const K: usize>(&self, fields: &mut [[f64; K]; 4], actions: &[usize; K]) -> [bool; K] {
         self.transition(fields, actions.map(|action| self.force(action)))
@@ -241,12 +243,12 @@ mod tests {
     }
 
     #[test]
-    fn a_push_moves_the_cart_only_after_a_step() {
+    fn with_explicit_euler_a_push_moves_the_cart_one_step_later() {
         let pushed = step(CartPole::default(), [0.0; 4], 1).state;
         assert_eq!((pushed.x, pushed.theta), (0.0, 0.0));
         assert!(pushed.x_dot > 0.0 && pushed.theta_dot < 0.0);
-        let at_once = step(CartPole { euler: false, ..CartPole::default() }, [0.0; 4], 1).state;
-        assert!(at_once.x > 0.0 && at_once.theta < 0.0);
+        let semi_implicit = step(CartPole { euler: false, ..CartPole::default() }, [0.0; 4], 1).state;
+        assert!(semi_implicit.x > 0.0 && semi_implicit.theta < 0.0);
     }
 
     #[test]
@@ -257,14 +259,14 @@ mod tests {
     }
 
     #[test]
-    fn an_episode_ends_beyond_either_threshold() {
+    fn an_episode_ends_beyond_a_threshold() {
         assert!(step(CartPole::default(), [2.4, 1.0, 0.0, 0.0], 1).terminated);
         assert!(step(CartPole::default(), [0.0, 0.0, -0.21, -0.1], 0).terminated);
         assert!(!step(CartPole::default(), [2.3, 0.0, 0.2, 0.0], 0).terminated);
     }
 
     #[test]
-    fn the_books_reward_is_minus_one_at_the_fall() {
+    fn the_books_reward_is_minus_one_in_the_last_step() {
         let env = CartPole { sutton_barto_reward: true, ..CartPole::default() };
         assert_eq!(step(env, [0.0; 4], 0).reward, 0.0);
         assert_eq!(step(env, [3.0, 0.0, 0.0, 0.0], 0).reward, -1.0);

@@ -1,33 +1,33 @@
-//! `MountainCarContinuous-v0`: the mountain car with a continuous force, paid for by its square.
+//! `MountainCarContinuous-v0`: the mountain car with a continuous force, whose square is subtracted from the reward.
 
 use crate::envs::{Env, Parameters, Step};
 use crate::numeric::{Scalar, squared};
 use crate::random::Rng;
 
-/// The starting position is uniform over these.
+/// The bounds of the initial position, which is uniform.
 const RESET_BOUNDS: [(&str, f64); 2] = [("low", -0.6), ("high", -0.4)];
-/// The acceleration along the slope at its steepest, a step.
+/// The acceleration by gravity on the steepest slope, per step.
 const GRAVITY: f64 = 0.0025;
 const GOAL_REWARD: f64 = 100.0;
 
-/// The constants of the dynamics, under Gymnasium's names.
+/// The parameters, with Gymnasium's names.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContinuousMountainCar {
-    /// The force is clipped to this from below …
+    /// The lower bound that the force is clipped to.
     pub min_action: f64,
-    /// … and to this from above.
+    /// The upper bound that the force is clipped to.
     pub max_action: f64,
-    /// The left wall, which absorbs the car's speed.
+    /// The position of the left wall, which absorbs the car's speed.
     pub min_position: f64,
     /// The right end of the track.
     pub max_position: f64,
-    /// The speed is clipped to this, both ways.
+    /// The maximum speed in both directions.
     pub max_speed: f64,
-    /// An episode ends at or beyond this position …
+    /// An episode ends at or beyond this position, with at least the goal velocity.
     pub goal_position: f64,
-    /// … when the velocity is at least this.
+    /// The minimum velocity at the goal.
     pub goal_velocity: f64,
-    /// The acceleration of a force of one, a step.
+    /// The acceleration by a force of 1, per step.
     pub power: f64,
 }
 
@@ -73,12 +73,12 @@ impl Parameters for ContinuousMountainCar {
     }
 }
 
-/// Where the car is and how fast it moves: f64 after a reset, f32 after a step, as Gymnasium keeps them.
+/// Position and velocity: float64 after a reset and float32 after a step, as in Gymnasium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContinuousMountainCarState {
-    /// In the track's units.
+    /// The position.
     pub position: Scalar,
-    /// Position units per step.
+    /// The velocity, in position units per step.
     pub velocity: Scalar,
 }
 
@@ -96,7 +96,7 @@ impl From<ContinuousMountainCarState> for [f64; 2] {
 
 impl Env for ContinuousMountainCar {
     type State = ContinuousMountainCarState;
-    /// The force, in the dtype in which it comes: single and double forces give different numbers.
+    /// The force. Its dtype matters: float32 and float64 forces lead to different numbers.
     type Action = Scalar;
     type Observation = [f32; 2];
 
@@ -119,7 +119,7 @@ impl Env for ContinuousMountainCar {
     }
 
     #[inline]
-    fn step(&self, state: Self::State, action: Scalar, _draw: &mut impl Rng) -> Step<Self::State> {
+    fn step(&self, state: Self::State, action: Scalar, _rng: &mut impl Rng) -> Step<Self::State> {
         let ContinuousMountainCarState { mut position, mut velocity } = state;
         let [min_action, max_action] = [self.min_action, self.max_action].map(Scalar::Python);
         let [min_position, max_position] = [self.min_position, self.max_position].map(Scalar::Python);
@@ -191,14 +191,14 @@ mod tests {
     }
 
     #[test]
-    fn a_force_is_paid_for_as_it_was_asked_and_acts_as_it_is_clipped() {
+    fn the_cost_uses_the_force_before_clipping() {
         assert_eq!(step(-0.5, 0.0, 2.0).state, step(-0.5, 0.0, 1.0).state);
         assert_eq!(step(-0.5, 0.0, 2.0).reward, -0.4);
         assert_eq!(step(-0.5, 0.0, 0.0).reward, 0.0);
     }
 
     #[test]
-    fn the_goal_is_worth_a_hundred() {
+    fn the_goal_has_a_reward_of_a_hundred() {
         let goal = step(0.449, 0.06, 1.0);
         assert!(goal.terminated);
         assert_eq!(goal.reward, 99.9);

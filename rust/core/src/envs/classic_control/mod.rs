@@ -1,4 +1,4 @@
-//! Gymnasium's classic control environments.
+//! The environments of `gymnasium.envs.classic_control`.
 
 mod acrobot;
 mod cart_pole;

@@ -4,29 +4,33 @@ use crate::envs::{Env, Parameters, Step, step_batch};
 use crate::numeric::cold_path;
 use crate::random::Rng;
 
-/// The starting position is uniform over these.
+/// The bounds of the initial position, which is uniform.
 pub(crate) const RESET_BOUNDS: [(&str, f64); 2] = [("low", -0.6), ("high", -0.4)];
-/// Action - 1: left, none, right. Looked up, because turning the action into a float takes longer, and the next step
-/// waits for it.
+/// The direction of each action: left, none, right. A lookup is faster than converting the action to a float, and the
+/// next step waits for the result.
 pub(super) const DIRECTIONS: [f64; 3] = [-1.0, 0.0, 1.0];
+/// The reward of every step.
 pub(super) const REWARD: f64 = -1.0;
 
-/// The constants of the dynamics, under Gymnasium's names.
+/// The parameters, with Gymnasium's names:
+///
+/// - `velocity ← clip(velocity + force (action - 1) - gravity cos(3 position), -max_speed, max_speed)`
+/// - `position ← clip(position + velocity, min_position, max_position)`
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MountainCar {
-    /// The left wall, which absorbs the car's speed.
+    /// The position of the left wall, which absorbs the car's speed.
     pub min_position: f64,
     /// The right end of the track.
     pub max_position: f64,
-    /// The speed is clipped to this, both ways.
+    /// The maximum speed in both directions.
     pub max_speed: f64,
-    /// An episode ends at or beyond this position …
+    /// An episode ends at or beyond this position, with at least the goal velocity.
     pub goal_position: f64,
-    /// … when the velocity is at least this.
+    /// The minimum velocity at the goal.
     pub goal_velocity: f64,
-    /// The acceleration of an action, a step.
+    /// The acceleration by an action, per step.
     pub force: f64,
-    /// The acceleration along the slope at its steepest, a step.
+    /// The acceleration by gravity on the steepest slope, per step.
     pub gravity: f64,
 }
 
@@ -62,12 +66,12 @@ impl Parameters for MountainCar {
     }
 }
 
-/// Where the car is and how fast it moves, in the f64 in which Gymnasium keeps them.
+/// Position and velocity, in float64 as in Gymnasium.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MountainCarState {
-    /// In the track's units; the valley's floor is at -π/6.
+    /// The position; the bottom of the valley is at -π/6.
     pub position: f64,
-    /// Position units per step.
+    /// The velocity, in position units per step.
     pub velocity: f64,
 }
 
@@ -106,7 +110,7 @@ impl Env for MountainCar {
     }
 
     #[inline]
-    fn step(&self, state: MountainCarState, action: usize, _draw: &mut impl Rng) -> Step<MountainCarState> {
+    fn step(&self, state: MountainCarState, action: usize, _rng: &mut impl Rng) -> Step<MountainCarState> {
         self.transition(state, action)
     }
 
@@ -115,7 +119,7 @@ impl Env for MountainCar {
         &self,
         states: &mut [MountainCarState],
         actions: &[usize],
-        _draws: &mut [impl Rng],
+        _rngs: &mut [impl Rng],
         rewards: &mut [f64],
         terminated: &mut [bool],
         inactive: &[bool],
@@ -130,12 +134,12 @@ impl Env for MountainCar {
 }
 
 impl MountainCar {
-    /// One step: nothing in it is left to chance.
+    /// One step. It is deterministic, so it needs no random generator.
     #[inline]
     pub fn transition(&self, state: MountainCarState, action: usize) -> Step<MountainCarState> {
         let MountainCarState { mut position, mut velocity } = state;
-        let transition = DIRECTIONS[action] * self.force;
-        velocity += transition + (3.0 * position).cos() * (-self.gravity);
+        let acceleration = DIRECTIONS[action] * self.force;
+        velocity += acceleration + (3.0 * position).cos() * (-self.gravity);
         velocity = clip(velocity, -self.max_speed, self.max_speed);
         position += velocity;
         position = clip(position, self.min_position, self.max_position);
@@ -153,7 +157,7 @@ impl MountainCar {
     }
 }
 
-/// `np.clip`: NaN stays NaN. An episode seldom meets a limit.
+/// `np.clip`, for values that rarely reach a limit. NaN stays NaN.
 #[inline]
 fn clip(value: f64, low: f64, high: f64) -> f64 {
     let mut clipped = value;
@@ -192,19 +196,19 @@ mod tests {
     }
 
     #[test]
-    fn the_goal_ends_an_episode_only_at_its_velocity() {
+    fn the_goal_needs_the_goal_velocity() {
         assert!(step(0.49, 0.05, 2).terminated);
-        let patient = MountainCar { goal_velocity: 0.06, ..MountainCar::default() };
+        let fast_goal = MountainCar { goal_velocity: 0.06, ..MountainCar::default() };
         let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
-        assert!(!patient.step(MountainCarState { position: 0.49, velocity: 0.05 }, 2, &mut rng).terminated);
+        assert!(!fast_goal.step(MountainCarState { position: 0.49, velocity: 0.05 }, 2, &mut rng).terminated);
     }
 
     #[test]
-    fn every_step_costs_one() {
+    fn every_step_has_a_reward_of_minus_one() {
         assert_eq!(step(-0.5, 0.0, 1).reward, -1.0);
     }
 
-    /// Gymnasium's lines, in their order.
+    /// A literal translation of Gymnasium's `step`.
     fn gymnasium(car: &MountainCar, mut position: f64, mut velocity: f64, action: usize) -> (f64, f64, bool) {
         let np_clip = |value: f64, low: f64, high: f64| if value.is_nan() { value } else { value.max(low).min(high) };
         velocity += (action as f64 - 1.0) * car.force + (3.0 * position).cos() * (-car.gravity);
@@ -221,7 +225,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
         #[test]
-        fn every_step_is_gymnasiums(
+        fn every_step_matches_gymnasium(
             position in prop_oneof![-1.3..0.7, -1.2..-1.13, Just(-1.2), Just(0.6), any::<f64>()],
             velocity in prop_oneof![-0.08..0.08, Just(0.0), Just(-0.0), any::<f64>()],
             action in 0_usize..3,

@@ -1,7 +1,7 @@
-//! Many cars at once, in the processor's wide registers: the operations of `MountainCar::step`, in its order.
+//! `MountainCar` in SIMD lanes: the operations of `MountainCar::transition` in the same order.
 
-#![expect(clippy::inline_always, reason = "what is compiled for each instruction set must be inlined to be so")]
-#![expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be a branch that nobody can predict")]
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+#![expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be an unpredictable branch")]
 
 use super::MountainCar;
 use super::mountain_car::{DIRECTIONS, REWARD};
@@ -9,7 +9,7 @@ use crate::envs::SimdEnv;
 use crate::numeric::cosine;
 
 impl SimdEnv<2> for MountainCar {
-    /// Infinite accelerations may cancel to NaN, which no wall stops.
+    /// The accelerations must be finite: infinite ones can cancel to NaN, and `map_cos` needs finite angles.
     fn is_exact(&self) -> bool {
         cosine::IS_EXACT && self.force.is_finite() && self.gravity.is_finite()
     }
@@ -26,12 +26,12 @@ impl SimdEnv<2> for MountainCar {
         );
         let mut terminated = [false; K];
         for lane in 0..K {
-            let moved = clip(velocity[lane], -self.max_speed, self.max_speed);
-            let place = clip(position[lane] + moved, self.min_position, self.max_position);
-            let absorbed = (place == self.min_position) & (moved < 0.0);
-            position[lane] = place;
-            velocity[lane] = if absorbed { 0.0 } else { moved };
-            terminated[lane] = (place >= self.goal_position) & (velocity[lane] >= self.goal_velocity);
+            let new_velocity = clip(velocity[lane], -self.max_speed, self.max_speed);
+            let new_position = clip(position[lane] + new_velocity, self.min_position, self.max_position);
+            let absorbed = (new_position == self.min_position) & (new_velocity < 0.0);
+            position[lane] = new_position;
+            velocity[lane] = if absorbed { 0.0 } else { new_velocity };
+            terminated[lane] = (new_position >= self.goal_position) & (velocity[lane] >= self.goal_velocity);
         }
         terminated
     }
@@ -42,7 +42,7 @@ impl SimdEnv<2> for MountainCar {
     }
 }
 
-/// `np.clip` of what is not NaN, without a branch.
+/// `np.clip` without a branch. The value must not be NaN.
 #[inline(always)]
 fn clip(value: f64, low: f64, high: f64) -> f64 {
     let value = if value < low { low } else { value };

@@ -1,4 +1,4 @@
-//! `Pendulum-v1`: swing a pendulum up and keep it there; the torque is continuous.
+//! `Pendulum-v1`: swing a pendulum up with a continuous torque and keep it upright.
 
 use std::f64::consts::PI;
 
@@ -6,23 +6,23 @@ use crate::envs::{Env, Parameters, Step};
 use crate::numeric::{Scalar, clip, modulo, squared};
 use crate::random::Rng;
 
-/// The first angle and the first speed are uniform between these and their negatives.
+/// The bounds of the initial angle and angular velocity: each is uniform between the bound and its negative.
 const RESET_BOUNDS: [(&str, f64); 2] = [("x_init", PI), ("y_init", 1.0)];
 
-/// The constants of the dynamics, under Gymnasium's names.
+/// The parameters, with Gymnasium's names.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pendulum {
-    /// The angular speed is clipped to this, both ways.
+    /// The maximum angular speed in both directions.
     pub max_speed: f64,
-    /// The torque is clipped to this, both ways.
+    /// The maximum torque in both directions.
     pub max_torque: f64,
-    /// Seconds a step.
+    /// The time step, in seconds.
     pub dt: f64,
-    /// m/s²
+    /// The acceleration by gravity, in m/s².
     pub g: f64,
-    /// The mass.
+    /// The mass of the pendulum.
     pub m: f64,
-    /// The length.
+    /// The length of the pendulum.
     pub l: f64,
 }
 
@@ -48,12 +48,12 @@ impl Parameters for Pendulum {
     }
 }
 
-/// The pendulum, in f64.
+/// Angle and angular velocity, in float64.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PendulumState {
-    /// The angle from upright in radians, which counts the turns.
+    /// The angle from upright in radians. It is not wrapped, so it counts full turns.
     pub theta: f64,
-    /// The angular speed.
+    /// The angular velocity.
     pub theta_dot: f64,
 }
 
@@ -70,7 +70,7 @@ impl From<PendulumState> for [f64; 2] {
 }
 
 impl Pendulum {
-    /// A torque as the motor gives it: clipped, in its own dtype.
+    /// A torque clipped to the maximum, in its dtype.
     #[inline]
     pub fn torque(&self, u: Scalar) -> Scalar {
         match u {
@@ -86,7 +86,7 @@ impl Pendulum {
 
 impl Env for Pendulum {
     type State = PendulumState;
-    /// The torque, in the dtype in which it comes: single and double torques give different numbers.
+    /// The torque. Its dtype matters: float32 and float64 torques lead to different numbers.
     type Action = Scalar;
     type Observation = [f32; 3];
 
@@ -109,15 +109,15 @@ impl Env for Pendulum {
     }
 
     #[inline]
-    fn step(&self, state: PendulumState, u: Scalar, _draw: &mut impl Rng) -> Step<PendulumState> {
+    fn step(&self, state: PendulumState, u: Scalar, _rng: &mut impl Rng) -> Step<PendulumState> {
         let PendulumState { theta, theta_dot } = state;
         let Self { max_speed, dt, g, m, l, .. } = *self;
         let u = self.torque(u);
-        let effort = Scalar::Python(0.001) * u.squared();
-        let costs = squared(normalized(theta)) + 0.1 * squared(theta_dot) + f64::from(effort);
+        let torque_cost = Scalar::Python(0.001) * u.squared();
+        let costs = squared(normalized(theta)) + 0.1 * squared(theta_dot) + f64::from(torque_cost);
 
-        let pull = Scalar::Python(3.0 / (m * squared(l))) * u;
-        let theta_dot = theta_dot + (3.0 * g / (2.0 * l) * theta.sin() + f64::from(pull)) * dt;
+        let torque_term = Scalar::Python(3.0 / (m * squared(l))) * u;
+        let theta_dot = theta_dot + (3.0 * g / (2.0 * l) * theta.sin() + f64::from(torque_term)) * dt;
         let theta_dot = clip(theta_dot, -max_speed, max_speed);
         Step { state: PendulumState { theta: theta + theta_dot * dt, theta_dot }, reward: -costs, terminated: false }
     }
@@ -128,7 +128,7 @@ impl Env for Pendulum {
     }
 }
 
-/// The angle between -π and π.
+/// An angle wrapped to [-π, π).
 #[inline]
 fn normalized(angle: f64) -> f64 {
     modulo(angle + PI, 2.0 * PI) - PI
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn the_torque_is_clipped_in_its_own_dtype() {
+    fn the_torque_is_clipped_in_its_dtype() {
         assert_eq!(Pendulum::default().torque(Scalar::Single(3.0)), Scalar::Single(2.0));
         assert_eq!(Pendulum::default().torque(Scalar::Double(-3.0)), Scalar::Double(-2.0));
         assert_eq!(step([1.0, 0.5], Scalar::Single(9.0)), step([1.0, 0.5], Scalar::Single(2.0)));
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn turns_are_counted_but_cost_nothing() {
+    fn full_turns_are_counted_but_cost_nothing() {
         let turned = step([2.0 * PI, 0.0], Scalar::Single(0.0));
         assert_eq!(turned.reward, 0.0);
         assert!(turned.state.theta > 6.0);

@@ -1,9 +1,9 @@
-//! Why a transition table is invalid.
+//! The error for an invalid transition table.
 
 use std::error::Error;
 use std::fmt;
 
-/// Why a table is none, and where; as Python spells it.
+/// Why a transition table is invalid, and where, in Python's notation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InvalidMdp(pub(super) String);
 

@@ -1,29 +1,29 @@
-//! An example of maximisation bias (Sutton & Barto, 2nd ed., Example 6.7 and Figure 6.5).
+//! The maximization bias example (Sutton & Barto, Example 6.7 and Figure 6.5).
 //!
-//! Every episode begins in A. Right ends it without a reward. Left leads to B, equally without one; from there every
-//! action ends it with a normal reward whose mean lies below zero, so that left is always a mistake.
+//! Every episode begins in A. Right ends it with a reward of 0. Left leads to B with a reward of 0, and from B every
+//! action ends the episode with a normally distributed reward whose mean is negative. So left is always a mistake.
 
 use crate::envs::{Env, Step};
 use crate::random::Rng;
 
 const A: u32 = 0;
 const B: u32 = 1;
-/// The third is terminal.
+/// The terminal state.
 const END: u32 = 2;
-/// How many states there are.
+/// The number of states.
 pub const STATES: u32 = 3;
-/// Of A's two actions. Whoever takes a third one there goes left, too.
+/// The action right in A. Every other action is left, because A has as many actions as B.
 const RIGHT: usize = 0;
 
-/// How many actions B has, and how it rewards them.
+/// The parameters of the example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaximizationBias {
-    /// "Many", the book says.
-    pub actions: usize,
-    /// The mean of B's rewards.
+    /// The number of actions in B ("many" in the book).
+    pub num_actions: usize,
+    /// The mean of the rewards in B.
     pub mean: f64,
-    /// Their standard deviation.
-    pub deviation: f64,
+    /// The standard deviation of the rewards in B.
+    pub standard_deviation: f64,
 }
 
 impl Env for MaximizationBias {
@@ -33,11 +33,11 @@ impl Env for MaximizationBias {
 
     #[inline]
     fn num_actions(&self) -> usize {
-        self.actions
+        self.num_actions
     }
 
     #[inline]
-    fn reset(&self, _draw: &mut impl Rng) -> u32 {
+    fn reset(&self, _rng: &mut impl Rng) -> u32 {
         A
     }
 
@@ -46,7 +46,7 @@ impl Env for MaximizationBias {
         match state {
             A if action == RIGHT => Step { state: END, reward: 0.0, terminated: true },
             A => Step { state: B, reward: 0.0, terminated: false },
-            _ => Step { state: END, reward: rng.normal(self.mean, self.deviation), terminated: true },
+            _ => Step { state: END, reward: rng.normal(self.mean, self.standard_deviation), terminated: true },
         }
     }
 
@@ -61,10 +61,10 @@ mod tests {
     use super::*;
     use crate::random::{Pcg64, SeedSequence};
 
-    const BOOK: MaximizationBias = MaximizationBias { actions: 10, mean: -0.1, deviation: 1.0 };
+    const BOOK: MaximizationBias = MaximizationBias { num_actions: 10, mean: -0.1, standard_deviation: 1.0 };
 
     #[test]
-    fn right_ends_it_for_nothing_and_left_leads_on() {
+    fn right_ends_the_episode_and_left_leads_to_b() {
         let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
         let start = BOOK.reset(&mut rng);
         assert_eq!(BOOK.step(start, 0, &mut rng), Step { state: END, reward: 0.0, terminated: true });
@@ -73,12 +73,12 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_left_has_the_mean_and_the_deviation() {
+    fn rewards_in_b_have_the_given_mean_and_deviation() {
         let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
-        let rewards: Vec<f64> = (0..100_000).map(|turn| BOOK.step(B, turn % 10, &mut rng).reward).collect();
+        let rewards: Vec<f64> = (0..100_000).map(|action| BOOK.step(B, action % 10, &mut rng).reward).collect();
         let mean = rewards.iter().sum::<f64>() / 1e5;
         let variance = rewards.iter().map(|reward| (reward - mean).powi(2)).sum::<f64>() / 1e5;
-        // Three standard errors.
+        // Within three standard errors.
         assert!((mean + 0.1).abs() < 0.0095 && (variance - 1.0).abs() < 0.0135);
     }
 }

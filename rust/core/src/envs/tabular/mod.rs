@@ -1,4 +1,4 @@
-//! Finite Markov decision processes.
+//! Finite Markov decision processes: transition tables, and an example of the book.
 
 mod invalid_mdp;
 mod maximization_bias;

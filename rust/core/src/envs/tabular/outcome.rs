@@ -1,26 +1,26 @@
-//! One entry of a transition table, and the check of its probabilities.
+//! One outcome of a transition table, and the check of its probabilities.
 
 use super::InvalidMdp;
 
-/// Probabilities may miss one by this much.
+/// The tolerance for sums of probabilities.
 pub const TOLERANCE: f64 = 1e-9;
 
-/// One entry of `P[state][action]`, as it is written there.
+/// One outcome in `P[state][action]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// How likely it is.
+    /// The probability.
     pub probability: f64,
-    /// Where it leads.
+    /// The next state.
     pub state: i64,
-    /// What it brings.
+    /// The reward.
     pub reward: f64,
-    /// Whether the episode ends there.
+    /// Whether the next state is terminal.
     pub terminated: bool,
 }
 
-/// Looks whether these are probabilities.
-pub(super) fn distribution(
-    place: impl Fn() -> String,
+/// Checks that these probabilities are a distribution. `location` names them in the error.
+pub(super) fn check_distribution(
+    location: impl Fn() -> String,
     probabilities: impl Iterator<Item = f64>,
 ) -> Result<(), InvalidMdp> {
     let mut sum = 0.0;
@@ -28,13 +28,13 @@ pub(super) fn distribution(
         if !(0.0..=1.0 + TOLERANCE).contains(&probability) {
             return Err(InvalidMdp(format!(
                 "{}[{index}] must have a probability in [0, 1], got {probability}",
-                place()
+                location()
             )));
         }
         sum += probability;
     }
     if (sum - 1.0_f64).abs() > TOLERANCE {
-        return Err(InvalidMdp(format!("{} must have probabilities that sum to 1, got {sum}", place())));
+        return Err(InvalidMdp(format!("{} must have probabilities that sum to 1, got {sum}", location())));
     }
     Ok(())
 }

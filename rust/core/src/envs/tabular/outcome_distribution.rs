@@ -1,68 +1,70 @@
-//! Which of several outcomes a draw takes.
+//! Sampling from a distribution over outcomes, as `gymnasium.envs.toy_text.utils.categorical_sample` does.
 
 use std::ops::Range;
 
 use crate::random::TWO_POW_53;
 
-/// So many bounds are kept beside each other: those of Gymnasium's tables.
+/// Up to this many thresholds are stored inline. Gymnasium's tables need no more.
 const LINEAR_SCAN_MAX: usize = 3;
-/// Above every draw.
-const ABOVE: u64 = TWO_POW_53 as u64;
+/// A threshold above every draw.
+const ABOVE_ALL: u64 = TWO_POW_53 as u64;
 
-/// The outcomes of a state and an action.
+/// The distribution over the outcomes of a state and an action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct OutcomeDistribution {
-    /// Their bounds, where they are few: at hand, for the next state waits for them. What no draw passes fills up.
-    few: [u64; LINEAR_SCAN_MAX],
+    /// The thresholds if there are few, padded with `ABOVE_ALL`. The next state waits for them, so they are stored here
+    /// rather than behind an index.
+    inline_thresholds: [u64; LINEAR_SCAN_MAX],
+    /// The index of the first outcome.
     first: u32,
-    outcomes: u32,
+    len: u32,
 }
 
 impl OutcomeDistribution {
-    /// Outcomes with these bounds, which begin at `first` among those of all rows.
-    pub(super) fn new(bounds: &[u64], first: usize) -> Self {
-        let mut few = [ABOVE; LINEAR_SCAN_MAX];
-        few.iter_mut().zip(bounds).for_each(|(few, &bound)| *few = bound);
-        Self { few, first: first as u32, outcomes: bounds.len() as u32 }
+    /// A distribution with these thresholds. `first` is the index of its first outcome among all outcomes of the table.
+    pub(super) fn new(thresholds: &[u64], first: usize) -> Self {
+        let mut inline_thresholds = [ABOVE_ALL; LINEAR_SCAN_MAX];
+        inline_thresholds.iter_mut().zip(thresholds).for_each(|(inline, &threshold)| *inline = threshold);
+        Self { inline_thresholds, first: first as u32, len: thresholds.len() as u32 }
     }
 
-    /// Its outcomes among those of all rows.
+    /// The indices of its outcomes among all outcomes of the table.
     pub(super) fn range(&self) -> Range<usize> {
-        self.first as usize..self.first as usize + self.outcomes as usize
+        self.first as usize..self.first as usize + self.len as usize
     }
 
-    /// The outcome that a draw takes, among those of all rows, whose `bounds` these are: the first of the row where it
-    /// passes all.
-    #[expect(clippy::inline_always, reason = "a call a step costs a fifth of it")]
+    /// The index of the outcome that the draw `u53` selects, among all outcomes of the table, whose `thresholds` these
+    /// are. A draw at or above all thresholds selects the first outcome, as in Gymnasium.
+    #[expect(clippy::inline_always, reason = "a call per step would take a fifth of its time")]
     #[inline(always)]
-    pub(super) fn sample(&self, bounds: &[u64], u53: u64) -> usize {
-        let (first, outcomes) = (self.first as usize, self.outcomes as usize);
-        let rank = if outcomes <= LINEAR_SCAN_MAX {
-            // Counted without a branch, which would often be mispredicted.
-            self.few.iter().map(|&bound| usize::from(bound <= u53)).sum()
+    pub(super) fn sample(&self, thresholds: &[u64], u53: u64) -> usize {
+        let (first, len) = (self.first as usize, self.len as usize);
+        let rank = if len <= LINEAR_SCAN_MAX {
+            // Counting avoids a branch, which would often be mispredicted.
+            self.inline_thresholds.iter().map(|&threshold| usize::from(threshold <= u53)).sum()
         } else {
-            rank(&bounds[first..][..outcomes], u53)
+            rank(&thresholds[first..][..len], u53)
         };
-        if rank < outcomes { first + rank } else { first }
+        if rank < len { first + rank } else { first }
     }
 }
 
-/// How many bounds a draw passes; they never fall.
+/// The number of thresholds that a draw reaches. Thresholds are ascending.
 #[inline]
-pub(super) fn rank(bounds: &[u64], u53: u64) -> usize {
-    bounds.partition_point(|&bound| bound <= u53)
+pub(super) fn rank(thresholds: &[u64], u53: u64) -> usize {
+    thresholds.partition_point(|&threshold| threshold <= u53)
 }
 
-/// For each probability the least draw that passes it by, `random()` in units of 2⁻⁵³: where the largest sum so far is
-/// no longer above it. The sums are added from left to right as `np.cumsum` does, and the largest never fall, which sums
-/// of any floats might.
-pub(super) fn bounds(probabilities: &[f64]) -> Vec<u64> {
+/// The threshold of each outcome, in units of 2⁻⁵³ like `Rng::random_u53`: a draw below it selects this outcome or an
+/// earlier one. It is the cumulative probability, summed from left to right as `np.cumsum` does. A running maximum keeps
+/// the thresholds ascending even if the sums are not.
+pub(super) fn thresholds(probabilities: &[f64]) -> Vec<u64> {
     let (mut sum, mut largest) = (0.0, f64::NEG_INFINITY);
-    let bounds = probabilities.iter().map(|probability| {
+    let thresholds = probabilities.iter().map(|probability| {
         sum += probability;
         largest = sum.max(largest);
-        // Exact: a multiplication by a power of two.
+        // Multiplying by a power of two is exact.
         (largest * TWO_POW_53).ceil() as u64
     });
-    bounds.collect()
+    thresholds.collect()
 }

@@ -1,60 +1,61 @@
-//! `Blackjack-v1`: get nearer to 21 than the dealer, and not beyond (Sutton & Barto, 2nd ed., Example 5.1).
+//! `Blackjack-v1`: get closer to 21 than the dealer without exceeding it (Sutton & Barto, Example 5.1).
 
 use super::hand::{Hand, TEN};
 use crate::envs::{Env, Step};
 use crate::random::Rng;
 
-/// An endless deck: the ace, the numbers, and ten for each of the faces.
+/// The values of an infinite deck: the ace, 2 to 10, and 10 for each of the face cards.
 pub const DECK: [u32; 13] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 10, 10, 10];
-/// The dealer draws below this.
+/// The dealer hits below this sum.
 pub const DEALER_STICKS: u32 = 17;
-/// Of the dealer's open card, for its picture.
+/// The suits and face cards that the picture of the dealer's card is drawn from.
 const SUITS: u32 = 4;
 const FACES: u32 = 3;
 /// Stick or hit.
-const ACTIONS: usize = 2;
+const NUM_ACTIONS: usize = 2;
 
-/// The rules, under Gymnasium's names.
+/// The rules, with Gymnasium's names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Blackjack {
-    /// A win with an ace and a ten pays 1.5.
+    /// Whether a win with a natural (an ace and a ten) pays 1.5.
     pub natural: bool,
-    /// The book's rules: an ace and a ten wins, unless the dealer has them too; `natural` is not looked at.
+    /// Whether the book's rules apply: a natural wins 1 unless the dealer has one too. `natural` is then ignored.
     pub sab: bool,
 }
 
-/// The table.
+/// The hands of both sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BlackjackState {
     /// The player's hand.
     pub player: Hand,
-    /// The dealer's.
+    /// The dealer's hand.
     pub dealer: Hand,
-    /// The dealer's open card.
+    /// The dealer's face-up card.
     pub shown: u32,
 }
 
 impl Blackjack {
-    /// How many numbers Gymnasium's observations take: of the sum, the open card, the usable ace.
+    /// The sizes of Gymnasium's observation space: the player's sum, the dealer's card, the usable ace.
     pub const OBSERVATION_SHAPE: [usize; 3] = [32, 11, 2];
 
-    /// Each card of the deck, and how likely it is.
+    /// The cards of the deck with their probabilities.
     pub fn cards() -> impl Iterator<Item = (f64, u32)> {
         DECK.iter().map(|&card| (1.0 / DECK.len() as f64, card))
     }
 
-    /// What the dealer ends with who shows this card, and how likely it is. Hands of the same worth are one.
-    pub fn dealers_hands(shown: u32) -> Vec<(f64, Hand)> {
+    /// The final hands of a dealer who shows this card, with their probabilities. Hands that pay the same are merged.
+    pub fn dealer_hands(shown: u32) -> Vec<(f64, Hand)> {
         let mut hands: Vec<(f64, Hand)> = Vec::new();
-        let mut open = vec![(1.0, Hand::default().with(shown))];
-        while let Some((probability, hand)) = open.pop() {
+        let mut unfinished = vec![(1.0, Hand::default().with(shown))];
+        while let Some((probability, hand)) = unfinished.pop() {
             if hand.sum() < DEALER_STICKS {
-                open.extend(Self::cards().map(|(share, card)| (probability * share, hand.with(card))));
+                unfinished.extend(Self::cards().map(|(chance, card)| (probability * chance, hand.with(card))));
                 continue;
             }
-            let same =
-                |(_, other): &&mut (f64, Hand)| (other.score(), other.natural()) == (hand.score(), hand.natural());
-            match hands.iter_mut().find(same) {
+            let pays_the_same = |(_, other): &&mut (f64, Hand)| {
+                (other.score(), other.is_natural()) == (hand.score(), hand.is_natural())
+            };
+            match hands.iter_mut().find(pays_the_same) {
                 Some((sum, _)) => *sum += probability,
                 None => hands.push((probability, hand)),
             }
@@ -62,15 +63,15 @@ impl Blackjack {
         hands
     }
 
-    /// What a player who sticks gets when the dealer has drawn.
+    /// The player's reward for sticking, given the dealer's final hand.
     #[inline]
     pub fn payoff(&self, player: &Hand, dealer: &Hand) -> f64 {
-        let (mine, theirs) = (player.score(), dealer.score());
-        if self.sab && player.natural() && !dealer.natural() {
+        let (player_score, dealer_score) = (player.score(), dealer.score());
+        if self.sab && player.is_natural() && !dealer.is_natural() {
             1.0
-        } else if mine > theirs {
-            if !self.sab && self.natural && player.natural() { 1.5 } else { 1.0 }
-        } else if mine < theirs {
+        } else if player_score > dealer_score {
+            if !self.sab && self.natural && player.is_natural() { 1.5 } else { 1.0 }
+        } else if player_score < dealer_score {
             -1.0
         } else {
             0.0
@@ -78,29 +79,29 @@ impl Blackjack {
     }
 }
 
-/// `np_random.choice(deck)`.
+/// Draws a card: `np_random.choice(deck)`.
 #[inline]
-fn card(rng: &mut impl Rng) -> u32 {
+fn draw_card(rng: &mut impl Rng) -> u32 {
     DECK[rng.integers(DECK.len() as u32) as usize]
 }
 
 impl Env for Blackjack {
     type State = BlackjackState;
     type Action = usize;
-    /// The player's sum, the dealer's open card, whether the player has a usable ace.
+    /// The player's sum, the dealer's face-up card, whether the player has a usable ace.
     type Observation = [u32; 3];
 
     #[inline]
     fn num_actions(&self) -> usize {
-        ACTIONS
+        NUM_ACTIONS
     }
 
     #[inline]
     fn reset(&self, rng: &mut impl Rng) -> BlackjackState {
-        let shown = card(rng);
-        let dealer = Hand::default().with(shown).with(card(rng));
-        let player = Hand::default().with(card(rng)).with(card(rng));
-        // The picture of the open card is drawn from the same stream.
+        let shown = draw_card(rng);
+        let dealer = Hand::default().with(shown).with(draw_card(rng));
+        let player = Hand::default().with(draw_card(rng)).with(draw_card(rng));
+        // Gymnasium draws the picture of the dealer's card from the same generator.
         rng.integers(SUITS);
         if shown == TEN {
             rng.integers(FACES);
@@ -110,14 +111,14 @@ impl Env for Blackjack {
 
     #[inline]
     fn step(&self, mut state: BlackjackState, action: usize, rng: &mut impl Rng) -> Step<BlackjackState> {
-        assert!(action < ACTIONS, "action {action} is none of {ACTIONS}");
+        assert!(action < NUM_ACTIONS, "action must be less than {NUM_ACTIONS}, got {action}");
         if action == 1 {
-            state.player = state.player.with(card(rng));
-            let terminated = state.player.bust();
+            state.player = state.player.with(draw_card(rng));
+            let terminated = state.player.is_bust();
             return Step { state, reward: if terminated { -1.0 } else { 0.0 }, terminated };
         }
         while state.dealer.sum() < DEALER_STICKS {
-            state.dealer = state.dealer.with(card(rng));
+            state.dealer = state.dealer.with(draw_card(rng));
         }
         Step { state, reward: self.payoff(&state.player, &state.dealer), terminated: true }
     }
@@ -138,21 +139,21 @@ mod tests {
     }
 
     #[test]
-    fn a_natural_pays_by_the_rules() {
+    fn a_natural_pays_as_the_rules_say() {
         let (natural, other, low) = (hand(&[1, 10]), hand(&[10, 5, 6]), hand(&[10, 7]));
         let book = Blackjack { natural: true, sab: true };
-        let casino = Blackjack { natural: true, sab: false };
-        let plain = Blackjack::default();
-        assert_eq!([book, casino, plain].map(|rules| rules.payoff(&natural, &other)), [1.0, 0.0, 0.0]);
-        assert_eq!([book, casino, plain].map(|rules| rules.payoff(&natural, &low)), [1.0, 1.5, 1.0]);
-        assert_eq!([book, casino, plain].map(|rules| rules.payoff(&natural, &natural)), [0.0, 0.0, 0.0]);
-        assert_eq!([book, casino, plain].map(|rules| rules.payoff(&low, &natural)), [-1.0, -1.0, -1.0]);
-        assert_eq!(plain.payoff(&low, &hand(&[10, 6, 10])), 1.0);
+        let natural_pays_more = Blackjack { natural: true, sab: false };
+        let default = Blackjack::default();
+        assert_eq!([book, natural_pays_more, default].map(|rules| rules.payoff(&natural, &other)), [1.0, 0.0, 0.0]);
+        assert_eq!([book, natural_pays_more, default].map(|rules| rules.payoff(&natural, &low)), [1.0, 1.5, 1.0]);
+        assert_eq!([book, natural_pays_more, default].map(|rules| rules.payoff(&natural, &natural)), [0.0, 0.0, 0.0]);
+        assert_eq!([book, natural_pays_more, default].map(|rules| rules.payoff(&low, &natural)), [-1.0, -1.0, -1.0]);
+        assert_eq!(default.payoff(&low, &hand(&[10, 6, 10])), 1.0);
     }
 
     #[test]
-    fn the_first_hands_of_seed_zero_are_gymnasiums() {
-        // env.reset(seed=0): the dealer has 10 and 9, the player 7 and 4; the open card is the jack of diamonds
+    fn the_first_hands_of_seed_0_match_gymnasium() {
+        // env.reset(seed=0): the dealer has 10 and 9, the player 7 and 4. The face-up card is the jack of diamonds.
         let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
         let game = Blackjack::default();
         let state = game.reset(&mut rng);
@@ -163,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn who_busts_loses_at_once() {
+    fn a_bust_loses_immediately() {
         let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
         let state = BlackjackState { player: hand(&[10, 10, 1]), ..BlackjackState::default() };
         let step = Blackjack::default().step(state, 1, &mut rng);

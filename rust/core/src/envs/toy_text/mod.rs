@@ -1,4 +1,4 @@
-//! Those of Gymnasium's toy text environments that a transition table alone does not describe.
+//! The environments of `gymnasium.envs.toy_text` that a transition table does not describe completely.
 
 mod blackjack;
 mod hand;

@@ -1,14 +1,14 @@
-//! A few of an environment's continuous actions, numbered: what a table can choose from.
+//! Discrete actions for an environment with continuous ones.
 
 use crate::envs::{Env, Step};
 use crate::random::Rng;
 
-/// An environment whose actions are those of a list, by their place in it.
+/// A wrapper whose discrete actions are indices into a list of continuous ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscreteActions<E: Env> {
-    /// The environment as it is.
+    /// The wrapped environment.
     pub env: E,
-    /// What its step takes.
+    /// The continuous action of each index.
     pub actions: Vec<E::Action>,
 }
 
@@ -46,13 +46,13 @@ mod tests {
     use crate::random::{Pcg64, SeedSequence};
 
     #[test]
-    fn an_action_is_the_one_of_its_place() {
-        let few =
+    fn an_action_is_an_index_into_the_list() {
+        let discrete =
             DiscreteActions { env: Pendulum::default(), actions: vec![Scalar::Single(-2.0), Scalar::Single(0.5)] };
         let state = PendulumState { theta: 1.0, theta_dot: 0.0 };
         let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
-        assert_eq!(few.num_actions(), 2);
-        assert_eq!(few.step(state, 1, &mut rng), few.env.step(state, Scalar::Single(0.5), &mut rng));
-        assert_ne!(few.step(state, 0, &mut rng), few.step(state, 1, &mut rng));
+        assert_eq!(discrete.num_actions(), 2);
+        assert_eq!(discrete.step(state, 1, &mut rng), discrete.env.step(state, Scalar::Single(0.5), &mut rng));
+        assert_ne!(discrete.step(state, 0, &mut rng), discrete.step(state, 1, &mut rng));
     }
 }

@@ -1,19 +1,19 @@
-//! Tables that say how likely what happened was, as Gymnasium's toy text does in its info.
+//! An environment whose state includes the probability of the last step.
 
-use crate::envs::TransitionProbability;
-use crate::envs::{Env, Step};
+use crate::envs::{Env, Step, TransitionProbability};
 use crate::random::Rng;
 
-/// The same environment, whose state remembers how likely it was.
+/// A wrapper that adds the probability of the last step to the state, for `info["prob"]` of Gymnasium's toy text
+/// environments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WithTransitionProbability<E>(pub E);
 
-/// A state, and how likely the step was that led to it; 1 after a reset.
+/// A state and the probability of the step that led to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransitionProbabilityState<S> {
-    /// The environment's own state.
+    /// The state of the wrapped environment.
     pub state: S,
-    /// Of what was drawn.
+    /// The probability of the sampled outcome; 1 after a reset.
     pub probability: f64,
 }
 
@@ -51,17 +51,17 @@ mod tests {
     use crate::random::{Pcg64, SeedSequence};
 
     #[test]
-    fn what_happened_says_how_likely_it_was() {
+    fn the_state_holds_the_probability_of_the_step() {
         let outcome = |probability, state| Outcome { probability, state, reward: 0.0, terminated: false };
         let rows = [vec![outcome(0.25, 0), outcome(0.75, 1)], vec![outcome(1.0, 0)]];
-        let table = TabularMdp::new(1, &[1.0, 0.0], &rows).expect("a table");
-        let telling = WithTransitionProbability(table.clone());
+        let table = TabularMdp::new(1, &[1.0, 0.0], &rows).expect("a valid table");
+        let wrapped = WithTransitionProbability(table.clone());
         let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
-        let mut state = telling.reset(&mut rng);
+        let mut state = wrapped.reset(&mut rng);
         assert_eq!(state, TransitionProbabilityState { state: 0, probability: 1.0 });
         for _ in 0..100 {
             let mut same = rng.clone();
-            let step = telling.step(state, 0, &mut rng);
+            let step = wrapped.step(state, 0, &mut rng);
             assert_eq!(step.state.state, table.step(state.state, 0, &mut same).state);
             let expected = match (state.state, step.state.state) {
                 (0, 0) => 0.25,

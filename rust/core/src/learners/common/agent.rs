@@ -1,8 +1,7 @@
-//! What every learner is made of: Q, how actions are chosen, how far an update goes.
+//! The parts that all learners share: the Q table, the policy and the constants of an update.
 
 use crate::policies::{AnyPolicy, Policy};
-use crate::q_table::QTable;
-use crate::q_table::TerminalUpdate;
+use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::Rng;
 use crate::schedules::{LearningRate, StepSize};
 use crate::tasks::Next;
@@ -10,28 +9,29 @@ use crate::tasks::Next;
 /// A table, a policy and the constants of an update.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agent<const N: usize = 0, P = AnyPolicy, A = LearningRate> {
-    /// Q.
+    /// The Q table.
     pub table: QTable<N>,
-    /// How actions are chosen.
+    /// The behaviour policy.
     pub policy: P,
-    /// α, over the number of rows lit.
+    /// The learning rate α, divided by the number of active rows.
     pub learning_rate: A,
-    /// γ.
+    /// The discount γ.
     pub discount: f64,
-    /// What happens at a terminal state.
+    /// The update at a terminal state.
     pub terminal_update: TerminalUpdate,
 }
 
 impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
-    /// An action in these rows.
-    #[expect(clippy::inline_always, reason = "a call a step costs a tenth of it")]
+    /// Samples an action from the policy in the state with these active rows.
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn choose(&mut self, rows: impl AsRef<[u32]>, rng: &mut impl Rng) -> usize {
         self.policy.choose(self.table.action_values(rows.as_ref()), rng)
     }
 
-    /// S′ and an action A′ there; none after a terminal state. At a time-out A′ is drawn for its value, and not taken.
-    #[expect(clippy::inline_always, reason = "a call a step costs a tenth of it")]
+    /// Samples A′ in the next state S′ and returns both; `None` if S′ is terminal. If the episode is truncated, A′ is
+    /// sampled for its value Q(S′, A′) and never taken.
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn sample_next<R: Copy + AsRef<[u32]>>(&mut self, next: Next<R>, rng: &mut impl Rng) -> Option<(R, usize)> {
         match next {
@@ -42,8 +42,9 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         }
     }
 
-    /// An action to go on with, for those whose update needs none; nothing is drawn where the episode ends.
-    #[expect(clippy::inline_always, reason = "a call a step costs a tenth of it")]
+    /// Samples the next action, for update rules that do not need it. At the end of an episode it draws nothing and
+    /// returns 0.
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn next_action<R: Copy + AsRef<[u32]>>(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
         if let Next::NonTerminal(next_state) = next { self.choose(next_state, rng) } else { 0 }
@@ -55,7 +56,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         self.table.value(rows.as_ref(), action)
     }
 
-    /// Counts a visit of a pair.
+    /// Counts a visit of a state-action pair.
     #[inline]
     pub fn visit(&mut self, rows: impl AsRef<[u32]>, action: usize) {
         for &row in rows.as_ref() {
@@ -63,19 +64,19 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         }
     }
 
-    /// Q(S, A) ← Q(S, A) + α (target - Q(S, A)).
+    /// Q(S, A) ← Q(S, A) + α [target - Q(S, A)].
     #[inline]
     pub fn update(&mut self, rows: impl AsRef<[u32]>, action: usize, target: f64) {
         self.table.update(rows.as_ref(), action, target, &mut self.learning_rate);
     }
 
-    /// The same where nothing follows: the target is the reward, unless the article's rule assigns it.
+    /// The update when S′ is terminal, as `terminal_update` says.
     #[inline]
     pub fn update_terminal(&mut self, rows: impl AsRef<[u32]>, action: usize, reward: f64) {
         self.table.update_terminal(rows.as_ref(), action, reward, self.terminal_update, &mut self.learning_rate);
     }
 
-    /// Called after every episode.
+    /// Moves the schedules on to the next episode.
     pub fn end_episode(&mut self) {
         self.policy.end_episode();
         self.learning_rate.end_episode();

@@ -1,22 +1,23 @@
-//! What a learner is: the owner of its table, its policy and its schedules.
+//! The trait of all learners.
 
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// A learner over rows `R`. Draws come from the agent's stream, in the order that the algorithm's reference states.
+/// A learner, which owns its table, its policy and its schedules. A state is given by its active rows `R`. Each learner
+/// draws from the agent's generator in the order of its Python reference.
 pub trait Learner<R> {
-    /// The first action of an episode.
+    /// Samples the first action of an episode.
     fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize;
 
-    /// Learns from one step and returns the next action; what it returns where the episode ends is not used.
+    /// Learns from one step and returns the next action. The result is ignored at the end of an episode.
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize;
 
     /// Called after the last step of every episode.
     fn end_episode(&mut self);
 
-    /// The tables, rows first; the sum of them is what the greedy policy reads.
+    /// The values of its tables, row by row. The greedy policy is over their sum.
     fn tables(&self) -> Vec<&[f64]>;
 
-    /// Whether a value has overflowed: what follows is worth nothing.
+    /// Whether a value has overflowed, so that further training is meaningless.
     fn diverged(&self) -> bool;
 }

@@ -1,18 +1,17 @@
-//! What the learners of one agent share, so that the file of each holds its equation and nothing else.
+//! A temporal-difference learner with one table.
 
-use super::UpdateRule;
-use super::{Agent, Learner};
+use super::{Agent, Learner, UpdateRule};
 use crate::policies::Policy;
 use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
 
-/// An agent that learns by a rule.
+/// An agent together with the update rule that it learns by. The update rule is the algorithm; the rest is shared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TdLearner<U, G = Agent> {
-    /// Q, the policy and the constants.
+    /// The table, the policy and the constants.
     pub agent: G,
-    /// How a step changes them.
+    /// The update rule.
     pub rule: U,
 }
 

@@ -1,4 +1,4 @@
-//! Small numbers that updates are worked out by hand with.
+//! An agent with round numbers, for updates computed by hand.
 
 use super::Agent;
 use crate::policies::{AnyPolicy, TieBreaking};
@@ -6,7 +6,7 @@ use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::{Pcg64, SeedSequence};
 use crate::schedules::{LearningRate, Schedule};
 
-/// Two actions, α = γ = 1/2, always greedy.
+/// Two actions, α = γ = 1/2 and ε = 0.
 pub(crate) fn agent(values: &[f64]) -> Agent {
     Agent {
         table: QTable::new(values.to_vec(), 2),
@@ -17,6 +17,7 @@ pub(crate) fn agent(values: &[f64]) -> Agent {
     }
 }
 
+/// The generator of seed 0.
 pub(crate) fn rng() -> Pcg64 {
     Pcg64::new(&SeedSequence::new(&[0]))
 }

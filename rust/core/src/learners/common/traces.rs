@@ -1,54 +1,55 @@
-//! Eligibility traces, kept only where they are alive: a step costs as many operations as there are traces, however large
-//! the table.
+//! Eligibility traces, stored sparsely: a step takes time in proportion to the number of active traces, not to the size
+//! of the table.
 
 use std::hint::select_unpredictable;
 
 use crate::q_table::QTable;
 use crate::schedules::{LearningRate, StepSize};
 
-/// What a visit does to the traces of its rows.
+/// How a visit of a state-action pair changes traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceKind {
-    /// It adds 1 (Sutton & Barto, section 12.7).
+    /// Adds 1 to the traces of the pair (Sutton & Barto, section 12.7).
     Accumulating,
-    /// It sets them to 1 (Singh & Sutton, 1996).
+    /// Sets the traces of the pair to 1 (S. Singh and R. Sutton, 1996).
     Replacing,
-    /// It sets them to 1, and those of the actions not taken there to 0 (the same paper).
+    /// Sets the traces of the pair to 1 and those of the other actions in that state to 0 (the same paper).
     Clearing,
 }
 
+/// A trace that is not zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct ActiveTrace {
     weight_index: u32,
     trace: f64,
 }
 
-/// So many traces are corrected without asking whether they are the last.
+/// The number of traces updated per iteration of the blocked loop.
 const BLOCK: usize = 16;
 
-/// z, one trace a weight. A trace that falls to the cutoff or below is dropped.
+/// The trace vector z, with one trace per weight. A trace whose magnitude falls to the cutoff becomes 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traces {
-    /// Those alive are the first `count`.
-    alive: Vec<ActiveTrace>,
+    /// The first `count` elements are in use.
+    active: Vec<ActiveTrace>,
     count: usize,
-    /// Where in `alive` a weight's trace is, counted from 1; 0 where it has none.
-    places: Vec<u32>,
+    /// For each weight one more than the index of its trace in `active`, or 0 if it has no active trace.
+    positions: Vec<u32>,
     cutoff: f64,
 }
 
 impl Traces {
-    /// No trace alive, of so many weights.
+    /// Traces of `weights` weights, all 0.
     pub fn new(weights: usize, cutoff: f64) -> Self {
-        Self { alive: Vec::new(), count: 0, places: vec![0; weights], cutoff }
+        Self { active: Vec::new(), count: 0, positions: vec![0; weights], cutoff }
     }
 
-    /// How many are alive.
+    /// The number of active traces.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether none is alive.
+    /// Whether no trace is active.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -56,30 +57,30 @@ impl Traces {
     /// The trace of a weight.
     #[inline]
     pub fn get(&self, weight_index: usize) -> f64 {
-        match self.places[weight_index] {
+        match self.positions[weight_index] {
             0 => 0.0,
-            place => self.alive[place as usize - 1].trace,
+            position => self.active[position as usize - 1].trace,
         }
     }
 
-    /// Changes the trace of a weight, which becomes alive.
+    /// Replaces the trace of a weight by a function of it. The trace becomes active.
     #[inline]
     pub fn update(&mut self, weight_index: usize, change: impl FnOnce(f64) -> f64) {
-        if self.count == self.alive.len() {
-            self.alive.push(ActiveTrace::default());
+        if self.count == self.active.len() {
+            self.active.push(ActiveTrace::default());
         }
-        // Without a branch: whether a trace is alive already is hard to foresee.
-        let place = (self.places[weight_index] as usize).checked_sub(1);
-        let new = place.is_none();
-        let place = place.unwrap_or(self.count);
-        let trace = self.alive[place].trace;
+        // No branch, because whether a trace is active is hard to predict.
+        let position = (self.positions[weight_index] as usize).checked_sub(1);
+        let new = position.is_none();
+        let position = position.unwrap_or(self.count);
+        let trace = self.active[position].trace;
         let trace = change(select_unpredictable(new, 0.0, trace));
-        self.alive[place] = ActiveTrace { weight_index: weight_index as u32, trace };
-        self.places[weight_index] = place as u32 + 1;
+        self.active[position] = ActiveTrace { weight_index: weight_index as u32, trace };
+        self.positions[weight_index] = position as u32 + 1;
         self.count += usize::from(new);
     }
 
-    /// A visit of a pair: its own traces grow, and others may end.
+    /// Changes the traces for a visit of a state-action pair.
     #[inline]
     pub fn visit<const N: usize>(&mut self, kind: TraceKind, table: &QTable<N>, rows: &[u32], action: usize) {
         for &row in rows {
@@ -97,46 +98,48 @@ impl Traces {
         }
     }
 
+    /// Sets the trace of a weight to 0.
     fn remove_weight(&mut self, weight_index: usize) {
-        if let Some(place) = (self.places[weight_index] as usize).checked_sub(1) {
-            self.remove(place);
+        if let Some(position) = (self.positions[weight_index] as usize).checked_sub(1) {
+            self.remove(position);
         }
     }
 
+    /// Removes an active trace and moves the last one to its position.
     #[cold]
-    fn remove(&mut self, place: usize) {
-        self.places[self.alive[place].weight_index as usize] = 0;
+    fn remove(&mut self, position: usize) {
+        self.positions[self.active[position].weight_index as usize] = 0;
         self.count -= 1;
-        if place < self.count {
-            self.alive[place] = self.alive[self.count];
-            self.places[self.alive[place].weight_index as usize] = place as u32 + 1;
+        if position < self.count {
+            self.active[position] = self.active[self.count];
+            self.positions[self.active[position].weight_index as usize] = position as u32 + 1;
         }
     }
 
     /// w ← w + α δ z.
     #[inline]
-    pub fn apply_td_error<const N: usize>(&self, table: &mut QTable<N>, rate: &LearningRate, error: f64) {
-        if let Some(step) = rate.uniform() {
-            let step = step * error;
-            for &ActiveTrace { weight_index, trace } in &self.alive[..self.count] {
+    pub fn apply_td_error<const N: usize>(&self, table: &mut QTable<N>, learning_rate: &LearningRate, error: f64) {
+        if let Some(step_size) = learning_rate.uniform() {
+            let step = step_size * error;
+            for &ActiveTrace { weight_index, trace } in &self.active[..self.count] {
                 *table.weight_mut(weight_index as usize) += step * trace;
             }
         } else {
-            for &ActiveTrace { weight_index, trace } in &self.alive[..self.count] {
-                *table.weight_mut(weight_index as usize) += rate.at(weight_index as usize) * error * trace;
+            for &ActiveTrace { weight_index, trace } in &self.active[..self.count] {
+                *table.weight_mut(weight_index as usize) += learning_rate.at(weight_index as usize) * error * trace;
             }
         }
     }
 
-    /// z ← γλ z.
+    /// z ← γλ z, where `factor` is γλ.
     #[inline]
     pub fn decay(&mut self, factor: f64) {
-        let (cutoff, mut ends) = (self.cutoff, false);
-        for ActiveTrace { trace, .. } in &mut self.alive[..self.count] {
+        let (cutoff, mut any_below) = (self.cutoff, false);
+        for ActiveTrace { trace, .. } in &mut self.active[..self.count] {
             *trace *= factor;
-            ends |= trace.abs() <= cutoff;
+            any_below |= trace.abs() <= cutoff;
         }
-        if ends {
+        if any_below {
             self.prune();
         }
     }
@@ -146,52 +149,52 @@ impl Traces {
     pub fn apply_td_error_and_decay<const N: usize>(
         &mut self,
         table: &mut QTable<N>,
-        rate: &LearningRate,
+        learning_rate: &LearningRate,
         error: f64,
         factor: f64,
     ) {
-        let Some(step) = rate.uniform() else {
-            self.apply_td_error(table, rate, error);
+        let Some(step_size) = learning_rate.uniform() else {
+            self.apply_td_error(table, learning_rate, error);
             self.decay(factor);
             return;
         };
-        let (step, cutoff, mut ends) = (step * error, self.cutoff, false);
+        let (step, cutoff, mut any_below) = (step_size * error, self.cutoff, false);
         let values = table.values_mut();
-        let mut pass = |some: &mut [ActiveTrace]| {
-            for ActiveTrace { weight_index, trace } in some {
+        let mut update = |traces: &mut [ActiveTrace]| {
+            for ActiveTrace { weight_index, trace } in traces {
                 values[*weight_index as usize] += step * *trace;
                 *trace *= factor;
-                ends |= trace.abs() <= cutoff;
+                any_below |= trace.abs() <= cutoff;
             }
         };
-        // Their number is hard to foresee, that of whole blocks is not. With the odd ones first, the processor soon knows
-        // where the loop ends, and goes on to the next step meanwhile.
-        let (odd, blocks) = self.alive[..self.count].as_rchunks_mut::<BLOCK>();
-        pass(odd);
+        // The number of traces is hard to predict, the number of blocks is not. Taking the remainder first reveals the end
+        // of the loop early, so that the processor can start on the next step.
+        let (remainder, blocks) = self.active[..self.count].as_rchunks_mut::<BLOCK>();
+        update(remainder);
         for block in blocks {
-            pass(block);
+            update(block);
         }
-        if ends {
+        if any_below {
             self.prune();
         }
     }
 
-    /// Drops the traces at the cutoff or below.
+    /// Removes the traces at or below the cutoff.
     fn prune(&mut self) {
-        let mut place = 0;
-        while place < self.count {
-            if self.alive[place].trace.abs() <= self.cutoff {
-                self.remove(place);
+        let mut position = 0;
+        while position < self.count {
+            if self.active[position].trace.abs() <= self.cutoff {
+                self.remove(position);
             } else {
-                place += 1;
+                position += 1;
             }
         }
     }
 
     /// z ← 0.
     pub fn clear(&mut self) {
-        for alive in &self.alive[..self.count] {
-            self.places[alive.weight_index as usize] = 0;
+        for trace in &self.active[..self.count] {
+            self.positions[trace.weight_index as usize] = 0;
         }
         self.count = 0;
     }
@@ -202,7 +205,8 @@ mod tests {
     use super::*;
     use crate::schedules::Schedule;
 
-    fn visited(kind: TraceKind, actions: &[usize]) -> [f64; 2] {
+    /// The traces of two actions after these visits, with γλ = 0.5.
+    fn traces_after(kind: TraceKind, actions: &[usize]) -> [f64; 2] {
         let table = QTable::<2>::new(vec![0.0; 2], 2);
         let mut traces = Traces::new(2, 0.0);
         for &action in actions {
@@ -213,27 +217,27 @@ mod tests {
     }
 
     #[test]
-    fn each_kind_marks_a_visit_in_its_way() {
-        assert_eq!(visited(TraceKind::Accumulating, &[0, 1, 1]), [0.25, 1.5]);
-        assert_eq!(visited(TraceKind::Replacing, &[0, 1, 1]), [0.25, 1.0]);
-        assert_eq!(visited(TraceKind::Clearing, &[0, 1, 1]), [0.0, 1.0]);
+    fn each_kind_changes_the_traces_as_defined() {
+        assert_eq!(traces_after(TraceKind::Accumulating, &[0, 1, 1]), [0.25, 1.5]);
+        assert_eq!(traces_after(TraceKind::Replacing, &[0, 1, 1]), [0.25, 1.0]);
+        assert_eq!(traces_after(TraceKind::Clearing, &[0, 1, 1]), [0.0, 1.0]);
     }
 
     #[test]
-    fn one_pass_does_what_two_do() {
+    fn the_combined_pass_equals_two_passes() {
         let mut tables = [QTable::<2>::new(vec![1.0, 2.0, 3.0, 4.0], 2), QTable::new(vec![1.0, 2.0, 3.0, 4.0], 2)];
         let mut traces = Traces::new(4, 0.25);
         (0..4).for_each(|weight_index| traces.update(weight_index, |_| 0.3 * (1 + weight_index) as f64));
-        let (rate, mut once) = (LearningRate::scheduled(Schedule::constant(0.1), 2), traces.clone());
-        traces.apply_td_error(&mut tables[0], &rate, -7.0);
+        let (learning_rate, mut combined) = (LearningRate::scheduled(Schedule::constant(0.1), 2), traces.clone());
+        traces.apply_td_error(&mut tables[0], &learning_rate, -7.0);
         traces.decay(0.5);
-        once.apply_td_error_and_decay(&mut tables[1], &rate, -7.0, 0.5);
-        assert_eq!((&tables[0], traces), (&tables[1], once.clone()));
-        assert_eq!(once.len(), 3);
+        combined.apply_td_error_and_decay(&mut tables[1], &learning_rate, -7.0, 0.5);
+        assert_eq!((&tables[0], traces), (&tables[1], combined.clone()));
+        assert_eq!(combined.len(), 3);
     }
 
     #[test]
-    fn a_trace_at_the_cutoff_is_dropped_and_the_others_keep_their_places() {
+    fn a_trace_at_the_cutoff_is_removed_and_the_others_stay() {
         let mut traces = Traces::new(4, 0.25);
         for weight_index in 0..4 {
             traces.update(weight_index, |_| if weight_index % 2 == 0 { 0.5 } else { 1.0 });

@@ -1,16 +1,16 @@
-//! What a time-out means to a learner (Pardo et al., "Time limits in reinforcement learning", 2018).
+//! The treatment of truncated episodes (F. Pardo et al., "Time limits in reinforcement learning", 2018).
 
 use super::Learner;
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// A learner that may take time-outs for terminal states. Right is that they are none: nothing ends there but our
-/// patience. The mistake is kept for those who want to show what it costs.
+/// A wrapper around a learner that can treat truncation as termination. That is a mistake, because the next state has a
+/// value that the update then ignores. It is available to show the cost of the mistake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TruncationHandling<L> {
     /// The learner.
     pub learner: L,
-    /// Whether it takes them so.
+    /// Whether truncation is treated as termination.
     pub terminate: bool,
 }
 
@@ -50,7 +50,7 @@ mod tests {
     use crate::learners::common::test_support::{agent, rng};
 
     #[test]
-    fn the_mistake_forgets_what_would_have_followed() {
+    fn treating_truncation_as_termination_ignores_the_next_state() {
         for (terminate, value) in [(false, 0.75), (true, 0.0)] {
             let mut learner = TruncationHandling {
                 learner: TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: Sarsa },

@@ -3,9 +3,9 @@
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// How a step changes an agent `G`: an equation, and what it remembers from step to step.
+/// The update rule of an algorithm for an agent `G`: its equation, and what it stores between steps.
 pub trait UpdateRule<R, G> {
-    /// Learns from one step and returns the next action, as [`Learner::learn`].
+    /// Learns from one step and returns the next action, as [`Learner::learn`](super::Learner::learn).
     fn learn(
         &mut self,
         agent: &mut G,

@@ -119,7 +119,7 @@ impl PyBlackjack {
         };
         let (reward, terminated) = if action == 1 {
             player = draw(&player_cards, player)?;
-            (if player.bust() { -1.0 } else { 0.0 }, player.bust())
+            (if player.is_bust() { -1.0 } else { 0.0 }, player.is_bust())
         } else {
             while dealer.sum() < DEALER_STICKS {
                 dealer = draw(&dealer_cards, dealer)?;

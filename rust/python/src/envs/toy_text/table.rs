@@ -31,7 +31,7 @@ impl TableEnv {
 
 /// One row for each state of a table.
 pub(super) fn identity(table: &TabularMdp) -> PyResult<Identity> {
-    let states = u32::try_from(table.states());
+    let states = u32::try_from(table.num_states());
     states.map(Identity).map_err(|_| PyValueError::new_err("P must have fewer than 2**32 states"))
 }
 

@@ -97,7 +97,7 @@ impl PyTransitionTable {
 
     #[getter]
     fn states(&self) -> usize {
-        self.0.states()
+        self.0.num_states()
     }
 
     #[getter]

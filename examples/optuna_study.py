@@ -1,4 +1,4 @@
-"""Optuna chooses settings, qtab trains them over many seeds: ask for a batch, sweep it, tell the results."""
+"""Tunes Sarsa(λ) with Optuna. Each setting that Optuna proposes is trained with several seeds in one `qtab.sweep`."""
 
 import optuna
 
@@ -8,7 +8,16 @@ SEEDS = 20
 
 
 def search(batches: int = 10, size: int = 4, episodes: int = 300) -> optuna.Study:
-    """Returns a study of Sarsa(λ) on MountainCar-v0 that maximises the mean return of the last 100 episodes."""
+    """Maximises the mean return of the last 100 episodes of MountainCar-v0.
+
+    Args:
+        batches: The number of sweeps.
+        size: The number of settings in each sweep.
+        episodes: The number of training episodes of each run.
+
+    Returns:
+        The study, with one trial per setting.
+    """
     study = optuna.create_study(direction="maximize", sampler=optuna.samplers.TPESampler(seed=0))
     for _ in range(batches):
         trials = [study.ask() for _ in range(size)]

@@ -1,0 +1,51 @@
+"""Training of many runs of one setting, in which a run that diverges is counted instead of raising."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils.memory import memory_limit
+from qtab.training.train_many import MakeEnv, allocate, resolve_one, train_in_threads
+
+FloatArray: TypeAlias = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class EpisodeLog:
+    """The episodes of all runs of a setting, one row per run."""
+
+    returns: FloatArray
+    """(runs, episodes): the undiscounted return of each episode."""
+    lengths: NDArray[np.int64]
+    """(runs, episodes): the number of steps of each episode."""
+    truncated: NDArray[np.bool_]
+    """(runs, episodes): whether the time limit ended the episode, or the run had diverged before it."""
+    diverged: NDArray[np.bool_]
+    """(runs,): whether the action values of the run overflowed."""
+
+
+def train_runs(env: str | MakeEnv, config: Mapping[str, Any], seeds: Sequence[int], threads: int) -> EpisodeLog:
+    """Trains one run per seed, with the numbers of :func:`qtab.train`.
+
+    Where the action values of a run overflow, :func:`qtab.train` raises an error. Here the episodes that the run did
+    not finish count as truncated, with a reward of -1 per step.
+    """
+    resolved = resolve_one(env, {**config, "seed": seeds[0]})
+    max_steps = resolved.config.max_episode_steps
+    assert max_steps is not None  # noqa: S101 - resolved
+    results = allocate(resolved, len(seeds), min(threads, len(seeds)), tables=False, limit=memory_limit(None))
+    diverged = np.zeros(len(seeds), np.bool_)
+    for index, error in train_in_threads(resolved, tuple(seeds), results, threads, keep_going=True):
+        if not isinstance(error, OverflowError):
+            raise error
+        diverged[index] = True
+    unfinished = results["lengths"] == 0
+    return EpisodeLog(
+        returns=np.where(unfinished, -float(max_steps), results["returns"]),
+        lengths=np.where(unfinished, max_steps, results["lengths"]),
+        truncated=unfinished | ~results["terminated"],
+        diverged=diverged,
+    )

@@ -1,0 +1,30 @@
+"""One setting of an experiment: what is trained many times, and what is measured of each run."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from qtab.book.runner import EpisodeLog, FloatArray
+from qtab.training.train_many import MakeEnv
+
+Measure: TypeAlias = Callable[[EpisodeLog], FloatArray]
+"""A function of the episodes of many runs that returns (runs, points)."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A config that is trained with many seeds, and the points of a line that are measured from it."""
+
+    line: str
+    """The name of the line that its points belong to."""
+    env: str | MakeEnv
+    """The environment's id, or a function that creates it."""
+    config: Mapping[str, Any]
+    """The keyword arguments of :func:`qtab.train`."""
+    measure: Measure
+    x: tuple[float, ...] | None = None
+    """The x coordinates of its points; None means the numbers of the episodes, from 1."""
+    max_runs: int | None = None
+    """The most runs of this setting, where the book makes fewer than the experiment's ``runs``."""
+    drawn: bool = True
+    """Whether the figure shows the line; the table always does."""

@@ -1,0 +1,67 @@
+"""The explanation of each setting, for the docstrings of functions and the help of the command line."""
+
+import ast
+import inspect
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from itertools import pairwise
+from types import MappingProxyType
+from typing import Any
+
+from qtab.config import config
+from qtab.config.config import DEFAULTS, Config
+from qtab.config.options import OPTIONS, listed
+
+_FIRST_OF_GROUP = {
+    "Environment": "env",
+    "Run": "episodes",
+    "Learning": "algorithm",
+    "Exploration": "exploration",
+    "Discretizer": "discretizer",
+}
+"""The config's fields are in groups: the title of each, and the field with which it begins."""
+
+
+@cache
+def explanations() -> Mapping[str, str]:
+    """Returns the docstring of each of the config's fields, in one line; nothing if the source is not installed."""
+    try:
+        tree = ast.parse(inspect.getsource(config))
+    except (OSError, TypeError):
+        return MappingProxyType({})
+    (class_,) = (node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == Config.__name__)
+    return MappingProxyType(dict(_attribute_docstrings(class_)))
+
+
+def _attribute_docstrings(class_: ast.ClassDef) -> Iterator[tuple[str, str]]:
+    for statement, following in pairwise(class_.body):
+        match statement, following:
+            case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                yield name, " ".join(text.split())
+
+
+def applicability(name: str) -> str:
+    """Returns a sentence that says for which choices a setting applies; empty if it always does."""
+    if name not in OPTIONS:
+        return ""
+    option = OPTIONS[name]
+    return f"Applies to {option.choice} {listed(option.values)}."
+
+
+def default(name: str) -> Any:
+    """Returns the value that a setting has, where it applies, if neither the user nor a preset gives one."""
+    option = OPTIONS.get(name)
+    return DEFAULTS[name] if option is None or option.default is None else option.default
+
+
+def groups(names: Iterable[str]) -> dict[str, list[str]]:
+    """Returns the settings of each group by its title, in the order of the config; only those of ``names``."""
+    wanted = set(names)
+    grouped: dict[str, list[str]] = {}
+    titles = {first: title for title, first in _FIRST_OF_GROUP.items()}
+    title = ""
+    for name in DEFAULTS:
+        title = titles.get(name, title)
+        if name in wanted:
+            grouped.setdefault(title, []).append(name)
+    return grouped

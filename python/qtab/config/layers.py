@@ -1,0 +1,63 @@
+"""The settings that a call asks for: its keywords over the config that it starts from."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any, TypeAlias
+
+from gymnasium.envs.registration import EnvSpec
+
+from qtab.config.config import DEFAULTS, Config, replace_checked
+from qtab.config.options import is_set, mismatch
+from qtab.config.unknown import check_names
+
+Base: TypeAlias = Config | Mapping[str, Any]
+"""The config that a call starts from: a complete one, such as that of a run, or some settings."""
+
+
+def collect(
+    function: Callable[..., Any], env: Any, config: Base | None, settings: Mapping[str, Any]
+) -> tuple[Any, Base]:
+    """Checks the names of a call's settings; returns its environment and the config that it starts from.
+
+    Args:
+        function: The function that was called. Its signature tells which settings it takes.
+        env: The environment given; None takes the config's.
+        config: The config given. With another environment, its ``env_kwargs`` and ``preset`` do not count.
+        settings: The keywords given.
+
+    Raises:
+        TypeError: for an unknown setting, or a config that is neither a Config nor a mapping.
+    """
+    arguments = inspect.signature(function).parameters
+    check_names(settings, arguments)
+    if config is None:
+        return env, {}
+    if isinstance(config, Config):
+        if "seed" not in arguments:
+            config = replace_checked(config, seed=None)
+        if env is None or config.env == (env.id if isinstance(env, EnvSpec) else env):
+            return config.env, config
+        return env, replace_checked(config, env_kwargs={}, preset=None)
+    if not isinstance(config, Mapping):
+        raise TypeError(f"config must be a qtab.Config or a mapping of settings, got {config!r}")
+    check_names(config, [name for name in DEFAULTS if name in arguments])
+    base = dict(config)
+    named = base.pop("env", None)
+    return named if env is None else env, base
+
+
+def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns settings over the base of a call.
+
+    What a mapping holds counts like a keyword. The fields of a Config yield: those that are not set, and those that do
+    not apply beside the other settings, are left out.
+    """
+    if isinstance(base, Config):
+        fields = vars(base)
+        wanted = {**fields, **settings}
+        base = {
+            name: value
+            for name, value in fields.items()
+            if name != "env" and is_set(value) and not mismatch(name, value, wanted)
+        }
+    return {**base, **settings}

@@ -1,0 +1,100 @@
+"""The layout of the repository: few modules at the top, imports in one direction, short files."""
+
+import ast
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+from support.repository import PACKAGE, ROOT, tracked_files
+
+MAX_TOP_LEVEL_MODULES = 8
+MAX_LINES = 300
+
+Graph = dict[str, set[str]]
+
+
+def modules() -> dict[str, Path]:
+    """Every module of the package by its full name; a package goes by the name of its folder."""
+    named = {}
+    for path in PACKAGE.rglob("*.py"):
+        parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+        named[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return named
+
+
+def import_statements(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]]:
+    """Every import below a node, and whether it stands inside a function. Imports for type checkers are left out."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.Import | ast.ImportFrom):
+            yield child, in_function
+        elif isinstance(child, ast.If) and isinstance(child.test, ast.Name) and child.test.id == "TYPE_CHECKING":
+            continue
+        else:
+            yield from import_statements(child, in_function or isinstance(child, ast.FunctionDef))
+
+
+def imported_names(statement: ast.Import | ast.ImportFrom) -> list[str]:
+    """The full names that a statement may bind: ``from qtab import envs`` names ``qtab.envs``."""
+    if isinstance(statement, ast.Import):
+        return [alias.name for alias in statement.names]
+    return [f"{statement.module}.{alias.name}" for alias in statement.names]
+
+
+def import_graph(with_functions: bool) -> Graph:
+    """For each module of the package the modules that it imports."""
+    known = modules()
+    graph: Graph = {name: set() for name in known}
+    for name, path in known.items():
+        for statement, in_function in import_statements(ast.parse(path.read_text(encoding="utf-8"))):
+            if in_function and not with_functions:
+                continue
+            for imported in imported_names(statement):
+                target = imported if imported in known else imported.rpartition(".")[0]
+                if target in known and target != name:
+                    graph[name].add(target)
+    return graph
+
+
+def cycle(graph: Graph) -> list[str]:
+    """One circle of imports, or nothing."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def test_few_modules_stand_directly_in_the_package() -> None:
+    top = sorted(path.name for path in PACKAGE.glob("*.py"))
+    assert len(top) <= MAX_TOP_LEVEL_MODULES, top
+
+
+def test_imports_are_absolute() -> None:
+    relative = [
+        f"{path.relative_to(ROOT)}:{statement.lineno}"
+        for path in modules().values()
+        for statement, _ in import_statements(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(statement, ast.ImportFrom) and statement.level
+    ]
+    assert relative == []
+
+
+@pytest.mark.parametrize("with_functions", [False, True], ids=["at the top of modules", "inside functions too"])
+def test_modules_do_not_import_each_other_in_a_circle(with_functions: bool) -> None:
+    graph = import_graph(with_functions)
+    assert len(graph) > 50, "the package was not found"
+    assert cycle(graph) == []
+
+
+def test_a_circle_of_imports_would_be_found() -> None:
+    assert cycle({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}})
+
+
+def test_no_source_file_is_long() -> None:
+    lines = {
+        str(path.relative_to(ROOT)): len(path.read_bytes().splitlines()) for path in tracked_files(".py", ".pyi", ".rs")
+    }
+    assert len(lines) > 200, "the sources were not found"
+    assert {name: count for name, count in lines.items() if count > MAX_LINES} == {}
