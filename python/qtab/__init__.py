@@ -5,113 +5,94 @@
     run = qtab.train("MountainCar-v0", seed=0)
     run.mean_returns(100)
 
-Importing it registers the environments ``qtab/…`` with Gymnasium, and no more: what is named below loads when it is
-first used.
+Importing it registers the environments ``qtab/…`` with Gymnasium. The public names load when they are first used.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+import importlib as _importlib
+from typing import TYPE_CHECKING
 
 from qtab.envs import register as _register
 
+_MODULES = {
+    "Config": "qtab.config",
+    "Evaluation": "qtab.training.evaluate",
+    "Gap": "qtab.planning.gap",
+    "Optimum": "qtab.planning.optimum",
+    "Progress": "qtab.training.callbacks",
+    "Recording": "qtab.results.run",
+    "Run": "qtab.results.run",
+    "Runs": "qtab.results.runs",
+    "StoreError": "qtab.sweeps.database",
+    "Sweep": "qtab.sweeps.results",
+    "SweepProgress": "qtab.sweeps.sweep",
+    "TabularEnv": "qtab.envs.tabular",
+    "Verification": "qtab.training.verify",
+    "book": "qtab.book",
+    "designs": "qtab.sweeps.designs",
+    "evaluate": "qtab.training.evaluate",
+    "load": "qtab.results.storage",
+    "load_sweep": "qtab.sweeps.results",
+    "optimum": "qtab.planning.solve",
+    "plot": "qtab.plots.run",
+    "plots": "qtab.plots",
+    "presets": "qtab.config.presets",
+    "stats": "qtab.stats",
+    "sweep": "qtab.sweeps.sweep",
+    "train": "qtab.training.train",
+    "train_many": "qtab.training.train_many",
+    "verify": "qtab.training.verify",
+}
+"""The module of each public name: the one that defines it, or that it is."""
+
 if TYPE_CHECKING:
-    from qtab import book, plots, stats
-    from qtab.config import Config
-    from qtab.config.presets import presets
-    from qtab.envs.tabular import TabularEnv
-    from qtab.planning.gap import Gap
-    from qtab.planning.optimum import Optimum
-    from qtab.planning.solve import optimum
-    from qtab.plots.run import plot
-    from qtab.results.run import Recording, Run
-    from qtab.results.runs import Runs
-    from qtab.results.storage import load
-    from qtab.sweeps import designs
-    from qtab.sweeps.database import StoreError
-    from qtab.sweeps.results import Sweep, load_sweep
-    from qtab.sweeps.sweep import SweepProgress, sweep
-    from qtab.training.callbacks import Progress
-    from qtab.training.evaluate import Evaluation, evaluate
-    from qtab.training.train import train
-    from qtab.training.train_many import train_many
-    from qtab.training.verify import Verification, verify
+    # The table again, in the only form that editors and type checkers read. A test compares the two.
+    from qtab import book as book
+    from qtab import plots as plots
+    from qtab import stats as stats
+    from qtab.config import Config as Config
+    from qtab.config.presets import presets as presets
+    from qtab.envs.tabular import TabularEnv as TabularEnv
+    from qtab.planning.gap import Gap as Gap
+    from qtab.planning.optimum import Optimum as Optimum
+    from qtab.planning.solve import optimum as optimum
+    from qtab.plots.run import plot as plot
+    from qtab.results.run import Recording as Recording
+    from qtab.results.run import Run as Run
+    from qtab.results.runs import Runs as Runs
+    from qtab.results.storage import load as load
+    from qtab.sweeps import designs as designs
+    from qtab.sweeps.database import StoreError as StoreError
+    from qtab.sweeps.results import Sweep as Sweep
+    from qtab.sweeps.results import load_sweep as load_sweep
+    from qtab.sweeps.sweep import SweepProgress as SweepProgress
+    from qtab.sweeps.sweep import sweep as sweep
+    from qtab.training.callbacks import Progress as Progress
+    from qtab.training.evaluate import Evaluation as Evaluation
+    from qtab.training.evaluate import evaluate as evaluate
+    from qtab.training.train import train as train
+    from qtab.training.train_many import train_many as train_many
+    from qtab.training.verify import Verification as Verification
+    from qtab.training.verify import verify as verify
 
     __version__: str
+else:
+    # Hidden from type checkers, which accept any name from a module that has a __getattr__.
+    __all__ = list(_MODULES)
 
-__all__ = [
-    "Config",
-    "Evaluation",
-    "Gap",
-    "Optimum",
-    "Progress",
-    "Recording",
-    "Run",
-    "Runs",
-    "StoreError",
-    "Sweep",
-    "SweepProgress",
-    "TabularEnv",
-    "Verification",
-    "book",
-    "designs",
-    "evaluate",
-    "load",
-    "load_sweep",
-    "optimum",
-    "plot",
-    "plots",
-    "presets",
-    "stats",
-    "sweep",
-    "train",
-    "train_many",
-    "verify",
-]
+    def __getattr__(name):
+        if name == "__version__":
+            from importlib.metadata import version
 
-_PUBLIC = {
-    "Config": "config",
-    "Evaluation": "training.evaluate",
-    "Gap": "planning.gap",
-    "Optimum": "planning.optimum",
-    "Progress": "training.callbacks",
-    "Recording": "results.run",
-    "Run": "results.run",
-    "Runs": "results.runs",
-    "StoreError": "sweeps.database",
-    "Sweep": "sweeps.results",
-    "SweepProgress": "sweeps.sweep",
-    "TabularEnv": "envs.tabular",
-    "Verification": "training.verify",
-    "evaluate": "training.evaluate",
-    "load": "results.storage",
-    "load_sweep": "sweeps.results",
-    "optimum": "planning.solve",
-    "plot": "plots.run",
-    "presets": "config.presets",
-    "sweep": "sweeps.sweep",
-    "train": "training.train",
-    "train_many": "training.train_many",
-    "verify": "training.verify",
-}
-
-_MODULES = {"book": "book", "designs": "sweeps.designs", "plots": "plots", "stats": "stats"}
-
-
-def __getattr__(name: str) -> Any:
-    if name == "__version__":
-        from importlib.metadata import version
-
-        return version("qtab")
-    if name in _MODULES:
-        return import_module(f"qtab.{_MODULES[name]}")
-    if name not in _PUBLIC:
-        raise AttributeError(f"module 'qtab' has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(f"qtab.{_PUBLIC[name]}"), name)
-    return value
+            return version("qtab")
+        if name not in _MODULES:
+            raise AttributeError(f"module 'qtab' has no attribute {name!r}")
+        module = _importlib.import_module(_MODULES[name])
+        value = globals()[name] = getattr(module, name, module)
+        return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, "__version__"})
+    return sorted([*_MODULES, "__version__", *(name for name in globals() if name.startswith("__"))])
 
 
 _register()

@@ -1,1 +1,1 @@
-"""Helpers that every folder uses: argument checks, files, extras, versions, progress, memory."""
+"""Helpers for the whole package: argument checks, files, optional libraries, versions, progress bars, memory."""

@@ -1,4 +1,4 @@
-"""Bad input is refused at the door: each check names the argument, shows the value and says what fits."""
+"""Checks of arguments. Each error names the argument, states what would fit, and shows the value."""
 
 import math
 import operator
@@ -11,17 +11,17 @@ import numpy as np
 from qtab._utils.suggestions import did_you_mean
 
 LARGEST_COUNT = 2**63 - 1
-"""Episodes and steps are counted in 64 bits."""
-MOST_THREADS = 1024
-"""Far more than any machine has cores: a system that has no thread left to give ends the process."""
+"""The largest number of episodes or steps: they are counted in 64 bits."""
+MAX_THREADS = 1024
+"""The most threads of a call, more than any machine has cores. If the system runs out of threads, the process ends."""
 
 
 def real(name: str, value: Any, low: float, high: float) -> float:
     """Returns ``value`` as a float in [``low``, ``high``].
 
     Raises:
-        TypeError: if it is no real number (a boolean is none).
-        ValueError: if it is NaN or lies outside.
+        TypeError: if it is not a real number. Booleans are not accepted.
+        ValueError: if it is NaN or outside the interval.
     """
     number = _number(value)
     if number is None:
@@ -35,7 +35,7 @@ def finite(name: str, value: Any) -> float:
     """Returns ``value`` as a finite float.
 
     Raises:
-        TypeError: if it is no real number.
+        TypeError: if it is not a real number. Booleans are not accepted.
         ValueError: if it is NaN or infinite.
     """
     number = _number(value)
@@ -47,7 +47,7 @@ def finite(name: str, value: Any) -> float:
 
 
 def _number(value: Any) -> float | None:
-    """A real number as a float, infinite where it is too large for one; None for anything else."""
+    """Returns a real number as a float, or infinity if it is too large for one; None for anything else."""
     if isinstance(value, (bool, np.bool_, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
         return None
     try:
@@ -60,7 +60,7 @@ def integer(name: str, value: Any, least: int, most: int | None = None) -> int:
     """Returns ``value`` as a Python integer of at least ``least`` and at most ``most``.
 
     Raises:
-        TypeError: if it is no integer (a boolean is none, 5.0 neither).
+        TypeError: if it is not an integer. Booleans and floats such as 5.0 are not accepted.
         ValueError: if it is too small or too large.
     """
     fits = f"an integer of at least {least}" if most is None else f"an integer from {least} to {most}"
@@ -76,10 +76,10 @@ def integer(name: str, value: Any, least: int, most: int | None = None) -> int:
 
 
 def count(name: str, value: Any, least: int) -> int:
-    """Returns ``value`` as a Python integer of at least ``least`` that 64 bits hold.
+    """Returns ``value`` as a Python integer of at least ``least`` that fits into 64 bits.
 
     Raises:
-        TypeError: if it is no integer (a boolean is none, 5.0 neither).
+        TypeError: if it is not an integer. Booleans and floats such as 5.0 are not accepted.
         ValueError: if it is too small or too large.
     """
     number = integer(name, value, least)
@@ -89,21 +89,21 @@ def count(name: str, value: Any, least: int) -> int:
 
 
 def threads(value: Any) -> int:
-    """Returns a number of threads as a Python integer.
+    """Returns the value of the argument ``threads`` as a Python integer.
 
     Raises:
-        TypeError: if it is no integer (a boolean is none, 5.0 neither).
+        TypeError: if it is not an integer. Booleans and floats such as 5.0 are not accepted.
         ValueError: if it is too small or too large.
     """
-    return integer("threads", value, least=1, most=MOST_THREADS)
+    return integer("threads", value, least=1, most=MAX_THREADS)
 
 
 def choice(name: str, value: Any, choices: Collection[str]) -> str:
-    """Returns ``value``, one of ``choices``.
+    """Returns ``value``, which must be one of ``choices``.
 
     Raises:
-        TypeError: if it is no string.
-        ValueError: if it is none of them.
+        TypeError: if it is not a string.
+        ValueError: if it is another string.
     """
     listed = ", ".join(map(repr, choices))
     if not isinstance(value, str):
@@ -114,10 +114,10 @@ def choice(name: str, value: Any, choices: Collection[str]) -> str:
 
 
 def instance(name: str, value: Any, kind: type) -> None:
-    """Refuses what is not of a class of this package.
+    """Checks that ``value`` is an instance of a class of this package.
 
     Raises:
-        TypeError: if it is not; a file's name most likely wants :func:`qtab.load`.
+        TypeError: if it is not; for a path the message suggests :func:`qtab.load`.
     """
     if not isinstance(value, kind):
         hint = "; qtab.load reads one from a file" if isinstance(value, str | PathLike) else ""

@@ -23,9 +23,9 @@ def _requirements(extra: str | None) -> list[str]:
         declared = requires("qtab") or []
     except PackageNotFoundError:
         return []
-    separated = (requirement.partition(";") for requirement in declared)
-    return [
-        f"'{name.strip()}'"
-        for name, _, marker in separated
-        if marker.strip().replace('"', "'") == f"extra == '{extra}'"
-    ]
+    names = []
+    for requirement in declared:
+        name, _, marker = requirement.partition(";")
+        if marker.strip().replace('"', "'") == f"extra == '{extra}'":
+            names.append(f"'{name.strip()}'")
+    return names

@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all."""
+"""Writing of files, completely or not at all."""
 
 import os
 import tempfile
@@ -9,7 +9,7 @@ from pathlib import Path
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yields a temporary name beside ``path``, with its ending, and moves the file into place when all went well.
+    """Yields a temporary path with the same suffix in the same folder, which replaces ``path`` if no error occurs.
 
     Raises:
         OSError: if the folder cannot be written to.
@@ -26,10 +26,14 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def check_writable(name: str, path: Path) -> None:
-    """Refuses a path that a file could not be written to later.
+    """Checks that a file can be written to a path.
+
+    Args:
+        name: The name of the argument, for the message.
+        path: The path.
 
     Raises:
-        OSError: names the argument, the path and the reason.
+        OSError: if it cannot; the message says why.
     """
     if path.is_dir():
         raise IsADirectoryError(f"{name} must be a file, got the folder {str(path)!r}")

@@ -1,20 +1,21 @@
-"""How much memory a call may take, known before it takes any."""
+"""Memory limits, which are checked before memory is allocated."""
 
 import math
 import os
 
 from qtab._utils import checks
 
-LIMIT_WHERE_UNKNOWN = 4 * 2**30
-BYTES_AN_EPISODE = 8 + 8 + 1
-"""A return, a length and a flag."""
+DEFAULT_LIMIT = 4 * 2**30
+"""The limit in bytes where the memory of the machine is unknown."""
+BYTES_PER_EPISODE = 8 + 8 + 1
+"""The size of an episode's return, length and termination flag."""
 
 
 def memory_limit(value: int | None) -> int:
-    """Returns the limit in bytes: half of the machine's memory where none is given.
+    """Returns the memory limit in bytes; None means half of the machine's memory.
 
     Raises:
-        TypeError: if it is no integer.
+        TypeError: if it is not an integer.
         ValueError: if it is less than one.
     """
     if value is not None:
@@ -22,19 +23,24 @@ def memory_limit(value: int | None) -> int:
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
     except (AttributeError, OSError, ValueError):
-        return LIMIT_WHERE_UNKNOWN
+        return DEFAULT_LIMIT
 
 
 def check_memory(what: str, needed: int, limit: int) -> None:
-    """Refuses what needs more than the limit.
+    """Checks that something fits into the memory limit.
+
+    Args:
+        what: What needs the memory, for the message.
+        needed: The bytes it needs.
+        limit: The limit in bytes.
 
     Raises:
-        MemoryError: says how much, and how to raise the limit.
+        MemoryError: if it does not fit.
     """
     if needed > limit:
         raise MemoryError(
             f"{what} need {_readable(needed)}, more than memory_limit={limit} ({_readable(limit)}); "
-            f"ask for less, or raise memory_limit"
+            "request less, or increase memory_limit"
         )
 
 

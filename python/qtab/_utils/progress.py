@@ -1,4 +1,4 @@
-"""A progress bar on a terminal, for runs that take long enough to want one."""
+"""A progress bar on a terminal, and lines printed above it."""
 
 import sys
 import time
@@ -8,69 +8,75 @@ from typing import Any
 from qtab._utils.extras import missing
 
 SECONDS_BETWEEN_UPDATES = 0.1
-"""About how long a run goes on between two looks at the bar."""
+"""The approximate time between two updates of the bar."""
 
 DELAY_SECONDS = 1.0
-"""A bar that nobody asked for appears after so long."""
+"""A bar that was not asked for appears after this time."""
 
-_open: list[Any] = []
-"""The tqdm bars in use, which lines are written around."""
+_bars: list[Any] = []
+"""The tqdm bars in use."""
 
 
 class ProgressBar:
-    """How far a long call is, on standard error. A context; without a bar to show, it does nothing.
+    """The progress of a long call on standard error, as a context manager. Without a bar to show it does nothing.
 
     Args:
-        total: How many there are to do.
-        unit: What is counted.
-        progress: True shows it at once, False never; None shows it on a terminal, after a second, with tqdm installed.
-        description: What stands before it.
+        total: The number of units to do.
+        unit: The name of a unit, in the singular.
+        progress: True shows the bar at once, False never. None shows it after a second, if standard error is a terminal
+            and tqdm is installed.
+        description: The text before the bar.
 
     Raises:
-        ModuleNotFoundError: if a bar is asked for and tqdm is not installed; it names the ``pip install``.
-        TypeError: if ``progress`` is none of the three.
+        ModuleNotFoundError: if ``progress`` is True and tqdm is not installed; the message names the ``pip install``.
+        TypeError: if ``progress`` is neither a boolean nor None.
     """
 
     def __init__(self, total: int, unit: str, progress: bool | None, description: str | None = None) -> None:
-        self._shown = _tqdm(total, unit, progress, description)
+        self._bar = _tqdm(total, unit, progress, description)
         self._stride = 1
 
-    # Not a generator: contextlib writes to the exceptions that pass through one, and a frozen one refuses.
+    # A class, because contextlib's generator-based context managers set attributes of exceptions that pass through
+    # them, which a frozen exception does not allow.
     def __enter__(self) -> "ProgressBar":
-        if self._shown is not None:
-            _open.append(self._shown)
+        if self._bar is not None:
+            _bars.append(self._bar)
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._shown is not None:
-            _open.remove(self._shown)
-            self._shown.close()
+        if self._bar is not None:
+            _bars.remove(self._bar)
+            self._bar.close()
 
     def chunks(self, done: int, target: int) -> Iterator[int]:
-        """Yields where to pause on the way to ``target``: nowhere, or about ten times a second to move the bar."""
-        if self._shown is None:
+        """Yields the counts up to which to work in turn, from ``done`` to ``target``.
+
+        With a bar they are about a tenth of a second apart, and the bar moves in between. Without one there is only
+        ``target``.
+        """
+        if self._bar is None:
             yield target
             return
         while done < target:
-            began, before = time.perf_counter(), done
+            started, before = time.perf_counter(), done
             done = min(done + self._stride, target)
             yield done
-            self._shown.update(done - before)
-            seconds = time.perf_counter() - began
-            # Twice or half as many at a time: an episode's length changes while a run learns.
+            self._bar.update(done - before)
+            seconds = time.perf_counter() - started
+            # Episodes become longer or shorter as a run learns, so the stride adapts by factors of two.
             factor = 2.0 if seconds < SECONDS_BETWEEN_UPDATES / 2 else 0.5 if seconds > SECONDS_BETWEEN_UPDATES else 1.0
             self._stride = max(1, int(self._stride * factor))
 
     def move_to(self, done: int) -> None:
-        """Shows that so many are done."""
-        if self._shown is not None:
-            self._shown.update(done - self._shown.n)
+        """Shows that ``done`` units are finished."""
+        if self._bar is not None:
+            self._bar.update(done - self._bar.n)
 
 
 def _tqdm(total: int, unit: str, progress: bool | None, description: str | None) -> Any:
     if not (progress is None or isinstance(progress, bool)):
         raise TypeError(f"progress must be True, False or None, got {progress!r}")
-    if progress is False or (progress is None and not on_terminal(sys.stderr)):
+    if progress is False or (progress is None and not is_terminal(sys.stderr)):
         return None
     try:
         from tqdm import tqdm
@@ -82,16 +88,16 @@ def _tqdm(total: int, unit: str, progress: bool | None, description: str | None)
     return tqdm(total=total, unit=f" {unit}s", desc=description, delay=delay, leave=False, dynamic_ncols=True)
 
 
-def on_terminal(stream: Any) -> bool:
-    """Whether a stream is one that a person watches."""
+def is_terminal(stream: Any) -> bool:
+    """Returns whether a stream is a terminal."""
     return stream is not None and stream.isatty()
 
 
 def print_above(line: str) -> None:
-    """Prints a line on standard output, above the bar where there is one."""
-    # tqdm.write draws a bar anew even if it still waits to appear, and would leave it there.
-    drawn = [shown for shown in _open if shown.delay == 0 or shown.last_print_t > shown.start_t]
+    """Prints a line on standard output, above the progress bar if there is one."""
+    # tqdm.write also redraws a bar that still waits for its delay, and would leave it on the screen.
+    drawn = [bar for bar in _bars if bar.delay == 0 or bar.last_print_t > bar.start_t]
     if drawn:
         drawn[-1].write(line, file=sys.stdout)
     else:
-        print(line, flush=True)  # noqa: T201 - what it is for
+        print(line, flush=True)  # noqa: T201 - its purpose

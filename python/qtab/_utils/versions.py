@@ -1,4 +1,4 @@
-"""What a result was computed with, so that a difference can be explained."""
+"""The versions that a result was computed with, to explain differences between machines."""
 
 import platform
 from functools import cache
@@ -8,11 +8,11 @@ import numpy as np
 
 
 def versions() -> dict[str, str]:
-    """Returns the versions of qtab, Gymnasium, NumPy and Python, the platform, its C library and the build profile."""
+    """Returns the versions of qtab, Gymnasium, NumPy and Python, the platform and C library, and the build profile."""
     return dict(_versions())
 
 
-@cache  # reading them takes as long as some runs
+@cache  # reading the metadata takes as long as a short run
 def _versions() -> dict[str, str]:
     from qtab._core import BUILD_PROFILE
 

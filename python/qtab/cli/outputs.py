@@ -12,7 +12,7 @@ from qtab.planning import Optimum
 from qtab.plots.axes import check_format
 from qtab.plots.run import save_plot
 from qtab.rendering.replay import replay_all
-from qtab.rendering.video import Recorder
+from qtab.rendering.video import VideoRecorder
 from qtab.rendering.window import open_window
 from qtab.results.run import Run
 
@@ -51,7 +51,7 @@ class Outputs:
         """How many of the last episodes are played again."""
         with ExitStack() as opened:
             self._screen = None if watch is None else opened.enter_context(closing(open_window(config)))
-            self._recorder = None if record is None else opened.enter_context(closing(Recorder(config, record)))
+            self._recorder = None if record is None else opened.enter_context(closing(VideoRecorder(config, record)))
             self._opened = opened.pop_all()
 
     def __enter__(self) -> "Outputs":

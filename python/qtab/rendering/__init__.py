@@ -1,1 +1,1 @@
-"""Recorded episodes replayed: in a window, or as videos."""
+"""Replays of recorded episodes, in a window or as videos."""

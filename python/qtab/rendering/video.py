@@ -1,4 +1,4 @@
-"""The last episodes of a run as videos, through Gymnasium's RecordVideo."""
+"""Videos of recorded episodes, written by Gymnasium's RecordVideo."""
 
 import os
 import re
@@ -10,18 +10,22 @@ from qtab._utils.extras import missing
 from qtab._utils.files import check_writable
 from qtab.config import Config
 from qtab.rendering.replay import make_render_env, replay_all
-from qtab.rendering.window import headless
+from qtab.rendering.window import is_headless
 from qtab.results.run import Run
 
 
-class Recorder:
-    """A folder for videos, and an environment that draws: all that can be refused is refused when it is made.
+class VideoRecorder:
+    """Writes videos into a folder. The constructor raises everything that can be known before training.
+
+    Args:
+        config: The resolved config of the run.
+        folder: Where the videos are written; created if it does not exist.
 
     Raises:
-        ModuleNotFoundError: without moviepy; it names the ``pip install``.
+        ModuleNotFoundError: without moviepy; the message names the ``pip install``.
         OSError: if the folder cannot be written to.
-        ValueError: if the environment has no picture.
-        gymnasium.error.Error: Gymnasium's own, if it cannot draw.
+        ValueError: if the environment cannot be rendered as images.
+        gymnasium.error.Error: from Gymnasium, if rendering fails.
     """
 
     def __init__(self, config: Config, folder: Path) -> None:
@@ -31,15 +35,15 @@ class Recorder:
             raise missing(error, "video") from None
         from gymnasium.wrappers import RecordVideo
 
-        if headless():
-            os.environ["SDL_VIDEODRIVER"] = "dummy"  # SDL would look for a display all the same, and complain
+        if is_headless():
+            os.environ["SDL_VIDEODRIVER"] = "dummy"  # keeps SDL from searching for a display and printing errors
         env = make_render_env(config, "rgb_array")
         try:
             env.reset()
             env.render()
-            _make(folder)
+            _create_folder(folder)
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # that the folder is there
+                warnings.simplefilter("ignore")  # RecordVideo warns if the folder exists
                 self._env: Any = RecordVideo(
                     env, str(folder), episode_trigger=lambda _: True, name_prefix=re.split("[/:]", config.env)[-1]
                 )
@@ -48,19 +52,21 @@ class Recorder:
             raise
 
     def record(self, run: Run) -> int:
-        """Writes a video for each recorded episode, numbered from 1; returns how many differ from training."""
+        """Writes a video of each recorded episode, and returns the number with another return than in training."""
         if run.recordings:
             self._env.episode_id = run.recordings[0].episode
         return replay_all(self._env, run)
 
     def close(self) -> None:
-        """Writes what is unwritten and closes the environment."""
+        """Finishes the last video and closes the environment."""
         self._env.close()
 
 
-def _make(folder: Path) -> None:
+def _create_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise type(error)(f"record must be a folder that can be made, got {str(folder)!r}: {error.strerror}") from None
+        raise type(error)(
+            f"record must be a folder that can be created, got {str(folder)!r}: {error.strerror}"
+        ) from None
     check_writable("record", folder / "video.mp4")

@@ -1,4 +1,4 @@
-"""The screen: whether there is one, and an environment that draws on it."""
+"""A window for replays, and whether a display can show it."""
 
 import os
 import sys
@@ -10,38 +10,41 @@ from qtab._utils.extras import missing
 from qtab.config import Config
 from qtab.rendering.replay import make_render_env
 
-_SAYS_WHERE = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
+_DISPLAY_VARIABLES = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
 
 
 def open_window(config: Config) -> gym.Env:
-    """Returns the environment with its window, which opens with the first episode.
+    """Returns the environment of a run with a window, which opens when the first episode starts.
 
     Raises:
-        ModuleNotFoundError: without pygame; it names the ``pip install``.
-        ValueError: without a display, or if the environment has no window.
+        ModuleNotFoundError: without pygame; the message names the ``pip install``.
+        ValueError: without a display, or if the environment cannot be rendered in a window.
     """
-    why_not = no_display()
-    if why_not is not None:
-        raise ValueError(f"watch needs a display ({why_not}); --record DIR makes videos without one")
+    problem = display_problem()
+    if problem is not None:
+        raise ValueError(f"watch needs a display ({problem}); --record DIR makes videos without one")
     return make_render_env(config, "human")
 
 
-def headless() -> bool:
-    """Whether nothing says where a window could open."""
-    return sys.platform == "linux" and not any(map(os.environ.get, _SAYS_WHERE))
+def is_headless() -> bool:
+    """Returns whether the variables that name a display are all unset, on Linux."""
+    return sys.platform == "linux" and not any(map(os.environ.get, _DISPLAY_VARIABLES))
 
 
-def no_display() -> str | None:
-    """Returns why nobody would see a window; None where somebody would.
+def display_problem() -> str | None:
+    """Returns the reason why a window could not be seen; None if there is a display.
 
-    A driver that draws nowhere (SDL_VIDEODRIVER=dummy or offscreen) counts as no display.
+    The SDL drivers ``dummy`` and ``offscreen``, which draw into memory, do not count as a display.
+
+    Raises:
+        ModuleNotFoundError: without pygame; the message names the ``pip install``.
     """
-    if headless():
+    if is_headless():
         return "neither DISPLAY nor WAYLAND_DISPLAY is set"
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # pygame's own, of setuptools
+            warnings.simplefilter("ignore")  # pygame's import of setuptools warns
             import pygame
     except ModuleNotFoundError as error:
         raise missing(error, "video") from None

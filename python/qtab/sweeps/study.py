@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from qtab._utils.memory import BYTES_AN_EPISODE, check_memory
+from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
 from qtab.config import DEFAULTS
 from qtab.config.layers import Base, over
 from qtab.config.unknown import check_names
@@ -84,7 +84,7 @@ class Study:
         for resolved in self.resolved:
             episodes = resolved.config.episodes
             # The trainer's lists, and the arrays to which they are copied.
-            needed = 2 * episodes * BYTES_AN_EPISODE + 8 * math.prod(resolved.grid.shape)
+            needed = 2 * episodes * BYTES_PER_EPISODE + 8 * math.prod(resolved.grid.shape)
             check_memory(f"runs of {episodes} episodes", needed, limit)
 
     @cached_property

@@ -18,7 +18,7 @@ from qtab.config import Config
 from qtab.config.layers import collect, over
 from qtab.config.settings import Settings
 from qtab.config.signature import with_settings
-from qtab.rendering.replay import starts
+from qtab.rendering.replay import generator_states
 from qtab.results.run import Recording, Run
 from qtab.training.callbacks import Callback, Finished
 from qtab.training.resolve import Resolved, log_default_limit, resolve
@@ -127,7 +127,7 @@ def _run(resolved: Resolved, trainer: _core.Trainer, began: float) -> Run:
     returns, lengths, terminated = trainer.episodes()
     kept: list[tuple[Any, list[int]]] = trainer.recordings()
     first = len(returns) - len(kept)
-    generators = starts(resolved.config, [start for start, _ in kept])
+    generators = generator_states(resolved.config, [start for start, _ in kept])
     recordings = tuple(
         Recording(first + index, generator, tuple(resolved.grid.choices[action] for action in actions))
         for index, (generator, (_, actions)) in enumerate(zip(generators, kept, strict=True))

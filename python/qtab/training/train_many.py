@@ -12,7 +12,7 @@ from typing_extensions import Unpack
 
 from qtab import _core, _spec
 from qtab._utils import checks
-from qtab._utils.memory import BYTES_AN_EPISODE, check_memory, memory_limit
+from qtab._utils.memory import BYTES_PER_EPISODE, check_memory, memory_limit
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
@@ -151,7 +151,7 @@ def allocate(resolved: Resolved, runs: int, alive: int, tables: bool, limit: int
     """
     episodes = resolved.config.episodes
     values = resolved.grid.rows * resolved.grid.actions
-    needed = runs * episodes * BYTES_AN_EPISODE + alive * (episodes * BYTES_AN_EPISODE + 8 * values)
+    needed = runs * episodes * BYTES_PER_EPISODE + alive * (episodes * BYTES_PER_EPISODE + 8 * values)
     what = f"{runs} runs of {episodes} episodes"
     check_memory(what, needed + (runs * 8 * values if tables else 0), limit)
     if tables and resolved.model is not None:
