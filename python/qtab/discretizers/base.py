@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
 from qtab._spec import DiscretizerSpec
@@ -81,7 +81,7 @@ class Discretizer(ABC):
         """Returns the arrays to save, from which :meth:`restore` rebuilds the discretizer."""
         return {"low": self.low, "high": self.high}
 
-    def active_rows(self, observation: Any) -> NDArray[np.uint32]:
+    def active_rows(self, observation: ArrayLike) -> NDArray[np.int64]:
         """Returns the (n_active,) rows of an observation, or the (n, n_active) rows of n observations.
 
         With hashing a row can appear several times.
@@ -90,12 +90,9 @@ class Discretizer(ABC):
             TypeError: if the observation does not hold numbers (integers for a discrete space).
             ValueError: if it has another shape than the space, or has no row.
         """
-        observations = self._convert(np.asarray(observation))
-        batch = observations.shape[: observations.ndim - self.low.ndim]
-        rows = self._compiled.active_rows(observations.reshape(-1, self.low.size))
-        return rows.reshape(*batch, self.n_active)
+        return self._compiled.active_rows(observation)
 
-    def row(self, observation: Any) -> int:
+    def row(self, observation: ArrayLike) -> int:
         """Returns the row of the cell of one observation.
 
         Raises:
@@ -111,21 +108,9 @@ class Discretizer(ABC):
             raise ValueError(f"observation must have shape {self.low.shape}, got {np.shape(observation)}")
         return int(rows[0])
 
-    def cell(self, observation: Any) -> tuple[int, ...]:
+    def cell(self, observation: ArrayLike) -> tuple[int, ...]:
         """Returns the index of one observation in ``run.q_table`` and ``run.policy``; see :meth:`row`."""
         return tuple(int(index) for index in np.unravel_index(self.row(observation), self.shape))
-
-    @abstractmethod
-    def _convert(self, observation: NDArray[Any]) -> NDArray[Any]:
-        """Returns one observation or several in the dtype of the space, their shape checked."""
-
-    def _check_shape(self, observation: NDArray[Any]) -> None:
-        shape = self.low.shape
-        if shape not in (observation.shape, observation.shape[1:]):
-            several = ", ".join(map(str, ("n", *shape))) + ("" if shape else ",")
-            raise ValueError(
-                f"observation must have shape {shape}, or ({several}) for several, got {observation.shape}"
-            )
 
     @cached_property
     def _compiled(self) -> _core.Discretizer:

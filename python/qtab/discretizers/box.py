@@ -22,13 +22,6 @@ class BoxDiscretizer(Discretizer):
         """The dtype of the observations, in which their rows are computed."""
         return "float32" if self.low.dtype == np.float32 else "float64"
 
-    def _convert(self, observation: NDArray[Any]) -> NDArray[np.floating]:
-        if observation.dtype.kind not in "fiu":
-            raise TypeError(f"observation must hold numbers, got {observation!r}")
-        self._check_shape(observation)
-        with np.errstate(over="ignore"):
-            return observation.astype(self.low.dtype)
-
 
 def box_of(space: Any) -> spaces.Box:
     """Returns the observation space, a Box with one axis of floats.

@@ -63,12 +63,6 @@ class Identity(Discretizer):
             "scalar": not self.low.shape,
         }
 
-    def _convert(self, observation: NDArray[Any]) -> NDArray[np.int64]:
-        if observation.dtype.kind not in "iub":
-            raise TypeError(f"observation must hold integers, got {observation!r}")
-        self._check_shape(observation)
-        return observation.astype(np.int64)
-
 
 def integer_bounds(space: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
     """Returns the first and the last integer of each component of a discrete space; None for any other space."""

@@ -18,7 +18,7 @@ from qtab.discretizers import Identity
 from qtab.discretizers.actions import choose_actions
 from qtab.envs.classic_control import MountainCarEnv as RustMountainCarEnv
 from qtab.envs.matching import time_limit, unknown_wrapper
-from qtab.envs.native import toy_text_spec
+from qtab.envs.native import table_env
 from qtab.envs.registry import spec_of, versioned
 from qtab.planning.mountain_car import MountainCarSolver, Search, search_routes
 from qtab.planning.optimum import Optimum, Solver
@@ -167,7 +167,7 @@ class _Best:
 def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int) -> _Best:
     actions = choose_actions(env.action_space, None)
     cells = Identity.of_space(env.observation_space, len(actions))
-    planner = _core.Planner(toy_text_spec(env))
+    planner = _core.MdpSolver(table_env(env))
     solution = solve_table(planner, method, discount, max_episode_steps)
     if len(solution.values) < cells.n_rows or solution.q_values.shape[1] != len(actions):
         raise ValueError(f"P must have {cells.n_rows} states of {len(actions)} actions, as the spaces of env have")
@@ -187,7 +187,9 @@ def _search_mountain_car(env: Any, discount: float, max_episode_steps: int) -> _
     if discount != 1.0:
         raise ValueError(f"discount must be 1 for method 'search', which counts steps, got {discount!r}")
     names = _core.parameter_names("MountainCar")
-    valley = _core.Valley([(name, checks.finite(name, getattr(env, name))) for name in names], max_episode_steps)
+    valley = _core.MountainCarSearch(
+        [(name, checks.finite(name, getattr(env, name))) for name in names], max_episode_steps
+    )
     search = search_routes(valley, max_episode_steps)
     cost_to_go, action_costs_to_go = valley.steps()
     shape = (len(search.positions), len(search.velocities))

@@ -31,7 +31,7 @@ class Solution:
     steps to go or more, until the next change. None where the best action does not depend on the steps to go."""
 
 
-def solve_table(planner: _core.Planner, method: str, discount: float, max_episode_steps: int) -> Solution:
+def solve_table(planner: _core.MdpSolver, method: str, discount: float, max_episode_steps: int) -> Solution:
     """Solves a transition table by one of ``METHODS``.
 
     Raises:
@@ -49,7 +49,7 @@ class TabularSolver:
     """Acts by the solution of a transition table, and evaluates the policies of runs exactly."""
 
     def __init__(
-        self, planner: _core.Planner, cells: Identity, actions: Actions, solution: Solution, max_episode_steps: int
+        self, planner: _core.MdpSolver, cells: Identity, actions: Actions, solution: Solution, max_episode_steps: int
     ) -> None:
         self._planner, self._cells, self._actions, self._solution = planner, cells, actions, solution
         self._max_episode_steps = max_episode_steps

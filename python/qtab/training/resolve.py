@@ -157,7 +157,7 @@ def _environment(env: gym.Env, entry: EnvEntry | None, config: Config, actions: 
     """Rust's environment, where there is one that equals ``env`` and the backend allows it; else ``env`` itself."""
     if entry is not None and config.backend != "gymnasium":
         try:
-            return NativeEnvironment(entry, native_env(entry, env.unwrapped, actions))
+            return NativeEnvironment(entry, native_env(entry.name, env.unwrapped, actions))
         except (TypeError, ValueError) as error:
             if config.backend == "rust":
                 raise rust_unavailable(str(error)) from None
