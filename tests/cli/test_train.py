@@ -278,7 +278,7 @@ def test_verify_exits_with_1_where_the_table_was_tampered_with(tmp_path: Path) -
 
 def test_verify_refuses_what_is_no_run(tmp_path: Path) -> None:
     (tmp_path / "bad.npz").write_bytes(b"not a run")
-    assert "'bad.npz' is no run" in refused("verify", "bad.npz", cwd=tmp_path)
+    assert "'bad.npz' is not a run file" in refused("verify", "bad.npz", cwd=tmp_path)
     assert "none.npz" in refused("verify", "none.npz", cwd=tmp_path)
     package.train("MountainCar-v0", seed=0, episodes=5).save(tmp_path / "run.npz")
     assert "episodes must be" in refused("verify", "run.npz", "--episodes", "6", cwd=tmp_path)
