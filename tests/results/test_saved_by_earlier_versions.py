@@ -1,7 +1,7 @@
 """Runs and stores saved before the package was rearranged still load, and train to the same bytes.
 
-The files in ``saved/`` were written by ``run.save`` and ``qtab.sweep(..., store=)`` of an earlier build of 0.1.0. Do not
-regenerate them.
+The files in ``saved/`` were written by ``run.save`` and ``qtab.sweep(..., store=)`` of an earlier build of
+0.1.0. Do not regenerate them.
 """
 
 import json
