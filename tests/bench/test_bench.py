@@ -25,7 +25,7 @@ from qtab.bench import (
     subjects,
     vectors,
 )
-from qtab.bench.rounds import Timings
+from qtab.bench.rounds import Subject, Timings
 from support.command import qtab, refused
 
 
@@ -47,7 +47,7 @@ def test_the_plain_loop_is_the_articles_loop_to_the_bit() -> None:
 
 @pytest.mark.parametrize("cutoff", [0.0, learners.CUTOFF])
 def test_the_numba_loop_of_sarsa_lambda_is_ours_to_the_bit(cutoff: float) -> None:
-    settings = {**learners.SETTINGS[learners.CUT], "episodes": 6, "trace_cutoff": cutoff}
+    settings: dict[str, Any] = {**learners.SETTINGS[learners.CUT], "episodes": 6, "trace_cutoff": cutoff}
     run = package.train("MountainCar-v0", seed=4, bit_generator="MT19937", **settings)
     starts = np.random.default_rng(4).uniform(-0.6, -0.4, 6)
     table, returns, steps = sarsa_numba.sarsa_lambda(sarsa_numba.look, starts, 4, 0.3, 0.9, cutoff)
@@ -80,7 +80,7 @@ def test_the_plain_loop_by_a_preset_is_ours_to_the_bit(name: str) -> None:
 def test_subjects_take_turns_and_ratios_are_taken_within_a_round() -> None:
     turns: list[str] = []
 
-    def subject(name: str) -> subjects.Subject:
+    def subject(name: str) -> Subject:
         def run(index: int) -> int:
             turns.append(f"{name}{index}")
             return 1
@@ -181,8 +181,8 @@ def test_a_learners_time_is_a_multiple_of_q_learnings() -> None:
 
 
 def test_without_numba_the_table_says_how_to_get_it_and_a_debug_build_is_warned_of() -> None:
-    names = (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP)
-    names = (*names, subjects.GYMNASIUM_MAKE, subjects.QTAB_MAKE)
+    names = [subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP]
+    names += [subjects.GYMNASIUM_MAKE, subjects.QTAB_MAKE]
     timings = Timings({name: np.array([1.0]) for name in names})
     printed = str(report.Report(timings, 1, footprint.Footprint(200.0, 5.0, None), {"build": "debug"}))
     assert printed.startswith("WARNING: this is a debug build")

@@ -11,7 +11,7 @@ from qtab.rendering.replay import replay_episode
 from support.environments import ScriptedEnv
 from support.parity import assert_same_run
 
-BINS = {"discretizer": "bins", "bins": 6}
+BINS: dict[str, Any] = {"discretizer": "bins", "bins": 6}
 
 
 class Push(gym.Env[Any, Any]):
@@ -109,7 +109,8 @@ def test_a_run_predicts_and_is_saved_evaluated_replayed_and_verified(env: str, t
     assert action.tobytes() in {np.array([value], np.float32).tobytes() for value in (-0.9, 0.0, 0.4)}
     action[:] = 7.0
     assert space.contains(run.predict(observation)[0])
-    assert run.policy[run.grid.cell(observation)].tolist() == run.predict(observation)[0].tolist()
+    grid: Any = run.grid
+    assert run.policy[grid.cell(observation)].tolist() == run.predict(observation)[0].tolist()
     for recording in run.recordings:
         assert all(space.contains(step) for step in recording.actions)
         assert replay_episode(made.unwrapped, recording) != 0.0
@@ -131,7 +132,7 @@ def test_recorded_episodes_play_again() -> None:
 
 
 def test_a_step_in_an_object_is_a_step_in_rust() -> None:
-    settings = {"seed": 5, "episodes": 4, "actions": (-2, 0.3, 1.7), **BINS}
+    settings: dict[str, Any] = {"seed": 5, "episodes": 4, "actions": (-2, 0.3, 1.7), **BINS}
     rust = qtab.train("Pendulum-v1", **settings)
     assert rust.config.backend == "rust"
     assert_same_run(rust, qtab.train(gym.make("Pendulum-v1"), **settings))

@@ -1,5 +1,7 @@
 """The streams draw what NumPy draws, for any seed and in any order."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -40,11 +42,11 @@ class NumpyMt19937:
         return self.generator.randint(0, below)
 
 
-def pcg64(seed):
+def pcg64(seed: int) -> tuple[Any, Any]:
     return Stream("PCG64", seed_words(seed)), NumpyPcg64(seed)
 
 
-def mt19937(seed):
+def mt19937(seed: int) -> tuple[Any, Any]:
     return Stream("MT19937", seed_words(seed)), NumpyMt19937(seed)
 
 

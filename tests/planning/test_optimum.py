@@ -189,7 +189,7 @@ def test_runs_are_compared_too():
 def test_every_way_of_naming_an_environment_comes_to_the_same():
     env = gym.make("FrozenLake-v1")
     run = qtab.train("FrozenLake-v1", episodes=10, seed=0)
-    ways = ["FrozenLake-v1", "qtab/FrozenLake-v1", gym.spec("FrozenLake-v1"), env, env.unwrapped, run]
+    ways: list[Any] = ["FrozenLake-v1", "qtab/FrozenLake-v1", gym.spec("FrozenLake-v1"), env, env.unwrapped, run]
     assert len({qtab.optimum(way, max_episode_steps=100).values.tobytes() for way in ways}) == 1
     table = table_of("FrozenLake-v1")
     own = qtab.optimum(qtab.TabularEnv(table.P, table.initial_state_distrib))

@@ -1,5 +1,7 @@
 """What "equal to the last bit" means, once."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 
@@ -9,7 +11,8 @@ from qtab.reference import q_learning
 
 def state_bytes(env: gym.Env) -> bytes:
     """The internal state of a car in f64."""
-    return np.array(env.unwrapped.state, dtype=np.float64).tobytes()
+    inner: Any = env.unwrapped
+    return np.array(inner.state, dtype=np.float64).tobytes()
 
 
 def assert_same_run(one: qtab.Run, other: qtab.Run) -> None:
@@ -18,6 +21,11 @@ def assert_same_run(one: qtab.Run, other: qtab.Run) -> None:
     assert one.episode_returns.tobytes() == other.episode_returns.tobytes()
     assert one.terminated.tolist() == other.terminated.tolist()
     assert one.tables.tobytes() == other.tables.tobytes()
+
+
+def run_of(error: BaseException) -> Any:
+    """The run that an error of training carries."""
+    return error.run  # type: ignore[attr-defined]
 
 
 def assert_same_as_reference(run: qtab.Run, env: gym.Env) -> None:

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import textwrap
 import threading
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -16,10 +17,11 @@ from hypothesis import strategies as st
 
 import qtab
 from support.environments import make_brittle
+from support.parity import run_of
 
 CAR = "MountainCar-v0"
 POLE = "CartPole-v1"
-SHORT = {"episodes": 30}
+SHORT: dict[str, Any] = {"episodes": 30}
 
 
 def assert_equal_to_lone_runs(runs, env=CAR, **config):
@@ -38,6 +40,7 @@ def test_each_run_is_the_lone_one_for_any_number_of_threads(threads):
     assert runs.completed
     assert runs.seeds == tuple(range(20))
     assert runs.episode_returns.shape == runs.episode_lengths.shape == runs.terminated.shape == (20, 200)
+    assert runs.tables is not None
     assert runs.tables.shape == (20, 1, 285, 3)
     assert_equal_to_lone_runs(runs, episodes=200)
 
@@ -109,7 +112,12 @@ def test_each_run_is_the_lone_one_for_every_learner(config, backend):
     assert runs[1].tables.shape == qtab.train(CAR, seed=1, **config).tables.shape
 
 
-STEEP = {"discretizer": "tiles", "algorithm": "sarsa_lambda", "traces": "accumulating", "trace_decay": 1.0}
+STEEP: dict[str, Any] = {
+    "discretizer": "tiles",
+    "algorithm": "sarsa_lambda",
+    "traces": "accumulating",
+    "trace_decay": 1.0,
+}
 STEEP |= {"learning_rate": 1.5, "discount": 1.0, "epsilon": 0.8, "min_epsilon": 0.8, "episodes": 4}
 
 
@@ -120,7 +128,7 @@ def test_a_failing_run_names_its_seed_and_leaves_the_finished_ones():
         qtab.train_many(CAR, [1, 0, 2], threads=1, tables=True, **STEEP)
     assert str(caught.value) == str(lone.value)
     assert "seed 0" in getattr(caught.value, "__notes__", ["seed 0"])[0]
-    runs = caught.value.run
+    runs = run_of(caught.value)
     assert runs.seeds == (1,)
     assert not runs.completed
     assert_equal_to_lone_runs(runs, **STEEP)
@@ -128,7 +136,7 @@ def test_a_failing_run_names_its_seed_and_leaves_the_finished_ones():
 
 def test_a_number_of_seeds_counts_from_zero():
     assert qtab.train_many(CAR, 3, **SHORT).seeds == (0, 1, 2)
-    assert qtab.train_many(CAR, np.int64(2), **SHORT).seeds == (0, 1)
+    assert qtab.train_many(CAR, np.int64(2), **SHORT).seeds == (0, 1)  # type: ignore[arg-type]
     assert qtab.train_many(CAR, np.array([5, 3]), **SHORT).seeds == (5, 3)
     assert qtab.train_many(CAR, [2**70], **SHORT).seeds == (2**70,)
 
@@ -247,6 +255,7 @@ def run_until_ready_then_interrupt(script):
     process = subprocess.Popen(
         [sys.executable, "-c", textwrap.dedent(script)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
+    assert process.stdout is not None
     assert process.stdout.readline() == "ready\n"
     os.kill(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=60)
@@ -286,9 +295,9 @@ def test_python_environments_run_in_processes_and_are_the_lone_runs():
 def test_a_failing_process_names_its_seed_and_leaves_the_finished_runs():
     with pytest.raises(RuntimeError, match="out of order") as caught:
         qtab.train_many(make_brittle, [0, 4, 2], threads=1, scale=(10, 100), episodes=2)
-    assert caught.value.run.seeds == (0, 4)
+    assert run_of(caught.value).seeds == (0, 4)
     lone = qtab.train(make_brittle(), seed=0, scale=(10, 100), episodes=2)
-    assert caught.value.run.episode_returns[0].tobytes() == lone.episode_returns.tobytes()
+    assert run_of(caught.value).episode_returns[0].tobytes() == lone.episode_returns.tobytes()
 
 
 def test_ctrl_c_stops_the_processes_too():
