@@ -44,3 +44,14 @@ def table_to_go_on_from(seed: int = 0, episodes: int = 5000) -> np.ndarray:
 def energy_policy(observation: np.ndarray) -> int:
     """Pushes the way the car moves, which takes it to the goal."""
     return 2 if observation[1] >= 0 else 0
+
+
+def assert_same_as_single_runs(runs: qtab.Runs, env: str = "MountainCar-v0", **config: Any) -> None:
+    """Each run of ``train_many`` is the run of ``train`` with its seed."""
+    for index, seed in enumerate(runs.seeds):
+        single = qtab.train(env, seed=seed, **config)
+        assert runs.episode_returns[index].tobytes() == single.episode_returns.tobytes()
+        assert runs.episode_lengths[index].tobytes() == single.episode_lengths.tobytes()
+        assert runs.terminated[index].tobytes() == single.terminated.tobytes()
+        if runs.tables is not None:
+            assert runs.tables[index].tobytes() == single.tables.tobytes()
