@@ -11,7 +11,7 @@ from qtab._utils.progress import print_above
 from qtab.cli.outputs import Outputs
 from qtab.cli.parsing import parse
 from qtab.cli.settings import flag_groups, read_config, with_initial_q
-from qtab.cli.usage import UsageError, refusing
+from qtab.cli.usage import UsageError, usage_errors
 from qtab.config import DEFAULTS, Config
 from qtab.config.explanations import default, groups
 from qtab.config.options import is_set
@@ -59,10 +59,10 @@ class Arguments:
 def run(arguments: list[str]) -> int:
     """Trains and reports; returns the exit code."""
     asked, env, settings = _parse(arguments)
-    with refusing():
+    with usage_errors():
         resolved = resolve(env, with_initial_q(settings))
     try:
-        with refusing():
+        with usage_errors():
             outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record)
             truth = _truth(resolved) if asked.optimum or _quick(resolved) else None
         with outputs:
@@ -83,10 +83,10 @@ def _parse(arguments: list[str]) -> tuple[Arguments, str, dict[str, Any]]:
         if not help_wanted:
             raise
         asked = _read([], DEFAULTS)
-    with refusing():
+    with usage_errors():
         env, settings = _given(asked)
     if help_wanted:
-        with refusing():
+        with usage_errors():
             shown = _effective_defaults(env, settings)
         _read(["--help"], shown)  # leaves
     return asked, env, settings
