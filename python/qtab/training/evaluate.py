@@ -1,6 +1,8 @@
 """How good a greedy policy is."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -52,14 +54,26 @@ class Evaluation:
         return None if self.reward_threshold is None else float(np.mean(self.returns >= self.reward_threshold))
 
 
-def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.Env | None = None) -> Evaluation:
-    """Plays episodes with a run's greedy policy: the first maximum of the Q table, no exploration, no learning.
+def evaluate(
+    run: Run,
+    episodes: int = 100,
+    seed: int | None = None,
+    env: gym.Env | None = None,
+    *,
+    env_kwargs: Mapping[str, Any] | None = None,
+    max_episode_steps: int | None = None,
+) -> Evaluation:
+    """Plays episodes with a run's greedy policy, without exploration and without learning.
+
+    Of several greedy actions the first is taken.
 
     Args:
-        run: What to evaluate.
-        episodes: How many episodes.
-        seed: Seeds the environment; None draws one and records it.
-        env: The environment, for a run that was trained on an object that no id names.
+        run: The run to evaluate.
+        episodes: The number of episodes.
+        seed: The seed of the environment; None draws one, which the evaluation records.
+        env: The environment, for a run that was trained on an environment without an id.
+        env_kwargs: Keyword arguments for the environment's constructor; None takes those of the run.
+        max_episode_steps: The time limit of an episode, in steps; None takes that of the run.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -78,9 +92,9 @@ def evaluate(run: Run, episodes: int = 100, seed: int | None = None, env: gym.En
         terminal_update="target",
         initial_q=_greedy_table(run),
         **{name: getattr(config, name) for name in (*DISCRETIZERS, "actions")},
-        env_kwargs=config.env_kwargs,
-        max_episode_steps=config.max_episode_steps,
-        backend=config.backend if env is None else "auto",
+        env_kwargs=config.env_kwargs if env_kwargs is None else env_kwargs,
+        max_episode_steps=config.max_episode_steps if max_episode_steps is None else max_episode_steps,
+        backend=config.backend if env is None and env_kwargs is None else "auto",
     )
     spec = spec_of(config.env) if env is None else env.spec
     assert played.config.seed is not None  # noqa: S101 - resolved
