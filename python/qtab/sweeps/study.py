@@ -25,7 +25,7 @@ PYTHON_CHUNK_STEPS = 2**16
 TYPICAL_MAX_STEPS = 1000
 """Episodes with a longer time limit are expected to end before this many steps."""
 MAX_CHUNK_RUNS = 4096
-"""The most runs in a chunk."""
+"""The maximum number of runs in a chunk."""
 
 
 @dataclass(frozen=True)
