@@ -48,9 +48,9 @@ class Study:
 
     env: Any
     settings: Sequence[Mapping[str, Any]]
-    """The points of the grid: the config fields by which the settings differ."""
+    """The points of the grid: the config fields in which the settings differ."""
     overrides: Sequence[Mapping[str, Any]]
-    """All that is given for each setting, the fields that all of them share included."""
+    """The config fields given for each setting, including those that all settings share."""
     seeds: tuple[int, ...]
     """The seeds of every setting."""
     resolved: Sequence[Resolved]
