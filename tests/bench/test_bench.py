@@ -1,6 +1,9 @@
 """The bench measures what it says, and prints it; no test looks at how fast anything is."""
 
+import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -51,6 +54,19 @@ def test_the_numba_loop_of_sarsa_lambda_is_ours_to_the_bit(cutoff: float) -> Non
     assert table.tobytes() == run.tables.tobytes()
     assert returns.tobytes() == run.episode_returns.tobytes()
     assert steps == run.episode_lengths.sum()
+
+
+@pytest.mark.slow
+def test_numba_compiles_the_loops(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("numba")
+    for module in (article_numba, sarsa_numba):
+        monkeypatch.setattr(module, "EPISODES", 30)
+    starts = np.random.default_rng(4).uniform(-0.6, -0.4, 30)
+    q_learning, sarsa_lambda = article_numba.compiled(), sarsa_numba.compiled(0.9, 0.0)
+    assert q_learning is not None
+    assert sarsa_lambda is not None
+    assert q_learning(4) == article_numba.q_learning(starts, 4, 0.2, 0.9, 0.8, 0.0)[2]
+    assert sarsa_lambda(4) == sarsa_numba.sarsa_lambda(sarsa_numba.look, starts, 4, 0.3, 0.9, 0.0)[2]
 
 
 @pytest.mark.parametrize("name", environments.names())
@@ -116,9 +132,31 @@ def test_vector_environments_count_the_steps_of_all_and_are_compared_with_their_
     }
 
 
-def test_the_bench_prints_its_tables_with_versions_and_build(tmp_path: Path) -> None:
-    done = qtab("bench", "--rounds", "1", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+@pytest.fixture
+def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A round of every subject takes a moment: few episodes, seeds and sub-environments, and nothing is compiled."""
+
+    def train(env: Any, **settings: Any) -> package.Run:
+        return package.train(env, **{**settings, "episodes": 20})
+
+    def train_many(env: Any, seeds: int, **settings: Any) -> package.Runs:
+        return package.train_many(env, seeds // 8, **settings, episodes=20)
+
+    for module in (mountain_car, environments, learners, overhead):
+        monkeypatch.setattr(module, "train", train)
+    for module in (mountain_car, environments):
+        monkeypatch.setattr(module, "train_many", train_many)
+    monkeypatch.setattr(environments, "EPISODES", dict.fromkeys(environments.EPISODES, 20))
+    for module in (article_numba, sarsa_numba):
+        monkeypatch.setattr(module, "EPISODES", 5)
+    monkeypatch.setitem(sys.modules, "numba", SimpleNamespace(njit=lambda function: function))
+    monkeypatch.setattr(mountain_car, "STEPS", 1_000)
+    monkeypatch.setattr(vector_envs, "NUM_ENVS", 8)
+    monkeypatch.setattr(report, "footprint", lambda: footprint.footprint(repeats=1))
+
+
+def test_the_bench_prints_its_tables_with_versions_and_build(small_rounds: None) -> None:
+    printed = str(report.bench(rounds=1, progress=False))
     names = (
         mountain_car.ARTICLE,
         mountain_car.TRAIN,
@@ -127,19 +165,22 @@ def test_the_bench_prints_its_tables_with_versions_and_build(tmp_path: Path) -> 
         mountain_car.QTAB_MAKE,
     )
     for name in (*names, vector_envs.SYNC, vector_envs.QTAB_CARS, vector_envs.QTAB_POLES, vector_envs.QTAB_ONE):
-        assert f"\n{name}  " in done.stdout
+        assert f"\n{name}  " in printed
     for name in (environments.FIRST, *learners.SETTINGS):
-        assert f"\n{name}  " in done.stdout
-    assert "learning adds" in done.stdout
+        assert f"\n{name}  " in printed
+    assert "learning adds" in printed
+    assert "import qtab adds" in printed
+    assert f"numpy {np.__version__}" in printed
+    assert f"build {versions()['build']}" in printed
+
+
+def test_a_part_is_timed_alone(tmp_path: Path) -> None:
+    done = qtab("bench", "--rounds", "1", "--part", "stepping", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert f"\n{mountain_car.QTAB_STEP}  " in done.stdout
     assert "import qtab adds" in done.stdout
-    assert f"numpy {np.__version__}" in done.stdout
     assert f"build {versions()['build']}" in done.stdout
-
-
-def test_a_part_is_timed_alone() -> None:
-    printed = str(report.bench(rounds=1, progress=False, part="stepping"))
-    assert mountain_car.QTAB_STEP in printed
-    assert not any(name in printed for name in (mountain_car.TRAIN, environments.FIRST, learners.Q_LEARNING))
+    assert not any(subject in done.stdout for subject in (mountain_car.TRAIN, environments.FIRST, learners.Q_LEARNING))
 
 
 def test_a_learners_time_is_a_multiple_of_q_learnings() -> None:

@@ -14,13 +14,15 @@ from qtab.cli.settings import flag_groups, read_config, with_initial_q
 from qtab.cli.usage import UsageError, usage_errors
 from qtab.config import DEFAULTS, Config
 from qtab.config.explanations import default, groups
+from qtab.config.merge import merge
 from qtab.config.options import is_set
 from qtab.envs.registry import spec_of, versioned
 from qtab.planning import Optimum, optimum
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES, default_block
 from qtab.training.callbacks import Progress
-from qtab.training.resolve import Resolved, limit, merge, resolve
+from qtab.training.resolve import resolve, time_limit_notice
+from qtab.training.resolved_run import NativeEnvironment, ResolvedRun
 from qtab.training.train import train_resolved
 
 COMMAND = "qtab train"
@@ -120,7 +122,7 @@ def _effective_defaults(env: str, settings: Mapping[str, Any]) -> dict[str, Any]
     return {**shown, **{name: settings[name] for name in settings.keys() - given.keys()}}
 
 
-def _header(resolved: Resolved) -> str:
+def _header(resolved: ResolvedRun) -> str:
     config = resolved.config
     backend = "in Rust" if config.backend == "rust" else "stepped by Gymnasium in Python"
     parts = [
@@ -130,21 +132,22 @@ def _header(resolved: Resolved) -> str:
         f"seed {config.seed}",
     ]
     header = ", ".join(parts)
-    return f"{header}\n{limit(resolved)}" if resolved.limited else header
+    return f"{header}\n{time_limit_notice(resolved)}" if resolved.default_time_limit else header
 
 
-def _quick(resolved: Resolved) -> bool:
-    if resolved.model is None or not resolved.model.has_table or resolved.config.max_episode_steps is None:
+def _quick(resolved: ResolvedRun) -> bool:
+    environment = resolved.environment
+    if not isinstance(environment, NativeEnvironment) or not environment.entry.has_table:
         return False
-    return resolved.grid.rows * resolved.grid.actions * resolved.config.max_episode_steps <= QUICK
+    return resolved.discretizer.n_rows * len(resolved.actions) * resolved.max_episode_steps <= QUICK
 
 
-def _truth(resolved: Resolved) -> Optimum:
+def _truth(resolved: ResolvedRun) -> Optimum:
     config = resolved.config
     return optimum(config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps)
 
 
-def _train(resolved: Resolved, outputs: Outputs, truth: Optimum | None) -> None:
+def _train(resolved: ResolvedRun, outputs: Outputs, truth: Optimum | None) -> None:
     block = default_block(resolved.config.episodes)
     averages = _averages(block)
     try:
