@@ -92,7 +92,7 @@ def entry_for_spec(spec: EnvSpec, kwargs: Mapping[str, Any]) -> EnvEntry | None:
         return None
     if spec.entry_point not in (entry.gymnasium_entry_point, entry.entry_point):
         return None
-    # With a render mode the user wants to see the environment itself, which Python steps.
+    # An environment with a render mode is stepped in Python, so that it can be seen.
     arguments = {
         name: value for name, value in {**spec.kwargs, **kwargs}.items() if (name, value) != ("render_mode", None)
     }
