@@ -1,7 +1,9 @@
 """Importing is light, every name is there, and a missing extra is named with the command that brings it."""
 
+import ast
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -13,6 +15,7 @@ def in_a_process(code):
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120).stdout
 
 
+MODULES = ["book", "designs", "plots", "stats"]
 HEAVY = "matplotlib", "tyro", "tqdm", "moviepy", "pygame", "PIL", "tomllib", "numba"
 
 
@@ -79,17 +82,35 @@ for module in pkgutil.iter_modules(qtab.__path__):
         importlib.import_module(f"qtab.{module.name}")
 print([name for name in qtab.__all__ if isinstance(getattr(qtab, name), types.ModuleType)])
 """
-    assert in_a_process(code).strip() == "['book', 'designs', 'plots', 'stats']"
+    assert in_a_process(code).strip() == repr(MODULES)
 
 
 def test_every_name_of_the_extension_module_is_in_its_stub():
-    from pathlib import Path
-
     stub = Path(qtab.__file__).with_name("_core.pyi").read_text()
     public = [name for name in dir(_core) if not name.startswith("_")]
     assert public
     for name in public:
         assert f'"{name}"' in stub, name
+
+
+def test_type_checkers_see_the_table_of_public_names():
+    tree = ast.parse(Path(qtab.__file__).read_text())
+    (block,) = (node for node in tree.body if isinstance(node, ast.If))
+    imported = {}
+    for statement in block.body:
+        if isinstance(statement, ast.ImportFrom):
+            for alias in statement.names:
+                assert alias.asname == alias.name  # only then is it public to them
+                imported[alias.name] = statement.module
+    modules = {name: f"{module}.{name}" for name, module in imported.items() if name in MODULES}
+    assert imported | modules == qtab._MODULES
+
+
+def test_only_public_names_are_shown():
+    code = "import qtab; print([name for name in dir(qtab) if not name.startswith('__')] == sorted(qtab.__all__))"
+    assert in_a_process(code).strip() == "True"
+    assert "__version__" in dir(qtab)
+    assert dir(qtab) == sorted(set(dir(qtab)))
 
 
 def test_an_unknown_name_is_an_attribute_error():

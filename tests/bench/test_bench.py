@@ -1,12 +1,16 @@
 """The bench measures what it says, and prints it; no test looks at how fast anything is."""
 
+import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
 import pytest
 
 import qtab as package
+from qtab._utils.versions import versions
 from qtab.bench import (
     article,
     article_numba,
@@ -14,14 +18,14 @@ from qtab.bench import (
     footprint,
     learners,
     measure,
+    mountain_car,
     overhead,
-    plain,
+    plain_loop,
     report,
     sarsa_numba,
-    subjects,
-    vectors,
+    vector_envs,
 )
-from qtab.bench.rounds import Timings
+from qtab.bench.timing import Benchmark, Timings
 from support.command import qtab, refused
 
 
@@ -46,31 +50,44 @@ def test_the_numba_loop_of_sarsa_lambda_is_ours_to_the_bit(cutoff: float) -> Non
     settings = {**learners.SETTINGS[learners.CUT], "episodes": 6, "trace_cutoff": cutoff}
     run = package.train("MountainCar-v0", seed=4, bit_generator="MT19937", **settings)
     starts = np.random.default_rng(4).uniform(-0.6, -0.4, 6)
-    table, returns, steps = sarsa_numba.sarsa_lambda(sarsa_numba.look, starts, 4, 0.3, 0.9, cutoff)
+    table, returns, steps = sarsa_numba.sarsa_lambda(sarsa_numba.observe, starts, 4, 0.3, 0.9, cutoff)
     assert table.tobytes() == run.tables.tobytes()
     assert returns.tobytes() == run.episode_returns.tobytes()
     assert steps == run.episode_lengths.sum()
 
 
+@pytest.mark.slow
+def test_numba_compiles_the_loops(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("numba")
+    for module in (article_numba, sarsa_numba):
+        monkeypatch.setattr(module, "EPISODES", 30)
+    starts = np.random.default_rng(4).uniform(-0.6, -0.4, 30)
+    q_learning, sarsa_lambda = article_numba.compiled(), sarsa_numba.compiled(0.9, 0.0)
+    assert q_learning is not None
+    assert sarsa_lambda is not None
+    assert q_learning(4) == article_numba.q_learning(starts, 4, 0.2, 0.9, 0.8, 0.0)[2]
+    assert sarsa_lambda(4) == sarsa_numba.sarsa_lambda(sarsa_numba.look, starts, 4, 0.3, 0.9, 0.0)[2]
+
+
 @pytest.mark.parametrize("name", environments.names())
 def test_the_plain_loop_by_a_preset_is_ours_to_the_bit(name: str) -> None:
     run = package.train(name, episodes=30, seed=4)
-    table, steps = plain.q_learning(name, 30, 4)
+    table, steps = plain_loop.q_learning(name, 30, 4)
     assert table.tobytes() == run.q_table.tobytes()
     assert steps == run.episode_lengths.sum()
 
 
-def test_subjects_take_turns_and_ratios_are_taken_within_a_round() -> None:
+def test_benchmarks_take_turns_and_ratios_are_taken_within_a_round() -> None:
     turns: list[str] = []
 
-    def subject(name: str) -> subjects.Subject:
+    def benchmark(name: str) -> Benchmark:
         def run(index: int) -> int:
             turns.append(f"{name}{index}")
             return 1
 
         return run
 
-    timings = measure({"a": subject("a"), "b": subject("b")}, seconds=0, rounds=2)
+    timings = measure({"a": benchmark("a"), "b": benchmark("b")}, seconds=0, rounds=2)
     assert turns == ["a0", "b0", "a1", "b1", "a2", "b2"]
     assert {name: len(times) for name, times in timings.nanoseconds.items()} == {"a": 2, "b": 2}
     drifting = Timings({"slow": np.array([10.0, 200.0, 30.0]), "fast": np.array([1.0, 20.0, 3.0])})
@@ -80,15 +97,15 @@ def test_subjects_take_turns_and_ratios_are_taken_within_a_round() -> None:
 
 def test_what_learning_adds_is_a_difference_within_each_round() -> None:
     times = {overhead.BARE: np.array([100.0, 400.0, 200.0]), overhead.LEARNING: np.array([350.0, 600.0, 410.0])}
-    assert overhead.sentence(Timings(times)).startswith("learning adds 210 ns a step")
+    assert overhead.sentence(Timings(times)).startswith("learning adds 210 ns per step")
 
 
-def test_every_subject_counts_its_steps() -> None:
-    training = subjects.training()
-    assert 1900 <= training[subjects.ARTICLE](0) <= 2000
-    assert training[subjects.TRAIN](0) == package.train("MountainCar-v0", seed=0).episode_lengths.sum()
-    assert all(step(0) == subjects.STEPS for step in subjects.stepping().values())
-    lone = f"Taxi, {environments.WAYS[1]}"
+def test_every_benchmark_counts_its_steps() -> None:
+    training = mountain_car.training()
+    assert 1900 <= training[mountain_car.ARTICLE](0) <= 2000
+    assert training[mountain_car.TRAIN](0) == package.train("MountainCar-v0", seed=0).episode_lengths.sum()
+    assert all(step(0) == mountain_car.STEPS for step in mountain_car.stepping().values())
+    lone = f"Taxi, {environments.METHODS[1]}"
     assert environments.training()[lone](0) == package.train("Taxi-v4", seed=0).episode_lengths.sum()
     cut = package.train("MountainCar-v0", seed=0, **learners.SETTINGS[learners.CUT])
     assert learners.training()[learners.CUT](0) == cut.episode_lengths.sum()
@@ -97,37 +114,73 @@ def test_every_subject_counts_its_steps() -> None:
 
 
 def test_vector_environments_count_the_steps_of_all_and_are_compared_with_their_own_kind() -> None:
-    steps = vectors.stepping()
-    assert steps[vectors.QTAB_POLES](0) == 200 * 4096
-    assert steps[vectors.QTAB_ONE](0) == 10_000
-    nanoseconds = {vectors.SYNC: 900.0, vectors.QTAB_CARS: 3.0, vectors.NUMPY_POLES: 8.0, vectors.QTAB_POLES: 2.0}
-    rows = dict(vectors.compared(Timings({name: np.array([number]) for name, number in nanoseconds.items()})))
+    steps = vector_envs.stepping()
+    assert steps[vector_envs.QTAB_POLES](0) == 200 * 4096
+    assert steps[vector_envs.QTAB_ONE](0) == 10_000
+    nanoseconds = {
+        vector_envs.SYNC: 900.0,
+        vector_envs.QTAB_CARS: 3.0,
+        vector_envs.NUMPY_POLES: 8.0,
+        vector_envs.QTAB_POLES: 2.0,
+    }
+    rows = dict(vector_envs.compared(Timings({name: np.array([number]) for name, number in nanoseconds.items()})))
     assert rows == {
-        vectors.SYNC: [1.0, None, None],
-        vectors.QTAB_CARS: [300.0, None, None],
-        vectors.NUMPY_POLES: [1.0, None, None],
-        vectors.QTAB_POLES: [4.0, None, None],
+        vector_envs.SYNC: [1.0, None, None],
+        vector_envs.QTAB_CARS: [300.0, None, None],
+        vector_envs.NUMPY_POLES: [1.0, None, None],
+        vector_envs.QTAB_POLES: [4.0, None, None],
     }
 
 
-def test_the_bench_prints_its_tables_with_versions_and_build(tmp_path: Path) -> None:
-    done = qtab("bench", "--rounds", "1", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    names = (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP, subjects.QTAB_MAKE)
-    for name in (*names, vectors.SYNC, vectors.QTAB_CARS, vectors.QTAB_POLES, vectors.QTAB_ONE):
-        assert f"\n{name}  " in done.stdout
+@pytest.fixture
+def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A round of every subject takes a moment: few episodes, seeds and sub-environments, and nothing is compiled."""
+
+    def train(env: Any, **settings: Any) -> package.Run:
+        return package.train(env, **{**settings, "episodes": 20})
+
+    def train_many(env: Any, seeds: int, **settings: Any) -> package.Runs:
+        return package.train_many(env, seeds // 8, **settings, episodes=20)
+
+    for module in (mountain_car, environments, learners, overhead):
+        monkeypatch.setattr(module, "train", train)
+    for module in (mountain_car, environments):
+        monkeypatch.setattr(module, "train_many", train_many)
+    monkeypatch.setattr(environments, "EPISODES", dict.fromkeys(environments.EPISODES, 20))
+    for module in (article_numba, sarsa_numba):
+        monkeypatch.setattr(module, "EPISODES", 5)
+    monkeypatch.setitem(sys.modules, "numba", SimpleNamespace(njit=lambda function: function))
+    monkeypatch.setattr(mountain_car, "STEPS", 1_000)
+    monkeypatch.setattr(vector_envs, "NUM_ENVS", 8)
+    monkeypatch.setattr(report, "footprint", lambda: footprint.footprint(repeats=1))
+
+
+def test_the_bench_prints_its_tables_with_versions_and_build(small_rounds: None) -> None:
+    printed = str(report.bench(rounds=1, progress=False))
+    names = (
+        mountain_car.ARTICLE,
+        mountain_car.TRAIN,
+        mountain_car.GYMNASIUM_STEP,
+        mountain_car.QTAB_STEP,
+        mountain_car.QTAB_MAKE,
+    )
+    for name in (*names, vector_envs.SYNC, vector_envs.QTAB_CARS, vector_envs.QTAB_POLES, vector_envs.QTAB_ONE):
+        assert f"\n{name}  " in printed
     for name in (environments.FIRST, *learners.SETTINGS):
-        assert f"\n{name}  " in done.stdout
-    assert "learning adds" in done.stdout
+        assert f"\n{name}  " in printed
+    assert "learning adds" in printed
+    assert "import qtab adds" in printed
+    assert f"numpy {np.__version__}" in printed
+    assert f"build {versions()['build']}" in printed
+
+
+def test_a_part_is_timed_alone(tmp_path: Path) -> None:
+    done = qtab("bench", "--rounds", "1", "--part", "stepping", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert f"\n{mountain_car.QTAB_STEP}  " in done.stdout
     assert "import qtab adds" in done.stdout
-    assert f"numpy {np.__version__}" in done.stdout
-    assert f"build {package.versions.versions()['build']}" in done.stdout
-
-
-def test_a_part_is_timed_alone() -> None:
-    printed = str(report.bench(rounds=1, progress=False, part="stepping"))
-    assert subjects.QTAB_STEP in printed
-    assert not any(subject in printed for subject in (subjects.TRAIN, environments.FIRST, learners.Q_LEARNING))
+    assert f"build {versions()['build']}" in done.stdout
+    assert not any(subject in done.stdout for subject in (mountain_car.TRAIN, environments.FIRST, learners.Q_LEARNING))
 
 
 def test_a_learners_time_is_a_multiple_of_q_learnings() -> None:
@@ -139,12 +192,12 @@ def test_a_learners_time_is_a_multiple_of_q_learnings() -> None:
 
 
 def test_without_numba_the_table_says_how_to_get_it_and_a_debug_build_is_warned_of() -> None:
-    names = (subjects.ARTICLE, subjects.TRAIN, subjects.GYMNASIUM_STEP, subjects.QTAB_STEP)
-    names = (*names, subjects.GYMNASIUM_MAKE, subjects.QTAB_MAKE)
+    names = (mountain_car.ARTICLE, mountain_car.TRAIN, mountain_car.GYMNASIUM_STEP, mountain_car.QTAB_STEP)
+    names = (*names, mountain_car.GYMNASIUM_MAKE, mountain_car.QTAB_MAKE)
     timings = Timings({name: np.array([1.0]) for name in names})
     printed = str(report.Report(timings, 1, footprint.Footprint(200.0, 5.0, None), {"build": "debug"}))
     assert printed.startswith("WARNING: this is a debug build")
-    assert "qtab[bench]" in printed
+    assert "pip install numba" in printed
     assert "× numba" not in printed
 
 

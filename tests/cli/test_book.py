@@ -6,12 +6,12 @@ import sys
 import pytest
 
 import qtab
-from support.command import environment, refused
+from support.command import environment, qtab_here, refused
 from support.command import qtab as command
 
 
 def test_without_a_name_the_experiments_are_listed(tmp_path):
-    done = command("book", cwd=tmp_path)
+    done = qtab_here("book", cwd=tmp_path)
     assert done.returncode == 0
     assert [row.split()[0] for row in done.stdout.splitlines()] == list(qtab.book.EXPERIMENTS)
 
@@ -31,7 +31,7 @@ def test_an_experiment_prints_its_settings_and_its_table(tmp_path):
 
 
 def test_a_whole_figure_says_its_count(tmp_path):
-    done = command("book", "8.2", cwd=tmp_path)
+    done = qtab_here("book", "8.2", cwd=tmp_path)
     assert "30 runs of each setting, seeds from 0" in done.stdout
     assert "FEWER" not in done.stdout
 

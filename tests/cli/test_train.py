@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import qtab as package
-from support.command import QTAB, environment, qtab, refused
+from support.command import QTAB, environment, qtab, qtab_here, refused
 
 
 def test_train_prints_averages_as_the_article_does_and_saves_what_the_api_returns(tmp_path: Path) -> None:
@@ -30,7 +30,7 @@ def test_train_prints_averages_as_the_article_does_and_saves_what_the_api_return
 
 
 def test_every_setting_is_a_flag_and_help_shows_the_preset(tmp_path: Path) -> None:
-    done = qtab("train", "--help", cwd=tmp_path)
+    done = qtab_here("train", "--help", cwd=tmp_path)
     assert done.returncode == 0
     for name in package.Config.__dataclass_fields__:
         if name != "env":
@@ -42,7 +42,7 @@ def test_every_setting_is_a_flag_and_help_shows_the_preset(tmp_path: Path) -> No
 
 def test_help_shows_the_settings_of_the_file(tmp_path: Path) -> None:
     (tmp_path / "run.toml").write_text("episodes = 123")
-    assert "123" in qtab("train", "--config", "run.toml", "--help", cwd=tmp_path).stdout
+    assert "123" in qtab_here("train", "--config", "run.toml", "--help", cwd=tmp_path).stdout
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_help_shows_the_settings_of_the_file(tmp_path: Path) -> None:
     ],
 )
 def test_the_environment_is_named_first_or_last_or_by_its_flag(tmp_path: Path, arguments: list[str]) -> None:
-    done = qtab("train", *arguments, cwd=tmp_path)
+    done = qtab_here("train", *arguments, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("qtab/MountainCar-v0 in Rust, preset article, 5 episodes")
 
@@ -65,7 +65,9 @@ def test_flags_win_over_the_file_and_the_file_over_the_preset(tmp_path: Path) ->
         'env = "qtab/MountainCar-v0"\nepisodes = 7\nseed = 1\nlearning_rate = 0.5\nscale = [5, 50]\n'
         "initial_q = [-2, 0]\nmin_epsilon = 0.1\n[env_kwargs]\ngoal_velocity = 0.01\n"
     )
-    done = qtab("train", "--config", "run.toml", "--seed", "2", "--discount", "0.99", "--save", "a.npz", cwd=tmp_path)
+    done = qtab_here(
+        "train", "--config", "run.toml", "--seed", "2", "--discount", "0.99", "--save", "a.npz", cwd=tmp_path
+    )
     assert done.returncode == 0, done.stderr
     config = package.load(tmp_path / "a.npz").config
     assert (config.env, config.episodes, config.seed, config.learning_rate) == ("qtab/MountainCar-v0", 7, 2, 0.5)
@@ -74,7 +76,7 @@ def test_flags_win_over_the_file_and_the_file_over_the_preset(tmp_path: Path) ->
 
 
 def test_pairs_and_negative_ranges_reach_the_run(tmp_path: Path) -> None:
-    done = qtab(
+    done = qtab_here(
         *("train", "--episodes", "3", "--env-kwargs", "goal_velocity", "-0.01", "--initial-q", "-2", "-1"),
         *("--save", "a.npz"),
         cwd=tmp_path,
@@ -89,7 +91,7 @@ def test_a_saved_run_goes_on_from_its_table(tmp_path: Path) -> None:
     first.save(tmp_path / "first.npz")
     for settings in (["--initial-q", "first.npz"], ["--config", "run.toml"]):
         (tmp_path / "run.toml").write_text('initial_q = "first.npz"')
-        done = qtab("train", "--episodes", "20", "--seed", "1", *settings, "--save", "more.npz", cwd=tmp_path)
+        done = qtab_here("train", "--episodes", "20", "--seed", "1", *settings, "--save", "more.npz", cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         more = package.train("MountainCar-v0", seed=1, episodes=20, initial_q=first.q_table)
         assert package.load(tmp_path / "more.npz").q_table.tobytes() == more.q_table.tobytes()
@@ -118,7 +120,7 @@ def test_an_id_without_a_version_is_the_newest_with_its_preset(tmp_path: Path, a
 
 @pytest.mark.parametrize("name", ["rewards.jpg", "rewards.png", "rewards.pdf", "rewards.svg"])
 def test_plots_are_written_in_the_format_of_their_ending(tmp_path: Path, name: str) -> None:
-    done = qtab("train", "--episodes", "300", "--plot", name, cwd=tmp_path)
+    done = qtab_here("train", "--episodes", "300", "--plot", name, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     starts = {"jpg": b"\xff\xd8\xff", "png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}
     assert (tmp_path / name).read_bytes().startswith(starts[name[-3:]])
@@ -162,6 +164,11 @@ def test_bad_usage_is_one_line_and_exit_code_2(tmp_path: Path, arguments: list[s
     assert re.search(said, line), line
 
 
+def test_bad_usage_ends_the_process_with_exit_code_2(tmp_path: Path) -> None:
+    assert "episodes must be" in refused("train", "--episodes", "0", cwd=tmp_path, run=qtab)
+    assert "'bad.npz'" in refused("verify", "bad.npz", cwd=tmp_path, run=qtab)
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -179,9 +186,9 @@ def test_an_unknown_command_is_refused_and_the_known_ones_named(tmp_path: Path) 
 
 
 def test_version_and_help(tmp_path: Path) -> None:
-    assert qtab("--version", cwd=tmp_path).stdout == f"qtab {importlib.metadata.version('qtab')}\n"
-    assert "verify" in qtab("--help", cwd=tmp_path).stdout
-    assert qtab(cwd=tmp_path).returncode == 2
+    assert qtab_here("--version", cwd=tmp_path).stdout == f"qtab {importlib.metadata.version('qtab')}\n"
+    assert "verify" in qtab_here("--help", cwd=tmp_path).stdout
+    assert qtab_here(cwd=tmp_path).returncode == 2
 
 
 def test_an_environment_that_fails_leaves_what_was_learned_and_one_line(tmp_path: Path) -> None:
@@ -253,7 +260,7 @@ def test_ctrl_c_saves_and_plots_what_was_learned_so_far(tmp_path: Path) -> None:
 def test_verify_reports_equality_and_exits_with_0(tmp_path: Path) -> None:
     package.train("MountainCar-v0", seed=0, episodes=40).save(tmp_path / "run.npz")
     for arguments, count in ((["run.npz"], 40), (["run.npz", "--episodes", "10"], 10)):
-        done = qtab("verify", *arguments, cwd=tmp_path)
+        done = qtab_here("verify", *arguments, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         assert f"seed 0, {count} episodes against Gymnasium and NumPy" in done.stdout
         assert done.stdout.count(" equal\n") == 3
@@ -263,7 +270,7 @@ def test_verify_exits_with_1_where_the_table_was_tampered_with(tmp_path: Path) -
     run = package.train("MountainCar-v0", seed=0, episodes=10)
     run.tables[0, 0, 0] += 1e-12
     run.save(tmp_path / "run.npz")
-    done = qtab("verify", "run.npz", cwd=tmp_path)
+    done = qtab_here("verify", "run.npz", cwd=tmp_path)
     assert done.returncode == 1
     assert "Q table  DIFFERENT" in done.stdout
     assert done.stderr == ""
@@ -271,7 +278,7 @@ def test_verify_exits_with_1_where_the_table_was_tampered_with(tmp_path: Path) -
 
 def test_verify_refuses_what_is_no_run(tmp_path: Path) -> None:
     (tmp_path / "bad.npz").write_bytes(b"not a run")
-    assert "'bad.npz' is no run" in refused("verify", "bad.npz", cwd=tmp_path)
+    assert "'bad.npz' is not a run file" in refused("verify", "bad.npz", cwd=tmp_path)
     assert "none.npz" in refused("verify", "none.npz", cwd=tmp_path)
     package.train("MountainCar-v0", seed=0, episodes=5).save(tmp_path / "run.npz")
     assert "episodes must be" in refused("verify", "run.npz", "--episodes", "6", cwd=tmp_path)

@@ -10,7 +10,7 @@ import pytest
 
 import qtab
 from support.command import qtab as command
-from support.command import refused
+from support.command import qtab_here, refused
 from support.interrupts import in_a_process
 
 EPISODES = 100
@@ -177,7 +177,7 @@ def test_ctrl_c_stops_it():
 
 
 def test_the_command_prints_a_small_table(tmp_path: Path):
-    done = command("optimum", "FrozenLake-v1", "--env-kwargs", "is_slippery", "false", cwd=tmp_path)
+    done = qtab_here("optimum", "FrozenLake-v1", "--env-kwargs", "is_slippery", "false", cwd=tmp_path)
     assert done.returncode == 0, done
     lines = done.stdout.splitlines()
     assert lines[0] == "FrozenLake-v1"
@@ -195,9 +195,9 @@ def test_training_says_how_far_it_is_from_the_optimum(tmp_path: Path):
     done = command("train", "CliffWalking-v1", "--seed", "0", "--plot", "curve.png", cwd=tmp_path)
     assert "Greedy policy -13, optimum -13, gap 0" in done.stdout.splitlines()
     assert (tmp_path / "curve.png").exists()
-    done = command("train", "FrozenLake-v1", "--seed", "0", "--env-kwargs", "is_slippery", "false", cwd=tmp_path)
+    done = qtab_here("train", "FrozenLake-v1", "--seed", "0", "--env-kwargs", "is_slippery", "false", cwd=tmp_path)
     assert "Greedy policy 1, optimum 1, gap 0" in done.stdout.splitlines()
-    done = command("train", "--seed", "0", "--episodes", "200", "--optimum", cwd=tmp_path)
+    done = qtab_here("train", "--seed", "0", "--episodes", "200", "--optimum", cwd=tmp_path)
     assert ", best known -97." in done.stdout
-    done = command("train", "--seed", "0", "--episodes", "200", cwd=tmp_path)
+    done = qtab_here("train", "--seed", "0", "--episodes", "200", cwd=tmp_path)
     assert "best known" not in done.stdout

@@ -1,9 +1,16 @@
-"""The ``qtab`` command in a process of its own, as a user runs it."""
+"""The ``qtab`` command, in a process of its own as a user runs it, or in this one."""
 
+import contextlib
+import io
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+from unittest import mock
+
+from qtab.cli import main
 
 QTAB = [sys.executable, "-m", "qtab"]
 
@@ -52,19 +59,40 @@ def environment(folder: Path | None = None, **changes: str | None) -> dict[str, 
 
 
 def qtab(*arguments: str, cwd: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Runs the command in a process of its own."""
     return subprocess.run(
         [*QTAB, *arguments], cwd=cwd, env=environment(cwd, **variables), capture_output=True, text=True, check=False
     )
 
 
-def refused(*arguments: str, cwd: Path, **variables: str) -> str:
+def qtab_here(*arguments: str, cwd: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Runs the command in this process, which saves the second that its imports take."""
+    out, err = io.StringIO(), io.StringIO()
+    before = Path.cwd()
+    os.chdir(cwd)
+    try:
+        with (
+            mock.patch.dict(os.environ, environment(cwd, **variables), clear=True),
+            contextlib.redirect_stdout(out),
+            contextlib.redirect_stderr(err),
+        ):
+            try:
+                code: Any = main(list(arguments))
+            except SystemExit as error:
+                code = error.code
+    finally:
+        os.chdir(before)
+    return subprocess.CompletedProcess(["qtab", *arguments], code, out.getvalue(), err.getvalue())
+
+
+def refused(*arguments: str, cwd: Path, run: Callable[..., Any] = qtab_here, **variables: str) -> str:
     """Runs what must be refused: exit code 2, nothing on standard output, no file, one line, which it returns."""
     before = sorted(cwd.iterdir())
-    done = qtab(*arguments, cwd=cwd, **variables)
+    done = run(*arguments, cwd=cwd, **variables)
     assert done.returncode == 2, done
     assert done.stdout == ""
     assert done.stderr.count("\n") == 1, done.stderr
     assert [path for path in sorted(cwd.iterdir()) if path.suffix not in (".py", "")] == [
         path for path in before if path.suffix not in (".py", "")
     ]
-    return done.stderr.strip()
+    return str(done.stderr.strip())

@@ -32,6 +32,15 @@ def rollout(env, run, episodes, seed):
     return returns, lengths, ends
 
 
+def test_another_time_limit_and_other_keyword_arguments_can_be_given(learned):
+    longer = qtab.evaluate(learned, episodes=10, seed=0, max_episode_steps=1000)
+    assert longer.lengths.max() > 200
+    env = gym.make("MountainCar-v0", goal_velocity=0.05)
+    returns, lengths, _ = rollout(env, learned, 10, 0)
+    found = qtab.evaluate(learned, episodes=10, seed=0, env_kwargs={"goal_velocity": 0.05})
+    assert (found.returns.tolist(), found.lengths.tolist()) == (returns, lengths)
+
+
 @pytest.mark.parametrize("seed", [0, 17, 2**70])
 def test_it_is_a_greedy_rollout_on_gymnasiums_environment(learned, seed):
     found = qtab.evaluate(learned, episodes=20, seed=seed)

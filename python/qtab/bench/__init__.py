@@ -1,7 +1,7 @@
-"""How fast: this package beside Gymnasium and the article's loop, in one process, as ratios."""
+"""``qtab bench``: the speed of this package relative to Gymnasium, to NumPy loops and to numba, in one process."""
 
 from qtab.bench.footprint import Footprint
 from qtab.bench.report import Report, bench
-from qtab.bench.rounds import Timings, measure
+from qtab.bench.timing import Timings, measure
 
 __all__ = ["Footprint", "Report", "Timings", "bench", "measure"]

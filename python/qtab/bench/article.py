@@ -1,4 +1,4 @@
-"""The article's loop as a user would write it: NumPy on Gymnasium's environment, and nothing around it."""
+"""The article's training loop: NumPy and Gymnasium's environment only."""
 
 import gymnasium as gym
 import numpy as np
@@ -10,7 +10,11 @@ from qtab.reference import agent_stream
 def q_learning(
     env: gym.Env, learning: float, discount: float, epsilon: float, min_eps: float, episodes: int, seed: int
 ) -> tuple[NDArray[np.float64], int]:
-    """Returns the Q table of MountainCar-v0 and the steps taken, with the article's arguments and a seed."""
+    """Trains on MountainCar-v0 with the arguments of the article, and a seed.
+
+    Returns:
+        The Q table, (19, 15, 3), and the number of steps.
+    """
     rng = agent_stream(seed, "PCG64")
     low, scale = env.observation_space.low, np.array([10, 100])  # type: ignore[attr-defined]
     n_cells = np.round((env.observation_space.high - low) * scale, 0).astype(int) + 1  # type: ignore[attr-defined]

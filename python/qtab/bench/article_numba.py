@@ -1,4 +1,4 @@
-"""The article's loop once more, with its own physics, plain enough for numba: the yardstick of compiled Python."""
+"""The article's training loop with MountainCar's physics, written so that numba can compile it."""
 
 import math
 from collections.abc import Callable
@@ -18,9 +18,13 @@ def q_learning(
     epsilon: float,
     min_epsilon: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
-    """Returns the Q table, each episode's return and the number of steps; an episode for each start position."""
-    np.random.seed(seed)  # noqa: NPY002 - numba's own stream, seeded as the article's
-    Q = np.random.uniform(-1.0, 1.0, (19, 15, 3))  # noqa: N806, NPY002 - the book's
+    """Trains one episode from each start position.
+
+    Returns:
+        The Q table, (19, 15, 3); (episodes,) returns; and the number of steps.
+    """
+    np.random.seed(seed)  # noqa: NPY002 - numba supports NumPy's global generator, which the article uses
+    Q = np.random.uniform(-1.0, 1.0, (19, 15, 3))  # noqa: N806, NPY002 - the book's symbol
     returns = np.zeros(len(starts))
     reduction = (epsilon - min_epsilon) / len(starts)
     low_position, low_velocity = np.float32(-1.2), np.float32(-0.07)
@@ -66,7 +70,7 @@ def q_learning(
 
 
 def compiled() -> Callable[[int], int] | None:
-    """Returns a whole run under numba, by seed, that returns its number of steps; None without numba."""
+    """Returns a function from the seed of a run, compiled by numba, to its number of steps; None without numba."""
     try:
         from numba import njit
     except ModuleNotFoundError:

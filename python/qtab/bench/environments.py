@@ -1,53 +1,55 @@
-"""Training on other environments than the article's, with the preset that each has."""
+"""Training with the default presets of other environments than MountainCar."""
 
-from qtab.bench.plain import q_learning
-from qtab.bench.rounds import Subject, Timings
+from qtab.bench.plain_loop import q_learning
+from qtab.bench.timing import Benchmark, Timings
 from qtab.config.presets import presets
 from qtab.training.train import train
 from qtab.training.train_many import train_many
 
 EPISODES = {"FrozenLake-v1": 400, "Taxi-v4": 40, "CartPole-v1": 100}
-"""A round of the plain loop: the whole schedule in so many episodes."""
+"""The episodes of the plain loop in a round; the schedules of the rates are compressed to them."""
 
 TITLE = "Training, the environment's preset"
-_WAYS = ("a plain loop: NumPy on gymnasium.make", "qtab.train", "train_many, 16 seeds, one thread")
-WAYS = (*_WAYS, "train_many, 32 seeds, two threads")
-FIRST = f"FrozenLake, {WAYS[0]}"
+_METHODS = ("a plain loop: NumPy on gymnasium.make", "qtab.train", "train_many, 16 seeds, one thread")
+METHODS = (*_METHODS, "train_many, 32 seeds, two threads")
+FIRST = f"FrozenLake, {METHODS[0]}"
 
 
 def names() -> list[str]:
-    """Returns the environments that have a preset."""
+    """Returns the ids of the environments to train on."""
     return [name for name in EPISODES if presets(name)]
 
 
-def training() -> dict[str, Subject]:
-    """Returns each environment's loops: a plain one, and this package's."""
-    subjects: dict[str, Subject] = {}
+def training() -> dict[str, Benchmark]:
+    """Returns the benchmarks of each environment: a plain loop, a single run, and many runs on one and two threads."""
+    benchmarks: dict[str, Benchmark] = {}
     for name in names():
-        loops = (_plain(name), _lone(name), _many(name, 16, 1), _many(name, 32, 2))
-        subjects |= {_row(name, way): loop for way, loop in zip(WAYS, loops, strict=True)}
-    return subjects
+        loops = (_plain(name), _single(name), _many(name, 16, 1), _many(name, 32, 2))
+        benchmarks |= {_row(name, method): loop for method, loop in zip(METHODS, loops, strict=True)}
+    return benchmarks
 
 
 def lines(timings: Timings) -> list[list[str]]:
-    """Returns each row: its name, nanoseconds a step, and how many times as fast as the plain loop."""
-    rows = [[_row(name, way) for way in WAYS] for name in names()]
+    """Returns the rows of the table: name, nanoseconds per step, and how many times as fast as the plain loop."""
+    groups = [[_row(name, method) for method in METHODS] for name in names()]
     return [
-        [row, f"{timings.median(row):,.1f}", f"{timings.ratio(ways[0], row):,.0f}"] for ways in rows for row in ways
+        [row, f"{timings.median(row):,.1f}", f"{timings.ratio(group[0], row):,.0f}"]
+        for group in groups
+        for row in group
     ]
 
 
-def _row(name: str, way: str) -> str:
-    return f"{name.partition('-')[0]}, {way}"
+def _row(name: str, method: str) -> str:
+    return f"{name.partition('-')[0]}, {method}"
 
 
-def _plain(name: str) -> Subject:
+def _plain(name: str) -> Benchmark:
     return lambda index: q_learning(name, EPISODES[name], index)[1]
 
 
-def _lone(name: str) -> Subject:
+def _single(name: str) -> Benchmark:
     return lambda index: int(train(name, seed=index, progress=False).episode_lengths.sum())
 
 
-def _many(name: str, seeds: int, threads: int) -> Subject:
+def _many(name: str, seeds: int, threads: int) -> Benchmark:
     return lambda _: int(train_many(name, seeds, threads=threads).episode_lengths.sum())

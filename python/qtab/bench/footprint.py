@@ -1,4 +1,4 @@
-"""What the package costs beside its speed: the time of its import, the memory of a run; each in a fresh process."""
+"""The import time of the package and the memory of a run, each measured in a new process."""
 
 import subprocess
 import sys
@@ -8,14 +8,14 @@ import numpy as np
 
 _IMPORTS = """
 import time
-began = time.perf_counter()
+started = time.perf_counter()
 import gymnasium
-between = time.perf_counter()
+imported = time.perf_counter()
 import qtab
-print(between - began, time.perf_counter() - between)
+print(imported - started, time.perf_counter() - imported)
 """
 
-# A first short run does the imports that wait for their use. The peak is in bytes on macOS, in kibibytes elsewhere.
+# A short run first loads the modules that are imported on first use. ru_maxrss is in bytes on macOS, else in KiB.
 _MEMORY = """
 import resource, sys
 import qtab
@@ -30,24 +30,24 @@ print((peak() - before) / 1e6)
 
 @dataclass(frozen=True)
 class Footprint:
-    """Time of import and memory."""
+    """Import times and memory."""
 
     gymnasium_milliseconds: float
-    """What ``import gymnasium`` takes."""
+    """The time of ``import gymnasium``."""
     qtab_milliseconds: float
-    """What ``import qtab`` adds to it."""
+    """The time that ``import qtab`` adds to it."""
     megabytes: float | None
-    """The peak memory of a default run over the imports; None where the platform does not tell."""
+    """The peak memory that a run with default settings adds to the imports; None where it cannot be measured."""
 
 
 def footprint(repeats: int = 5) -> Footprint:
-    """Measures in fresh processes; the imports' figures are medians of so many."""
-    _output(_IMPORTS)  # fills the disk's cache
+    """Measures the footprint; the import times are medians over ``repeats`` processes."""
+    _output(_IMPORTS)  # loads the files into the disk cache
     seconds = np.median([[float(part) for part in _output(_IMPORTS).split()] for _ in range(repeats)], axis=0)
     megabytes = None if sys.platform == "win32" else float(_output(_MEMORY))
     return Footprint(float(seconds[0] * 1e3), float(seconds[1] * 1e3), megabytes)
 
 
 def _output(program: str) -> str:
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
-    return done.stdout
+    finished = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
+    return finished.stdout

@@ -1,9 +1,9 @@
-"""What the learners cost a step, beside Q-learning on the article's grid and beside numba."""
+"""The time per step of the learners, relative to Q-learning on the article's grid and to numba."""
 
 from typing import Any
 
-from qtab.bench.rounds import Subject, Timings
 from qtab.bench.sarsa_numba import EPISODES, TILES, TILINGS, compiled
+from qtab.bench.timing import Benchmark, Timings
 from qtab.training.train import train
 
 ENV = "MountainCar-v0"
@@ -28,28 +28,28 @@ SETTINGS: dict[str, dict[str, Any]] = {
 NUMBA = {f"{name}, under numba": (name, cutoff) for name, cutoff in ((TRACES, 0.0), (CUT, CUTOFF))}
 
 
-def training() -> dict[str, Subject]:
-    """Returns a run of each learner, and numba's where it is installed."""
+def training() -> dict[str, Benchmark]:
+    """Returns the benchmarks: a run of each learner, and numba's loops if numba is installed."""
     loops = {name: compiled(0.9, cutoff) for name, (_, cutoff) in NUMBA.items()}
-    return {name: _lone(settings) for name, settings in SETTINGS.items()} | {
+    return {name: _single(settings) for name, settings in SETTINGS.items()} | {
         name: loop for name, loop in loops.items() if loop is not None
     }
 
 
 def lines(timings: Timings) -> list[list[str]]:
-    """Returns each row: its name, nanoseconds a step, and how many times the time of Q-learning and of numba's loop."""
-    rivals = {ours: name for name, (ours, _) in NUMBA.items() if name in timings.nanoseconds}
+    """Returns the rows of the table: name, nanoseconds per step, time relative to Q-learning, and speed to numba."""
+    numba_names = {ours: name for name, (ours, _) in NUMBA.items() if name in timings.nanoseconds}
     rows = [name for name in (*SETTINGS, *NUMBA) if name in timings.nanoseconds]
     return [
         [
             name,
             f"{timings.median(name):,.1f}",
             f"{timings.ratio(name, Q_LEARNING):.2f}",
-            f"{timings.ratio(rivals[name], name):.1f}" if name in rivals else "",
+            f"{timings.ratio(numba_names[name], name):.1f}" if name in numba_names else "",
         ]
         for name in rows
     ]
 
 
-def _lone(settings: dict[str, Any]) -> Subject:
+def _single(settings: dict[str, Any]) -> Benchmark:
     return lambda index: int(train(ENV, seed=index, progress=False, **settings).episode_lengths.sum())

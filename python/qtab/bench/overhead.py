@@ -1,4 +1,4 @@
-"""What the learner adds to the time of an environment that is stepped in Python."""
+"""The time that learning adds to an environment that is stepped in Python."""
 
 from typing import Any
 
@@ -6,39 +6,39 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.bench.rounds import Subject, Timings
+from qtab.bench.timing import Benchmark, Timings
 from qtab.training.train import train
 
 EPISODES, EPISODE_STEPS = 100, 200
 
 BARE, LEARNING = "an idle environment in a bare Python loop", "qtab.train on the idle environment"
-Answer = tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]
+Step = tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]
 
 
-class Idle(gym.Env[NDArray[np.float32], Any]):
-    """Does as little as an environment can: it shows the same two numbers, time and again."""
+class IdleEnv(gym.Env[NDArray[np.float32], Any]):
+    """An environment that does as little as possible: every step returns the same observation and a reward of -1."""
 
     observation_space = gym.spaces.Box(0.0, 1.0, (2,), np.float32)
     action_space = gym.spaces.Discrete(3)
 
     def __init__(self) -> None:
-        self._answer: Answer = np.full(2, 0.5, np.float32), -1.0, False, False, {}
+        self._step: Step = np.full(2, 0.5, np.float32), -1.0, False, False, {}
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begins again where it was."""
+        """Returns the observation."""
         super().reset(seed=seed, options=options)
-        return self._answer[0], {}
+        return self._step[0], {}
 
-    def step(self, action: int) -> Answer:  # noqa: ARG002 - it is idle
-        """Stays where it is."""
-        return self._answer
+    def step(self, action: int) -> Step:  # noqa: ARG002 - it has no effect
+        """Returns the observation, a reward of -1, and flags that are False."""
+        return self._step
 
 
-def python_stepping() -> dict[str, Subject]:
-    """Returns the loops over the idle environment: bare, and learning on a grid of ten by ten cells."""
-    env = Idle()
+def python_stepping() -> dict[str, Benchmark]:
+    """Returns the benchmarks on the idle environment: stepping only, and learning on a grid of 10 x 10 cells."""
+    env = IdleEnv()
 
     def bare(index: int) -> int:
         step = env.step
@@ -58,6 +58,6 @@ def python_stepping() -> dict[str, Subject]:
 
 
 def sentence(timings: Timings) -> str:
-    """Says what learning adds: the median of the differences within each round."""
+    """Returns the time that learning adds, the median over the rounds of the differences, as a sentence."""
     added = float(np.median(timings.nanoseconds[LEARNING] - timings.nanoseconds[BARE]))
-    return f"learning adds {added:.0f} ns a step to an environment stepped in Python"
+    return f"learning adds {added:.0f} ns per step to an environment stepped in Python"

@@ -1,31 +1,33 @@
-"""The bench and its tables."""
+"""Running the benchmarks, and printing the results as tables."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from qtab._utils import checks
 from qtab._utils.versions import versions
-from qtab.bench import environments, learners, overhead, subjects, vectors
+from qtab.bench import environments, learners, mountain_car, overhead, vector_envs
 from qtab.bench.footprint import Footprint, footprint
-from qtab.bench.rounds import Subject, Timings, measure
+from qtab.bench.timing import Benchmark, Timings, measure
 
 DEFAULT_SECONDS = 25.0
 
-PARTS: Mapping[str, Callable[[], dict[str, Subject]]] = {
-    "training": subjects.training,
-    "stepping": lambda: subjects.stepping() | overhead.python_stepping(),
-    "vectors": lambda: {subjects.QTAB_MAKE: subjects.stepping()[subjects.QTAB_MAKE]} | vectors.stepping(),
+PARTS: Mapping[str, Callable[[], dict[str, Benchmark]]] = {
+    "training": mountain_car.training,
+    "stepping": lambda: mountain_car.stepping() | overhead.python_stepping(),
+    "vectors": lambda: (
+        {mountain_car.QTAB_MAKE: mountain_car.stepping()[mountain_car.QTAB_MAKE]} | vector_envs.stepping()
+    ),
     "environments": environments.training,
     "learners": learners.training,
 }
-"""What may be timed by itself."""
+"""The groups of benchmarks, each of which can be run alone."""
 
 _WIDTH = 55
 
 
 @dataclass(frozen=True)
 class Report:
-    """What a bench found."""
+    """The results of a bench run."""
 
     timings: Timings
     rounds: int
@@ -33,21 +35,21 @@ class Report:
     versions: dict[str, str]
 
     def __str__(self) -> str:
-        """Tables for a person."""
         parts = {
-            subjects.TRAIN: self._training,
-            subjects.QTAB_STEP: self._stepping,
-            vectors.SYNC: self._vectors,
+            mountain_car.TRAIN: self._training,
+            mountain_car.QTAB_STEP: self._stepping,
+            vector_envs.SYNC: self._vectors,
             environments.FIRST: self._environments,
             learners.Q_LEARNING: self._learners,
         }
         lines = self._warning()
-        for subject, part in parts.items():
-            if subject in self.timings.nanoseconds:
+        for name, part in parts.items():
+            if name in self.timings.nanoseconds:
                 lines += [*part(), ""]
         lines += [*self._footprint(), ""]
         lines.append(
-            f"{self.rounds} interleaved rounds; ns/step is a median, × (times as fast) the median of each round's ratio"
+            f"{self.rounds} interleaved round{'' if self.rounds == 1 else 's'}; ns/step is the median over the rounds, "
+            "× (times as fast) the median of their ratios"
         )
         lines.append(", ".join(f"{name} {value}" for name, value in self.versions.items()))
         return "\n".join(lines)
@@ -59,25 +61,24 @@ class Report:
 
     def _training(self) -> list[str]:
         timings = self.timings
-        numba = subjects.NUMBA in timings.nanoseconds
+        numba = mountain_car.NUMBA in timings.nanoseconds
         lines = [_line("Training on MountainCar-v0, default settings", "ns/step", "× article", *["× numba"] * numba)]
-        for name in (subjects.ARTICLE, subjects.NUMBA, subjects.TRAIN, subjects.MANY, subjects.MANY_ON_TWO):
+        bases = [mountain_car.ARTICLE, *[mountain_car.NUMBA] * numba]
+        for name in mountain_car.TRAINING:
             if name in timings.nanoseconds:
-                ratios = [subjects.ARTICLE, *[subjects.NUMBA] * numba]
-                lines.append(
-                    _line(name, _number(timings.median(name)), *(_number(timings.ratio(base, name)) for base in ratios))
-                )
+                ratios = (_number(timings.ratio(base, name)) for base in bases)
+                lines.append(_line(name, _number(timings.median(name)), *ratios))
         if not numba:
-            lines.append("  (numba is not installed: pip install 'qtab[bench]')")
+            lines.append("  (numba is not installed: pip install numba)")
         return lines
 
     def _stepping(self) -> list[str]:
         lines = [_line("Stepping MountainCar-v0 from Python", "ns/step", "× Gymnasium")]
         for base, name in (
-            (subjects.GYMNASIUM_STEP, subjects.GYMNASIUM_STEP),
-            (subjects.GYMNASIUM_STEP, subjects.QTAB_STEP),
-            (subjects.GYMNASIUM_MAKE, subjects.GYMNASIUM_MAKE),
-            (subjects.GYMNASIUM_MAKE, subjects.QTAB_MAKE),
+            (mountain_car.GYMNASIUM_STEP, mountain_car.GYMNASIUM_STEP),
+            (mountain_car.GYMNASIUM_STEP, mountain_car.QTAB_STEP),
+            (mountain_car.GYMNASIUM_MAKE, mountain_car.GYMNASIUM_MAKE),
+            (mountain_car.GYMNASIUM_MAKE, mountain_car.QTAB_MAKE),
         ):
             lines.append(_line(name, _number(self.timings.median(name)), _number(self.timings.ratio(base, name))))
         if overhead.LEARNING in self.timings.nanoseconds:
@@ -85,12 +86,12 @@ class Report:
         return lines
 
     def _vectors(self) -> list[str]:
-        rows = vectors.compared(self.timings)
-        lines = [_line("Stepping many sub-environments", "ns/step", *(short for short, _ in vectors.BASES))]
+        rows = vector_envs.compared(self.timings)
+        lines = [_line("Stepping many sub-environments", "ns/step", *(short for short, _ in vector_envs.BASES))]
         for name, ratios in rows:
             columns = ("" if ratio is None else _number(ratio) for ratio in ratios)
             lines.append(_line(name, _number(self.timings.median(name)), *columns))
-        if vectors.ENVPOOL not in self.timings.nanoseconds:
+        if vector_envs.ENVPOOL not in self.timings.nanoseconds:
             lines.append("  (EnvPool is not installed: pip install envpool)")
         return lines
 
@@ -99,9 +100,9 @@ class Report:
         return [head, *(_line(*columns) for columns in environments.lines(self.timings))]
 
     def _learners(self) -> list[str]:
-        head = _line(learners.TITLE, "ns/step", "its time", "× numba")
+        head = _line(learners.TITLE, "ns/step", "rel. time", "× numba")
         lines = [head, *(_line(*columns) for columns in learners.lines(self.timings))]
-        return [*lines, "  (its time: how many times that of Q-learning on the grid)"]
+        return [*lines, "  (rel. time: relative to Q-learning on the grid)"]
 
     def _footprint(self) -> list[str]:
         cost = self.footprint
@@ -121,13 +122,13 @@ def bench(
     progress: bool | None = None,
     part: str | None = None,
 ) -> Report:
-    """Times training and stepping beside the article's loop and Gymnasium.
+    """Times training and stepping, and compares them with the article's loop and with Gymnasium.
 
     Args:
-        seconds: About how long the rounds take together.
-        rounds: How many rounds to make instead.
-        progress: Whether to show a bar; None shows one on a terminal.
-        part: One of :data:`PARTS`; None times them all.
+        seconds: The approximate duration of all rounds.
+        rounds: The number of rounds; None derives it from ``seconds``.
+        progress: Whether to show a progress bar; None shows one on a terminal.
+        part: One of :data:`PARTS`; None runs all of them.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -138,13 +139,13 @@ def bench(
         rounds = checks.integer("rounds", rounds, least=1)
     if part is not None and part not in PARTS:
         raise ValueError(f"part must be one of {', '.join(map(repr, PARTS))}, got {part!r}")
-    cost = footprint()
-    timed: dict[str, Subject] = {}
+    measured_footprint = footprint()
+    benchmarks: dict[str, Benchmark] = {}
     for name, make in PARTS.items():
         if part in (None, name):
-            timed |= make()
-    timings = measure(timed, seconds=seconds, rounds=rounds, progress=progress)
-    return Report(timings, len(next(iter(timings.nanoseconds.values()))), cost, versions())
+            benchmarks |= make()
+    timings = measure(benchmarks, seconds=seconds, rounds=rounds, progress=progress)
+    return Report(timings, len(next(iter(timings.nanoseconds.values()))), measured_footprint, versions())
 
 
 def _line(name: str, *columns: str) -> str:

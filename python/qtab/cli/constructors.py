@@ -53,12 +53,18 @@ def read_choice(words: Words, choices: Sequence[str]) -> str:
 
 def read_float(words: Words) -> float:
     """Reads a number."""
-    return _number(float, "a number", words)
+    try:
+        return float(words[0])
+    except ValueError:
+        raise ValueError(f"must be a number, got {words[0]!r}") from None
 
 
 def read_int(words: Words) -> int:
     """Reads an integer."""
-    return _number(int, "an integer", words)
+    try:
+        return int(words[0])
+    except ValueError:
+        raise ValueError(f"must be an integer, got {words[0]!r}") from None
 
 
 def read_str(words: Words) -> str:
@@ -109,13 +115,6 @@ def read_actions(words: Words) -> int | tuple[Any, ...]:
     if any(isinstance(value, str) for value in values):
         raise ValueError(f"must be a count or the actions themselves, got {' '.join(words)!r}")
     return values[0] if len(values) == 1 and isinstance(values[0], int) else values
-
-
-def _number(type_: Callable[[str], Any], kind: str, words: Words) -> Any:
-    try:
-        return type_(words[0])
-    except ValueError:
-        raise ValueError(f"must be {kind}, got {words[0]!r}") from None
 
 
 def _literal(text: str) -> Any:

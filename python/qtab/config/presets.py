@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -196,7 +197,7 @@ def presets(env: str) -> Mapping[str, SharedSettings]:
     return MappingProxyType(_PRESETS.get(gymnasium_id(env), {}))
 
 
-def preset(env: str, name: str | None) -> tuple[str | None, SharedSettings]:
+def preset(env: str, name: str | None) -> tuple[str | None, Mapping[str, Any]]:
     """Returns the name and the values of an environment's preset; None asks for the first one, if it has any.
 
     Raises:
@@ -204,7 +205,7 @@ def preset(env: str, name: str | None) -> tuple[str | None, SharedSettings]:
     """
     known = presets(env)
     if name is None:
-        return next(iter(known.items()), (None, {}))
+        return next(iter(known.items())) if known else (None, {})
     if name not in known:
         if not known:
             raise ValueError(f"preset must be left out for {env}, which has none, got {name!r}")

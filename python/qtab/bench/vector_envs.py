@@ -1,4 +1,4 @@
-"""Vector environments: what is timed, and what is compared with what."""
+"""Stepping vector environments, and which of them are compared."""
 
 import warnings
 from typing import Any
@@ -7,8 +7,8 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.vector import SyncVectorEnv
 
-from qtab.bench.rounds import Subject, Timings
-from qtab.bench.subjects import QTAB_MAKE
+from qtab.bench.mountain_car import QTAB_MAKE
+from qtab.bench.timing import Benchmark, Timings
 
 NUM_ENVS = 4096
 CAR, POLE = "MountainCar-v0", "CartPole-v1"
@@ -19,7 +19,7 @@ NUMPY_POLES, QTAB_POLES = "Gymnasium's CartPoleVectorEnv, 4,096", "qtab's make_v
 QTAB_ONE = "qtab's make_vec, 1 MountainCar"
 
 BASES = [("× Gymnasium", (SYNC, NUMPY_POLES)), ("× EnvPool", (ENVPOOL,)), ("× gym.make", (QTAB_MAKE,))]
-"""The columns of ratios, and whose nanoseconds are divided there."""
+"""The columns with ratios, each with the benchmarks that others are compared with in it."""
 COMPARED = {
     SYNC: (SYNC,),
     ENVPOOL: (SYNC, ENVPOOL),
@@ -28,11 +28,11 @@ COMPARED = {
     QTAB_POLES: (NUMPY_POLES,),
     QTAB_ONE: (QTAB_MAKE,),
 }
-"""What each subject is compared with."""
+"""The benchmarks that each one is compared with."""
 
 
-def stepping() -> dict[str, Subject]:
-    """Returns the vector environments' steps, their resets included; EnvPool's where it is installed."""
+def stepping() -> dict[str, Benchmark]:
+    """Returns the benchmarks of stepping with resets; EnvPool's if EnvPool is installed."""
     poles = gym.make_vec(POLE, NUM_ENVS, vectorization_mode="vector_entry_point")
     return {
         SYNC: _steps(SyncVectorEnv([lambda: gym.make(CAR)] * NUM_ENVS), 3, 2),
@@ -45,7 +45,7 @@ def stepping() -> dict[str, Subject]:
 
 
 def compared(timings: Timings) -> list[tuple[str, list[float | None]]]:
-    """Returns for each subject that was timed how many times as fast it is, a number or None for each of ``BASES``."""
+    """Returns the timed benchmarks, each with its relative speed in every column of ``BASES``, or None."""
     timed = timings.nanoseconds
     rows = []
     for name in (name for name in COMPARED if name in timed):
@@ -55,9 +55,9 @@ def compared(timings: Timings) -> list[tuple[str, list[float | None]]]:
     return rows
 
 
-def _envpool() -> dict[str, Subject]:
+def _envpool() -> dict[str, Benchmark]:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # its spaces lose precision, Gymnasium says
+        warnings.simplefilter("ignore")  # Gymnasium warns that its spaces lose precision
         try:
             import envpool
         except ModuleNotFoundError:
@@ -66,17 +66,17 @@ def _envpool() -> dict[str, Subject]:
         return {ENVPOOL: _steps(pool, 3, 5, NUM_ENVS)}
 
 
-def _steps(env: Any, actions: int, count: int, size: int | None = None) -> Subject:
-    """Returns what takes so many steps of all sub-environments, their actions drawn before."""
+def _steps(env: Any, actions: int, count: int, size: int | None = None) -> Benchmark:
+    """Returns the benchmark of ``count`` steps of all sub-environments with random actions drawn in advance."""
     size = env.num_envs if size is None else size
     drawn = list(np.random.default_rng(0).integers(0, actions, (64, size)))
-    turns = [drawn[turn % len(drawn)] for turn in range(count)]
+    action_batches = [drawn[index % len(drawn)] for index in range(count)]
     env.reset()
 
     def run(_: int) -> int:
         step = env.step
-        for turn in turns:
-            step(turn)
+        for batch in action_batches:
+            step(batch)
         return count * size
 
     return run

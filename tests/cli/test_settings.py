@@ -1,0 +1,87 @@
+"""The settings as flags: explained and checked as in the API, and only those that are given count."""
+
+from pathlib import Path
+
+import pytest
+
+from qtab.cli.train_arguments import parse_arguments
+from qtab.cli.usage import UsageError
+from qtab.config.explanations import explanations
+from support.command import qtab
+
+
+def help_of(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    with pytest.raises(SystemExit) as leaving:
+        parse_arguments([*arguments, "--help"])
+    assert not leaving.value.code
+    return " ".join(capsys.readouterr().out.replace("│", "").split())
+
+
+@pytest.fixture(autouse=True)
+def wide(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "100")
+
+
+def test_help_has_the_explanations_of_the_api(capsys: pytest.CaptureFixture[str]) -> None:
+    text = help_of(capsys)
+    own = {"env", "edges", "actions", "initial_q"}
+    assert [name for name, words in explanations().items() if name not in own and words not in text] == []
+    for group in ("environment", "run", "learning", "exploration", "discretizer"):
+        assert f"{group} options" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "shown"),
+    [
+        ([], ["default: 0.8", "default: 10.0 100.0", "default: assign", "default: article", "default: 0.9"]),
+        (["CartPole-v1"], ["default: 3 3 6 6", "default: -2.4 -2.0 -0.21 -2.0", "default: tuned"]),
+        (["--env", "CartPole-v1", "--preset", "solved"], ["default: sarsa_lambda", "default: 16"]),
+        (["--episodes", "77", "--initial-q", "a.npz"], ["default: 77", "default: a.npz"]),
+        (["qtab/MaximizationBias-v0"], ["default: an array of shape (3, 10)"]),
+        (["--no-such-flag"], ["default: 0.8"]),
+    ],
+)
+def test_help_shows_what_a_run_would_use(
+    arguments: list[str], shown: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = help_of(capsys, *arguments)
+    assert [words for words in shown if words not in text] == []
+
+
+def test_only_the_flags_that_are_given_are_settings(tmp_path: Path) -> None:
+    (tmp_path / "run.toml").write_text("episodes = 7\nseed = 1\ninitial_q = [[0.0, 1.0]]\n[env_kwargs]\nx = 1\n")
+    _, env, settings = parse_arguments(
+        ["Taxi-v4", "--config", str(tmp_path / "run.toml"), "--seed", "2", "--epsilon", "None"]
+    )
+    assert env == "Taxi-v4"
+    assert settings.pop("initial_q").tolist() == [[0.0, 1.0]]
+    assert settings == {"episodes": 7, "seed": 2, "epsilon": None, "env_kwargs": {"x": 1}}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--alpha", "0.1"], "Unrecognized options: --alpha, 0.1 (did you mean --learning-rate?)"),
+        (["--n-episodes", "9"], "Unrecognized options: --n-episodes, 9 (did you mean --episodes?)"),
+        (["--episdes", "9"], "Unrecognized options: --episdes, 9 (did you mean --episodes?)"),
+        (["--ties", "frist"], "--ties must be one of first, random, got 'frist' (did you mean 'first'?)"),
+        (["--epsilon", "much"], "--epsilon must be a number, got 'much'"),
+        (["--n-steps", "1.5"], "--n-steps must be an integer, got '1.5'"),
+        (["--tiles", "4", "x"], "--tiles must be an integer, got 'x'"),
+        (["--low", "a"], "--low must be a number, got 'a'"),
+        (["--initial-q", "1", "b"], "--initial-q must be a number, got 'b'"),
+        (["--algorithm", "None"], "--algorithm must be one of q_learning, "),
+        (["Taxi-v4", "--env", "CartPole-v1"], "env must be given once, got 'Taxi-v4' and 'CartPole-v1'"),
+    ],
+)
+def test_a_bad_flag_is_named_with_what_fits(arguments: list[str], message: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        parse_arguments(arguments)
+    assert str(caught.value).startswith(message)
+
+
+def test_the_values_of_a_preset_yield_to_a_flag(tmp_path: Path) -> None:
+    done = qtab("train", "--algorithm", "n_step_sarsa", "--preset", "article", "--episodes", "2", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    done = qtab("train", "--terminal-update", "assign", "--algorithm", "n_step_sarsa", cwd=tmp_path)
+    assert done.stderr.startswith("qtab train: error: terminal_update must be 'target' for algorithm 'n_step_sarsa'")

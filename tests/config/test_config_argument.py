@@ -1,0 +1,132 @@
+"""``config=`` starts a call from a config: explicit keywords come first, presets and defaults after it."""
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from qtab.config.options import OPTIONS
+from support.environments import Walk
+
+CAR = "MountainCar-v0"
+RUNS: dict[str, tuple[str, dict[str, Any]]] = {
+    "the article": (CAR, {}),
+    "tile coding and traces": (CAR, {"preset": "solved", "episodes": 5}),
+    "options of every kind": (
+        "qtab/MountainCar-v0",
+        {
+            "env_kwargs": {"goal_velocity": 0.01},
+            "algorithm": "double_q_learning",
+            "exploration": "softmax",
+            "discretizer": "edges",
+            "edges": ((-0.5,), (0.0,)),
+            "learning_rate_schedule": "visits",
+            "initial_q": np.zeros((2, 2, 3)),
+            "bit_generator": "MT19937",
+            "on_truncation": "terminate",
+        },
+    ),
+    "hashed rows": (CAR, {"discretizer": "tiles", "hashed_rows": 100, "scale": ()}),
+    "a preset with bins": ("CartPole-v1", {}),
+    "an initial table with missing actions": ("qtab/MaximizationBias-v0", {}),
+    "continuous actions": ("Pendulum-v1", {"actions": ((-1.0,), (0.5,))}),
+    "a discrete environment stepped in Python": ("FrozenLake-v1", {"backend": "gymnasium"}),
+}
+
+
+def fields(config: qtab.Config) -> dict[str, Any]:
+    return {name: repr(value) for name, value in vars(config).items()}
+
+
+@pytest.mark.parametrize(("env", "settings"), RUNS.values(), ids=RUNS)
+def test_the_config_of_a_run_repeats_it(env: str, settings: dict[str, Any]) -> None:
+    run = qtab.train(env, **{"episodes": 20, **settings})
+    again = qtab.train(config=run.config)
+    assert fields(again.config) == fields(run.config)
+    assert again.tables.tobytes() == run.tables.tobytes()
+    assert again.episode_returns.tobytes() == run.episode_returns.tobytes()
+    assert fields(qtab.train(env, config=run.config).config) == fields(run.config)
+
+
+def test_the_config_of_a_run_on_an_object_repeats_it_on_another() -> None:
+    run = qtab.train(Walk(), scale=(1.0, 1.0), episodes=20)
+    again = qtab.train(Walk(), config=run.config)
+    assert again.tables.tobytes() == run.tables.tobytes()
+
+
+def test_no_preset_has_an_option_that_a_run_may_leave_none() -> None:
+    """The config of a run has None where an option does not apply, or is off; a preset must not fill that in."""
+    values = [values for env in gym.registry for values in qtab.presets(env).values()]
+    assert values
+    without_default = {name for name, option in OPTIONS.items() if option.default is None}
+    assert without_default == {"scale", "hashed_rows", "edges", "low", "high"}
+    assert not any("hashed_rows" in preset for preset in values)
+
+
+def test_a_keyword_comes_before_the_config_the_config_before_the_preset() -> None:
+    config = qtab.Config(CAR, episodes=7, learning_rate=0.3)
+    run = qtab.train(config=config, learning_rate=0.4)
+    assert (run.config.learning_rate, run.config.episodes) == (0.4, 7)
+    # What the config leaves open comes from the preset, what it has does not.
+    assert (run.config.scale, run.config.terminal_update) == ((10.0, 100.0), "target")
+    named = qtab.train(config={"env": CAR, "episodes": 7, "discount": 0.95}, preset="solved", tilings=4).config
+    assert (named.episodes, named.discount, named.tilings, named.algorithm) == (7, 0.95, 4, "sarsa_lambda")
+
+
+def test_what_does_not_apply_beside_a_keyword_yields_in_a_config_and_not_in_a_mapping() -> None:
+    run = qtab.train(CAR, preset="solved", episodes=3)
+    other = qtab.train(config=run.config, algorithm="q_learning")
+    assert (other.config.algorithm, other.config.trace_decay, other.config.tilings) == ("q_learning", None, 8)
+    with pytest.raises(ValueError, match=r"^trace_decay applies to algorithm .*, not to 'q_learning', got 0.5$"):
+        qtab.train(CAR, config={"algorithm": "sarsa_lambda", "trace_decay": 0.5}, algorithm="q_learning")
+
+
+def test_another_environment_does_not_take_what_belongs_to_the_configs() -> None:
+    run = qtab.train(CAR, env_kwargs={"goal_velocity": 0.01}, episodes=3, seed=5)
+    other = qtab.train("CartPole-v1", config=run.config, backend="auto", discretizer="bins", bins=3, scale=())
+    assert (other.config.env_kwargs, other.config.preset, other.config.seed) == ({}, "tuned", 5)
+
+
+def test_an_environment_spec_takes_its_own_config() -> None:
+    run = qtab.train(CAR, env_kwargs={"goal_velocity": 0.01}, episodes=3)
+    assert fields(qtab.train(gym.spec(CAR), config=run.config).config) == fields(run.config)
+
+
+def test_many_runs_start_from_the_config_of_one() -> None:
+    run = qtab.train(CAR, preset="solved", episodes=4, seed=3)
+    runs = qtab.train_many(seeds=[3, 4], config=run.config, tables=True)
+    assert runs.tables is not None
+    assert runs.tables[0].tobytes() == run.tables.tobytes()
+    assert fields(runs.config) == fields(run.config)
+    assert fields(qtab.train(config=runs.config).config) == fields(run.config)
+
+
+def test_a_sweep_starts_from_the_config_of_a_run() -> None:
+    run = qtab.train(CAR, preset="solved", episodes=4, seed=0)
+    swept = qtab.sweep(None, {"algorithm": ["sarsa_lambda", "q_learning"]}, 2, config=run.config)
+    assert len(swept) == 4
+    assert swept.failed == 0
+    assert swept.columns["mean_return"][0] == run.episode_returns.mean()
+
+
+@pytest.mark.parametrize(
+    ("config", "error", "message"),
+    [
+        (3, TypeError, "^config must be a qtab.Config or a mapping of settings, got 3$"),
+        ({"learnig_rate": 0.1}, TypeError, r"^unknown setting 'learnig_rate' \(did you mean 'learning_rate'\?\)$"),
+        ({"callback": print}, TypeError, "^unknown setting 'callback'"),
+        ({"env": CAR, "learning_rate": "fast"}, TypeError, "^learning_rate must be a number in .* got 'fast'$"),
+        ({"env": 3}, TypeError, "^env must be an environment id, an EnvSpec or an environment, got 3$"),
+        ({}, TypeError, "^env must be an environment id, an EnvSpec or an environment, got None$"),
+    ],
+)
+def test_a_bad_config_is_refused(config: Any, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        qtab.train(config=config)
+
+
+def test_the_seed_of_a_mapping_is_not_for_many_runs() -> None:
+    with pytest.raises(TypeError, match=r"^unknown setting 'seed'"):
+        qtab.train_many(CAR, config={"seed": 3})

@@ -1,0 +1,61 @@
+"""Right and wrong calls of the public functions, for type checkers; nothing here is run.
+
+Each wrong line ignores the error that mypy and the one that pyright report; an ignored error that they do not report is
+an error itself.
+"""
+
+from pathlib import Path
+
+import gymnasium as gym
+import numpy as np
+
+import qtab
+
+
+def right_calls(run: qtab.Run, env: gym.Env) -> None:
+    run = qtab.train("MountainCar-v0")
+    run = qtab.train("MountainCar-v0", learning_rate=0.1, algorithm="sarsa_lambda", trace_decay=0.9, seed=0)
+    run = qtab.train(env, learning_rate=1, tiles=4, low=[-1, -1], high=np.array([1.0, 1.0]), discretizer="tiles")
+    run = qtab.train(gym.spec("MountainCar-v0"), learning_rate=np.float32(0.1), seed=np.int64(3), epsilon=None)
+    run = qtab.train("Pendulum-v1", actions=3, initial_q=(-1, 1), edges=[[0.0], [0.0, 1.0], np.zeros(1)])
+    run = qtab.train("Taxi-v4", initial_q=np.zeros((500, 6)), env_kwargs={"fickle_passenger": True}, preset="solved")
+    run = qtab.train(config=run.config, episodes=10)
+    run = qtab.train("MountainCar-v0", config={"learning_rate": 0.1}, callback=stop_soon, record=1)
+    run = qtab.train("MountainCar-v0", **qtab.presets("MountainCar-v0")["solved"])
+    runs: qtab.Runs = qtab.train_many("MountainCar-v0", 100, threads=2, learning_rate=0.1, traces=None)
+    runs = qtab.train_many(lambda: env, range(3), bins=(3, 4), discretizer="bins")
+    sweep: qtab.Sweep = qtab.sweep("MountainCar-v0", {"epsilon": [0.1, 0.2]}, store=Path("a.db"), n_steps=2)
+    evaluation: qtab.Evaluation = qtab.evaluate(run, 10, seed=0, max_episode_steps=1000)
+    config: qtab.Config = run.config.replace(env="Taxi-v4", learning_rate=0.5, tiles=None)
+    config = qtab.Config("Taxi-v4", tiles=8, discretizer="tiles", scale=[])
+    del runs, sweep, evaluation, config
+
+
+def stop_soon(progress: qtab.Progress) -> bool:
+    return progress.episodes < 10 and bool(progress.returns.mean() < 0)
+
+
+def wrong_calls(run: qtab.Run, progress: qtab.Progress) -> None:
+    qtab.train("MountainCar-v0", learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
+    qtab.train("MountainCar-v0", algorithm="qlearning")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train("MountainCar-v0", learning_rate="fast")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train("MountainCar-v0", learning_rate=None)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train("MountainCar-v0", episodes=1e3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train("MountainCar-v0", scale="10")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train("MountainCar-v0", callback=3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train_many("Taxi-v4", learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
+    qtab.train_many("Taxi-v4", algorithm="qlearning")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train_many("Taxi-v4", learning_rate="fast")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train_many("Taxi-v4", seed=0)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
+    qtab.sweep("Taxi-v4", [], learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
+    qtab.sweep("Taxi-v4", [], algorithm="qlearning")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.sweep("Taxi-v4", [], learning_rate="fast")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.evaluate(run, learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
+    qtab.evaluate(run, algorithm="qlearning")  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
+    qtab.evaluate(run, max_episode_steps="many")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    run.config.replace(learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
+    run.config.replace(discretizer="hexagons")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.Config(learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
+    qtab.Config("Taxi-v4", ties="last")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    del progress.steps  # type: ignore[attr-defined]  # pyright: ignore[reportAttributeAccessIssue]
+    qtab.trian("Taxi-v4")  # type: ignore[attr-defined]  # pyright: ignore[reportAttributeAccessIssue]
