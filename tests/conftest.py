@@ -1,4 +1,4 @@
-"""What every test stands on: no window opens, and CI draws the same examples every time."""
+"""What every test relies on: no window opens, Ctrl-C arrives, and CI draws the same examples every time."""
 
 import os
 import signal
@@ -15,13 +15,19 @@ settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True
 settings.load_profile("ci" if os.environ.get("CI") else "local")
 
 
-# A shell starts what runs in its background deaf to Ctrl-C, which some tests send.
+# A shell starts its background jobs with Ctrl-C ignored; some tests send it.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
+    """No worker processes where only files or tests are named: starting them would take longer, and hide ``print``."""
+    named = config.args_source is pytest.Config.ArgsSource.ARGS
+    return 0 if named and all(".py" in argument for argument in config.args) else None
+
+
 @pytest.fixture
-def small_chunks(monkeypatch):
-    """Some three runs a chunk."""
+def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Chunks of about three runs, so that a small sweep has many."""
     from qtab.sweeps import study as studies
 
     monkeypatch.setattr(studies, "CHUNK_STEPS", 2 * 40 * 200 + 1)

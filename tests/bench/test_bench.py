@@ -47,7 +47,7 @@ def test_the_plain_loop_is_the_articles_loop_to_the_bit() -> None:
 
 @pytest.mark.parametrize("cutoff", [0.0, learners.CUTOFF])
 def test_the_numba_loop_of_sarsa_lambda_is_ours_to_the_bit(cutoff: float) -> None:
-    settings = {**learners.SETTINGS[learners.CUT], "episodes": 6, "trace_cutoff": cutoff}
+    settings: dict[str, Any] = {**learners.SETTINGS[learners.CUT], "episodes": 6, "trace_cutoff": cutoff}
     run = package.train("MountainCar-v0", seed=4, bit_generator="MT19937", **settings)
     starts = np.random.default_rng(4).uniform(-0.6, -0.4, 6)
     table, returns, steps = sarsa_numba.sarsa_lambda(sarsa_numba.observe, starts, 4, 0.3, 0.9, cutoff)
@@ -66,7 +66,7 @@ def test_numba_compiles_the_loops(monkeypatch: pytest.MonkeyPatch) -> None:
     assert q_learning is not None
     assert sarsa_lambda is not None
     assert q_learning(4) == article_numba.q_learning(starts, 4, 0.2, 0.9, 0.8, 0.0)[2]
-    assert sarsa_lambda(4) == sarsa_numba.sarsa_lambda(sarsa_numba.look, starts, 4, 0.3, 0.9, 0.0)[2]
+    assert sarsa_lambda(4) == sarsa_numba.sarsa_lambda(sarsa_numba.observe, starts, 4, 0.3, 0.9, 0.0)[2]
 
 
 @pytest.mark.parametrize("name", environments.names())
@@ -134,7 +134,7 @@ def test_vector_environments_count_the_steps_of_all_and_are_compared_with_their_
 
 @pytest.fixture
 def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A round of every subject takes a moment: few episodes, seeds and sub-environments, and nothing is compiled."""
+    """A round of every benchmark takes a moment: few episodes, seeds and sub-environments, and nothing is compiled."""
 
     def train(env: Any, **settings: Any) -> package.Run:
         return package.train(env, **{**settings, "episodes": 20})
@@ -180,7 +180,7 @@ def test_a_part_is_timed_alone(tmp_path: Path) -> None:
     assert f"\n{mountain_car.QTAB_STEP}  " in done.stdout
     assert "import qtab adds" in done.stdout
     assert f"build {versions()['build']}" in done.stdout
-    assert not any(subject in done.stdout for subject in (mountain_car.TRAIN, environments.FIRST, learners.Q_LEARNING))
+    assert not any(name in done.stdout for name in (mountain_car.TRAIN, environments.FIRST, learners.Q_LEARNING))
 
 
 def test_a_learners_time_is_a_multiple_of_q_learnings() -> None:
@@ -192,8 +192,8 @@ def test_a_learners_time_is_a_multiple_of_q_learnings() -> None:
 
 
 def test_without_numba_the_table_says_how_to_get_it_and_a_debug_build_is_warned_of() -> None:
-    names = (mountain_car.ARTICLE, mountain_car.TRAIN, mountain_car.GYMNASIUM_STEP, mountain_car.QTAB_STEP)
-    names = (*names, mountain_car.GYMNASIUM_MAKE, mountain_car.QTAB_MAKE)
+    names = [mountain_car.ARTICLE, mountain_car.TRAIN, mountain_car.GYMNASIUM_STEP, mountain_car.QTAB_STEP]
+    names += [mountain_car.GYMNASIUM_MAKE, mountain_car.QTAB_MAKE]
     timings = Timings({name: np.array([1.0]) for name in names})
     printed = str(report.Report(timings, 1, footprint.Footprint(200.0, 5.0, None), {"build": "debug"}))
     assert printed.startswith("WARNING: this is a debug build")

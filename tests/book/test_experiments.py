@@ -2,6 +2,7 @@
 
 import csv
 from collections import deque
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 import qtab
 from qtab.book import runner
 from qtab.book.result import CSV_COLUMNS
+from support.parity import run_of
 
 NAMES = list(qtab.book.EXPERIMENTS)
 
@@ -20,7 +22,7 @@ def line(result, name):
 def measured(number, name, alpha, runs, **changes):
     """(episodes,) The mean return of each episode of one setting."""
     experiment = qtab.book.find(number)
-    setting = next(one for one in experiment.settings if (one.line, one.x) == (name, (alpha,)))
+    setting: Any = next(one for one in experiment.settings if (one.line, one.x) == (name, (alpha,)))
     outcome = runner.train_runs(setting.env, {**experiment.config(setting), **changes}, range(runs), 2)
     return outcome.returns.mean(axis=0)
 
@@ -111,7 +113,7 @@ def test_neither_threads_nor_other_runs_change_a_run():
         for one, other in zip(several.lines, again.lines, strict=True):
             assert one.mean.tobytes() == other.mean.tobytes()
     experiment = qtab.book.find("10.4")
-    setting = experiment.settings[3]
+    setting: Any = experiment.settings[3]
     alone = qtab.train(setting.env, seed=8, **experiment.config(setting))
     outcome = runner.train_runs(setting.env, experiment.config(setting), [7, 8], 2)
     assert outcome.lengths[1].tolist() == alone.episode_lengths.tolist()
@@ -119,7 +121,7 @@ def test_neither_threads_nor_other_runs_change_a_run():
 
 def test_a_run_that_diverges_counts_as_truncated_where_train_raises():
     experiment = qtab.book.find("12.11")
-    setting = next(one for one in experiment.settings if (one.line, one.x) == ("accumulating", (1.6,)))
+    setting: Any = next(one for one in experiment.settings if (one.line, one.x) == ("accumulating", (1.6,)))
     config = experiment.config(setting)
     outcome = runner.train_runs(setting.env, config, range(6), 2)
     assert outcome.diverged.all()
@@ -128,13 +130,13 @@ def test_a_run_that_diverges_counts_as_truncated_where_train_raises():
     assert (outcome.returns == -outcome.lengths).all()
     with pytest.raises(OverflowError) as caught:
         qtab.train(setting.env, seed=0, **config)
-    finished = caught.value.run.episode_lengths
+    finished = run_of(caught.value).episode_lengths
     assert outcome.lengths[0, : len(finished)].tolist() == finished.tolist()
     assert outcome.truncated[0, len(finished) :].all()
 
 
 def test_another_error_is_not_swallowed():
-    config = {"discretizer": "tiles", "episodes": 1, "max_episode_steps": 5, "learning_rate": 3.0}
+    config: dict[str, Any] = {"discretizer": "tiles", "episodes": 1, "max_episode_steps": 5, "learning_rate": 3.0}
     with pytest.raises(ValueError, match="learning_rate"):
         runner.train_runs("MountainCar-v0", config, [0], 1)
 
@@ -217,7 +219,7 @@ def test_a_number_finds_its_experiment():
     with pytest.raises(ValueError, match=r"one of example-6\.5, .*figure-12\.11, got '99'"):
         qtab.book.find("99")
     with pytest.raises(TypeError, match=r"got 10\.4"):
-        qtab.book.find(10.4)
+        qtab.book.find(10.4)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import csv
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,7 +29,7 @@ def test_a_study_is_swept_goes_on_and_is_reported(tmp_path, capsys):
     assert "16 runs of 4 settings" in capsys.readouterr().out
     assert main(["sweep", str(study)]) == 0
     loaded = qtab.load_sweep(tmp_path / "study.db")
-    grid = {"learning_rate": [0.1, 0.5], "scale": [(5, 50), (10, 100)]}
+    grid: dict[str, Any] = {"learning_rate": [0.1, 0.5], "scale": [(5, 50), (10, 100)]}
     direct = qtab.sweep("MountainCar-v0", grid, 4, block=10, episodes=30)
     for name, column in direct.columns.items():
         np.testing.assert_array_equal(loaded.columns[name], column, strict=True)
@@ -57,7 +58,8 @@ def test_a_design_can_be_swept(tmp_path, capsys):
     ("text", "message"),
     [
         ("seeds = 3", "either a [grid] or a [design]"),
-        ("nonsense = 3", "no use for 'nonsense'"),
+        ("nonsense = 3", "unknown key 'nonsense'; use env, seeds"),
+        ("seed = 3", "unknown key 'seed' (did you mean 'seeds'?)"),
         ("[grid", "study must be a TOML file"),
         ("[grid]\nepsilon = 0.3", "grid['epsilon'] must be a list of values"),
         ("[grid]\nepsilom = [0.3]", "unknown setting 'epsilom' (did you mean 'epsilon'?)"),

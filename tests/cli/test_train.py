@@ -182,7 +182,8 @@ def test_a_bad_config_file_is_named_with_what_is_wrong(tmp_path: Path, text: str
 
 
 def test_an_unknown_command_is_refused_and_the_known_ones_named(tmp_path: Path) -> None:
-    assert "train, verify, optimum" in refused("fly", cwd=tmp_path)
+    assert "unknown command 'fly'; use train, verify, optimum" in refused("fly", cwd=tmp_path)
+    assert "'trian' (did you mean 'train'?)" in refused("trian", cwd=tmp_path)
 
 
 def test_version_and_help(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from decimal import Decimal
 from fractions import Fraction
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -13,7 +14,7 @@ import pytest
 import qtab
 from support.environments import ScriptedEnv, Walk
 
-NO_NUMBERS = ["0.5", b"0.5", None, True, np.True_, 0.5j, [0.5], (0.5,), np.array([0.5]), {}]
+NO_NUMBERS: list[Any] = ["0.5", b"0.5", None, True, np.True_, 0.5j, [0.5], (0.5,), np.array([0.5]), {}]
 NO_INTEGERS = [1.0, 2.5, float("nan"), "5", True, np.True_, [5], np.array([5]), Fraction(5)]
 NO_RANGES = [0.5, "zeros", None, (0.0,), (0.0, "1"), (0, 1, 2), {"low": 0}, [["a"]], (True, False)]
 NAN, INFINITY = float("nan"), float("inf")
@@ -132,7 +133,7 @@ def test_an_unknown_preset_is_refused_and_the_known_ones_listed(value):
     ):
         qtab.train("MountainCar-v0", preset=value)
     with pytest.raises(TypeError, match="preset must be a name, got 5"):
-        qtab.train("MountainCar-v0", preset=5)
+        qtab.train("MountainCar-v0", preset=5)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("value", [(0.0, -1.0), (NAN, 1.0), (0.0, INFINITY), (-1.7e308, 1.7e308), (0, HUGE)])
@@ -210,7 +211,7 @@ def test_how_often_and_how_many_are_checked_too(name, value, error):
 
 def test_an_unknown_setting_is_named_with_the_one_that_was_probably_meant():
     with pytest.raises(TypeError, match=r"^unknown setting 'learning' \(did you mean 'learning_rate'\?\)$"):
-        qtab.train("MountainCar-v0", learning=0.2)
+        qtab.train("MountainCar-v0", learning=0.2)  # type: ignore[call-arg]
 
 
 @pytest.mark.parametrize("env", [None, 3, b"MountainCar-v0", ["MountainCar-v0"], gym.Env], ids=repr)

@@ -1,5 +1,7 @@
 """The presets that solve: over seeds, as Gymnasium's thresholds say, and on tables by exact evaluation."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -23,7 +25,7 @@ def best_hundreds(runs: qtab.Runs) -> NDArray[np.float64]:
 
 def greedy_returns(env: str, runs: qtab.Runs) -> NDArray[np.float64]:
     """Each greedy policy's expected return under the time limit, by dynamic programming over Gymnasium's P."""
-    made = gym.make(env)
+    made: Any = gym.make(env)
     P, start = made.unwrapped.P, made.unwrapped.initial_state_distrib  # noqa: N806 - Gymnasium's name
     assert runs.tables is not None
     policies = np.argmax(runs.tables.sum(axis=1), axis=2)

@@ -11,7 +11,7 @@ from qtab.rendering.replay import replay_episode
 from support.environments import ScriptedEnv
 from support.parity import assert_same_run
 
-BINS = {"discretizer": "bins", "bins": 6}
+BINS: dict[str, Any] = {"discretizer": "bins", "bins": 6}
 
 
 class Push(gym.Env[Any, Any]):
@@ -131,7 +131,7 @@ def test_recorded_episodes_play_again() -> None:
 
 
 def test_a_step_in_an_object_is_a_step_in_rust() -> None:
-    settings = {"seed": 5, "episodes": 4, "actions": (-2, 0.3, 1.7), **BINS}
+    settings: dict[str, Any] = {"seed": 5, "episodes": 4, "actions": (-2, 0.3, 1.7), **BINS}
     rust = qtab.train("Pendulum-v1", **settings)
     assert rust.config.backend == "rust"
     assert_same_run(rust, qtab.train(gym.make("Pendulum-v1"), **settings))

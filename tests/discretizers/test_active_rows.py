@@ -52,7 +52,10 @@ def test_every_numeric_dtype_is_converted_as_astype_does() -> None:
         batch = np.arange(4).astype(dtype)[:, np.newaxis]
         assert discretizer.active_rows(batch).ravel().tolist() == [0, 2, 3, 3], dtype
     # A float64 observation is converted to the dtype of the space first.
-    assert discretizer.active_rows(np.array([0.1])).tolist() == discretizer.active_rows(np.float32([0.1])).tolist()
+    assert (
+        discretizer.active_rows(np.array([0.1])).tolist()
+        == discretizer.active_rows(np.array([0.1], np.float32)).tolist()
+    )
     assert discretizer.active_rows([[0.5], [1.5]]).tolist() == [[1], [2]]
     assert discretizer.active_rows(np.full((2, 2), 0.5)[:, :1]).tolist() == [[1], [1]]
 

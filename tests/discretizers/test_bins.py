@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 import qtab
 from qtab.reference.discretizers import Bins
 from support.environments import ScriptedEnv
+from support.parity import run_of
 
 DTYPES = [np.float32, np.float64]
-CART_POLE = {"low": (-2.4, -3.0, -0.21, -3.5), "high": (2.4, 3.0, 0.21, 3.5)}
+CART_POLE: dict[str, Any] = {"low": (-2.4, -3.0, -0.21, -3.5), "high": (2.4, 3.0, 0.21, 3.5)}
 
 
 def row_of_training(observation: Any, low: Any, high: Any, **chosen: Any) -> tuple[int, qtab.Run, gym.Env]:
@@ -54,7 +55,8 @@ def test_rows_are_those_of_gymnasiums_wrapper(box: tuple[Any, ...], data: st.Dat
     row, run, env = row_of_training(observation, low, high, discretizer="bins", bins=bins)
     assert row == DiscretizeObservation(env, bins).observation(observation)
     assert run.discretizer.active_rows(observation).tolist() == [row]
-    assert Bins(env.observation_space, run.config).rows(observation) == [row]
+    space: Any = env.observation_space
+    assert Bins(space, run.config).rows(observation) == [row]
     assert run.q_table.shape == (*bins, 1)
     assert qtab.verify(run, env=env).equal
 
@@ -67,7 +69,8 @@ def test_rows_are_those_of_gymnasiums_wrapper(box: tuple[Any, ...], data: st.Dat
     data=st.data(),
 )
 def test_own_edges_are_np_digitizes(edges: list[float], value: float, dtype: Any, data: st.DataObject) -> None:
-    if edges and data.draw(st.booleans()):
+    pick: Any = data.draw
+    if edges and pick(st.booleans()):
         value = data.draw(st.sampled_from(edges))
     with np.errstate(over="ignore"):
         observation = np.array([value], dtype)
@@ -147,7 +150,7 @@ def test_an_observation_of_nan_is_refused_with_its_place() -> None:
     env = ScriptedEnv([good, good, bad], low=-1.0, high=1.0, dimensions=2)
     with pytest.raises(ValueError, match=r"observation\[1\] is NaN, outside the observation space") as caught:
         qtab.train(env, discretizer="bins", bins=3, seed=0)
-    assert caught.value.run.completed is False
+    assert run_of(caught.value).completed is False
 
 
 @pytest.mark.parametrize(

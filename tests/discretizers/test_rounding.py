@@ -1,5 +1,7 @@
 """The article's grid: cells as NumPy rounds them, in the dtype of the space, and nothing wraps round."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 import qtab
 from qtab.discretizers import Rounding
 from support.environments import ScriptedEnv
+from support.parity import run_of
 
 DTYPES = [np.float32, np.float64]
 
@@ -40,7 +43,8 @@ def test_the_articles_table_has_19_by_15_by_3_values():
 @pytest.mark.parametrize("scale", [(10, 100), (1, 1), (0.5, 3.0), (7.25, 111.0), (30, 300)])
 def test_the_table_has_the_shape_that_the_article_computes(scale):
     env = gym.make("MountainCar-v0")
-    low, high = env.observation_space.low, env.observation_space.high
+    space: Any = env.observation_space
+    low, high = space.low, space.high
     cells = np.round((high - low) * np.array(scale), 0).astype(int) + 1
     run = qtab.train("MountainCar-v0", episodes=1, seed=0, scale=scale)
     assert run.q_table.shape == (*cells, 3)
@@ -50,7 +54,7 @@ def test_the_table_has_the_shape_that_the_article_computes(scale):
 @pytest.mark.parametrize("low", [0.0, -1.2, 0.1])
 def test_training_uses_the_cell_that_numpy_rounds_to(dtype, low):
     # Halves, their neighbours on both sides, and the corners, in the dtype of the space.
-    space = gym.spaces.Box(low, low + 4.0, (1,), dtype)
+    space: Any = gym.spaces.Box(low, low + 4.0, (1,), dtype)
     halves = (np.arange(9) / 2 + low).astype(dtype)
     values = np.concatenate([np.nextafter(halves, dtype(-9)), halves, np.nextafter(halves, dtype(9))])
     inside = [value for value in values if space.low[0] <= value <= space.high[0]]
@@ -63,7 +67,7 @@ def test_training_uses_the_cell_that_numpy_rounds_to(dtype, low):
 
 def test_float32_bounds_subtract_in_float32():
     # In f64 this observation lies just below the half, in f32 on it: NumPy's promotion decides the cell.
-    space = gym.spaces.Box(-1.2, 0.6, (1,), np.float32)
+    space: Any = gym.spaces.Box(-1.2, 0.6, (1,), np.float32)
     differing = [
         value
         for value in np.linspace(-1.2, 0.6, 20_001).astype(np.float32)
@@ -81,7 +85,7 @@ def test_float32_bounds_subtract_in_float32():
     scale=st.sampled_from([(10.0, 100.0), (40.0, 400.0), (3.3, 77.0)]),
 )
 def test_a_run_reads_its_table_where_numpy_rounds_to(position, velocity, scale):
-    space = gym.make("MountainCar-v0").observation_space
+    space: Any = gym.make("MountainCar-v0").observation_space
     observation = np.array([position, velocity], np.float32)
     table = grid(gym.make("MountainCar-v0"), scale)
     cell = numpys_cell(space, scale, observation)
@@ -94,9 +98,10 @@ def test_a_run_reads_its_table_where_numpy_rounds_to(position, velocity, scale):
 
 def test_the_corners_of_the_space_are_the_corners_of_the_table():
     run = qtab.train("MountainCar-v0", episodes=1, seed=0)
-    space = gym.make("MountainCar-v0").observation_space
-    assert run.discretizer.cell(space.low) == (0, 0)
-    assert run.discretizer.cell(space.high) == (18, 14)
+    space: Any = gym.make("MountainCar-v0").observation_space
+    discretizer: Any = run.discretizer
+    assert discretizer.cell(space.low) == (0, 0)
+    assert discretizer.cell(space.high) == (18, 14)
 
 
 @pytest.mark.parametrize("dtype", DTYPES)
@@ -108,7 +113,7 @@ def test_an_observation_outside_is_refused_by_the_training_and_its_component_nam
     env = ScriptedEnv([good, good, bad], dtype=dtype, dimensions=2)
     with pytest.raises(ValueError, match=rf"observation\[{axis}\] is .*outside the observation space") as caught:
         qtab.train(env, scale=(1, 1), episodes=5, seed=0)
-    assert caught.value.run.completed is False
+    assert run_of(caught.value).completed is False
 
 
 @pytest.mark.parametrize("dtype", DTYPES)

@@ -130,7 +130,7 @@ def test_tiles_that_cannot_be_told_apart_or_counted_are_refused(options: Any, ma
 
 def test_as_many_tiles_as_can_be_counted_are_told_apart() -> None:
     env = Shown(gym.spaces.Box(0.0, 1.0, (1,), np.float64), np.array([1.0]))
-    options = {"discretizer": "tiles", "tiles": 2**30 - 1, "tilings": 4, "hashed_rows": 1000}
+    options: dict[str, Any] = {"discretizer": "tiles", "tiles": 2**30 - 1, "tilings": 4, "hashed_rows": 1000}
     run = qtab.train(env, **options, episodes=2, seed=0)
     assert qtab.verify(run, env=env).equal
 

@@ -6,6 +6,7 @@ import pickle
 import subprocess
 import sys
 import warnings
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -39,7 +40,7 @@ def test_pixels_are_gymnasiums(name):
 @pytest.mark.parametrize("name", IDS)
 def test_a_person_watches_every_step(name):
     shown = []
-    env = gym.make(f"qtab/{name}").unwrapped
+    env: Any = gym.make(f"qtab/{name}").unwrapped
     env.reset(seed=0)
     env.render_mode = "human"
     object.__getattribute__(env, "__dict__")["render"] = lambda: shown.append(bitwise(np.array(env.state)))

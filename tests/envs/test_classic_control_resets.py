@@ -107,9 +107,14 @@ def test_a_reset_forgets_the_episode_before(name: str) -> None:
 @pytest.mark.parametrize("name", IDS)
 def test_a_person_watches_the_first_state(name: str) -> None:
     counts = []
-    for env in (gym.make(f"qtab/{name}", render_mode="human"), gym.make(name, render_mode="human")):
+    for env_id in (f"qtab/{name}", name):
+        env: Any = gym.make(env_id, render_mode="human")
         frames: list[Any] = []
-        env.unwrapped.render = lambda frames=frames, env=env: frames.append(bitwise(env.unwrapped.state))
+
+        def render(frames: list[Any] = frames, env: Any = env.unwrapped) -> None:
+            frames.append(bitwise(env.state))
+
+        env.unwrapped.render = render
         env.reset(seed=0)
         env.reset()
         counts.append(frames)
@@ -122,7 +127,7 @@ def test_a_person_watches_the_first_state(name: str) -> None:
 def test_a_reset_of_ones_own_may_call_ours(name: str) -> None:
     base: Any = type(gym.make(f"qtab/{name}").unwrapped)
 
-    class Mine(base):
+    class Mine(base):  # type: ignore[misc]
         def reset(self, *, seed: Any = None, options: Any = None) -> Any:
             observation, _ = super().reset(seed=seed, options=options)
             return observation, {"mine": True}

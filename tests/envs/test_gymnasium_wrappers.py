@@ -71,9 +71,16 @@ WRAPPERS: dict[str, Callable[[gym.Env], gym.Env]] = {
     "StickyAction": lambda env: wrappers.StickyAction(env, 0.3),
     "TimeAwareObservation": wrappers.TimeAwareObservation,
     "TimeLimit": lambda env: wrappers.TimeLimit(env, 17),
-    "TransformReward": lambda env: wrappers.TransformReward(env, lambda reward: 3 * reward + 1),
+    "TransformReward": lambda env: wrappers.TransformReward(env, lambda reward: 3 * float(reward) + 1),
 }
-FIT_ALL = {"Autoreset", "ClipReward", "RecordEpisodeStatistics", "StickyAction", "TimeLimit", "TransformReward"}
+FIT_ALL = {
+    "Autoreset",
+    "ClipReward",
+    "RecordEpisodeStatistics",
+    "StickyAction",
+    "TimeLimit",
+    "TransformReward",
+}
 """The wrappers that ask nothing of the spaces."""
 
 
@@ -114,7 +121,8 @@ def test_a_video_holds_gymnasiums_frames(name: str, tmp_path: Path) -> None:
         )
         recorded.action_space.seed(5)
         recorded.reset(seed=3)
-        over, kept = False, []
+        over = False
+        kept: list[Any] = []
         while not over:
             *_, terminated, truncated, _ = recorded.step(recorded.action_space.sample())
             kept = list(recorded.recorded_frames) or kept

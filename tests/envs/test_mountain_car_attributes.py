@@ -2,12 +2,14 @@
 
 import copy
 import pickle
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy._core._exceptions import _UFuncOutputCastingError
 
 import qtab  # noqa: F401 - registers the environment
 from qtab._core import parameter_names
@@ -55,7 +57,7 @@ def test_an_assigned_state_is_stepped_from_as_gymnasium_does(state):
     assert np.array_equal(np.array(ours.state), np.array(theirs.state))
     try:
         first = theirs.step(2)
-    except np._core._exceptions._UFuncOutputCastingError as error:  # integers that NumPy cannot add a float to
+    except _UFuncOutputCastingError as error:  # integers that NumPy cannot add a float to
         with pytest.raises(type(error)):
             ours.step(2)
         return
@@ -162,7 +164,8 @@ def test_any_constants_give_gymnasiums_steps(values, position):
 
 
 def test_constants_are_those_of_one_environment_alone():
-    one, other = gym.make("qtab/MountainCar-v0").unwrapped, gym.make("qtab/MountainCar-v0").unwrapped
+    one: Any = gym.make("qtab/MountainCar-v0").unwrapped
+    other: Any = gym.make("qtab/MountainCar-v0").unwrapped
     one.gravity = 0.0
     assert other.gravity == 0.0025
 
@@ -174,12 +177,12 @@ def test_a_constant_that_is_put_back_gives_the_default_steps():
     walk(ours, theirs)
 
 
-COPIES = {"deepcopy": copy.deepcopy, "pickle": lambda env: pickle.loads(pickle.dumps(env))}  # noqa: S301 - our own
+COPIES: dict[str, Any] = {"deepcopy": copy.deepcopy, "pickle": lambda env: pickle.loads(pickle.dumps(env))}  # noqa: S301 - our own
 
 
 @pytest.mark.parametrize("made", COPIES.values(), ids=COPIES)
 def test_a_copy_made_in_mid_episode_goes_on_as_the_original_does(made):
-    env = gym.make("qtab/MountainCar-v0", goal_velocity=0.01)
+    env: Any = gym.make("qtab/MountainCar-v0", goal_velocity=0.01)
     env.unwrapped.gravity = 0.0024
     env.unwrapped.force = np.float32(0.001)
     env.reset(seed=4)
@@ -198,7 +201,7 @@ def test_a_copy_made_in_mid_episode_goes_on_as_the_original_does(made):
 
 @pytest.mark.parametrize("made", COPIES.values(), ids=COPIES)
 def test_a_copy_and_its_original_part_ways(made):
-    env = gym.make("qtab/MountainCar-v0").unwrapped
+    env: Any = gym.make("qtab/MountainCar-v0").unwrapped
     env.reset(seed=4)
     twin = made(env)
     before = state_bytes(env)

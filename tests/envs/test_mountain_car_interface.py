@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -93,7 +94,7 @@ def test_an_unknown_keyword_is_refused_as_gymnasium_does():
 
 def test_gymnasiums_wrappers_see_what_they_see_around_gymnasiums(pair):
     def wrapped(env):
-        return RecordEpisodeStatistics(TimeLimit(TransformReward(env, lambda reward: 2 * reward), 50))
+        return RecordEpisodeStatistics(TimeLimit(TransformReward(env, lambda reward: 2 * float(reward)), 50))
 
     ours, theirs = map(wrapped, pair)
     one, other = ours.reset(seed=2), theirs.reset(seed=2)
@@ -120,11 +121,12 @@ def test_gym_make_imports_the_package_by_its_name_in_a_fresh_process():
 
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
 def test_a_synchronous_vector_of_ours_is_gymnasiums(mode):
-    kwargs = {"vector_kwargs": {"autoreset_mode": mode}, "vectorization_mode": "sync", "num_envs": 3}
+    kwargs: dict[str, Any] = {"vector_kwargs": {"autoreset_mode": mode}, "vectorization_mode": "sync", "num_envs": 3}
     ours, theirs = gym.make_vec("qtab/MountainCar-v0", **kwargs), gym.make_vec("MountainCar-v0", **kwargs)
     assert isinstance(ours, SyncVectorEnv)
     rng = np.random.default_rng(0)
-    one, other = ours.reset(seed=5), theirs.reset(seed=5)
+    one: Any = ours.reset(seed=5)
+    other: Any = theirs.reset(seed=5)
     assert gym.utils.env_checker.data_equivalence(one, other, exact=True)
     for _ in range(450):
         actions = rng.integers(0, 3, 3)

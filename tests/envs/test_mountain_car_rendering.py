@@ -53,7 +53,12 @@ def test_every_step_is_drawn_on_the_screen_in_human_mode(monkeypatch):
     drawn = []
     env = ours.unwrapped
     render = env.render
-    monkeypatch.setattr(env, "render", lambda: drawn.append(np.array(env.state)) or render())
+
+    def draw():
+        drawn.append(np.array(env.state))
+        return render()
+
+    monkeypatch.setattr(env, "render", draw)
     ours.reset(seed=0)
     for _ in range(3):
         ours.step(2)

@@ -1,6 +1,7 @@
 """qtab/MountainCar-v0 steps as Gymnasium's MountainCar-v0 does, to the last bit."""
 
 import math
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -15,7 +16,7 @@ from support.parity import energy_policy, state_bytes
 STEPS_PER_SEED = 13_000
 
 
-def pair(**kwargs):
+def pair(**kwargs: Any) -> tuple[Any, Any]:
     return gym.make("qtab/MountainCar-v0", **kwargs), gym.make("MountainCar-v0", **kwargs)
 
 

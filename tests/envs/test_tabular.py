@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -16,7 +17,7 @@ from support.toy_text import TABLES
 
 @pytest.mark.parametrize("name", [name for name in TABLES if name != "Taxi-v4"])
 def test_gymnasiums_own_table_walks_as_gymnasiums_environment(name):
-    theirs = gym.make(name).unwrapped
+    theirs: Any = gym.make(name).unwrapped
     ours = qtab.TabularEnv(theirs.P, theirs.initial_state_distrib)
     assert (ours.observation_space, ours.action_space) == (theirs.observation_space, theirs.action_space)
     assert bitwise(ours.reset(seed=3)) == bitwise(theirs.reset(seed=3))
@@ -62,7 +63,7 @@ def test_gymnasiums_checker_is_content_and_copies_go_on():
 
 def test_a_table_is_its_own_and_can_be_edited():
     table = chain()
-    env = qtab.TabularEnv(table, [1, 0])
+    env: Any = qtab.TabularEnv(table, [1, 0])
     table[0][0].append("nonsense")
     env.reset(seed=0)
     assert env.step(0) == (0, -1.0, False, False, {"prob": 1.0})

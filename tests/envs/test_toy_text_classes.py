@@ -3,6 +3,7 @@
 import copy
 import pickle
 import warnings
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -55,7 +56,7 @@ def test_pictures_and_text_are_gymnasiums(name, mode):
 @pytest.mark.parametrize("name", IDS)
 def test_a_person_watches_every_step(name):
     shown = []
-    env = gym.make(f"qtab/{name}").unwrapped
+    env: Any = gym.make(f"qtab/{name}").unwrapped
     env.reset(seed=0)
     env.render_mode = "human"
     env.render = lambda: shown.append(copy.deepcopy((getattr(env, "s", None), getattr(env, "player", None))))
@@ -103,7 +104,21 @@ def test_wrappers_work_on_it(name):
             break
 
 
-HANDS = [[10, 9], [1, 10], [10, 1], [1, 1, 9], [10, 10, 1], [5], [], [1] * 12, (5, 6), [5.0, 6], [True, 10], None, "ab"]
+HANDS: list[Any] = [
+    [10, 9],
+    [1, 10],
+    [10, 1],
+    [1, 1, 9],
+    [10, 10, 1],
+    [5],
+    [],
+    [1] * 12,
+    (5, 6),
+    [5.0, 6],
+    [True, 10],
+    None,
+    "ab",
+]
 HANDS += [[np.int64(5), 6], [0, 11], [-3, 10], [2**70, 1]]
 
 
@@ -131,7 +146,7 @@ def test_the_rules_can_be_changed_and_the_space_too():
 
 
 def test_hands_stay_the_lists_that_they_were():
-    env = gym.make("qtab/Blackjack-v1").unwrapped
+    env: Any = gym.make("qtab/Blackjack-v1").unwrapped
     env.reset(seed=0)
     player = env.player
     env.step(1)

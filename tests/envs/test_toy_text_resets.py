@@ -1,5 +1,7 @@
 """A reset of toy text is Gymnasium's, whatever it draws from."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -70,8 +72,8 @@ def test_a_fickle_passenger_makes_up_their_mind_as_gymnasiums_does(passenger, pr
 
 
 def test_a_table_of_ones_own_begins_as_gymnasiums():
-    theirs = gym.make("FrozenLake-v1").unwrapped
-    ours = qtab.TabularEnv(theirs.P, theirs.initial_state_distrib)
+    theirs: Any = gym.make("FrozenLake-v1").unwrapped
+    ours: Any = qtab.TabularEnv(theirs.P, theirs.initial_state_distrib)
     for name in ("one state", "float32", "a list", "zeros", "nan in it", "a view"):
         ours.initial_state_distrib = theirs.initial_state_distrib = DISTRIBUTIONS[name]
         for seed in (*range(20), None, None):
@@ -85,7 +87,7 @@ def test_a_reset_of_ones_own_may_call_ours():
             first, info = super().reset(seed=seed, options=options)
             return first, {**info, "mine": True}
 
-    theirs = gym.make("FrozenLake-v1").unwrapped
+    theirs: Any = gym.make("FrozenLake-v1").unwrapped
     assert Mine(theirs.P, theirs.initial_state_distrib).reset(seed=0) == (0, {"prob": 1, "mine": True})
 
 

@@ -1,5 +1,7 @@
 """The steps of qtab's toy text are Gymnasium's: observations, rewards, flags, info and the generator's state."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -75,13 +77,13 @@ def test_every_constructor_argument_counts(name, kwargs):
 
 
 def test_a_lake_may_be_drawn_at_random():
-    env = gym.make("qtab/FrozenLake-v1", desc=None, map_name=None).unwrapped
+    env: Any = gym.make("qtab/FrozenLake-v1", desc=None, map_name=None).unwrapped
     assert env.observation_space.n == 64
 
 
 @pytest.mark.parametrize("desc", [["FFF", "FFG"], ["SFF", "FG"]])
 def test_a_bad_map_is_gymnasiums_to_judge(desc):
-    texts = []
+    texts: list[Any] = []
     for name in ("qtab/FrozenLake-v1", "FrozenLake-v1"):
         try:
             with np.errstate(invalid="ignore"):

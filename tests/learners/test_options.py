@@ -9,7 +9,7 @@ import pytest
 import qtab
 from qtab.config.options import OPTIONS
 
-TILES = {"discretizer": "tiles"}
+TILES: dict[str, Any] = {"discretizer": "tiles"}
 VALUES: dict[str, Any] = {
     "trace_decay": 0.5,
     "traces": "replacing",
@@ -66,7 +66,7 @@ def test_an_option_without_a_meaning_is_refused_by_name(name: str, chosen: dict[
 
 
 @pytest.mark.parametrize("algorithm", ["dyna_q", "dyna_q_plus"])
-def test_a_model_of_pairs_needs_a_table(algorithm: str) -> None:
+def test_a_model_of_pairs_needs_a_table(algorithm: Any) -> None:
     with pytest.raises(
         ValueError,
         match=r"^algorithm must be 'q_learning', .* or 'watkins_q_lambda' for discretizer 'tiles', got 'dyna_q",
@@ -180,7 +180,7 @@ def test_double_q_learning_has_two_tables_and_their_sum_is_what_is_read() -> Non
 
 @pytest.mark.parametrize("algorithm", ["double_q_learning", "sarsa"])
 @pytest.mark.parametrize("settings", [{}, TILES])
-def test_training_goes_on_from_a_runs_tables(algorithm: str, settings: dict[str, Any]) -> None:
+def test_training_goes_on_from_a_runs_tables(algorithm: Any, settings: dict[str, Any]) -> None:
     first = qtab.train("MountainCar-v0", episodes=20, seed=0, algorithm=algorithm, **settings)
     more = qtab.train(
         "MountainCar-v0",
@@ -231,7 +231,7 @@ def test_divergence_is_noticed_in_an_episode_that_never_ends() -> None:
 
 
 @pytest.mark.parametrize("backend", ["rust", "gymnasium"])
-def test_callbacks_and_backends_do_not_move_a_divergence(backend: str) -> None:
+def test_callbacks_and_backends_do_not_move_a_divergence(backend: Any) -> None:
     episodes = set()
     for every in (1, 7):
         with pytest.raises(OverflowError) as caught:
@@ -276,7 +276,7 @@ def test_rewards_too_large_to_compute_with_are_an_overflow_too() -> None:
 def test_the_command_tells_a_divergence_in_one_line(capfd: pytest.CaptureFixture[str]) -> None:
     from qtab.cli.command import run
 
-    settings = {**DIVERGING, "env": "MountainCar-v0"}
+    settings: dict[str, Any] = {**DIVERGING, "env": "MountainCar-v0"}
     flags = [word for name, value in settings.items() for word in (f"--{name.replace('_', '-')}", str(value))]
     code = run(["train", *flags])
     assert code == 1

@@ -1,5 +1,7 @@
 """The streams draw what NumPy draws, for any seed and in any order."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -39,11 +41,11 @@ class NumpyMt19937:
         return self.generator.randint(0, below)
 
 
-def pcg64(seed):
+def pcg64(seed: int) -> tuple[Any, Any]:
     return AgentRng("PCG64", seed), NumpyPcg64(seed)
 
 
-def mt19937(seed):
+def mt19937(seed: int) -> tuple[Any, Any]:
     return AgentRng("MT19937", seed), NumpyMt19937(seed)
 
 

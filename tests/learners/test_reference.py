@@ -13,6 +13,7 @@ from qtab.reference import LEARNERS
 from support.learner_settings import CAR, TRAINED, run_settings
 
 ALGORITHMS = get_args(Algorithm)
+BACKENDS: tuple[Any, ...] = ("rust", "gymnasium")
 
 
 def test_every_algorithm_has_a_reference() -> None:
@@ -21,7 +22,7 @@ def test_every_algorithm_has_a_reference() -> None:
 
 @pytest.mark.parametrize("env", TRAINED)
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
-def test_random_settings_give_the_identical_table(algorithm: str, env: str) -> None:
+def test_random_settings_give_the_identical_table(algorithm: Any, env: str) -> None:
     @settings(max_examples=40 if env == CAR else 8, deadline=None)
     @given(run_settings(algorithm, env))
     def check(chosen: dict[str, Any]) -> None:
@@ -37,7 +38,7 @@ def test_random_settings_give_the_identical_table(algorithm: str, env: str) -> N
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("seed", [0, 1])
-def test_a_long_episode_gives_the_identical_table(algorithm: str, seed: int) -> None:
+def test_a_long_episode_gives_the_identical_table(algorithm: Any, seed: int) -> None:
     run = qtab.train(
         "MountainCar-v0",
         algorithm=algorithm,
@@ -55,19 +56,17 @@ def test_a_long_episode_gives_the_identical_table(algorithm: str, seed: int) -> 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("discretizer", ["round", "tiles"])
-def test_both_backends_give_the_identical_table(algorithm: str, discretizer: str) -> None:
+def test_both_backends_give_the_identical_table(algorithm: Any, discretizer: Any) -> None:
     if "dyna" in algorithm:
         discretizer = "round"
-    rust, python = (
-        qtab.train("MountainCar-v0", algorithm=algorithm, discretizer=discretizer, seed=5, episodes=3, backend=backend)
-        for backend in ("rust", "gymnasium")
-    )
+    chosen: dict[str, Any] = {"algorithm": algorithm, "discretizer": discretizer, "seed": 5, "episodes": 3}
+    rust, python = (qtab.train("MountainCar-v0", backend=backend, **chosen) for backend in BACKENDS)
     assert rust.tables.tobytes() == python.tables.tobytes()
     assert rust.episode_returns.tobytes() == python.episode_returns.tobytes()
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
-def test_a_prefix_is_verified_with_the_full_runs_schedules(algorithm: str) -> None:
+def test_a_prefix_is_verified_with_the_full_runs_schedules(algorithm: Any) -> None:
     run = qtab.train("MountainCar-v0", algorithm=algorithm, seed=1, episodes=40)
     assert qtab.verify(run, episodes=3).equal
 
@@ -92,7 +91,7 @@ class Chain(gym.Env[Any, Any]):
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("features", [{"scale": (4,)}, {"discretizer": "tiles", "tilings": 4, "tiles": (5,)}])
-def test_an_environment_in_python_gives_the_identical_table(algorithm: str, features: dict[str, Any]) -> None:
+def test_an_environment_in_python_gives_the_identical_table(algorithm: Any, features: dict[str, Any]) -> None:
     if "dyna" in algorithm:
         features = {"scale": (4,)}
     run = qtab.train(Chain(), algorithm=algorithm, seed=2, episodes=30, **features)

@@ -1,5 +1,6 @@
 """How rates fall: seen through the table, which each schedule must leave as the reference does."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,10 @@ def test_an_exponential_rate_falls_by_a_factor_to_its_least() -> None:
     assert course("exponential", 1.0, 0.0, 0.0, 1, 3) == [1.0, 1.0, 0.0]
 
 
+def fewer_episodes_than(count: int, progress: qtab.Progress) -> bool:
+    return progress.episodes < count
+
+
 def test_the_learning_rate_follows_its_schedule() -> None:
     # One action in one cell, and always the target -1: the value after each episode tells its rate.
     table = np.full((1, 1, 3), -9.0)
@@ -46,7 +51,7 @@ def test_the_learning_rate_follows_its_schedule() -> None:
             "MountainCar-v0",
             seed=0,
             episodes=5,
-            callback=lambda progress, count=count: progress.episodes < count,
+            callback=partial(fewer_episodes_than, count),
             callback_every=1,
             scale=(0.1, 0.1),
             initial_q=table,
@@ -64,7 +69,7 @@ def test_the_learning_rate_follows_its_schedule() -> None:
 
 
 @pytest.mark.parametrize("algorithm", ["q_learning", "n_step_sarsa", "sarsa_lambda"])
-def test_one_over_the_visits_gives_the_average_of_the_targets(algorithm: str) -> None:
+def test_one_over_the_visits_gives_the_average_of_the_targets(algorithm: Any) -> None:
     run = qtab.train(
         "MountainCar-v0",
         algorithm=algorithm,

@@ -83,13 +83,13 @@ def test_the_values_are_costs_to_go_on_their_grid(found):
 
 
 def test_a_goal_velocity_is_honoured():
-    slower = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.04})
+    slower: Any = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.04})
     env = gym.make("MountainCar-v0", goal_velocity=0.04)
     for index in range(0, 1000, 100):
         ended = drive(env, float(slower.search.starts[index]), slower.search.routes[index])
         assert ended[-1]
         assert not any(ended[:-1])
-    never = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.08})
+    never: Any = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.08})
     assert never.expected_return == never.search.predict_return == -200
     assert set(never.search.routes) == {None}
 
@@ -97,7 +97,7 @@ def test_a_goal_velocity_is_honoured():
 def test_an_edited_environment_is_taken_as_it_stands():
     env: Any = gym.make("qtab/MountainCar-v0")
     env.unwrapped.force = 0.002
-    strong = qtab.optimum(env)
+    strong: Any = qtab.optimum(env)
     assert strong.expected_return > -80
     env.reset(seed=0)
     for index in (0, 500, 999):
@@ -112,14 +112,14 @@ def test_a_car_that_goes_nowhere_has_no_route(edit):
     env: Any = gym.make("qtab/MountainCar-v0", max_episode_steps=50)
     for name, value in edit.items():
         setattr(env.unwrapped, name, value)
-    found = qtab.optimum(env)
+    found: Any = qtab.optimum(env)
     for start, route in zip(found.search.starts, found.search.routes, strict=True):
         if route is not None:
             assert drive(env, float(start), route)[-1]
 
 
 def test_a_time_limit_ends_every_episode():
-    short = qtab.optimum("MountainCar-v0", max_episode_steps=90)
+    short: Any = qtab.optimum("MountainCar-v0", max_episode_steps=90)
     assert short.search.steps.max() == 90
     assert {len(route) for route in short.search.routes if route is not None} <= set(range(80, 91))
     assert (short.search.steps[[route is None for route in short.search.routes]] == 90).all()
@@ -143,11 +143,12 @@ def test_what_is_no_observation_is_refused(found, observation):
 
 def test_a_curve_is_drawn_beside_it(found):
     run = qtab.train("MountainCar-v0", episodes=300, seed=0)
-    for ax, label in [
+    drawings: list[tuple[Any, str]] = [
         (qtab.plot(run, optimum=found), f"best known {found.expected_return:.4g}"),
         (qtab.plot(run, optimum=-98.0), "optimum -98"),
         (qtab.plots.learning_curves(run.episode_returns, optimum=found), f"best known {found.expected_return:.4g}"),
-    ]:
+    ]
+    for ax, label in drawings:
         [line] = [line for line in ax.lines if line.get_label() == label]
         assert set(line.get_ydata()) == {-98.0 if label.startswith("optimum") else found.expected_return}
         assert label in [text.get_text() for text in ax.get_legend().get_texts()]

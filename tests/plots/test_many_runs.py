@@ -1,5 +1,7 @@
 """Pictures of many runs: what they show is what the numbers are."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -39,7 +41,11 @@ def test_every_function_draws_on_the_axes_it_is_given():
 
 
 def test_sensitivity_pools_what_is_not_shown_and_colours_by_a_second():
-    grid = {"learning_rate": [0.01, 0.1, 1.0], "epsilon": [0.1, 0.9], "terminal_update": ["assign", "target"]}
+    grid: dict[str, Any] = {
+        "learning_rate": [0.01, 0.1, 1.0],
+        "epsilon": [0.1, 0.9],
+        "terminal_update": ["assign", "target"],
+    }
     study = qtab.sweep("MountainCar-v0", grid, seeds=3, episodes=30)
     ax = plots.sensitivity(study, "learning_rate", by="epsilon", column="mean_return")
     assert ax.get_xscale() == "log"

@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from support.command import QTAB, environment
 
 
 def curve(run: qtab.Run, block: int = 100) -> tuple[list[float], list[float]]:
+    line: Any
     [line] = [line for line in qtab.plot(run, block=block).lines if str(line.get_label()).startswith("mean")]
     return list(line.get_xdata()), list(line.get_ydata())
 
@@ -26,7 +28,8 @@ def test_the_curve_is_the_block_means_at_the_ends_of_their_blocks() -> None:
 def test_every_episode_is_a_dot_and_the_settings_are_noted() -> None:
     run = qtab.train("MountainCar-v0", episodes=120, seed=7)
     ax = qtab.plot(run)
-    assert ax.lines[0].get_ydata().tolist() == run.episode_returns.tolist()
+    dots: Any = ax.lines[0].get_ydata()
+    assert dots.tolist() == run.episode_returns.tolist()
     assert ax.get_title("left") == "MountainCar-v0"
     assert ax.get_title("right") == "α = 0.2, γ = 0.9, ε = 0.8 → 0, seed 7"
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("Episode", "Return")
@@ -54,8 +57,8 @@ def test_a_run_stopped_before_its_first_episode_can_be_drawn(tmp_path: Path) -> 
 def test_a_huge_run_is_thinned_but_its_means_are_not() -> None:
     run = qtab.train("MountainCar-v0", episodes=30_000, seed=0, max_episode_steps=2)
     cloud, means = qtab.plot(run).lines
-    assert len(cloud.get_xdata()) == 20_000
-    assert len(means.get_xdata()) == 30  # of 1,000 episodes each: 300 would be a thick band
+    assert np.size(cloud.get_xdata()) == 20_000
+    assert np.size(means.get_xdata()) == 30  # of 1,000 episodes each: 300 would be a thick band
 
 
 def test_an_ending_that_matplotlib_does_not_write_is_refused() -> None:

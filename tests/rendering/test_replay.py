@@ -1,6 +1,7 @@
 """The last episodes are played again after the training: the same episodes, and the table knows nothing of it."""
 
 from pathlib import Path
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -13,7 +14,7 @@ from support.command import qtab, qtab_here, refused
 
 @pytest.mark.parametrize("backend", ["rust", "gymnasium"])
 @pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
-def test_recordings_play_the_same_returns_and_lengths_in_gymnasium(backend: str, bit_generator: str) -> None:
+def test_recordings_play_the_same_returns_and_lengths_in_gymnasium(backend: Any, bit_generator: Any) -> None:
     run = package.train(
         *("MountainCar-v0",), episodes=60, seed=5, record=30, backend=backend, bit_generator=bit_generator
     )
@@ -32,12 +33,12 @@ def test_a_recording_from_the_first_episode_starts_where_the_seed_starts() -> No
     starts = []
     reset = env.unwrapped.reset
 
-    def watched(**kwargs: object) -> object:
+    def watched(**kwargs: Any) -> Any:
         start = reset(**kwargs)
         starts.append(start[0])
         return start
 
-    env.unwrapped.reset = watched  # type: ignore[method-assign, assignment]
+    env.unwrapped.reset = watched  # type: ignore[method-assign]
     replay_all(env, run)
     assert starts[0].tobytes() == seeded.tobytes()
 
@@ -66,7 +67,7 @@ def test_an_environment_without_pictures_is_refused_before_training(tmp_path: Pa
 
 
 def test_record_writes_the_last_episodes_as_videos_and_leaves_the_table_alone(tmp_path: Path) -> None:
-    import imageio_ffmpeg
+    import imageio_ffmpeg  # type: ignore[import-untyped]
 
     common = ["train", "--seed", "1", "--episodes", "50", "--max-episode-steps", "20"]
     done = qtab(*common, "--save", "with.npz", "--record", "deep/videos", cwd=tmp_path)
@@ -83,7 +84,8 @@ def test_record_writes_the_last_episodes_as_videos_and_leaves_the_table_alone(tm
 
 
 def test_watch_is_refused_before_training_without_a_display(tmp_path: Path) -> None:
-    for variables in ({}, {"SDL_VIDEODRIVER": "dummy"}, {"SDL_VIDEODRIVER": "offscreen"}):
+    drivers: list[Any] = [{}, {"SDL_VIDEODRIVER": "dummy"}, {"SDL_VIDEODRIVER": "offscreen"}]
+    for variables in drivers:
         line = refused("train", "--watch", "3", "--save", "run.npz", cwd=tmp_path, **variables)
         assert "--record DIR" in line
 

@@ -3,6 +3,7 @@
 import json
 import pickle
 import zipfile
+from typing import Any
 
 import numpy as np
 import pytest
@@ -212,7 +213,7 @@ def test_a_header_that_does_not_fit_is_refused(members, tmp_path, change, messag
 @pytest.fixture(scope="module")
 def few_actions(tmp_path_factory):
     path = tmp_path_factory.mktemp("saved") / "run.npz"
-    chosen = {"discretizer": "bins", "bins": (4, 3, 5), "actions": (-1.0, 0.5)}
+    chosen: dict[str, Any] = {"discretizer": "bins", "bins": (4, 3, 5), "actions": (-1.0, 0.5)}
     qtab.train("Pendulum-v1", seed=0, episodes=2, max_episode_steps=9, initial_q=0.0, **chosen).save(path)
     with np.load(path) as file:
         return dict(file)

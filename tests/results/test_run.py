@@ -113,7 +113,7 @@ def test_a_config_cannot_be_changed_in_place(run):
 def test_the_table_that_a_run_began_from_cannot_be_changed_through_its_config():
     run = qtab.train("MountainCar-v0", seed=0, episodes=1, initial_q=np.zeros((19, 15, 3)))
     with pytest.raises(ValueError, match="read-only"):
-        run.config.initial_q[0] = 1.0
+        run.config.initial_q[0] = 1.0  # type: ignore[index]
 
 
 def test_the_versions_name_what_the_numbers_rest_on(run):

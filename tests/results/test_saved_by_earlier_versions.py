@@ -7,6 +7,7 @@ The files in ``saved/`` were written by ``run.save`` and ``qtab.sweep(..., store
 import json
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ RUNS = sorted(path.stem for path in SAVED.glob("*.npz"))
 TOY_TEXT = ("blackjack", "double", "dyna", "frozen_lake", "softmax")
 """Their numbers are the same on every machine: none of their steps computes a sine or cosine."""
 
-GRID = {"learning_rate": [0.1, 0.2], "algorithm": ["sarsa", "q_learning"]}
+GRID: dict[str, list[Any]] = {"learning_rate": [0.1, 0.2], "algorithm": ["sarsa", "q_learning"]}
 
 
 @pytest.mark.parametrize("name", RUNS)

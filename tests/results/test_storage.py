@@ -4,6 +4,7 @@ import dataclasses
 import json
 import subprocess
 import sys
+from typing import Any
 
 import numpy as np
 import pytest
@@ -75,7 +76,7 @@ def test_a_saved_run_can_be_gone_on_from_and_repeated(tmp_path):
     run = qtab.train("MountainCar-v0", seed=0, episodes=20)
     run.save(tmp_path / "run.npz")
     loaded = qtab.load(tmp_path / "run.npz")
-    settings = dict(vars(loaded.config))
+    settings: dict[str, Any] = dict(vars(loaded.config))
     assert_same_run(run, qtab.train(settings.pop("env"), **settings))
     on = [qtab.train("MountainCar-v0", seed=1, episodes=5, initial_q=table) for table in (run.q_table, loaded.q_table)]
     assert_same_run(*on)

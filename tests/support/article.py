@@ -74,7 +74,7 @@ class OldApi:
 
     def __init__(self, env: gym.Env, seed: int) -> None:
         self.env = env
-        self.seed = seed
+        self.seed: int | None = seed
         self.observation_space = env.observation_space
         self.action_space = env.action_space
 

@@ -61,7 +61,7 @@ def heuristic_policy(env: Any) -> Any:
 
 
 LINKS = dict.fromkeys(["LINK_LENGTH_1", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2"], 0.7)
-EDITS = {
+EDITS: dict[str, dict[str, Any]] = {
     "MountainCar-v0": {"force": 0.002, "gravity": 0.002, "max_speed": 0.05, "goal_position": 0.3, "goal_velocity": 0.01}
     | {"min_position": -0.9, "max_position": 0.45},
     "MountainCarContinuous-v0": {"power": 0.002, "max_speed": 0.05, "goal_position": 0.3, "goal_velocity": 0.01}

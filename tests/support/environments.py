@@ -17,7 +17,7 @@ class ScriptedEnv(gym.Env):
         high: Any = 4.0,
         dtype: Any = np.float32,
         rewards: Iterable[Any] = (-1.0,),
-        actions: gym.Space | None = None,
+        actions: gym.Space[Any] | None = None,
         length: int = 8,
         dimensions: int = 1,
     ) -> None:
@@ -59,6 +59,7 @@ class Walk(gym.Env):
     def __init__(self, dtype: Any = np.float32, start: int = 0, actions: int = 3, shown: Any = None) -> None:
         self.observation_space = gym.spaces.Box(0.0, 4.0, (2,), dtype)
         self.action_space = gym.spaces.Discrete(actions, start=start)
+        self.middle = start + 1
         self.dtype = dtype if shown is None else shown
         self.position = np.zeros(2)
 
@@ -69,7 +70,7 @@ class Walk(gym.Env):
 
     def step(self, action: int) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         assert self.action_space.contains(action)
-        push = (action - int(self.action_space.start) - 1) * np.array([0.5, -0.3])
+        push = (action - self.middle) * np.array([0.5, -0.3])
         self.position = np.clip(self.position + push + self.np_random.uniform(-0.4, 0.4, 2), 0.0, 4.0)
         reward = float(-np.sum(self.position) / 3.0)
         return self.position.astype(self.dtype), reward, bool(self.position[0] >= 3.5), False, {}
@@ -92,6 +93,8 @@ class Calls(gym.Wrapper):
 class Brittle(gym.Wrapper):
     """Fails in its second episode when its first came from seed 2."""
 
+    bad = False
+
     def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, dict[str, Any]]:
         if seed is None and self.bad:
             raise RuntimeError("out of order")
@@ -101,3 +104,7 @@ class Brittle(gym.Wrapper):
 
 def make_brittle() -> Brittle:
     return Brittle(gym.make("MountainCar-v0"))
+
+
+def make_walk(**kwargs: Any) -> Walk:
+    return Walk(**kwargs)

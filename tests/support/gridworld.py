@@ -1,6 +1,6 @@
 """A room to walk through, in the manner of MiniGrid: a place, a direction, three actions."""
 
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -20,13 +20,13 @@ SHORTEST = 11
 """Steps from the first corner to the goal: a turn, two down, a turn, four through the door, a turn, two down."""
 
 
-class Room(gym.Env[Any, int]):
+class Room(gym.Env[Any, Any]):
     """Turn left, turn right, go forward; a wall stops, sometimes a foot slips, and the goal pays the less the later.
 
     An observation is a row and a column, from 1 on, and a direction: a tuple, or an array where ``multi``.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["ansi"]}
+    metadata = {"render_modes": ["ansi"]}  # noqa: RUF012 - as Gymnasium declares it
     action_space = gym.spaces.Discrete(3)
 
     def __init__(self, slip: float = 0.0, multi: bool = False, render_mode: str | None = None) -> None:

@@ -19,9 +19,13 @@ LIMITS: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "Pendulum-v1": ((-1.0, -1.0, -8.0), (1.0, 1.0, 8.0)),
 }
 """For each environment limits of its observations."""
-SCALES = {CAR: [(10, 100), (3, 20.5), (0.1, 0.1)], "Acrobot-v1": [(1, 2, 1, 1, 0.1, 0.07)], "Pendulum-v1": [(4, 3, 1)]}
+SCALES: dict[str, list[Any]] = {
+    CAR: [(10, 100), (3, 20.5), (0.1, 0.1)],
+    "Acrobot-v1": [(1, 2, 1, 1, 0.1, 0.07)],
+    "Pendulum-v1": [(4, 3, 1)],
+}
 SCALES["MountainCarContinuous-v0"] = SCALES[CAR]
-KEYWORDS = {
+KEYWORDS: dict[str, tuple[str, list[Any]]] = {
     CAR: ("goal_velocity", [0, 0.02]),
     "MountainCarContinuous-v0": ("goal_velocity", [0, 0.02]),
     "CartPole-v1": ("sutton_barto_reward", [False, True]),
@@ -130,7 +134,7 @@ def own_options(algorithm: str) -> st.SearchStrategy[dict[str, Any]]:
 @st.composite
 def run_settings(draw: st.DrawFn, algorithm: str, env: str = CAR) -> dict[str, Any]:
     """Settings of a short run."""
-    settings = {**draw(features(algorithm, env)), **draw(environments(env))}
+    settings: dict[str, Any] = {**draw(features(algorithm, env)), **draw(environments(env))}
     # Full steps of tile coding may diverge, which is another test's.
     most = 0.5 if "tiles" in settings else 1.0
     return {

@@ -2,7 +2,6 @@
 
 import copy
 import warnings
-from collections.abc import Callable
 from typing import Any
 
 import gymnasium as gym
@@ -11,7 +10,7 @@ from support.exact import bitwise
 from support.machine import MACHINE
 
 
-def outcome(call: Callable[[Any], Any], env: Any) -> Any:
+def outcome(call: Any, env: Any) -> Any:
     """What a call on an environment returns or raises, and what it warns of."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -31,7 +30,7 @@ class Lockstep:
         self.theirs: Any = gym.make(name, **kwargs).unwrapped
         assert type(self.ours).__module__.startswith("qtab.")
 
-    def both(self, call: Callable[[Any], Any]) -> Any:
+    def both(self, call: Any) -> Any:
         """Calls a function with each of the two and returns the outcome, which must be the same."""
         ours, theirs = outcome(call, self.ours), outcome(call, self.theirs)
         assert ours == theirs, (self.name, MACHINE)

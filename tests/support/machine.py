@@ -6,7 +6,7 @@ Gymnasium's own code, so equality holds on every machine; ``MACHINE`` tells on w
 
 import warnings
 
-import numpy as np
+from numpy._core import _multiarray_umath  # type: ignore[attr-defined]
 
 from qtab import _core
 from qtab._utils.versions import versions
@@ -17,5 +17,5 @@ with warnings.catch_warnings():
 MACHINE = {
     **versions(),
     "NumPy calls the platform": _core.numpy_uses_libm(),
-    "CPU": [name for name, present in np._core._multiarray_umath.__cpu_features__.items() if present],
+    "CPU": [name for name, present in _multiarray_umath.__cpu_features__.items() if present],
 }

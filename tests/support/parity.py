@@ -1,5 +1,7 @@
 """What "equal to the last bit" means, once."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 
@@ -9,7 +11,8 @@ from qtab.reference import q_learning
 
 def state_bytes(env: gym.Env) -> bytes:
     """The internal state of a car in f64."""
-    return np.array(env.unwrapped.state, dtype=np.float64).tobytes()
+    inner: Any = env.unwrapped
+    return np.array(inner.state, dtype=np.float64).tobytes()
 
 
 def assert_same_run(one: qtab.Run, other: qtab.Run) -> None:
@@ -18,6 +21,11 @@ def assert_same_run(one: qtab.Run, other: qtab.Run) -> None:
     assert one.episode_returns.tobytes() == other.episode_returns.tobytes()
     assert one.terminated.tolist() == other.terminated.tolist()
     assert one.tables.tobytes() == other.tables.tobytes()
+
+
+def run_of(error: BaseException) -> Any:
+    """The run that an error of training carries."""
+    return error.run  # type: ignore[attr-defined]
 
 
 def assert_same_as_reference(run: qtab.Run, env: gym.Env) -> None:
@@ -36,3 +44,14 @@ def table_to_go_on_from(seed: int = 0, episodes: int = 5000) -> np.ndarray:
 def energy_policy(observation: np.ndarray) -> int:
     """Pushes the way the car moves, which takes it to the goal."""
     return 2 if observation[1] >= 0 else 0
+
+
+def assert_same_as_single_runs(runs: qtab.Runs, env: str = "MountainCar-v0", **config: Any) -> None:
+    """Each run of ``train_many`` is the run of ``train`` with its seed."""
+    for index, seed in enumerate(runs.seeds):
+        single = qtab.train(env, seed=seed, **config)
+        assert runs.episode_returns[index].tobytes() == single.episode_returns.tobytes()
+        assert runs.episode_lengths[index].tobytes() == single.episode_lengths.tobytes()
+        assert runs.terminated[index].tobytes() == single.terminated.tobytes()
+        if runs.tables is not None:
+            assert runs.tables[index].tobytes() == single.tables.tobytes()

@@ -1,10 +1,12 @@
 """What the tests of sweeps share."""
 
+from typing import Any
+
 import numpy as np
 
 CAR = "MountainCar-v0"
-GRID = {"learning_rate": [0.1, 0.2, 0.4], "epsilon": [0.3, 0.8]}
-SMALL = {"seeds": 5, "episodes": 40}
+GRID: dict[str, Any] = {"learning_rate": [0.1, 0.2, 0.4], "epsilon": [0.3, 0.8]}
+SMALL: dict[str, Any] = {"seeds": 5, "episodes": 40}
 
 
 def assert_equal(one, other):

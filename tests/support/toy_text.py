@@ -1,6 +1,6 @@
 """Toy text in lock-step with Gymnasium's."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -28,7 +28,7 @@ ATTRIBUTES = [
 class LockstepToyText(Lockstep):
     """An environment of toy text beside Gymnasium's."""
 
-    def both(self, call: Callable[[Any], Any]) -> Any:
+    def both(self, call: Any) -> Any:
         found = super().both(call)
         self.assert_same_state()
         return found

@@ -93,7 +93,7 @@ class LockstepVectorEnv:
         return terminated, truncated
 
     def actions(self, rng: np.random.Generator, dtype: Any = None) -> Any:
-        space = self.theirs.single_action_space
+        space: Any = self.theirs.single_action_space
         if isinstance(space, gym.spaces.Discrete):
             return rng.integers(0, space.n, self.num_envs).astype(dtype or np.int64)
         # Beyond the bounds, too, where Gymnasium clips.

@@ -4,6 +4,7 @@ import contextlib
 import os
 import signal
 import sqlite3
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -63,7 +64,7 @@ def test_a_store_that_cannot_be_written_is_an_error_of_the_system(tmp_path):
 
 def test_a_full_disk_is_an_error_and_breaks_nothing(tmp_path, small_chunks, monkeypatch):
     path = tmp_path / "study.db"
-    connect = stores.connect
+    connect = stores.connect  # type: ignore[attr-defined]
 
     def tight(path):
         connection = connect(path)
@@ -71,19 +72,19 @@ def test_a_full_disk_is_an_error_and_breaks_nothing(tmp_path, small_chunks, monk
         connection.execute(f"PRAGMA max_page_count = {max(pages, 12)}")
         return connection
 
-    many = {"seeds": 600, "episodes": 40}
+    many: dict[str, Any] = {"seeds": 600, "episodes": 40}
     monkeypatch.setattr(stores, "connect", tight)
     with pytest.raises(OSError, match="full"):
         qtab.sweep(CAR, GRID, store=path, **many)
     monkeypatch.setattr(stores, "connect", connect)
-    seen = []
+    seen: list[qtab.SweepProgress] = []
     study = qtab.sweep(CAR, GRID, store=path, callback=seen.append, **many)
     assert seen[-1].new < 3600
     assert_equal(study, qtab.sweep(CAR, GRID, **many))
 
 
 def test_a_run_that_fails_is_recorded_and_the_others_go_on(tmp_path):
-    grid = {"learning_rate": [0.1, 0.5]}
+    grid: dict[str, Any] = {"learning_rate": [0.1, 0.5]}
     study = qtab.sweep(make_brittle, grid, seeds=3, episodes=2, scale=(10, 100), threads=2, store=tmp_path / "s.db")
     assert study.failed == 2
     assert study.columns["error"].tolist() == [None, None, "RuntimeError: out of order"] * 2
@@ -94,7 +95,12 @@ def test_a_run_that_fails_is_recorded_and_the_others_go_on(tmp_path):
 
 
 def test_a_run_that_diverges_is_recorded():
-    steep = {"discretizer": "tiles", "algorithm": "sarsa_lambda", "traces": "accumulating", "trace_decay": 1.0}
+    steep: dict[str, Any] = {
+        "discretizer": "tiles",
+        "algorithm": "sarsa_lambda",
+        "traces": "accumulating",
+        "trace_decay": 1.0,
+    }
     steep |= {"discount": 1.0, "epsilon": 0.8, "min_epsilon": 0.8}
     study = qtab.sweep(CAR, {"learning_rate": [0.1, 1.5]}, seeds=3, episodes=4, **steep)
     said = study.columns["error"].tolist()
@@ -107,11 +113,11 @@ def test_a_run_that_diverges_is_recorded():
 def test_dask_with_a_worker_killed_gives_the_same_table(tmp_path, small_chunks):
     from distributed import Client, LocalCluster
 
-    many = {"seeds": 40, "episodes": 40}
+    many: dict[str, Any] = {"seeds": 40, "episodes": 40}
     cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50)
     with cluster, Client(cluster) as client:
         workers = list(client.run(os.getpid).values())
-        killed = []
+        killed: list[int] = []
 
         def kill(progress):
             if not killed:

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import textwrap
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from typing import Any
 
 import pytest
 
@@ -13,6 +14,7 @@ import qtab
 from qtab.sweeps import store as stores
 from qtab.sweeps import study as studies
 from qtab.sweeps.database import RunRecord
+from support.parity import run_of
 from support.sweeps import CAR, GRID, SMALL, assert_equal
 
 
@@ -22,7 +24,7 @@ def test_a_row_a_run_with_the_lone_runs_numbers():
     names = ["setting", "learning_rate", "epsilon", "seed", "episodes", "steps"]
     assert list(study.columns)[:6] == names
     for row in (0, 7, 17):
-        config = {name: float(study.columns[name][row]) for name in GRID}
+        config: dict[str, Any] = {name: float(study.columns[name][row]) for name in GRID}
         run = qtab.train(CAR, seed=int(study.columns["seed"][row]), episodes=250, **config)
         assert study.columns["mean_return"][row] == run.episode_returns.mean()
         assert study.columns["final_return"][row] == run.episode_returns[-100:].mean()
@@ -65,7 +67,7 @@ def test_any_executor_changes_nothing(small_chunks, make):
 
 
 def test_progress_comes_as_it_happens(small_chunks):
-    seen = []
+    seen: list[qtab.SweepProgress] = []
     qtab.sweep(CAR, GRID, callback=seen.append, **SMALL)
     assert len(seen) >= 10
     assert [progress.runs for progress in seen] == sorted({progress.runs for progress in seen})
@@ -75,7 +77,7 @@ def test_progress_comes_as_it_happens(small_chunks):
 def test_a_finished_store_is_read_and_nothing_trained_again(tmp_path, small_chunks):
     path = tmp_path / "study.db"
     first = qtab.sweep(CAR, GRID, store=path, **SMALL)
-    seen = []
+    seen: list[qtab.SweepProgress] = []
     assert_equal(qtab.sweep(CAR, GRID, store=path, callback=seen.append, **SMALL), first)
     assert seen == []
 
@@ -97,14 +99,14 @@ def start(path, seeds=5):
 @pytest.mark.parametrize("chunks", [1, 4])
 def test_killed_at_any_moment_it_goes_on(tmp_path, small_chunks, chunks):
     path = tmp_path / "study.db"
-    many = {"seeds": 300, "episodes": 40}
+    many: dict[str, Any] = {"seeds": 300, "episodes": 40}
     process = start(path, seeds=300)
     for _ in range(chunks):
         process.stdout.readline()
     process.kill()
     rest = process.communicate()[0].split()
     assert process.returncode == -signal.SIGKILL, "it was done before it was killed"
-    seen = []
+    seen: list[qtab.SweepProgress] = []
     study = qtab.sweep(CAR, GRID, store=path, callback=seen.append, **many)
     found = seen[0].runs - seen[0].new
     assert found >= chunks
@@ -122,7 +124,7 @@ def test_ctrl_c_keeps_the_finished_runs_and_lets_go_of_the_others(tmp_path, smal
 
     with pytest.raises(KeyboardInterrupt) as caught:
         qtab.sweep(CAR, GRID, store=path, callback=interrupt, **SMALL)
-    partial = caught.value.run
+    partial = run_of(caught.value)
     assert 10 < len(partial) < 30
     whole = qtab.sweep(CAR, GRID, store=path, **SMALL)
     assert partial.columns["steps"].tolist() == whole.columns["steps"][: len(partial)].tolist()
@@ -149,6 +151,7 @@ def test_an_expired_claim_is_taken_over_and_a_late_result_is_not_committed_twice
     planned = studies.plan_study(CAR, GRID, 5, 100, {"episodes": 40})
     slow = stores.Store(path, planned)
     number = slow.claim()
+    assert number is not None
     monkeypatch.setattr(stores, "CLAIM_EXPIRY_SECONDS", -1.0)
     study = qtab.sweep(CAR, GRID, store=path, **SMALL)
     monkeypatch.undo()

@@ -1,21 +1,23 @@
 """Who steps the environment: what "auto" picks, and what "rust" refuses by name."""
 
 import copy
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
 import pytest
+from gymnasium.envs.classic_control import MountainCarEnv
 
 import qtab
-from support.environments import Walk
+from support.environments import Walk, make_walk
 from support.parity import assert_same_run
 
-SHORT = {"seed": 2, "episodes": 6, "max_episode_steps": 25}
+SHORT: dict[str, Any] = {"seed": 2, "episodes": 6, "max_episode_steps": 25}
 
 
 @pytest.fixture
 def walk_id():
-    gym.register("QtabTests/Walk-v0", entry_point=Walk)
+    gym.register("QtabTests/Walk-v0", entry_point=make_walk)
     yield "QtabTests/Walk-v0"
     del gym.registry["QtabTests/Walk-v0"]
 
@@ -81,7 +83,7 @@ def test_a_known_id_that_someone_registered_anew_is_left_to_gymnasium():
     original = gym.registry["MountainCar-v0"]
     try:
         with pytest.warns(UserWarning, match="Overriding"):
-            gym.register("MountainCar-v0", entry_point=Walk)
+            gym.register("MountainCar-v0", entry_point=make_walk)
         run = qtab.train("MountainCar-v0", scale=(2, 2), **SHORT)
     finally:
         gym.registry["MountainCar-v0"] = original
@@ -111,7 +113,7 @@ def test_rust_stands_in_for_an_object_without_its_wrappers():
 
 WRAPPERS = {
     "RecordEpisodeStatistics": gym.wrappers.RecordEpisodeStatistics,
-    "TransformReward": lambda env: gym.wrappers.TransformReward(env, lambda reward: 2 * reward),
+    "TransformReward": lambda env: gym.wrappers.TransformReward(env, lambda reward: 2 * float(reward)),
     "ClipReward": lambda env: gym.wrappers.TimeLimit(gym.wrappers.ClipReward(env, -0.5, 0.0), 10),
 }
 
@@ -146,7 +148,7 @@ def test_rust_refuses_an_edited_attribute_by_name_and_value(env, name, value):
 
 
 def test_rust_refuses_another_environment_and_a_subclass_by_name():
-    class Steeper(type(gym.make("MountainCar-v0").unwrapped)):
+    class Steeper(MountainCarEnv):
         pass
 
     for env, name in ((Walk(), "Walk"), (Steeper(), "Steeper")):

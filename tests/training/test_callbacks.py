@@ -25,7 +25,7 @@ def train(**settings):
     [(1, list(range(1, 11))), (3, [3, 6, 9, 10]), (5, [5, 10]), (10, [10]), (99, [10]), (10**30, [10])],
 )
 def test_it_is_called_every_so_many_episodes_and_after_the_last(backend, every, calls):
-    seen = []
+    seen: list[qtab.Progress] = []
     run = train(backend=backend, callback=seen.append, callback_every=every)
     assert [progress.episodes for progress in seen] == calls
     for progress in seen:
@@ -99,7 +99,7 @@ def test_a_callback_may_train():
 
 
 def test_a_look_brings_what_is_new_and_keeps_the_rest_in_place():
-    seen = []
+    seen: list[qtab.Progress] = []
     train(episodes=64, callback=seen.append, callback_every=1)
     moves = sum(not np.shares_memory(after.returns, before.returns) for before, after in pairwise(seen))
     assert moves == 6  # at 2, 3, 5, 9, 17 and 33 episodes: the room doubles

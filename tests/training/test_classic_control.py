@@ -51,7 +51,7 @@ def test_every_learner_and_discretizer_makes_the_table_of_gymnasium(env: str) ->
 @pytest.mark.parametrize("env", OTHERS)
 @pytest.mark.parametrize("kind", ["bins", "tiles"])
 def test_many_runs_are_the_lone_ones(env: str, kind: str) -> None:
-    chosen = {**settings_of(env, kind), "episodes": 20, "max_episode_steps": 60}
+    chosen: dict[str, Any] = {**settings_of(env, kind), "episodes": 20, "max_episode_steps": 60}
     runs = qtab.train_many(env, seeds=6, threads=3, tables=True, **chosen)
     assert runs.tables is not None
     for seed in range(6):
@@ -62,7 +62,7 @@ def test_many_runs_are_the_lone_ones(env: str, kind: str) -> None:
 
 @pytest.mark.parametrize("env", OTHERS)
 def test_every_way_to_name_it_is_the_same(env: str) -> None:
-    chosen = {**settings_of(env, "bins"), "seed": 4, "episodes": 5, "max_episode_steps": 50}
+    chosen: dict[str, Any] = {**settings_of(env, "bins"), "seed": 4, "episodes": 5, "max_episode_steps": 50}
     run = qtab.train(env, **chosen)
     assert run.config.backend == "rust"
     assert_same_run(run, qtab.train(f"qtab/{env}", **chosen))
@@ -74,7 +74,7 @@ def test_every_way_to_name_it_is_the_same(env: str) -> None:
 @pytest.mark.parametrize("env", [env for env in TRAINED if env.values[0] in KEYWORDS])
 def test_keyword_arguments_reach_rust(env: str) -> None:
     name, values = KEYWORDS[env]
-    chosen = {**settings_of(env, "bins"), "seed": 4, "episodes": 30, "max_episode_steps": 300}
+    chosen: dict[str, Any] = {**settings_of(env, "bins"), "seed": 4, "episodes": 30, "max_episode_steps": 300}
     for value in values:
         run = qtab.train(env, env_kwargs={name: value}, **chosen)
         assert run.config.backend == "rust"
@@ -90,7 +90,13 @@ def test_keyword_arguments_reach_rust(env: str) -> None:
     ],
 )
 def test_what_rust_does_not_stand_for_steps_in_gymnasium(env: str, keywords: dict[str, Any]) -> None:
-    chosen = {**settings_of(env, "bins"), "seed": 4, "episodes": 1, "max_episode_steps": 3, "env_kwargs": keywords}
+    chosen: dict[str, Any] = {
+        **settings_of(env, "bins"),
+        "seed": 4,
+        "episodes": 1,
+        "max_episode_steps": 3,
+        "env_kwargs": keywords,
+    }
     assert qtab.train(env, **chosen).config.backend == "gymnasium"
     with pytest.raises(ValueError, match=r"^backend must be 'auto' or 'gymnasium' for this environment, got 'rust': "):
         qtab.train(env, backend="rust", **chosen)
@@ -116,7 +122,7 @@ def test_an_edited_object_is_refused_in_rust_by_the_name_of_its_attribute(env: s
 @pytest.mark.parametrize("env", ["CartPole-v1", "Acrobot-v1", "Pendulum-v1"])
 def test_where_numpys_functions_are_its_own_gymnasium_steps(env: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_core, "matches_numpy", lambda model: False)
-    chosen = {**settings_of(env, "bins"), "seed": 4, "episodes": 1, "max_episode_steps": 3}
+    chosen: dict[str, Any] = {**settings_of(env, "bins"), "seed": 4, "episodes": 1, "max_episode_steps": 3}
     assert qtab.train(env, **chosen).config.backend == "gymnasium"
     with pytest.raises(ValueError, match=r"got 'rust': NumPy's sin and cos are not the platform's on this machine"):
         qtab.train(env, backend="rust", **chosen)

@@ -13,7 +13,7 @@ from qtab.reference import LEARNERS
 from support.parity import assert_same_run
 from support.toy_text import IDS
 
-SETTINGS = {"episodes": 150, "seed": 5, "epsilon": 0.5, "learning_rate": 0.3, "initial_q": (-1.0, 1.0)}
+SETTINGS: dict[str, Any] = {"episodes": 150, "seed": 5, "epsilon": 0.5, "learning_rate": 0.3, "initial_q": (-1.0, 1.0)}
 
 
 def same_everywhere(env: str, **settings: Any) -> qtab.Run:
@@ -29,7 +29,7 @@ def same_everywhere(env: str, **settings: Any) -> qtab.Run:
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
 def test_rust_trains_as_gymnasium_and_numpy_do(name, bit_generator):
-    limit = {"max_episode_steps": 200} if "Cliff" in name else {}  # else 10,000
+    limit: dict[str, Any] = {"max_episode_steps": 200} if "Cliff" in name else {}  # else 10,000
     run = same_everywhere(name, bit_generator=bit_generator, **limit)
     assert run.config.discretizer == "identity"
     assert run.episode_lengths.sum() > 150
@@ -109,14 +109,14 @@ def test_who_has_no_time_limit_gets_one_in_training():
     assert run.config.max_episode_steps == 10_000
     assert run.episode_lengths.tolist() == [10_000, 10_000]
     assert not run.terminated.any()
-    assert gym.make("qtab/CliffWalking-v1").spec.max_episode_steps is None
+    assert gym.spec("qtab/CliffWalking-v1").max_episode_steps is None
     assert qtab.verify(run).equal
 
 
 class Steps(gym.Env):
     """Walks about in a discrete space, by chance and by the action; shows what it is told to."""
 
-    def __init__(self, space: gym.Space, shown: Any = None) -> None:
+    def __init__(self, space: gym.Space[Any], shown: Any = None) -> None:
         self.observation_space, self.action_space = space, Discrete(3, start=2)
         self.shown = shown
 
@@ -231,7 +231,7 @@ def test_the_articles_rule_may_be_asked_for():
 
 @pytest.mark.parametrize("name", ["FrozenLake-v1", "Taxi-v4", "Blackjack-v1"])
 def test_many_runs_are_the_lone_ones(name):
-    settings = {**SETTINGS, "episodes": 60}
+    settings: dict[str, Any] = {**SETTINGS, "episodes": 60}
     del settings["seed"]
     runs = qtab.train_many(name, seeds=5, tables=True, **settings)
     assert runs.config.backend == "rust"

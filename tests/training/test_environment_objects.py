@@ -1,5 +1,7 @@
 """An environment that is handed over is stepped as it stands, and stays its owner's."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -28,7 +30,7 @@ def test_our_environment_as_an_object_equals_gymnasiums():
 @pytest.mark.parametrize("env", ["MountainCar-v0", "qtab/MountainCar-v0"])
 def test_an_edited_object_is_stepped_as_edited(env):
     def edited(name):
-        made = gym.make(name)
+        made: Any = gym.make(name)
         made.unwrapped.gravity = 0.0015
         made.unwrapped.goal_position = -0.2
         return made
@@ -39,7 +41,7 @@ def test_an_edited_object_is_stepped_as_edited(env):
 
 
 def test_wrappers_are_stepped_through():
-    env = RecordEpisodeStatistics(TransformReward(gym.make("MountainCar-v0"), lambda reward: 3 * reward))
+    env = RecordEpisodeStatistics(TransformReward(gym.make("MountainCar-v0"), lambda reward: 3 * float(reward)))
     run = qtab.train(env, seed=3, episodes=4)
     assert run.episode_returns.tolist() == [-600.0] * 4
     assert list(env.return_queue) == [-600.0] * 4
@@ -81,8 +83,8 @@ def test_an_object_is_not_closed_whether_training_ends_well_or_not():
 def test_an_environment_made_from_an_id_is_closed_whether_training_ends_well_or_not():
     made = []
 
-    def make(observations):
-        made.append(ScriptedEnv(observations))
+    def make(**kwargs):
+        made.append(ScriptedEnv(**kwargs))
         return made[-1]
 
     gym.register("QtabTests/Scripted-v0", entry_point=make, kwargs={"observations": [ONE]})

@@ -1,6 +1,7 @@
 """evaluate plays the greedy policy in the environment: what a plain Python rollout brings."""
 
 import math
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -62,7 +63,8 @@ def test_its_fields_are_what_they_say(learned):
     assert found.terminated_rate == found.terminated.sum() / 50
     assert found.success_rate == sum(value >= -110.0 for value in returns) / 50
     assert found.reward_threshold == -110.0
-    assert (found.returns.dtype, found.lengths.dtype) == (np.float64, np.int64)
+    assert found.returns.dtype == np.float64
+    assert found.lengths.dtype == np.int64
 
 
 def test_a_return_at_the_threshold_is_a_success(learned):
@@ -90,7 +92,7 @@ def test_actions_and_limits_are_those_of_the_run():
 
 
 def test_the_environments_keywords_are_those_of_the_run():
-    never = {"goal_velocity": 0.08}
+    never: dict[str, Any] = {"goal_velocity": 0.08}
     run = qtab.train("MountainCar-v0", seed=0, env_kwargs=never, max_episode_steps=300)
     found = qtab.evaluate(run, episodes=5, seed=0)
     assert found.terminated_rate == 0.0
@@ -106,7 +108,7 @@ def test_a_saved_run_evaluates_the_same(learned, tmp_path):
 
 
 def test_both_backends_evaluate_the_same():
-    settings = {"seed": 0, "episodes": 600}
+    settings: dict[str, Any] = {"seed": 0, "episodes": 600}
     fast, slow = (qtab.train("MountainCar-v0", backend=backend, **settings) for backend in ("rust", "gymnasium"))
     assert qtab.evaluate(fast, 9, seed=3).returns.tolist() == qtab.evaluate(slow, 9, seed=3).returns.tolist()
 

@@ -1,12 +1,14 @@
 """An environment that fails takes nothing along: its own exception comes through, with the run so far."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
 
 import qtab
 from support.environments import Calls, ScriptedEnv
-from support.parity import assert_same_run
+from support.parity import assert_same_run, run_of
 
 ONE = np.array([1.0], np.float32)
 
@@ -24,7 +26,8 @@ def raising_at(step, error):
 
 
 def train(env, **settings):
-    return qtab.train(env, **{"scale": (1,), "seed": 0, "episodes": 5} | settings)
+    chosen: dict[str, Any] = {"scale": (1,), "seed": 0, "episodes": 5} | settings
+    return qtab.train(env, **chosen)
 
 
 @pytest.mark.parametrize(
@@ -48,7 +51,7 @@ def test_what_was_learned_in_the_unfinished_episode_is_kept():
         error = BrokenError()
         with pytest.raises(BrokenError):
             train(Calls(ScriptedEnv([ONE]), raising_at(step, error)))
-        runs.append(error.run)
+        runs.append(run_of(error))
     assert runs[0].episode_lengths.tolist() == runs[1].episode_lengths.tolist() == [8]
     assert runs[0].tables.tobytes() != runs[1].tables.tobytes()
 
@@ -66,7 +69,7 @@ def test_an_exception_in_a_reset_comes_through(at):
     with pytest.raises(BrokenError) as caught:
         train(NoStart([ONE]))
     assert caught.value is error
-    assert len(error.run.episode_returns) == at
+    assert len(run_of(error).episode_returns) == at
 
 
 def test_an_exception_that_has_a_run_of_its_own_comes_through_as_it_is():
@@ -93,8 +96,8 @@ def test_a_traceback_leads_into_the_environment():
 def test_a_reward_that_is_not_finite_is_refused(dtype, reward):
     with pytest.raises(ValueError, match=r"reward is (NaN|-?inf)") as caught:
         train(ScriptedEnv([ONE.astype(dtype)], dtype=dtype, rewards=[-1.0] * 20 + [reward]))
-    assert caught.value.run.episode_lengths.tolist() == [8, 8]
-    assert np.isfinite(caught.value.run.tables).all()
+    assert run_of(caught.value).episode_lengths.tolist() == [8, 8]
+    assert np.isfinite(run_of(caught.value).tables).all()
 
 
 @pytest.mark.parametrize("reward", [None, "much", [1.0], np.ones(2)])
@@ -136,13 +139,18 @@ def test_an_environment_can_be_trained_on_again_after_it_failed():
 
 def test_an_environment_may_train_in_its_own_step():
     inner = []
-    outer = train(Calls(ScriptedEnv([ONE]), lambda count: count == 3 and inner.append(train(ScriptedEnv([ONE])))))
+
+    def train_inside(count):
+        if count == 3:
+            inner.append(train(ScriptedEnv([ONE])))
+
+    outer = train(Calls(ScriptedEnv([ONE]), train_inside))
     assert_same_run(outer, inner[0])
 
 
 def test_an_assertion_of_gymnasiums_wrappers_comes_through():
-    env = gym.wrappers.OrderEnforcing(ScriptedEnv([ONE]))
+    env: Any = gym.wrappers.OrderEnforcing(ScriptedEnv([ONE]))
     env.reset = lambda **kwargs: (ONE, {})
     with pytest.raises(gym.error.ResetNeeded) as caught:
         train(env)
-    assert caught.value.run.completed is False
+    assert run_of(caught.value).completed is False

@@ -1,5 +1,7 @@
 """One run, three ways: physics in Rust, Gymnasium under the Rust learner, the plain NumPy loop. All byte for byte."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -148,7 +150,7 @@ def test_an_initial_table_is_gone_on_from_and_left_alone():
 
 
 def test_a_table_in_another_memory_order_or_dtype_is_the_same_table():
-    settings = {"seed": 0, "episodes": 5}
+    settings: dict[str, Any] = {"seed": 0, "episodes": 5}
     run = qtab.train("MountainCar-v0", initial_q=LEARNED, **settings)
     assert_same_run(run, qtab.train("MountainCar-v0", initial_q=np.asfortranarray(LEARNED), **settings))
     assert_same_run(run, qtab.train("MountainCar-v0", initial_q=LEARNED.tolist(), **settings))
@@ -189,11 +191,12 @@ def test_the_default_is_the_article():
 def test_a_seed_that_is_left_open_is_drawn_and_recorded():
     one, other = (qtab.train("MountainCar-v0", episodes=3) for _ in range(2))
     assert one.config.seed != other.config.seed
+    assert one.config.seed is not None
     assert 0 <= one.config.seed < 2**32
     assert_same_run(one, qtab.train("MountainCar-v0", episodes=3, seed=one.config.seed))
 
 
 def test_the_config_of_a_run_repeats_it():
     run = qtab.train("MountainCar-v0", episodes=7, seed=11, discount=0.95, env_kwargs={"goal_velocity": 0.01})
-    settings = dict(vars(run.config))
+    settings: dict[str, Any] = dict(vars(run.config))
     assert_same_run(run, qtab.train(settings.pop("env"), **settings))

@@ -1,5 +1,7 @@
 """A table of one's own trains in Rust."""
 
+from typing import Any
+
 import gymnasium as gym
 import pytest
 from gymnasium.wrappers import RecordEpisodeStatistics, TimeLimit
@@ -7,11 +9,11 @@ from gymnasium.wrappers import RecordEpisodeStatistics, TimeLimit
 import qtab
 from support.parity import assert_same_run
 
-SETTINGS = {"episodes": 200, "seed": 3, "epsilon": 0.5, "learning_rate": 0.3, "discount": 0.95}
+SETTINGS: dict[str, Any] = {"episodes": 200, "seed": 3, "epsilon": 0.5, "learning_rate": 0.3, "discount": 0.95}
 
 
 def lake():
-    env = gym.make("FrozenLake-v1").unwrapped
+    env: Any = gym.make("FrozenLake-v1").unwrapped
     return qtab.TabularEnv(env.P, env.initial_state_distrib)
 
 
@@ -74,7 +76,7 @@ def test_an_object_of_gymnasiums_trains_in_rust_where_asked():
 
 
 def test_many_runs_of_it_are_the_lone_ones():
-    settings = {**SETTINGS, "episodes": 40}
+    settings: dict[str, Any] = {**SETTINGS, "episodes": 40}
     del settings["seed"]
     runs = qtab.train_many(lake, seeds=4, tables=True, **settings)
     assert runs.config.backend == "rust"

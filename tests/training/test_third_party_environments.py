@@ -33,7 +33,7 @@ def test_a_tuple_and_an_array_are_the_same_observation() -> None:
 
 
 @pytest.mark.parametrize("algorithm", ["q_learning", "sarsa_lambda", "dyna_q"])
-def test_a_slippery_room_is_learned_saved_loaded_and_verified(algorithm: str, tmp_path: Any) -> None:
+def test_a_slippery_room_is_learned_saved_loaded_and_verified(algorithm: Any, tmp_path: Any) -> None:
     run = qtab.train("qtab-tests/Room-v0", env_kwargs={"slip": 0.1}, algorithm=algorithm, **ROOM)
     run.save(tmp_path / "run.npz")
     loaded = qtab.load(tmp_path / "run.npz")
@@ -84,8 +84,8 @@ def test_the_lander_learns_to_come_down_more_gently(lander: str) -> None:
 
 @pytest.mark.parametrize("hashed_rows", [None, 5000])
 @pytest.mark.parametrize("algorithm", ["q_learning", "sarsa_lambda"])
-def test_the_lander_is_verified(lander: str, algorithm: str, hashed_rows: int | None) -> None:
-    settings = {**LANDER, "algorithm": algorithm, "hashed_rows": hashed_rows}
+def test_the_lander_is_verified(lander: str, algorithm: Any, hashed_rows: int | None) -> None:
+    settings: dict[str, Any] = {**LANDER, "algorithm": algorithm, "hashed_rows": hashed_rows}
     if algorithm == "q_learning":
         settings = {name: value for name, value in settings.items() if not name.startswith("trace_")}
     run = qtab.train(lander, episodes=3, **settings)
@@ -99,7 +99,10 @@ def discretized(env: gym.Env) -> gym.Env:
 
 WRAPPED: dict[str, tuple[Any, dict[str, Any]]] = {
     "TimeLimit": (lambda env: gym.wrappers.TimeLimit(env, 50), {"scale": (10, 100)}),
-    "TransformReward": (lambda env: gym.wrappers.TransformReward(env, lambda reward: 2 * reward), {"scale": (10, 100)}),
+    "TransformReward": (
+        lambda env: gym.wrappers.TransformReward(env, lambda reward: 2 * float(reward)),
+        {"scale": (10, 100)},
+    ),
     "NormalizeObservation": (
         gym.wrappers.NormalizeObservation,
         {"discretizer": "tiles", "low": (-2.0, -2.0), "high": (2.0, 2.0)},
@@ -129,7 +132,7 @@ def test_a_wrapped_environment_trains_as_it_stands(name: str) -> None:
 
 
 def test_bounds_the_wrong_way_round_are_refused() -> None:
-    env = gym.make("MountainCar-v0").unwrapped
+    env: Any = gym.make("MountainCar-v0").unwrapped
     env.observation_space.low[1] = 5.0
     with pytest.raises(ValueError, match=r"^the observation space must have low <= high, got Box\("):
         qtab.train(env, scale=(10, 100))

@@ -1,12 +1,6 @@
-"""Many runs: each the lone one to the bit, however many threads; and what happens when they do not get that far."""
+"""Many runs: each equals the single run of its seed, for any number of threads."""
 
-import multiprocessing
-import os
-import signal
-import subprocess
-import sys
-import textwrap
-import threading
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -15,21 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from support.environments import make_brittle
+from support.parity import assert_same_as_single_runs, run_of
 
 CAR = "MountainCar-v0"
 POLE = "CartPole-v1"
-SHORT = {"episodes": 30}
-
-
-def assert_equal_to_lone_runs(runs, env=CAR, **config):
-    for index, seed in enumerate(runs.seeds):
-        lone = qtab.train(env, seed=seed, **config)
-        assert runs.episode_returns[index].tobytes() == lone.episode_returns.tobytes()
-        assert runs.episode_lengths[index].tobytes() == lone.episode_lengths.tobytes()
-        assert runs.terminated[index].tobytes() == lone.terminated.tobytes()
-        if runs.tables is not None:
-            assert runs.tables[index].tobytes() == lone.tables.tobytes()
+SHORT: dict[str, Any] = {"episodes": 30}
 
 
 @pytest.mark.parametrize("threads", [1, 2, 7, 64])
@@ -38,8 +22,9 @@ def test_each_run_is_the_lone_one_for_any_number_of_threads(threads):
     assert runs.completed
     assert runs.seeds == tuple(range(20))
     assert runs.episode_returns.shape == runs.episode_lengths.shape == runs.terminated.shape == (20, 200)
+    assert runs.tables is not None
     assert runs.tables.shape == (20, 1, 285, 3)
-    assert_equal_to_lone_runs(runs, episodes=200)
+    assert_same_as_single_runs(runs, episodes=200)
 
 
 @settings(max_examples=15, deadline=None)
@@ -60,7 +45,7 @@ def test_each_run_is_the_lone_one_for_any_number_of_threads(threads):
 )
 def test_each_run_is_the_lone_one_for_any_config(seeds, threads, episodes, config):
     runs = qtab.train_many(CAR, seeds, threads=threads, tables=True, episodes=episodes, **config)
-    assert_equal_to_lone_runs(runs, episodes=episodes, **config)
+    assert_same_as_single_runs(runs, episodes=episodes, **config)
 
 
 @settings(max_examples=15, deadline=None)
@@ -82,13 +67,13 @@ def test_each_run_is_the_lone_one_for_any_config(seeds, threads, episodes, confi
 def test_each_run_of_poles_is_the_lone_one_for_any_config(seeds, episodes, config):
     runs = qtab.train_many(POLE, seeds, threads=1, tables=True, episodes=episodes, **config)
     assert runs.config.learning_rate_schedule == "linear"
-    assert_equal_to_lone_runs(runs, env=POLE, episodes=episodes, **config)
+    assert_same_as_single_runs(runs, env=POLE, episodes=episodes, **config)
 
 
 def test_runs_of_poles_are_gymnasiums():
     runs = qtab.train_many(POLE, 9, threads=1, tables=True, episodes=40)
     assert runs.config.backend == "rust"
-    assert_equal_to_lone_runs(runs, env=POLE, episodes=40, backend="gymnasium")
+    assert_same_as_single_runs(runs, env=POLE, episodes=40, backend="gymnasium")
 
 
 @pytest.mark.parametrize(
@@ -105,11 +90,16 @@ def test_each_run_is_the_lone_one_for_every_learner(config, backend):
     episodes = 12 if backend == "rust" else 2
     config = {**config, "episodes": episodes, "backend": backend}
     runs = qtab.train_many(CAR, 3, threads=2, tables=True, **config)
-    assert_equal_to_lone_runs(runs, **config)
+    assert_same_as_single_runs(runs, **config)
     assert runs[1].tables.shape == qtab.train(CAR, seed=1, **config).tables.shape
 
 
-STEEP = {"discretizer": "tiles", "algorithm": "sarsa_lambda", "traces": "accumulating", "trace_decay": 1.0}
+STEEP: dict[str, Any] = {
+    "discretizer": "tiles",
+    "algorithm": "sarsa_lambda",
+    "traces": "accumulating",
+    "trace_decay": 1.0,
+}
 STEEP |= {"learning_rate": 1.5, "discount": 1.0, "epsilon": 0.8, "min_epsilon": 0.8, "episodes": 4}
 
 
@@ -120,15 +110,15 @@ def test_a_failing_run_names_its_seed_and_leaves_the_finished_ones():
         qtab.train_many(CAR, [1, 0, 2], threads=1, tables=True, **STEEP)
     assert str(caught.value) == str(lone.value)
     assert "seed 0" in getattr(caught.value, "__notes__", ["seed 0"])[0]
-    runs = caught.value.run
+    runs = run_of(caught.value)
     assert runs.seeds == (1,)
     assert not runs.completed
-    assert_equal_to_lone_runs(runs, **STEEP)
+    assert_same_as_single_runs(runs, **STEEP)
 
 
 def test_a_number_of_seeds_counts_from_zero():
     assert qtab.train_many(CAR, 3, **SHORT).seeds == (0, 1, 2)
-    assert qtab.train_many(CAR, np.int64(2), **SHORT).seeds == (0, 1)
+    assert qtab.train_many(CAR, np.int64(2), **SHORT).seeds == (0, 1)  # type: ignore[arg-type]
     assert qtab.train_many(CAR, np.array([5, 3]), **SHORT).seeds == (5, 3)
     assert qtab.train_many(CAR, [2**70], **SHORT).seeds == (2**70,)
 
@@ -192,120 +182,3 @@ def test_the_limit_can_be_raised():
     with pytest.raises(MemoryError):
         qtab.train_many(CAR, 10, memory_limit=15_000, **SHORT)
     assert len(qtab.train_many(CAR, 10, memory_limit=40_000, threads=1, **SHORT)) == 10
-
-
-def _in_a_child(queue):
-    queue.put(qtab.train_many(CAR, 4, threads=2, **SHORT).episode_returns)
-
-
-@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
-def test_it_works_after_a_fork():
-    before = qtab.train_many(CAR, 4, threads=2, **SHORT).episode_returns
-    context = multiprocessing.get_context("fork")
-    queue = context.Queue()
-    child = context.Process(target=_in_a_child, args=(queue,))
-    child.start()
-    after = queue.get(timeout=30)
-    child.join(30)
-    assert child.exitcode == 0
-    assert before.tobytes() == after.tobytes()
-
-
-def test_other_python_threads_go_on_meanwhile():
-    ticks = []
-    over = threading.Event()
-
-    def tick():
-        while not over.is_set():
-            ticks.append(over.wait(0.001))
-
-    other = threading.Thread(target=tick)
-    other.start()
-    qtab.train_many(CAR, 20, threads=2, episodes=500)
-    over.set()
-    other.join()
-    assert len(ticks) > 3
-
-
-def test_threads_may_call_it_at_the_same_time():
-    results = {}
-
-    def work(name):
-        results[name] = qtab.train_many(CAR, 6, threads=2, episodes=100).episode_returns.tobytes()
-
-    workers = [threading.Thread(target=work, args=(name,)) for name in range(3)]
-    for worker in workers:
-        worker.start()
-    for worker in workers:
-        worker.join()
-    assert len(set(results.values())) == 1
-    assert len(results) == 3
-
-
-def run_until_ready_then_interrupt(script):
-    """Runs a script that prints a line when it is under way, interrupts it, and returns what it said."""
-    process = subprocess.Popen(
-        [sys.executable, "-c", textwrap.dedent(script)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stdout.readline() == "ready\n"
-    os.kill(process.pid, signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 0, err
-    return out.split()
-
-
-def test_ctrl_c_keeps_the_finished_runs():
-    # The first run is short work, the others are not: the interrupt comes between.
-    said = run_until_ready_then_interrupt(
-        """
-        import threading, time, qtab
-        def ready():
-            time.sleep(0.5)
-            print("ready", flush=True)
-        qtab.train_many("MountainCar-v0", 1, episodes=1)  # what takes time before the first run is behind it
-        threading.Thread(target=ready, daemon=True).start()
-        try:
-            qtab.train_many("MountainCar-v0", 100_000, threads=2, episodes=200)
-        except KeyboardInterrupt as error:
-            runs = error.run
-            assert error.runs is runs and not runs.completed
-            lone = qtab.train("MountainCar-v0", seed=runs.seeds[0], episodes=200)
-            print(len(runs), len(runs.episode_returns), (runs.episode_returns[0] == lone.episode_returns).all())
-        """
-    )
-    assert 0 < int(said[0]) == int(said[1]) < 100_000
-    assert said[2] == "True"
-
-
-def test_python_environments_run_in_processes_and_are_the_lone_runs():
-    runs = qtab.train_many(CAR, [3, 5, 8], threads=2, tables=True, backend="gymnasium", episodes=3)
-    assert_equal_to_lone_runs(runs, episodes=3, backend="gymnasium")
-    assert runs.config.backend == "gymnasium"
-
-
-def test_a_failing_process_names_its_seed_and_leaves_the_finished_runs():
-    with pytest.raises(RuntimeError, match="out of order") as caught:
-        qtab.train_many(make_brittle, [0, 4, 2], threads=1, scale=(10, 100), episodes=2)
-    assert caught.value.run.seeds == (0, 4)
-    lone = qtab.train(make_brittle(), seed=0, scale=(10, 100), episodes=2)
-    assert caught.value.run.episode_returns[0].tobytes() == lone.episode_returns.tobytes()
-
-
-def test_ctrl_c_stops_the_processes_too():
-    said = run_until_ready_then_interrupt(
-        """
-        import multiprocessing, threading, time, qtab
-        def ready():
-            while not multiprocessing.active_children():
-                time.sleep(0.05)
-            time.sleep(2)
-            print("ready", flush=True)
-        if __name__ == "__main__":
-            threading.Thread(target=ready, daemon=True).start()
-            try:
-                qtab.train_many("MountainCar-v0", 1000, threads=2, backend="gymnasium", episodes=50)
-            except KeyboardInterrupt as error:
-                print(error.run.completed, multiprocessing.active_children() == [])
-        """
-    )
-    assert said == ["False", "True"]

@@ -1,6 +1,7 @@
 """verify replays a run through Gymnasium and NumPy, and says where the two part."""
 
 import dataclasses
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -152,7 +153,7 @@ def test_a_run_on_an_object_verifies_against_that_object():
 
 
 def test_an_edited_object_verifies_against_itself_alone():
-    env = gym.make("MountainCar-v0")
+    env: Any = gym.make("MountainCar-v0")
     env.unwrapped.force = 0.002
     run = qtab.train(env, seed=0, episodes=10)
     assert qtab.verify(run, env=env).equal

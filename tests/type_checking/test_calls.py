@@ -15,6 +15,7 @@ CHECKERS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("checker", CHECKERS)
 def test_a_type_checker_refuses_the_wrong_calls_and_no_others(checker: str) -> None:
     command = [sys.executable, "-m", *CHECKERS[checker]]

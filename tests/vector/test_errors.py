@@ -245,7 +245,7 @@ def test_two_threads_cannot_step_the_same_sub_environments_at_once():
     class Meddling(np.random.Generator):
         """Steps the environment from another thread while it is drawn from."""
 
-        def random(self, *arguments):
+        def random(self, *arguments: Any) -> Any:  # type: ignore[override]
             def meddle():
                 try:
                     env.step(np.zeros(8, np.int64))

@@ -3,6 +3,7 @@
 import copy
 import multiprocessing
 import pickle
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -210,7 +211,8 @@ def test_it_says_that_it_cannot_be_copied():
 def test_a_vector_environment_can_be_made_again_from_its_spec():
     env = ours("Pendulum-v1", 3, g=9.81, autoreset_mode="SameStep", max_episode_steps=7)
     again = gym.make_vec(gym.envs.registration.EnvSpec.from_json(gym.spec("qtab/Pendulum-v1").to_json()), num_envs=3)
-    assert again.unwrapped.is_native
+    inner: Any = again.unwrapped
+    assert inner.is_native
     same = gym.make_vec(env.spec)
     assert same.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
     assert_equal(env.reset(seed=3), same.reset(seed=3))

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -24,7 +25,8 @@ def test_sub_environments_go_on_where_they_stood(name, mode):
     kept += ["dealer_top_card_suit", "dealer_top_card_value_str", "_elapsed_steps", "spec"]
     assert vectors.ours.is_native
     for attribute in (attribute for attribute in kept if hasattr(vectors.theirs.envs[0].unwrapped, attribute)):
-        mine, gymnasiums = vectors.ours.get_attr(attribute), vectors.theirs.get_attr(attribute)
+        mine: Any = vectors.ours.get_attr(attribute)
+        gymnasiums: Any = vectors.theirs.get_attr(attribute)
         if attribute == "state":  # at the left wall Gymnasium's MountainCar has a velocity of integer 0
             assert list(map(type, mine)) == list(map(type, gymnasiums))
             mine, gymnasiums = (tuple(np.asarray(state) for state in states) for states in (mine, gymnasiums))
@@ -87,10 +89,11 @@ def test_a_table_that_rust_refuses_is_stepped_in_python():
 
 
 def test_a_constant_that_rust_does_not_know_is_stepped_in_python():
-    for name, kwargs in (
-        ("MountainCar-v0", {"goal_velocity": np.float32(0.01)}),
-        ("Pendulum-v1", {"g": np.float32(9)}),
-    ):
+    unknown: dict[str, Any] = {
+        "MountainCar-v0": {"goal_velocity": np.float32(0.01)},
+        "Pendulum-v1": {"g": np.float32(9)},
+    }
+    for name, kwargs in unknown.items():
         vectors = LockstepVectorEnv(name, 3, **kwargs)
         assert not vectors.ours.is_native
         vectors.reset(seed=1)

@@ -42,7 +42,8 @@ def test_a_window_is_gymnasiums_too():
     assert not vectors.ours.is_native
     vectors.reset(seed=0)
     vectors.run(2)
-    assert vectors.ours.render() == vectors.theirs.render() == (None,)
+    frames: list[Any] = [vectors.ours.render(), vectors.theirs.render()]
+    assert frames == [(None,), (None,)]
     vectors.ours.close()
     vectors.theirs.close()
 
@@ -67,15 +68,15 @@ def test_gymnasiums_vector_wrappers_work(index):
         for make in (ours, lambda *args, **kwargs: theirs(args[0], args[1], **kwargs))
     )
     rng = np.random.default_rng(0)
-    resets = [env.reset(seed=0) for env in (one, other)]
-    assert data_equivalence(*resets, exact=True)
+    mine, gymnasiums = one.reset(seed=0), other.reset(seed=0)
+    assert data_equivalence(mine, gymnasiums, exact=True)
     for _ in range(60):
         actions = rng.integers(0, 2, 4)
-        steps = [env.step(actions) for env in (one, other)]
-        for step in steps:
+        mine, gymnasiums = one.step(actions), other.step(actions)
+        for step in (mine, gymnasiums):
             if isinstance(step[4], dict) and "episode" in step[4]:
                 step[4]["episode"].pop("t")  # seconds
-        assert data_equivalence(*steps, exact=True)
+        assert data_equivalence(mine, gymnasiums, exact=True)
 
 
 def test_videos_are_recorded(tmp_path):

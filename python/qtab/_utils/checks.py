@@ -15,7 +15,7 @@ T = TypeVar("T")
 LARGEST_COUNT = 2**63 - 1
 """The largest number of episodes or steps: they are counted in 64 bits."""
 MAX_THREADS = 1024
-"""The most threads of a call, more than any machine has cores. If the system runs out of threads, the process ends."""
+"""The maximum number of threads of a call, above any core count. Running out of threads would abort the process."""
 
 
 def real(name: str, value: Any, low: float, high: float) -> float:

@@ -6,7 +6,7 @@ from qtab._utils.progress import print_above
 from qtab.cli.outputs import Outputs, counted, last_episodes
 from qtab.cli.settings import with_initial_q
 from qtab.cli.train_arguments import parse_arguments
-from qtab.cli.usage import refusing
+from qtab.cli.usage import usage_errors
 from qtab.planning import Optimum, optimum
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES, default_block
@@ -22,10 +22,10 @@ MAX_QUICK_UPDATES = 10**8
 def run(arguments: list[str]) -> int:
     """Trains and reports; returns the exit code."""
     asked, env, settings = parse_arguments(arguments)
-    with refusing():
+    with usage_errors():
         resolved = resolve(env, with_initial_q(settings))
     try:
-        with refusing():
+        with usage_errors():
             outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record)
             best = _optimum(resolved) if asked.optimum or _has_quick_optimum(resolved) else None
         with outputs:

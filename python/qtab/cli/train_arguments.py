@@ -9,7 +9,7 @@ import tyro
 
 from qtab.cli.parsing import parse
 from qtab.cli.settings import flag_groups, read_config
-from qtab.cli.usage import UsageError, refusing
+from qtab.cli.usage import UsageError, usage_errors
 from qtab.config import DEFAULTS, Config
 from qtab.config.explanations import default, groups
 from qtab.config.merge import merge
@@ -63,10 +63,10 @@ def parse_arguments(arguments: list[str]) -> tuple[Arguments, str, dict[str, Any
         if not help_wanted:
             raise
         asked = _read([], DEFAULTS)
-    with refusing():
+    with usage_errors():
         env, settings = _given(asked)
     if help_wanted:
-        with refusing():
+        with usage_errors():
             shown = _effective_defaults(env, settings)
         _read(["--help"], shown)
     return asked, env, settings

@@ -25,7 +25,7 @@ PYTHON_CHUNK_STEPS = 2**16
 TYPICAL_MAX_STEPS = 1000
 """Episodes with a longer time limit are expected to end before this many steps."""
 MAX_CHUNK_RUNS = 4096
-"""The most runs in a chunk."""
+"""The maximum number of runs in a chunk."""
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,9 @@ class Study:
 
     env: Any
     settings: Sequence[Mapping[str, Any]]
-    """The points of the grid: the config fields by which the settings differ."""
+    """The points of the grid: the config fields in which the settings differ."""
     overrides: Sequence[Mapping[str, Any]]
-    """All that is given for each setting, the fields that all of them share included."""
+    """The config fields given for each setting, including those that all settings share."""
     seeds: tuple[int, ...]
     """The seeds of every setting."""
     resolved: Sequence[ResolvedRun]

@@ -28,7 +28,7 @@ from qtab.training.train_many import MakeEnv, thread_count
 
 BLOCK = 100
 MAX_PENDING_CHUNKS = 64
-"""The most chunks that an executor is given at a time."""
+"""The maximum number of chunks that an executor is given at a time."""
 POLL_SECONDS = 0.5
 """The time between two attempts to claim a chunk while other processes hold all of them."""
 

@@ -1,16 +1,13 @@
 //! `Discretizer`: the active rows of observations, one or many at once, by the features that training uses.
 
-use numpy::{
-    PyArray1, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
-    PyUntypedArrayMethods,
-};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use qtab_core::features::{Features, MAX_TILINGS, OutOfBounds};
 use qtab_core::numeric::Float;
 
-use crate::convert::DiscreteReader;
+use crate::convert::{DiscreteReader, FromNumber, floats, integers};
 use crate::spec::{DiscretizerSpec, Fields, FloatType};
 
 /// Maps observations to the active rows of a table, as a `DiscretizerSpec` describes.
@@ -33,20 +30,17 @@ impl PyDiscretizer {
     #[new]
     fn new(spec: &Bound<'_, PyAny>) -> PyResult<Self> {
         let spec = DiscretizerSpec::parse(&Fields::new(spec)?)?;
-        let n_active = if let DiscretizerSpec::Tiles(tiles) = &spec { tiles.tilings as usize } else { 1 };
-        let (features, dimensions) = match (spec.box_space(), &spec) {
-            (Some((FloatType::F32, dimensions)), _) => {
-                (AnyFeatures::F32(dyn_features(&spec, |bound| bound as f32)?), Some(dimensions))
-            }
-            (Some((FloatType::F64, dimensions)), _) => {
-                (AnyFeatures::F64(dyn_features(&spec, |bound| bound)?), Some(dimensions))
-            }
-            (None, DiscretizerSpec::Identity(reader)) => {
-                (AnyFeatures::Integers(reader.clone()), (!reader.is_scalar()).then(|| reader.dimensions()))
-            }
-            (None, _) => return Err(PyTypeError::new_err("spec must describe a discretizer")),
+        let n_active = spec.n_active();
+        if let DiscretizerSpec::Identity(reader) = spec {
+            let dimensions = (!reader.is_scalar()).then(|| reader.dimensions());
+            return Ok(Self { features: AnyFeatures::Integers(reader), dimensions, n_active });
+        }
+        let (dtype, dimensions) = spec.box_space()?;
+        let features = match dtype {
+            FloatType::F32 => AnyFeatures::F32(dyn_features(&spec, |bound| bound as f32)?),
+            FloatType::F64 => AnyFeatures::F64(dyn_features(&spec, |bound| bound)?),
         };
-        Ok(Self { features, dimensions, n_active })
+        Ok(Self { features, dimensions: Some(dimensions), n_active })
     }
 
     /// How many rows the table has.
@@ -175,77 +169,5 @@ fn dyn_features<T: Float + 'static>(
     if let DiscretizerSpec::Tiles(tiles) = spec {
         return Ok(Box::new(tiles.tile_coding::<T, MAX_TILINGS>()));
     }
-    match spec.grid(to_dtype) {
-        Some(grid) => Ok(Box::new(grid)),
-        None => Err(PyTypeError::new_err("spec must describe a discretizer of a Box")),
-    }
-}
-
-/// A dtype of a Box, to which any number converts as `astype` converts it.
-trait FromNumber: Float + numpy::Element {
-    fn from_f64(number: f64) -> Self;
-    fn from_i64(number: i64) -> Self;
-    fn from_u64(number: u64) -> Self;
-}
-
-impl FromNumber for f32 {
-    fn from_f64(number: f64) -> Self {
-        number as Self
-    }
-
-    fn from_i64(number: i64) -> Self {
-        number as Self
-    }
-
-    fn from_u64(number: u64) -> Self {
-        number as Self
-    }
-}
-
-impl FromNumber for f64 {
-    fn from_f64(number: f64) -> Self {
-        number
-    }
-
-    fn from_i64(number: i64) -> Self {
-        number as Self
-    }
-
-    fn from_u64(number: u64) -> Self {
-        number as Self
-    }
-}
-
-/// The numbers of an array in C order, in the dtype `T`.
-fn floats<T: FromNumber>(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<T>> {
-    match array.dtype().kind() {
-        b'f' => {
-            if let Ok(values) = array.extract::<PyReadonlyArrayDyn<'_, T>>() {
-                return Ok(values.as_array().iter().copied().collect());
-            }
-            converted(array, "float64", T::from_f64)
-        }
-        b'i' => converted(array, "int64", T::from_i64),
-        b'u' => converted(array, "uint64", T::from_u64),
-        _ => Err(PyTypeError::new_err(format!("observation must hold numbers, got {}", array.repr()?))),
-    }
-}
-
-/// The integers of an array in C order.
-fn integers(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<i64>> {
-    match array.dtype().kind() {
-        b'i' | b'b' => converted(array, "int64", |number: i64| number),
-        // No space has integers beyond i64, and none contains its largest.
-        b'u' => converted(array, "uint64", |number: u64| i64::try_from(number).unwrap_or(i64::MAX)),
-        _ => Err(PyTypeError::new_err(format!("observation must hold integers, got {}", array.repr()?))),
-    }
-}
-
-fn converted<S, T>(array: &Bound<'_, PyUntypedArray>, dtype: &str, convert: impl Fn(S) -> T) -> PyResult<Vec<T>>
-where
-    S: numpy::Element + Copy,
-{
-    let array = array.call_method1(intern!(array.py(), "astype"), (dtype,))?;
-    let values: PyReadonlyArrayDyn<'_, S> = array.extract()?;
-    Ok(values.as_array().iter().map(|&value| convert(value)).collect())
+    Ok(Box::new(spec.grid(to_dtype)?))
 }

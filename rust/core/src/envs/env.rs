@@ -1,7 +1,5 @@
 //! The trait of all environments.
 
-use std::sync::Arc;
-
 use crate::random::Rng;
 
 /// The result of a step.
@@ -72,52 +70,4 @@ pub trait Env {
 
     /// The observation of a state.
     fn observe(&self, state: &Self::State) -> Self::Observation;
-}
-
-/// A shared environment: many runs in an environment with a large table need it only once.
-impl<E: Env + ?Sized> Env for Arc<E> {
-    type State = E::State;
-    type Action = E::Action;
-    type Observation = E::Observation;
-
-    const RESET_BOUNDS: Option<[(&'static str, f64); 2]> = E::RESET_BOUNDS;
-
-    #[inline]
-    fn num_actions(&self) -> usize {
-        (**self).num_actions()
-    }
-
-    #[inline]
-    fn reset(&self, rng: &mut impl Rng) -> Self::State {
-        (**self).reset(rng)
-    }
-
-    #[inline]
-    fn reset_within(&self, bounds: [f64; 2], rng: &mut impl Rng) -> Self::State {
-        (**self).reset_within(bounds, rng)
-    }
-
-    #[expect(clippy::inline_always, reason = "a call a step costs a fifth of it")]
-    #[inline(always)]
-    fn step(&self, state: Self::State, action: Self::Action, rng: &mut impl Rng) -> Step<Self::State> {
-        (**self).step(state, action, rng)
-    }
-
-    #[inline]
-    fn step_batch(
-        &self,
-        states: &mut [Self::State],
-        actions: &[Self::Action],
-        rngs: &mut [impl Rng],
-        rewards: &mut [f64],
-        terminated: &mut [bool],
-        inactive: &[bool],
-    ) {
-        (**self).step_batch(states, actions, rngs, rewards, terminated, inactive);
-    }
-
-    #[inline]
-    fn observe(&self, state: &Self::State) -> Self::Observation {
-        (**self).observe(state)
-    }
 }

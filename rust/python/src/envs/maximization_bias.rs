@@ -26,6 +26,7 @@ impl MaximizationBiasEnv {
 
 impl NativeEnv for MaximizationBiasEnv {
     fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-        generic(self.0, Identity(MAXIMIZATION_BIAS_STATES), 1, spec, record)
+        spec.discretizer.check_identity(MAXIMIZATION_BIAS_STATES as usize)?;
+        generic(self.0, Identity(MAXIMIZATION_BIAS_STATES), spec, record)
     }
 }

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use qtab_core::Budget;
 use qtab_core::batch::{BatchedRun, LANES};
 
-use super::{BuiltRun, KeptRecordings, Run};
+use super::{AnyRecordings, BuiltRun, Run};
 use crate::convert::Seed;
 use crate::error::RunError;
 
@@ -87,7 +87,7 @@ pub(super) struct Factory<R, B> {
 impl<R, B> RunFactory for Factory<R, B>
 where
     R: Run + 'static,
-    B: Fn(&Seed) -> PyResult<(R, KeptRecordings)> + Send + Sync,
+    B: Fn(&Seed) -> PyResult<(R, AnyRecordings)> + Send + Sync,
 {
     fn build(&self, seed: &Seed) -> PyResult<BuiltRun> {
         let (run, recordings) = (self.build)(seed)?;
@@ -107,7 +107,7 @@ struct TypedBatch<'a, R, B> {
 impl<R, B> RunBatch for TypedBatch<'_, R, B>
 where
     R: Run,
-    B: Fn(&Seed) -> PyResult<(R, KeptRecordings)>,
+    B: Fn(&Seed) -> PyResult<(R, AnyRecordings)>,
 {
     fn lanes(&self) -> usize {
         self.factory.batching.lanes

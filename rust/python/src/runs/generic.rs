@@ -14,7 +14,7 @@ use qtab_core::{Env, Features, Learner, Task, Trainer};
 
 use super::agent::generic_agent;
 use super::factory::{Batching, Factory};
-use super::{KeptRecordings, Run, RunFactory};
+use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, invalid};
 use crate::rng::environment_rng;
@@ -29,36 +29,22 @@ pub(crate) fn generic_box<E, const M: usize>(
 where
     E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
 {
-    match spec.discretizer.box_space() {
-        Some((_, dimensions)) if dimensions == M => {}
-        Some((_, dimensions)) => {
-            return Err(invalid("discretizer", format!("for observations of {M} components"), dimensions));
-        }
-        None => return Err(invalid("discretizer", "one for a Box", "'identity'")),
+    let (_, dimensions) = spec.discretizer.box_space()?;
+    if dimensions != M {
+        return Err(invalid("discretizer", format!("one for observations of {M} components"), dimensions));
     }
     match &spec.discretizer {
         // Eight tilings are the usual number; room for more costs time at every step.
         DiscretizerSpec::Tiles(tiles) if tiles.tilings <= 8 => {
-            generic(env, tiles.tile_coding::<f32, 8>(), tiles.tilings, spec, record)
+            generic(env, tiles.tile_coding::<f32, 8>(), spec, record)
         }
-        DiscretizerSpec::Tiles(tiles) => {
-            generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), tiles.tilings, spec, record)
-        }
-        grid => match grid.grid(|bound| bound as f32) {
-            Some(grid) => generic(env, grid, 1, spec, record),
-            None => Err(invalid("discretizer", "one for a Box", "'identity'")),
-        },
+        DiscretizerSpec::Tiles(tiles) => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec, record),
+        grid => generic(env, grid.grid(|bound| bound as f32)?, spec, record),
     }
 }
 
-/// Runs in an environment with any features, of which `n_active` are active at a time.
-pub(crate) fn generic<E, F>(
-    env: E,
-    features: F,
-    n_active: u32,
-    spec: &Arc<RunSpec>,
-    record: usize,
-) -> PyResult<Box<dyn RunFactory>>
+/// Runs in an environment with any features.
+pub(crate) fn generic<E, F>(env: E, features: F, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>>
 where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active: Send> + Clone + Send + Sync + 'static,
@@ -66,10 +52,10 @@ where
     if spec.num_actions != env.num_actions() {
         return Err(invalid("num_actions", format!("{}, the environment's", env.num_actions()), spec.num_actions));
     }
-    let (spec, n_rows) = (Arc::clone(spec), features.len());
+    let (spec, shape) = (Arc::clone(spec), (features.len(), spec.discretizer.n_active()));
     let build = move |seed: &Seed| {
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
-        boxed_run(task, (n_rows, n_active as usize), seed, &spec, record, KeptRecordings::Native)
+        boxed_run(task, shape, seed, &spec, record, AnyRecordings::Native)
     };
     Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
 }
@@ -81,15 +67,15 @@ pub(super) fn boxed_run<W>(
     seed: &Seed,
     spec: &RunSpec,
     record: usize,
-    keep: impl FnOnce(Recordings<W::Snapshot>) -> KeptRecordings,
-) -> PyResult<(Box<dyn Run>, KeptRecordings)>
+    keep: impl FnOnce(Recordings<W::Snapshot>) -> AnyRecordings,
+) -> PyResult<(Box<dyn Run>, AnyRecordings)>
 where
     W: RngSnapshot + Task<Active: Send, State: Send, Error: Into<RunError>> + Send + 'static,
     W::Snapshot: Send,
     RunError: From<W::Error>,
 {
     let (task, recordings) = if record == 0 {
-        (BoxedTask::<W::Active, RunError>::new(task), KeptRecordings::None)
+        (BoxedTask::<W::Active, RunError>::new(task), AnyRecordings::None)
     } else {
         let (task, recordings) = EpisodeRecorder::new(task, record);
         (BoxedTask::new(task), keep(recordings))

@@ -10,5 +10,5 @@ mod specialized;
 pub(crate) use factory::{RunBatch, RunFactory};
 pub(crate) use generic::{generic, generic_box};
 pub(crate) use python_task::{PythonEnv, python_run};
-pub(crate) use run::{BuiltRun, KeptRecordings, Run};
+pub(crate) use run::{AnyRecordings, BuiltRun, Run};
 pub(crate) use specialized::{QLearningBatching, specialized};

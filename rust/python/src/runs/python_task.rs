@@ -12,9 +12,9 @@ use qtab_core::tasks::RngSnapshot;
 use qtab_core::tasks::{Next, Transition};
 
 use super::generic::boxed_run;
-use super::{BuiltRun, KeptRecordings};
+use super::{AnyRecordings, BuiltRun};
 use crate::convert::{BoxReader, ObservationReader, Seed};
-use crate::error::{RunError, invalid};
+use crate::error::RunError;
 use crate::spec::{DiscretizerSpec, Fields, FloatType, RunSpec};
 
 /// A Python environment, and how the learner's actions are passed to it.
@@ -53,11 +53,12 @@ pub(crate) fn python_run(
     record: usize,
 ) -> PyResult<BuiltRun> {
     let task = TaskBuilder { env, first_seed: seed.to_python(py)?.unbind(), spec, seed, record };
-    match (&spec.discretizer, spec.discretizer.box_space()) {
-        (DiscretizerSpec::Identity(reader), _) => task.run(reader.clone(), (reader.n_rows(), 1)),
-        (_, Some((FloatType::F32, dimensions))) => task.box_run(|bound| bound as f32, dimensions),
-        (_, Some((FloatType::F64, dimensions))) => task.box_run(|bound| bound, dimensions),
-        (_, None) => Err(invalid("discretizer", "one for a Box", "another")),
+    if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
+        return task.run(reader.clone(), reader.n_rows());
+    }
+    match spec.discretizer.box_space()? {
+        (FloatType::F32, dimensions) => task.box_run(|bound| bound as f32, dimensions),
+        (FloatType::F64, dimensions) => task.box_run(|bound| bound, dimensions),
     }
 }
 
@@ -76,25 +77,23 @@ impl TaskBuilder<'_> {
         T: Float + numpy::Element + 'static,
     {
         if let DiscretizerSpec::Tiles(tiles) = &self.spec.discretizer {
-            let (n_active, tiles) = (tiles.tilings as usize, tiles.tile_coding::<T, MAX_TILINGS>());
+            let tiles = tiles.tile_coding::<T, MAX_TILINGS>();
             let n_rows = Features::<[T]>::len(&tiles);
-            return self.run(BoxReader::new(tiles, dimensions), (n_rows, n_active));
+            return self.run(BoxReader::new(tiles, dimensions), n_rows);
         }
-        let Some(grid) = self.spec.discretizer.grid(to_dtype) else {
-            return Err(invalid("discretizer", "one for a Box", "'identity'"));
-        };
+        let grid = self.spec.discretizer.grid(to_dtype)?;
         let n_rows = Features::<[T]>::len(&grid);
-        self.run(BoxReader::new(grid, dimensions), (n_rows, 1))
+        self.run(BoxReader::new(grid, dimensions), n_rows)
     }
 
-    fn run<R>(self, reader: R, shape: (usize, usize)) -> PyResult<BuiltRun>
+    fn run<R>(self, reader: R, n_rows: usize) -> PyResult<BuiltRun>
     where
         R: ObservationReader<Active: Send> + Send + 'static,
     {
         let Self { env, first_seed, spec, seed, record } = self;
-        let max_episode_steps = spec.max_episode_steps;
+        let (max_episode_steps, shape) = (spec.max_episode_steps, (n_rows, spec.discretizer.n_active()));
         let task = PythonTask { env, first_seed, seeded: false, max_episode_steps, reader };
-        let (run, recordings) = boxed_run(task, shape, seed, spec, record, KeptRecordings::Python)?;
+        let (run, recordings) = boxed_run(task, shape, seed, spec, record, AnyRecordings::Python)?;
         Ok(BuiltRun { run, recordings, attached: true })
     }
 }

@@ -62,7 +62,7 @@ impl Run for Box<dyn Run> {
 }
 
 /// The last episodes of a run, where it records them.
-pub(crate) enum KeptRecordings {
+pub(crate) enum AnyRecordings {
     None,
     /// By how many words the environment's generator had drawn when the episode began, and its buffered half-word.
     Native(Recordings<(u64, Option<u32>)>),
@@ -73,7 +73,7 @@ pub(crate) enum KeptRecordings {
 /// A run that has not started.
 pub(crate) struct BuiltRun {
     pub(crate) run: Box<dyn Run>,
-    pub(crate) recordings: KeptRecordings,
+    pub(crate) recordings: AnyRecordings,
     /// Whether it steps Python, and so stays on the calling thread, attached to the interpreter.
     pub(crate) attached: bool,
 }

@@ -13,7 +13,7 @@ use qtab_core::{Env, Features, Trainer};
 
 use super::agent::policy;
 use super::factory::{Batching, Factory};
-use super::{KeptRecordings, Run, RunFactory, generic};
+use super::{AnyRecordings, Run, RunFactory, generic};
 use crate::convert::Seed;
 use crate::rng::{BitGenerator, agent_pcg64, environment_rng};
 use crate::spec::{AlgorithmSpec, LearningRateSpec, PolicySpec, RunSpec, ScheduleSpec};
@@ -70,13 +70,13 @@ where
     F: Features<E::Observation, Active = [u32; 1]> + Clone + Send + Sync + 'static,
 {
     let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else {
-        return generic(env, features, 1, spec, record);
+        return generic(env, features, spec, record);
     };
     let one_step =
         matches!(spec.algorithm, AlgorithmSpec::QLearning | AlgorithmSpec::Sarsa | AlgorithmSpec::ExpectedSarsa);
     let fits = spec.num_actions == N && env.num_actions() == N && spec.bit_generator == BitGenerator::Pcg64;
     if !one_step || !fits || spec.terminate_on_truncation || record > 0 {
-        return generic(env, features, 1, spec, record);
+        return generic(env, features, spec, record);
     }
     let builder = Builder::<E, F, N> { env, features, spec: Arc::clone(spec) };
     Ok(match spec.policy {
@@ -147,7 +147,7 @@ where
             let task =
                 NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
             let learner = TdLearner { agent, rule: rule.clone() };
-            Ok((Trainer::new(task, learner, rng), KeptRecordings::None))
+            Ok((Trainer::new(task, learner, rng), AnyRecordings::None))
         };
         Box::new(Factory { build, batching })
     }

@@ -63,22 +63,37 @@ impl DiscretizerSpec {
         fields.tagged(DISCRETIZERS)
     }
 
-    /// The dtype and the number of components of the observations; None for integers.
-    pub(crate) fn box_space(&self) -> Option<(FloatType, usize)> {
+    /// The dtype and the number of components of the observations. It is an error for integers.
+    pub(crate) fn box_space(&self) -> PyResult<(FloatType, usize)> {
         match self {
-            Self::Round(round) => Some((round.dtype, round.scale.len())),
-            Self::Bins(bins) => Some((bins.dtype, bins.edges.len())),
-            Self::Tiles(tiles) => Some((tiles.dtype, tiles.tiles.len())),
-            Self::Identity(_) => None,
+            Self::Round(round) => Ok((round.dtype, round.scale.len())),
+            Self::Bins(bins) => Ok((bins.dtype, bins.edges.len())),
+            Self::Tiles(tiles) => Ok((tiles.dtype, tiles.tiles.len())),
+            Self::Identity(_) => Err(invalid("discretizer", "one for a Box of observations", "'identity'")),
         }
     }
 
-    /// The grid of either kind, with arithmetic in `T`; None for other discretizers.
-    pub(crate) fn grid<T: Float>(&self, to_dtype: impl Fn(f64) -> T) -> Option<AnyGrid<T>> {
+    /// Refuses all but the integers of an environment whose table has so many rows.
+    pub(crate) fn check_identity(&self, n_rows: usize) -> PyResult<()> {
         match self {
-            Self::Round(round) => Some(AnyGrid::Rounding(Rounding::new(round.axes(to_dtype)))),
-            Self::Bins(bins) => Some(AnyGrid::Bins(Bins::new(bins.edges.clone()))),
-            Self::Tiles(_) | Self::Identity(_) => None,
+            Self::Identity(reader) if reader.n_rows() == n_rows => Ok(()),
+            Self::Identity(reader) => Err(invalid("discretizer", format!("of {n_rows} rows here"), reader.n_rows())),
+            _ => Err(invalid("discretizer", "'identity' here", "one for a Box of observations")),
+        }
+    }
+
+    /// How many rows are active at a time.
+    pub(crate) fn n_active(&self) -> usize {
+        if let Self::Tiles(tiles) = self { tiles.tilings as usize } else { 1 }
+    }
+
+    /// The grid, with arithmetic in `T`. It is an error for discretizers that are no grid of a Box.
+    pub(crate) fn grid<T: Float>(&self, to_dtype: impl Fn(f64) -> T) -> PyResult<AnyGrid<T>> {
+        match self {
+            Self::Round(round) => Ok(AnyGrid::Rounding(Rounding::new(round.axes(to_dtype)))),
+            Self::Bins(bins) => Ok(AnyGrid::Bins(Bins::new(bins.edges.clone()))),
+            Self::Tiles(_) => Err(invalid("discretizer", "'round' or 'bins'", "'tiles'")),
+            Self::Identity(_) => Err(invalid("discretizer", "'round' or 'bins'", "'identity'")),
         }
     }
 }

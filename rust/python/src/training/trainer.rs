@@ -15,7 +15,7 @@ use super::env_spec::EnvironmentSpec;
 use crate::convert::Seed;
 use crate::error::RunError;
 use crate::interrupt::run_interruptible;
-use crate::runs::{BuiltRun, KeptRecordings, python_run};
+use crate::runs::{AnyRecordings, BuiltRun, python_run};
 use crate::spec::{Fields, RunSpec};
 
 /// As `STEPS_BETWEEN_CHECKS`, for steps in Python, each of which may take a millisecond.
@@ -100,14 +100,14 @@ impl PyTrainer {
     fn recordings(&self, py: Python<'_>) -> PyResult<Vec<(Py<PyAny>, Vec<u32>)>> {
         let built = self.lock()?;
         match &built.recordings {
-            KeptRecordings::None => Ok(Vec::new()),
-            KeptRecordings::Native(recordings) => lock(recordings)
+            AnyRecordings::None => Ok(Vec::new()),
+            AnyRecordings::Native(recordings) => lock(recordings)
                 .iter()
                 .map(|Recording { snapshot, actions }| {
                     Ok((snapshot.into_pyobject(py)?.into_any().unbind(), actions.clone()))
                 })
                 .collect(),
-            KeptRecordings::Python(recordings) => Ok(lock(recordings)
+            AnyRecordings::Python(recordings) => Ok(lock(recordings)
                 .iter()
                 .map(|Recording { snapshot, actions }| (snapshot.clone_ref(py), actions.clone()))
                 .collect()),

@@ -45,6 +45,7 @@ fn rules(env: &Bound<'_, PyAny>) -> PyResult<Blackjack> {
 
 impl NativeEnv for BlackjackEnv {
     fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+        spec.discretizer.check_identity(Blackjack::OBSERVATION_SHAPE.iter().product())?;
         let features = MultiDiscreteIndex(Blackjack::OBSERVATION_SHAPE.map(|count| count as u32));
         specialized::<_, _, 2>(self.0, features, spec, record, QLearningBatching::one_by_one())
     }

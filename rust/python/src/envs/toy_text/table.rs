@@ -20,24 +20,25 @@ use crate::runs::{QLearningBatching, RunFactory, specialized};
 use crate::spec::RunSpec;
 use crate::vector::{DynVectorEnv, EnvInfo, TransitionInfo, VectorOptions, native_vector_env};
 
-/// A transition table that all runs share.
-pub(crate) struct TableEnv(Arc<TabularMdp>);
+/// A transition table, which all runs share.
+pub(crate) struct TableEnv(TabularMdp);
 
 impl TableEnv {
     pub(crate) fn from_gymnasium(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
-        Ok(Arc::new(Self(Arc::new(table_of(env)?))))
+        Ok(Arc::new(Self(table_of(env)?)))
     }
 }
 
-/// One row for each state of a table.
-pub(super) fn identity(table: &TabularMdp) -> PyResult<Identity> {
+/// One row for each state of a table, as the spec must say.
+pub(super) fn identity(table: &TabularMdp, spec: &RunSpec) -> PyResult<Identity> {
+    spec.discretizer.check_identity(table.num_states())?;
     let states = u32::try_from(table.num_states());
     states.map(Identity).map_err(|_| PyValueError::new_err("P must have fewer than 2**32 states"))
 }
 
 /// Runs on a table, compiled for the numbers of actions that Gymnasium's tables have.
-pub(super) fn table_runs(table: Arc<TabularMdp>, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-    let features = identity(&table)?;
+pub(super) fn table_runs(table: TabularMdp, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+    let features = identity(&table, spec)?;
     if table.num_actions() == 4 {
         specialized::<_, _, 4>(table, features, spec, record, QLearningBatching::one_by_one())
     } else {
@@ -47,7 +48,7 @@ pub(super) fn table_runs(table: Arc<TabularMdp>, spec: &Arc<RunSpec>, record: us
 
 impl NativeEnv for TableEnv {
     fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-        table_runs(Arc::clone(&self.0), spec, record)
+        table_runs(self.0.clone(), spec, record)
     }
 
     fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {
@@ -57,11 +58,11 @@ impl NativeEnv for TableEnv {
             action_masks: None,
         };
         let info = EnvInfo { envs_per_thread: 16_384, transition: Some(transition), snapshot, terminal_counter: None };
-        native_vector_env(py, WithTransitionProbability((*self.0).clone()), info, options).map(Some)
+        native_vector_env(py, WithTransitionProbability(self.0.clone()), info, options).map(Some)
     }
 
     fn mdp(&self) -> PyResult<Option<Mdp>> {
-        Ok(Some((*self.0).clone().into()))
+        Ok(Some(self.0.clone().into()))
     }
 }
 

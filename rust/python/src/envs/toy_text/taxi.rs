@@ -28,9 +28,9 @@ const IN_TAXI: usize = 4;
 /// The shape of the map in characters, its border included.
 const MAP_SHAPE: [usize; 2] = [7, 11];
 
-/// A taxi that all runs share.
+/// A taxi, whose table all runs share.
 pub(crate) struct TaxiEnv {
-    taxi: Arc<Taxi>,
+    taxi: Taxi,
     /// Gymnasium's environment, which knows the action masks.
     env: Py<PyAny>,
 }
@@ -40,7 +40,7 @@ impl TaxiEnv {
         let py = env.py();
         let is_fickle = env.getattr(intern!(py, "fickle_passenger"))?.is_truthy()?;
         let fickle = if is_fickle { Some(env.getattr(intern!(py, "fickle_probability"))?.extract()?) } else { None };
-        let taxi = Arc::new(Taxi { table: table_of(env)?, fickle });
+        let taxi = Taxi { table: table_of(env)?, fickle };
         Ok(Arc::new(Self { taxi, env: env.clone().unbind() }))
     }
 }
@@ -48,9 +48,9 @@ impl TaxiEnv {
 impl NativeEnv for TaxiEnv {
     fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
         if self.taxi.fickle.is_some() {
-            return generic(Arc::clone(&self.taxi), identity(&self.taxi.table)?, 1, spec, record);
+            return generic(self.taxi.clone(), identity(&self.taxi.table, spec)?, spec, record);
         }
-        table_runs(Arc::new(self.taxi.table.clone()), spec, record)
+        table_runs(self.taxi.table.clone(), spec, record)
     }
 
     fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {
@@ -66,11 +66,11 @@ impl NativeEnv for TaxiEnv {
             }),
         };
         let info = EnvInfo { envs_per_thread: 16_384, transition: Some(transition), snapshot, terminal_counter: None };
-        native_vector_env(py, WithTransitionProbability((*self.taxi).clone()), info, options).map(Some)
+        native_vector_env(py, WithTransitionProbability(self.taxi.clone()), info, options).map(Some)
     }
 
     fn mdp(&self) -> PyResult<Option<Mdp>> {
-        Mdp::try_from(&*self.taxi).map(Some).map_err(|error| PyValueError::new_err(error.to_string()))
+        Mdp::try_from(&self.taxi).map(Some).map_err(|error| PyValueError::new_err(error.to_string()))
     }
 }
 

@@ -1,0 +1,82 @@
+"""The gap between a run and the optimum of its environment."""
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from support.toy_text import IDS
+
+MINT = qtab.TabularEnv({0: {0: [(1.0, 0, 1.0, False)], 1: [(1.0, 0, 0.0, True)]}}, [1.0])
+"""A reward of 1 for every step."""
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_a_greedy_policys_exact_return_is_what_it_returns_when_evaluated(name):
+    run = qtab.train(name, seed=3, episodes=3000)
+    gap = qtab.optimum(run).gap(run)
+    played = qtab.evaluate(run, episodes=2000, seed=1)
+    assert abs(played.mean_return - gap.greedy_return) <= 3.5 * played.standard_error + 1e-9
+    assert gap.standard_error == 0
+    assert gap.final_return == run.episode_returns[-100:].mean()
+    assert (gap.final, gap.greedy) == (gap.optimum - gap.final_return, gap.optimum - gap.greedy_return)
+    assert gap.greedy >= -1e-12
+
+
+def test_a_fickle_passenger_is_modelled_exactly():
+    kwargs = {"fickle_passenger": True, "fickle_probability": 0.6}
+    run = qtab.train("Taxi-v4", env_kwargs=kwargs, seed=0, episodes=6000)
+    found = qtab.optimum(run)
+    gap, played = found.gap(run), qtab.evaluate(run, episodes=3000, seed=1)
+    assert abs(played.mean_return - gap.greedy_return) <= 3.5 * played.standard_error
+    steady = qtab.optimum("Taxi-v4")
+    assert found.expected_return != steady.expected_return
+    # Who carries a passenger does not see whether they have changed their mind yet.
+    env: Any = gym.make("Taxi-v4").unwrapped
+    aboard = [env.encode(row, column, 4, wish) for row, column, wish in np.ndindex(5, 5, 4)]
+    refused = 0
+    for state in aboard:
+        try:
+            found.predict(state)
+        except ValueError as error:
+            refused += str(error) == f"the best action depends on what the observation {state} does not show"
+    assert 0 < refused < len(aboard)
+
+
+def test_runs_are_compared_too():
+    runs = qtab.train_many("FrozenLake-v1", seeds=4, episodes=2000, tables=True)
+    found = qtab.optimum(runs)
+    gap = found.gap(runs)
+    assert gap.greedy_return.tolist() == [found.gap(run).greedy_return for run in runs]
+    assert gap.final.tolist() == (found.expected_return - runs.final_returns(100)).tolist()
+    assert np.isnan(found.gap(qtab.train_many("FrozenLake-v1", seeds=4, episodes=200)).greedy).all()
+
+
+def test_a_gap_wants_a_run_of_its_environment_and_limit():
+    found = qtab.optimum("FrozenLake-v1")
+    with pytest.raises(ValueError, match="run must have env 'FrozenLake-v1' as this optimum has, got 'Taxi-v4'"):
+        found.gap(qtab.train("Taxi-v4", episodes=2, seed=0))
+    with pytest.raises(ValueError, match="run must have max_episode_steps 100 as this optimum has, got 50"):
+        found.gap(qtab.train("FrozenLake-v1", episodes=2, seed=0, max_episode_steps=50))
+    with pytest.raises(ValueError, match="run must have env_kwargs"):
+        found.gap(qtab.train("FrozenLake-v1", episodes=2, seed=0, env_kwargs={"is_slippery": False}))
+    with pytest.raises(TypeError, match="run must be a Run or Runs, got 3"):
+        found.gap(3)  # type: ignore[call-overload]
+    own = qtab.train(MINT, episodes=2, seed=0, max_episode_steps=5)
+    with pytest.raises(
+        ValueError, match="env must be an environment object for this run: its environment 'TabularEnv'"
+    ):
+        qtab.optimum(own)
+    assert qtab.optimum(MINT, max_episode_steps=5).gap(own).optimum == 5.0
+    with pytest.raises(ValueError, match="env_kwargs must be None with a run"):
+        qtab.optimum(own, env_kwargs={})
+
+
+def test_keyword_arguments_count_whether_they_are_said_or_not():
+    said = {"is_slippery": True, "map_name": "4x4"}
+    run = qtab.train("qtab/FrozenLake-v1", episodes=2, seed=0, env_kwargs=said)
+    assert qtab.optimum("FrozenLake-v1", env_kwargs={"is_slippery": True}).gap(run).optimum > 0.7
+    dry = qtab.train("FrozenLake-v1", episodes=2, seed=0, env_kwargs={"is_slippery": False})
+    assert qtab.optimum(dry).gap(dry).optimum == 1.0

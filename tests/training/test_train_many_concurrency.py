@@ -1,0 +1,137 @@
+"""Many runs beside threads, in processes, and interrupted."""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+from typing import Any
+
+import pytest
+
+import qtab
+from support.environments import make_brittle
+from support.parity import assert_same_as_single_runs, run_of
+
+CAR = "MountainCar-v0"
+SHORT: dict[str, Any] = {"episodes": 30}
+
+
+def _in_a_child(queue):
+    queue.put(qtab.train_many(CAR, 4, threads=2, **SHORT).episode_returns)
+
+
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_it_works_after_a_fork():
+    before = qtab.train_many(CAR, 4, threads=2, **SHORT).episode_returns
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    child = context.Process(target=_in_a_child, args=(queue,))
+    child.start()
+    after = queue.get(timeout=30)
+    child.join(30)
+    assert child.exitcode == 0
+    assert before.tobytes() == after.tobytes()
+
+
+def test_other_python_threads_go_on_meanwhile():
+    ticks = []
+    over = threading.Event()
+
+    def tick():
+        while not over.is_set():
+            ticks.append(over.wait(0.001))
+
+    other = threading.Thread(target=tick)
+    other.start()
+    qtab.train_many(CAR, 20, threads=2, episodes=500)
+    over.set()
+    other.join()
+    assert len(ticks) > 3
+
+
+def test_threads_may_call_it_at_the_same_time():
+    results = {}
+
+    def work(name):
+        results[name] = qtab.train_many(CAR, 6, threads=2, episodes=100).episode_returns.tobytes()
+
+    workers = [threading.Thread(target=work, args=(name,)) for name in range(3)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert len(set(results.values())) == 1
+    assert len(results) == 3
+
+
+def run_until_ready_then_interrupt(script):
+    """Runs a script that prints a line when it is under way, interrupts it, and returns what it said."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(script)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    os.kill(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
+    return out.split()
+
+
+def test_ctrl_c_keeps_the_finished_runs():
+    # The first run is short work, the others are not: the interrupt comes between.
+    said = run_until_ready_then_interrupt(
+        """
+        import threading, time, qtab
+        def ready():
+            time.sleep(0.5)
+            print("ready", flush=True)
+        qtab.train_many("MountainCar-v0", 1, episodes=1)  # what takes time before the first run is behind it
+        threading.Thread(target=ready, daemon=True).start()
+        try:
+            qtab.train_many("MountainCar-v0", 100_000, threads=2, episodes=200)
+        except KeyboardInterrupt as error:
+            runs = error.run
+            assert error.runs is runs and not runs.completed
+            lone = qtab.train("MountainCar-v0", seed=runs.seeds[0], episodes=200)
+            print(len(runs), len(runs.episode_returns), (runs.episode_returns[0] == lone.episode_returns).all())
+        """
+    )
+    assert 0 < int(said[0]) == int(said[1]) < 100_000
+    assert said[2] == "True"
+
+
+def test_python_environments_run_in_processes_and_are_the_lone_runs():
+    runs = qtab.train_many(CAR, [3, 5, 8], threads=2, tables=True, backend="gymnasium", episodes=3)
+    assert_same_as_single_runs(runs, episodes=3, backend="gymnasium")
+    assert runs.config.backend == "gymnasium"
+
+
+def test_a_failing_process_names_its_seed_and_leaves_the_finished_runs():
+    with pytest.raises(RuntimeError, match="out of order") as caught:
+        qtab.train_many(make_brittle, [0, 4, 2], threads=1, scale=(10, 100), episodes=2)
+    assert run_of(caught.value).seeds == (0, 4)
+    lone = qtab.train(make_brittle(), seed=0, scale=(10, 100), episodes=2)
+    assert run_of(caught.value).episode_returns[0].tobytes() == lone.episode_returns.tobytes()
+
+
+def test_ctrl_c_stops_the_processes_too():
+    said = run_until_ready_then_interrupt(
+        """
+        import multiprocessing, threading, time, qtab
+        def ready():
+            while not multiprocessing.active_children():
+                time.sleep(0.05)
+            time.sleep(2)
+            print("ready", flush=True)
+        if __name__ == "__main__":
+            threading.Thread(target=ready, daemon=True).start()
+            try:
+                qtab.train_many("MountainCar-v0", 1000, threads=2, backend="gymnasium", episodes=50)
+            except KeyboardInterrupt as error:
+                print(error.run.completed, multiprocessing.active_children() == [])
+        """
+    )
+    assert said == ["False", "True"]
