@@ -57,13 +57,10 @@ def draw_car(ax: Axes, observations: NDArray[np.float32], frames: list[NDArray[n
 def draw_values(ax: Axes, run: qtab.Run, observations: NDArray[np.float32], steps: list[int]) -> None:
     """Draws max_a Q(s, a) over the state space, states never visited in grey, and the episode over it."""
     positions, velocities = np.linspace(-1.2, 0.6, 217), np.linspace(-0.07, 0.07, 169)
-    visited = run.tables[0].any(axis=1)
-    values = np.full((len(velocities), len(positions)), np.nan)
-    for row, velocity in enumerate(velocities):
-        for column, position in enumerate(positions):
-            state = np.array([position, velocity], np.float32)
-            if visited[run.grid.lit(state)].all():
-                values[row, column] = run.q_values(state).max()
+    states = np.stack(np.meshgrid(positions, velocities), axis=-1).reshape(-1, 2)
+    updated = run.tables[0].any(axis=1)
+    visited = updated[run.discretizer.active_rows(states)].all(axis=1)
+    values = np.where(visited, run.q_values(states).max(axis=1), np.nan).reshape(len(velocities), len(positions))
     image = ax.pcolormesh(positions, velocities, values, cmap="viridis", vmax=0, rasterized=True)
     ax.figure.colorbar(image, ax=ax, label="max$_a$ Q(s, a)", pad=0.02)
     ax.set_facecolor("0.88")

@@ -1,201 +1,263 @@
-"""What the extension module is handed: a run's description, every default resolved and every value checked."""
+"""What the extension module takes: the description of a run, complete and checked, every union tagged by ``type``.
 
-from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
+The extension parses it once into its own enums. The words of each union stand there a second time (``_core.ALGORITHMS``
+and its like); a test holds the two lists together.
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.config.choices import BitGenerator, OnTruncation, TerminalUpdate, Ties, Traces
+
 if TYPE_CHECKING:
-    from qtab._core import Classic, Transitions
-    from qtab.config import Config
+    from qtab._core import NativeEnv
+
+# Environments
 
 
-class Control(TypedDict):
-    """An environment of classic control that Rust knows, and the actions of a continuous one."""
+class NativeEnvSpec(TypedDict):
+    """An environment that Rust steps."""
 
-    constants: "Classic"
-    forces: list[float]
+    type: Literal["native"]
+    env: "NativeEnv"
 
 
-class PythonEnvironment(TypedDict):
+class PythonEnvSpec(TypedDict):
     """An environment that is stepped in Python."""
 
+    type: Literal["python"]
     env: Any
-    seed: int
     first_action: int
-    choices: list[NDArray[np.floating]]
+    """The environment's number of the first action, where its space is Discrete."""
+    actions: Sequence[NDArray[np.floating]]
+    """The actions themselves, where its space is a Box; empty for a Discrete space."""
 
 
-class Process(TypedDict):
-    """A table that Rust steps by."""
+EnvironmentSpec: TypeAlias = NativeEnvSpec | PythonEnvSpec
 
-    table: "Transitions"
-    fickle: float | None
+# Discretizers
 
-
-class Rules(TypedDict):
-    """Those of blackjack."""
-
-    natural: bool
-    sab: bool
+FloatType: TypeAlias = Literal["float32", "float64"]
 
 
-class Bias(TypedDict):
-    """The example of maximisation bias."""
+class RoundSpec(TypedDict):
+    """A grid: each component rounded to the nearest multiple of 1 / ``scale``."""
 
-    actions: int
-    mean: float
-    deviation: float
+    type: Literal["round"]
+    dtype: FloatType
+    """Of the observations, and of the arithmetic."""
+    low: Sequence[float]
+    """The bounds of the observation space."""
+    high: Sequence[float]
+    scale: Sequence[float]
+    """Cells per unit of each component."""
 
 
-class Rounding(TypedDict):
-    """The article's grid."""
+class BinsSpec(TypedDict):
+    """A grid of bins between edges, as ``numpy.digitize`` numbers them; ``bins`` and ``edges`` of the config."""
 
-    scale: list[float]
+    type: Literal["bins"]
+    dtype: FloatType
+    edges: Sequence[Sequence[float]]
+    """For each component the inner edges, ascending."""
 
 
-class Tiles(TypedDict):
+class TilesSpec(TypedDict):
     """Tile coding."""
 
-    low: list[float]
-    high: list[float]
-    tiles: list[int]
+    type: Literal["tiles"]
+    dtype: FloatType
+    low: Sequence[float]
+    """What the tilings span."""
+    high: Sequence[float]
+    tiles: Sequence[int]
+    """Along each component."""
     tilings: int
     hashed_rows: int | None
+    """The rows that all tilings share; None gives each tile its own."""
 
 
-class Cells(TypedDict):
-    """Whole numbers, each combination a row."""
+class IdentitySpec(TypedDict):
+    """Integers, each combination a row in C order."""
 
-    first: list[int]
-    counts: list[int]
+    type: Literal["identity"]
+    first: Sequence[int]
+    """The first integer of each component."""
+    counts: Sequence[int]
+    """How many integers each component takes."""
     scalar: bool
+    """Whether an observation is one integer (a Discrete space), not a sequence of them."""
 
 
-class Bins(TypedDict):
-    """Between edges."""
+DiscretizerSpec: TypeAlias = RoundSpec | BinsSpec | TilesSpec | IdentitySpec
 
-    edges: list[list[float]]
-
-
-Features: TypeAlias = Rounding | Tiles | Cells | Bins
+# The agent
 
 
-class Course(TypedDict):
-    """A rate from episode to episode."""
+class ConstantSpec(TypedDict):
+    """The same in every episode."""
 
-    schedule: str
+    type: Literal["constant"]
     value: float
-    least: float
+
+
+class LinearSpec(TypedDict):
+    """Falls by equal amounts, from episode ``warm_up`` on, to reach ``minimum`` at the end of the run."""
+
+    type: Literal["linear"]
+    value: float
+    minimum: float
+    warm_up: int
+
+
+class ExponentialSpec(TypedDict):
+    """Falls by the factor ``decay`` after each episode, from episode ``warm_up`` on, but not below ``minimum``."""
+
+    type: Literal["exponential"]
+    value: float
+    minimum: float
     decay: float
     warm_up: int
 
 
-class EpsilonGreedy(TypedDict):
-    """A way of choosing actions."""
+class VisitsSpec(TypedDict):
+    """``value`` / n at the n-th visit of a state and action, but not below ``minimum``."""
 
-    epsilon: Course
-    ties: str
+    type: Literal["visits"]
+    value: float
+    minimum: float
 
 
-class Softmax(TypedDict):
-    """Another."""
+ScheduleSpec: TypeAlias = ConstantSpec | LinearSpec | ExponentialSpec
+LearningRateSpec: TypeAlias = ScheduleSpec | VisitsSpec
 
+
+class EpsilonGreedySpec(TypedDict):
+    """Explores with probability epsilon."""
+
+    type: Literal["epsilon_greedy"]
+    epsilon: ScheduleSpec
+    ties: Ties
+
+
+class SoftmaxSpec(TypedDict):
+    """Chooses an action with probability proportional to exp(Q / temperature)."""
+
+    type: Literal["softmax"]
     temperature: float
 
 
-class Algorithm(TypedDict):
-    """A learner, with its own options; the others are None."""
-
-    name: str
-    trace_decay: float | None
-    traces: str | None
-    trace_cutoff: float | None
-    n_steps: int | None
-    planning_steps: int | None
-    time_weight: float | None
+PolicySpec: TypeAlias = EpsilonGreedySpec | SoftmaxSpec
 
 
-class Plan(TypedDict):
-    """Everything else."""
+class TableSpec(TypedDict):
+    """Given values: (tables, rows, actions) in C order, in any shape. -inf: the state does not have that action."""
 
-    low: list[float]
-    high: list[float]
-    single: bool
-    features: Features
-    actions: int
-    max_episode_steps: int | None
-    seed: list[int]
-    bit_generator: str
-    initial_q: NDArray[np.float64] | tuple[float, float] | float
-    learning_rate: Course
+    type: Literal["table"]
+    values: NDArray[np.float64]
+
+
+class UniformSpec(TypedDict):
+    """Values drawn uniformly from [low, high) by the agent's generator."""
+
+    type: Literal["uniform"]
+    low: float
+    high: float
+
+
+InitialQSpec: TypeAlias = TableSpec | UniformSpec | ConstantSpec
+
+
+class OneStepSpec(TypedDict):
+    """An algorithm without options."""
+
+    type: Literal["q_learning", "sarsa", "expected_sarsa", "double_q_learning"]
+
+
+class NStepSarsaSpec(TypedDict):
+    """n-step Sarsa."""
+
+    type: Literal["n_step_sarsa"]
+    n_steps: int
+
+
+class TraceSpec(TypedDict):
+    """An algorithm with eligibility traces of a kind."""
+
+    type: Literal["sarsa_lambda", "watkins_q_lambda"]
+    trace_decay: float
+    traces: Traces
+    trace_cutoff: float
+
+
+class TrueOnlineSarsaLambdaSpec(TypedDict):
+    """True online Sarsa(lambda), whose traces are of its own kind."""
+
+    type: Literal["true_online_sarsa_lambda"]
+    trace_decay: float
+    trace_cutoff: float
+
+
+class DynaQSpec(TypedDict):
+    """Dyna-Q."""
+
+    type: Literal["dyna_q"]
+    planning_steps: int
+
+
+class DynaQPlusSpec(TypedDict):
+    """Dyna-Q+."""
+
+    type: Literal["dyna_q_plus"]
+    planning_steps: int
+    time_weight: float
+
+
+AlgorithmSpec: TypeAlias = (
+    OneStepSpec | NStepSarsaSpec | TraceSpec | TrueOnlineSarsaLambdaSpec | DynaQSpec | DynaQPlusSpec
+)
+
+
+class RunSpec(TypedDict):
+    """A run, but for its seed."""
+
+    env: EnvironmentSpec
+    discretizer: DiscretizerSpec
+    num_actions: int
+    max_episode_steps: int
+    algorithm: AlgorithmSpec
+    policy: PolicySpec
+    learning_rate: LearningRateSpec
     discount: float
-    policy: EpsilonGreedy | Softmax
+    initial_q: InitialQSpec
+    terminal_update: TerminalUpdate
+    on_truncation: OnTruncation
     episodes: int
-    terminal_update: str
-    on_truncation: str
-    algorithm: Algorithm
-    record: int
+    bit_generator: BitGenerator
+
+
+# Results
 
 
 class Results(TypedDict):
-    """Where many runs leave their results: a row for each."""
+    """The arrays into which many runs write their results: a row for each run."""
 
     returns: NDArray[np.float64]
+    """(runs, episodes)"""
     lengths: NDArray[np.int64]
+    """(runs, episodes)"""
     terminated: NDArray[np.bool_]
+    """(runs, episodes)"""
     tables: NDArray[np.float64]
+    """(runs, values), or (runs, 0) where tables are not kept."""
     finished: NDArray[np.bool_]
+    """(runs,)"""
 
 
-Solved: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]
-"""Of a table: values, values of the actions, the policy."""
-Changes: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
-"""From how many steps left on, in which state, which action is best."""
-
-
-def seed_words(seed: int) -> list[int]:
-    """Returns a non-negative integer as 32-bit words, least significant first; zero is one word."""
-    count = max(1, (seed.bit_length() + 31) // 32)
-    return [(seed >> (32 * index)) & 0xFFFF_FFFF for index in range(count)]
-
-
-def learning_rate(config: "Config") -> Course:
-    """Returns the course of a resolved config's learning rate."""
-    return {
-        "schedule": config.learning_rate_schedule,
-        "value": config.learning_rate,
-        "least": config.min_learning_rate or 0.0,
-        "decay": config.learning_rate_decay or 0.0,
-        "warm_up": config.learning_rate_warm_up or 0,
-    }
-
-
-def policy(config: "Config") -> EpsilonGreedy | Softmax:
-    """Returns how a resolved config chooses actions."""
-    if config.temperature is not None:
-        return {"temperature": config.temperature}
-    assert config.epsilon is not None  # noqa: S101 - resolved
-    assert config.epsilon_schedule is not None  # noqa: S101
-    assert config.ties is not None  # noqa: S101
-    course: Course = {
-        "schedule": config.epsilon_schedule,
-        "value": config.epsilon,
-        "least": config.min_epsilon or 0.0,
-        "decay": config.epsilon_decay or 0.0,
-        "warm_up": config.epsilon_warm_up or 0,
-    }
-    return {"epsilon": course, "ties": config.ties}
-
-
-def algorithm(config: "Config") -> Algorithm:
-    """Returns a resolved config's learner."""
-    return {
-        "name": config.algorithm,
-        "trace_decay": config.trace_decay,
-        "traces": config.traces,
-        "trace_cutoff": config.trace_cutoff,
-        "n_steps": config.n_steps,
-        "planning_steps": config.planning_steps,
-        "time_weight": config.time_weight,
-    }
+Solution: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]
+"""State values, action values and the policy."""
+PolicyChanges: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
+"""From how many remaining steps on, in which state, which action is best."""

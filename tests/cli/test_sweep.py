@@ -58,7 +58,8 @@ def test_a_design_can_be_swept(tmp_path, capsys):
     ("text", "message"),
     [
         ("seeds = 3", "either a [grid] or a [design]"),
-        ("nonsense = 3", "no use for 'nonsense'"),
+        ("nonsense = 3", "unknown key 'nonsense'; use env, seeds"),
+        ("seed = 3", "unknown key 'seed' (did you mean 'seeds'?)"),
         ("[grid", "study must be a TOML file"),
         ("[grid]\nepsilon = 0.3", "grid['epsilon'] must be a list of values"),
         ("[grid]\nepsilom = [0.3]", "unknown setting 'epsilom' (did you mean 'epsilon'?)"),

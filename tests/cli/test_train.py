@@ -182,7 +182,8 @@ def test_a_bad_config_file_is_named_with_what_is_wrong(tmp_path: Path, text: str
 
 
 def test_an_unknown_command_is_refused_and_the_known_ones_named(tmp_path: Path) -> None:
-    assert "train, verify, optimum" in refused("fly", cwd=tmp_path)
+    assert "unknown command 'fly'; use train, verify, optimum" in refused("fly", cwd=tmp_path)
+    assert "'trian' (did you mean 'train'?)" in refused("trian", cwd=tmp_path)
 
 
 def test_version_and_help(tmp_path: Path) -> None:
@@ -278,7 +279,7 @@ def test_verify_exits_with_1_where_the_table_was_tampered_with(tmp_path: Path) -
 
 def test_verify_refuses_what_is_no_run(tmp_path: Path) -> None:
     (tmp_path / "bad.npz").write_bytes(b"not a run")
-    assert "'bad.npz' is no run" in refused("verify", "bad.npz", cwd=tmp_path)
+    assert "'bad.npz' is not a run file" in refused("verify", "bad.npz", cwd=tmp_path)
     assert "none.npz" in refused("verify", "none.npz", cwd=tmp_path)
     package.train("MountainCar-v0", seed=0, episodes=5).save(tmp_path / "run.npz")
     assert "episodes must be" in refused("verify", "run.npz", "--episodes", "6", cwd=tmp_path)

@@ -56,7 +56,7 @@ def test_several_components_make_a_grid_in_c_order() -> None:
     space = gym.spaces.Box(np.array([-1.0, 0.0]), np.array([1.0, 0.5]), dtype=np.float64)
     actions, run = handed(space, 3)
     assert actions == [(x, y) for x in (-1.0, 0.0, 1.0) for y in (0.0, 0.25, 0.5)]
-    assert [tuple(run.grid.choices[index]) for index in range(run.grid.actions)] == actions
+    assert [tuple(run.actions[index]) for index in range(len(run.actions))] == actions
 
 
 def test_actions_are_taken_as_given() -> None:
@@ -109,8 +109,7 @@ def test_a_run_predicts_and_is_saved_evaluated_replayed_and_verified(env: str, t
     assert action.tobytes() in {np.array([value], np.float32).tobytes() for value in (-0.9, 0.0, 0.4)}
     action[:] = 7.0
     assert space.contains(run.predict(observation)[0])
-    grid: Any = run.grid
-    assert run.policy[grid.cell(observation)].tolist() == run.predict(observation)[0].tolist()
+    assert run.policy[run.discretizer.cell(observation)].tolist() == run.predict(observation)[0].tolist()
     for recording in run.recordings:
         assert all(space.contains(step) for step in recording.actions)
         assert replay_episode(made.unwrapped, recording) != 0.0

@@ -54,7 +54,7 @@ def test_rows_are_those_of_gymnasiums_wrapper(box: tuple[Any, ...], data: st.Dat
     observation = np.clip(np.array(shown, low.dtype), low, high)
     row, run, env = row_of_training(observation, low, high, discretizer="bins", bins=bins)
     assert row == DiscretizeObservation(env, bins).observation(observation)
-    assert run.grid.lit(observation) == [row]
+    assert run.discretizer.active_rows(observation).tolist() == [row]
     space: Any = env.observation_space
     assert Bins(space, run.config).rows(observation) == [row]
     assert run.q_table.shape == (*bins, 1)
@@ -76,7 +76,7 @@ def test_own_edges_are_np_digitizes(edges: list[float], value: float, dtype: Any
         observation = np.array([value], dtype)
     row, run, env = row_of_training(observation, -np.inf, np.inf, discretizer="edges", edges=(edges,))
     assert row == np.digitize(observation[0], edges)
-    assert run.grid.lit(observation) == [row]
+    assert run.discretizer.active_rows(observation).tolist() == [row]
     assert run.config.edges == (tuple(edges),)
     assert qtab.verify(run, env=env).equal
 
@@ -170,8 +170,7 @@ def test_it_is_saved_loaded_evaluated_and_verified(chosen: dict[str, Any], tmp_p
     assert loaded.policy.tolist() == run.policy.tolist()
     for position, velocity in np.random.default_rng(0).uniform((-1.2, -0.07), (0.6, 0.07), (50, 2)):
         observation = np.array([position, velocity], np.float32)
-        grid: Any = run.grid
-        cell = grid.cell(observation)
+        cell = run.discretizer.cell(observation)
         assert loaded.predict(observation) == run.predict(observation) == (run.policy[cell], None)
         assert run.q_values(observation).tobytes() == run.q_table[cell].tobytes()
     assert qtab.verify(loaded).equal

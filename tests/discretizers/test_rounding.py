@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
-from qtab.discretizers.rounding import grid
+from qtab.discretizers import Rounding
 from support.environments import ScriptedEnv
 from support.parity import run_of
 
@@ -21,10 +21,14 @@ def numpys_cell(space, scale, observation):
     return tuple(np.round((observation - space.low) * np.array(scale), 0).astype(int))
 
 
+def grid(env, scale):
+    return Rounding.build(env.observation_space, qtab.Config(scale=scale), int(env.action_space.n))
+
+
 def cell_that_training_used(env, **settings):
     """The only cell of a table of zeros that one step from one observation can change."""
-    shape = grid(env, settings["scale"]).shape
-    run = qtab.train(env, episodes=1, seed=0, initial_q=np.zeros(shape), learning_rate=1.0, discount=0.0, **settings)
+    zeros = np.zeros((*grid(env, settings["scale"]).shape, int(env.action_space.n)))
+    run = qtab.train(env, episodes=1, seed=0, initial_q=zeros, learning_rate=1.0, discount=0.0, **settings)
     ((*cell, _action),) = np.argwhere(run.q_table)
     return tuple(cell)
 
@@ -95,9 +99,9 @@ def test_a_run_reads_its_table_where_numpy_rounds_to(position, velocity, scale):
 def test_the_corners_of_the_space_are_the_corners_of_the_table():
     run = qtab.train("MountainCar-v0", episodes=1, seed=0)
     space: Any = gym.make("MountainCar-v0").observation_space
-    grid: Any = run.grid
-    assert grid.cell(space.low) == (0, 0)
-    assert grid.cell(space.high) == (18, 14)
+    discretizer: Any = run.discretizer
+    assert discretizer.cell(space.low) == (0, 0)
+    assert discretizer.cell(space.high) == (18, 14)
 
 
 @pytest.mark.parametrize("dtype", DTYPES)
@@ -129,10 +133,10 @@ def test_an_observation_outside_is_refused_by_the_run_and_its_component_named(va
             ask([value, 0.0])
 
 
-@pytest.mark.parametrize("observation", [0.0, [0.0], [0.0, 0.0, 0.0], [[-0.5, 0.0]], []])
+@pytest.mark.parametrize("observation", [0.0, [0.0], [0.0, 0.0, 0.0], [[[-0.5, 0.0]]], [[-0.5]], []])
 def test_an_observation_of_another_shape_is_refused(observation):
     run = qtab.train("MountainCar-v0", episodes=1, seed=0)
-    with pytest.raises(ValueError, match=r"observation must have shape \(2,\), got "):
+    with pytest.raises(ValueError, match=r"observations? must have shape \((n, 2|2,)\), got "):
         run.predict(observation)
 
 

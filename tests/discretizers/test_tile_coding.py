@@ -78,7 +78,7 @@ def test_the_rows_lit_are_those_of_the_formula(case: tuple[Any, ...]) -> None:
     run = qtab.train(env, discretizer="tiles", **options, episodes=1, initial_q=0.0, seed=0)
     expected = formula(observation, low, high, tiles, tilings, hashed)
     assert np.flatnonzero(run.tables[0, :, 0]).tolist() == sorted(set(expected))
-    assert run.grid.lit(observation) == expected
+    assert run.discretizer.active_rows(observation).tolist() == expected
     assert TileCoding(space, run.config).rows(observation) == expected
     assert run.tables.shape == (1, hashed or tilings * np.prod(np.array(tiles) + 1), 1)
     assert qtab.verify(run, env=env).equal
@@ -97,7 +97,7 @@ def test_a_row_that_is_lit_twice_counts_twice() -> None:
     run = qtab.train(
         env, discretizer="tiles", tilings=4, hashed_rows=1, learning_rate=0.5, episodes=1, initial_q=0.0, seed=0
     )
-    assert run.grid.lit(observation) == [0, 0, 0, 0]
+    assert run.discretizer.active_rows(observation).tolist() == [0, 0, 0, 0]
     assert run.tables.tolist() == [[[4 * 0.125]]]
     assert run.q_values(observation).tolist() == [4 * 0.5]
 
@@ -183,7 +183,7 @@ def test_it_predicts(run: qtab.Run) -> None:
     assert run.predict(observation) == (int(np.argmax(values)), None)
     with pytest.raises(ValueError, match=r"observation must have shape \(2,\)"):
         run.q_values([0.0])
-    with pytest.raises(ValueError, match=r"observation\[0\] is nan"):
+    with pytest.raises(ValueError, match=r"observation\[0\] is NaN"):
         run.q_values([float("nan"), 0.0])
 
 

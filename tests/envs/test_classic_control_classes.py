@@ -117,5 +117,5 @@ with warnings.catch_warnings(record=True) as caught:
     for _ in range(9):
         one, other = ours.step(1), theirs.step(1)
         assert one[0].tobytes() == other[0].tobytes() and ours.state.tobytes() == theirs.state.tobytes()
-print(_core.numpy_calls_the_platform(), sum("sin and cos" in str(w.message) for w in caught), "equal")
+print(_core.numpy_uses_libm(), sum("sin and cos" in str(w.message) for w in caught), "equal")
 """

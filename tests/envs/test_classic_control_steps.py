@@ -26,7 +26,7 @@ def test_long_walks_are_gymnasiums(name, policy, record_property):
         assert episodes > 100  # the goal was met, not only the slope below
 
 
-def test_the_steps_are_rusts_where_numpy_calls_the_platform(monkeypatch):
+def test_the_steps_are_rusts_where_numpy_uses_libm(monkeypatch):
     stepped = []
     monkeypatch.setattr(
         "qtab.envs.classic_control.ClassicControlMixin.step_in_python", lambda env, action: stepped.append(env)
@@ -36,7 +36,7 @@ def test_the_steps_are_rusts_where_numpy_calls_the_platform(monkeypatch):
         env.reset(seed=0)
         env.step(env.action_space.sample())
         uses_numpy = "MountainCar" not in name
-        assert bool(stepped) == (uses_numpy and not _core.numpy_calls_the_platform()), name
+        assert bool(stepped) == (uses_numpy and not _core.numpy_uses_libm()), name
         stepped.clear()
 
 

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from qtab._core import Stream
-from qtab._spec import seed_words
+from qtab._core import AgentRng
 
 EDGES = [0, 1, 2**31, 2**32 - 1, 2**32, 2**64 - 1, 2**64, 2**64 + 1, 2**96, 2**128 - 1, 2**128, 2**128 + 1, 2**200 + 3]
 PCG64_SEEDS = st.sampled_from(EDGES) | st.integers(0, 2**160)
@@ -43,11 +42,11 @@ class NumpyMt19937:
 
 
 def pcg64(seed: int) -> tuple[Any, Any]:
-    return Stream("PCG64", seed_words(seed)), NumpyPcg64(seed)
+    return AgentRng("PCG64", seed), NumpyPcg64(seed)
 
 
 def mt19937(seed: int) -> tuple[Any, Any]:
-    return Stream("MT19937", seed_words(seed)), NumpyMt19937(seed)
+    return AgentRng("MT19937", seed), NumpyMt19937(seed)
 
 
 def draw(stream, request):
@@ -119,12 +118,24 @@ def test_every_size_of_seed_makes_numpys_pcg64(seed):
 
 def test_mt19937_is_numpys_legacy_seeding():
     np.random.seed(5)  # noqa: NPY002 - the article's way
-    assert Stream("MT19937", [5]).random() == np.random.random()  # noqa: NPY002
-    assert Stream("MT19937", [5]).random() != np.random.Generator(np.random.MT19937(5)).random()
+    assert AgentRng("MT19937", 5).random() == np.random.random()  # noqa: NPY002
+    assert AgentRng("MT19937", 5).random() != np.random.Generator(np.random.MT19937(5)).random()
 
 
-def test_a_seed_as_words_is_the_seed():
-    for seed in EDGES:
-        words = seed_words(seed)
-        assert sum(word << (32 * index) for index, word in enumerate(words)) == seed
-        assert len(words) == 1 or words[-1] != 0
+@pytest.mark.parametrize(
+    ("seed", "error", "message"),
+    [
+        (-1, ValueError, "seed must be a non-negative integer, got -1"),
+        (-(2**200), ValueError, "seed must be a non-negative integer, got -16069"),
+        (1.5, TypeError, "seed must be an integer, got 1.5"),
+        ("1", TypeError, "seed must be an integer, got '1'"),
+    ],
+)
+def test_a_seed_that_is_no_non_negative_integer_is_refused(seed, error, message):
+    with pytest.raises(error, match=message):
+        AgentRng("PCG64", seed)
+
+
+def test_mt19937_takes_seeds_of_32_bits():
+    with pytest.raises(ValueError, match=r"seed must lie in 0 to 2\*\*32 - 1 for MT19937"):
+        AgentRng("MT19937", 2**32)

@@ -1,4 +1,4 @@
-"""Nothing is ever unpickled from a file, and what is no run is refused in one clear error."""
+"""Nothing is ever unpickled from a file, and anything but a run file is refused in one clear error."""
 
 import json
 import pickle
@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import qtab
 
-REFUSED = "is no run that this version of qtab can read: "
+REFUSED = "is not a run file that this version of qtab can read: "
 
 
 @pytest.fixture(scope="module")
@@ -240,7 +240,7 @@ WRONG_BINS = {
 @pytest.mark.parametrize("change", WRONG_BINS.values(), ids=WRONG_BINS)
 def test_bins_and_actions_that_do_not_fit_are_refused(few_actions, tmp_path, change):
     np.savez(tmp_path / "run.npz", **few_actions)
-    assert qtab.load(tmp_path / "run.npz").grid.actions == 2
+    assert qtab.load(tmp_path / "run.npz").actions.count == 2
     np.savez(tmp_path / "run.npz", **changed_header(few_actions, change))
     refused(tmp_path / "run.npz")
 

@@ -1,5 +1,9 @@
 """What a run says of itself."""
 
+import copy
+import pickle
+
+import gymnasium as gym
 import numpy as np
 import pytest
 
@@ -33,6 +37,48 @@ def test_predict_answers_as_stable_baselines3_does(run):
     assert type(action) is int
     assert state is None
     assert action == run.predict([-0.5, 0.0], state=None, episode_start=None, deterministic=False)[0]
+
+
+SETTINGS = {
+    "cells": ("MountainCar-v0", {}),
+    "bins": ("CartPole-v1", {}),
+    "tile coding": ("MountainCar-v0", {"preset": "solved"}),
+    "hashed tile coding": ("MountainCar-v0", {"preset": "solved", "hashed_rows": 200}),
+    "two tables": ("MountainCar-v0", {"algorithm": "double_q_learning", "terminal_update": "target"}),
+    "integers": ("Taxi-v4", {}),
+    "several integers": ("Blackjack-v1", {"initial_q": (-1.0, 1.0)}),
+    "continuous actions": ("Pendulum-v1", {}),
+}
+
+
+@pytest.mark.parametrize(("env", "settings"), SETTINGS.values(), ids=SETTINGS)
+def test_many_observations_are_answered_at_once_as_one_by_one(env, settings):
+    run = qtab.train(env, seed=0, episodes=3, max_episode_steps=50, **settings)
+    space = gym.make(env).observation_space
+    space.seed(0)
+    observations = np.array([space.sample() for _ in range(40)])
+    actions, state = run.predict(observations)
+    assert state is None
+    values = run.q_values(observations)
+    assert values.shape == (40, len(run.actions))
+    for observation, action, row in zip(observations, actions, values, strict=True):
+        assert row.tobytes() == run.q_values(observation).tobytes()
+        assert np.array_equal(action, run.predict(observation)[0])
+    assert run.q_values(observations[:0]).shape == (0, len(run.actions))
+    assert len(run.predict(observations[:1])[0]) == 1
+
+
+def test_the_former_name_of_the_discretizer_is_kept(run):
+    assert run.grid is run.discretizer
+    runs = qtab.train_many("MountainCar-v0", seeds=1, episodes=1)
+    assert runs.grid is runs.discretizer
+
+
+def test_a_run_can_be_copied_and_pickled(run):
+    run.predict([-0.5, 0.0])
+    for other in (copy.deepcopy(run), pickle.loads(pickle.dumps(run))):  # noqa: S301
+        assert other.tables.tobytes() == run.tables.tobytes()
+        assert other.predict([-0.5, 0.0]) == run.predict([-0.5, 0.0])
 
 
 def test_mean_returns_are_those_of_whole_blocks(run):

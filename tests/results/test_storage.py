@@ -22,12 +22,12 @@ def fields(value):
 def assert_equal_runs(one, other):
     """Every field of both, types and dtypes included; recordings are not saved."""
     mine, theirs = fields(one), fields(other)
-    for name in ("config", "grid"):
+    for name in ("config", "discretizer", "actions"):
         np.testing.assert_equal(fields(theirs.pop(name)), fields(mine.pop(name)))
     del mine["recordings"], theirs["recordings"]
     np.testing.assert_equal(theirs, mine)
     assert_same_run(one, other)
-    assert one.grid.low.dtype == other.grid.low.dtype
+    assert one.discretizer.low.dtype == other.discretizer.low.dtype
     assert type(other.config.seed) is int
     assert type(other.config.scale) is tuple
 

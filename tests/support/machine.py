@@ -13,9 +13,9 @@ from qtab._utils.versions import versions
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # one warning at the first call, where they differ
-    _core.numpy_calls_the_platform()
+    _core.numpy_uses_libm()
 MACHINE = {
     **versions(),
-    "NumPy calls the platform": _core.numpy_calls_the_platform(),
+    "NumPy calls the platform": _core.numpy_uses_libm(),
     "CPU": [name for name, present in _multiarray_umath.__cpu_features__.items() if present],
 }

@@ -107,7 +107,7 @@ def test_a_look_brings_what_is_new_and_keeps_the_rest_in_place():
 
 def test_a_trainer_lists_the_episodes_since_any_other():
     resolved = resolve("MountainCar-v0", {"seed": 6, "episodes": 10, "max_episode_steps": 30})
-    trainer = _core.Trainer(resolved.core_environment(), resolved.plan())
+    trainer = _core.Trainer(resolved.spec(), resolved.seed)
     trainer.advance(10)
     every = trainer.episodes()
     for since in (0, 4, 10, 11):

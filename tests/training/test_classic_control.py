@@ -121,17 +121,17 @@ def test_an_edited_object_is_refused_in_rust_by_the_name_of_its_attribute(env: s
 
 @pytest.mark.parametrize("env", ["CartPole-v1", "Acrobot-v1", "Pendulum-v1"])
 def test_where_numpys_functions_are_its_own_gymnasium_steps(env: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_core, "computes_as_numpy", lambda model: False)
+    monkeypatch.setattr(_core, "matches_numpy", lambda model: False)
     chosen: dict[str, Any] = {**settings_of(env, "bins"), "seed": 4, "episodes": 1, "max_episode_steps": 3}
     assert qtab.train(env, **chosen).config.backend == "gymnasium"
     with pytest.raises(ValueError, match=r"got 'rust': NumPy's sin and cos are not the platform's on this machine"):
         qtab.train(env, backend="rust", **chosen)
 
 
-def test_rust_trains_where_numpy_calls_the_platform() -> None:
-    assert all(_core.computes_as_numpy(name) for name in ("MountainCar", "ContinuousMountainCar"))
+def test_rust_trains_where_numpy_uses_libm() -> None:
+    assert all(_core.matches_numpy(name) for name in ("MountainCar", "ContinuousMountainCar"))
     for name in ("CartPole", "Pendulum"):
-        assert _core.computes_as_numpy(name) == _core.numpy_calls_the_platform(), MACHINE
+        assert _core.matches_numpy(name) == _core.numpy_uses_libm(), MACHINE
 
 
 @pytest.mark.parametrize("name", [env for env in TRAINED if env.values == ("Acrobot-v1",)])
@@ -154,6 +154,5 @@ def test_acrobots_first_observations_are_numpys_single_precision(name: str) -> N
             discount=0.0,
             learning_rate=1.0,
         )
-        assert run.tables[0, run.grid.lit(observation)[0], 0] == -1.0
-        grid: Any = run.grid
-        assert grid.cell(observation) == (2,) * 6
+        assert run.tables[0, run.discretizer.row(observation), 0] == -1.0
+        assert run.discretizer.cell(observation) == (2,) * 6

@@ -156,9 +156,8 @@ def test_any_discrete_space_is_learned_and_its_start_subtracted(space, tmp_path)
         observation = space.sample()
         action, _ = run.predict(observation)
         assert action == np.argmax(run.q_values(observation)) + 2
-    grid: Any = run.grid
-    first = grid.low[()] if space.__class__ is Discrete else tuple(np.ravel(grid.low))
-    assert np.array_equal(run.q_values(first), run.q_table[(0,) * len(grid.counts)])
+    first = run.discretizer.low[()] if space.__class__ is Discrete else tuple(np.ravel(run.discretizer.low))
+    assert np.array_equal(run.q_values(first), run.q_table[(0,) * len(run.discretizer.shape)])
     run.save(tmp_path / "run.npz")
     assert_same_run(run, qtab.load(tmp_path / "run.npz"))
     assert qtab.load(tmp_path / "run.npz").q_table.shape == run.q_table.shape
@@ -191,8 +190,8 @@ def test_a_run_refuses_observations_that_are_none():
     run = qtab.train("FrozenLake-v1", **SETTINGS)
     with pytest.raises(ValueError, match=r"observation\[0\] is 16, outside the observation space"):
         run.predict(16)
-    with pytest.raises(ValueError, match=r"observation must have shape \(\), got \(1,\)"):
-        run.predict([3])
+    with pytest.raises(ValueError, match=r"observations must have shape \(\) or \(n,\), got \(1, 1\)"):
+        run.predict([[3]])
     with pytest.raises(TypeError, match="observation must hold integers"):
         run.predict(3.0)
 

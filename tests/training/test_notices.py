@@ -16,7 +16,7 @@ UNLIMITED = "CliffWalking-v1 has no time limit of its own: an episode ends after
 @pytest.fixture
 def said(caplog, monkeypatch):
     """What the logger ``qtab`` says, in a process that has said nothing yet."""
-    monkeypatch.setattr(resolve, "_limited", set())
+    monkeypatch.setattr(resolve, "_logged", set())
     caplog.set_level(logging.DEBUG, logger="qtab")
     return lambda: caplog.messages
 

@@ -17,7 +17,7 @@ DISCRETE = ["MountainCar-v0", "CartPole-v1", "Acrobot-v1", *toy_text.IDS]
 
 
 def standing(env: Any) -> Any:
-    return copy.deepcopy(env.portraits()), [position(generator) for generator in env.np_random]
+    return copy.deepcopy(env.snapshots()), [position(generator) for generator in env.np_random]
 
 
 def refused(env: Any, call: Any, error: type[Exception], match: str) -> None:
@@ -225,7 +225,7 @@ def test_bad_arguments_are_named(arguments, error, match):
 def test_the_longest_limit_is_none():
     env = ours("CartPole-v1", 2, max_episode_steps=2**70)
     env.reset(seed=0)
-    assert env.unwrapped.launched
+    assert env.unwrapped.is_native
     assert not env.step(np.zeros(2, np.int64))[3].any()
 
 
@@ -257,7 +257,7 @@ def test_two_threads_cannot_step_the_same_sub_environments_at_once():
             thread.join()
             return super().random(*arguments)
 
-    env.unwrapped.draw_from(3, Meddling(np.random.PCG64(0)))
+    env.unwrapped.set_rng(3, Meddling(np.random.PCG64(0)))
     while not raised:
         env.step(np.zeros(8, np.int64))
     assert set(raised) == {"another thread is stepping these sub-environments"}
@@ -268,9 +268,9 @@ def test_there_are_no_others_than_the_sub_environments():
     env.reset(seed=0)
     for call in (
         env.seed_of,
-        env.source,
-        lambda lane: env.draw_from(lane, None),
-        lambda lane: env.begin([lane], [3], None),
+        env.rng,
+        lambda lane: env.set_rng(lane, None),
+        lambda lane: env.native_reset([lane], [3], None),
     ):
         with pytest.raises(IndexError, match="there is no sub-environment 2"):
             call(2)

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 def test_make_vec_chooses_the_one_in_rust(name):
     env = ours(name, 3)
     assert type(env.unwrapped).__module__ == "qtab.envs.vector"
-    assert env.launched
+    assert env.is_native
     assert env.num_envs == 3
     other = theirs(name, 3)
     for space in ("observation_space", "action_space", "single_observation_space", "single_action_space"):
@@ -111,7 +111,7 @@ def test_generators_that_were_handed_out_are_drawn_from(name, mode):
         assert mine[lane].integers(3) == gymnasiums[lane].integers(3)
     vectors.run(20)
     vectors.same_streams()
-    assert vectors.ours.launched
+    assert vectors.ours.is_native
     # A seed makes new ones; those that were handed out are nobody's any more.
     vectors.reset(seed=[1, 2, 3, 4])
     vectors.run(9)
@@ -175,13 +175,13 @@ def test_a_finished_one_must_be_reset_where_autoreset_is_disabled():
     vectors.reset(options={"reset_mask": np.array([False, True, False]), "low": 0.3, "high": 0.4})
     _, _, terminated, _, _ = vectors.step(np.ones(3, np.int64))
     assert terminated.tolist() == [False, True, False]
-    before = vectors.ours.portraits()
+    before = vectors.ours.snapshots()
     for env in (vectors.ours, vectors.theirs):
         with pytest.raises(AssertionError):
             env.step(np.ones(3, np.int64))
     with pytest.raises(AssertionError, match="episode of sub-environment 1 is over: reset it first"):
         vectors.ours.step(np.ones(3, np.int64))
-    assert bitwise(before[0][3]) == bitwise(vectors.ours.portraits()[0][3])
+    assert bitwise(before[0][3]) == bitwise(vectors.ours.snapshots()[0][3])
 
 
 def _steps_of_a_child(env, queue):
@@ -212,7 +212,7 @@ def test_a_vector_environment_can_be_made_again_from_its_spec():
     env = ours("Pendulum-v1", 3, g=9.81, autoreset_mode="SameStep", max_episode_steps=7)
     again = gym.make_vec(gym.envs.registration.EnvSpec.from_json(gym.spec("qtab/Pendulum-v1").to_json()), num_envs=3)
     inner: Any = again.unwrapped
-    assert inner.launched
+    assert inner.is_native
     same = gym.make_vec(env.spec)
     assert same.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
     assert_equal(env.reset(seed=3), same.reset(seed=3))

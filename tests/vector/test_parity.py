@@ -62,7 +62,7 @@ def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
     def run(num_envs, seed, threads, copy, limit, kwargs, options, dtype, data) -> None:
         own = {"threads": threads, "copy": copy}
         vectors = LockstepVectorEnv(name, num_envs, mode, own, max_episode_steps=limit, **kwargs)
-        assert vectors.ours.unwrapped.launched == MACHINE["NumPy calls the platform"] or not any(
+        assert vectors.ours.unwrapped.is_native == MACHINE["NumPy calls the platform"] or not any(
             part in name for part in ("CartPole", "Acrobot", "Pendulum")
         )
         if seed is None:

@@ -23,7 +23,7 @@ def test_sub_environments_go_on_where_they_stood(name, mode):
     vectors.run(8)
     kept = ["state", "s", "lastaction", "last_u", "fickle_step", "steps_beyond_terminated", "player", "dealer"]
     kept += ["dealer_top_card_suit", "dealer_top_card_value_str", "_elapsed_steps", "spec"]
-    assert vectors.ours.launched
+    assert vectors.ours.is_native
     for attribute in (attribute for attribute in kept if hasattr(vectors.theirs.envs[0].unwrapped, attribute)):
         mine: Any = vectors.ours.get_attr(attribute)
         gymnasiums: Any = vectors.theirs.get_attr(attribute)
@@ -34,7 +34,7 @@ def test_sub_environments_go_on_where_they_stood(name, mode):
             mine, gymnasiums = (list(map(int, states)) for states in (mine, gymnasiums))
         if attribute != "spec":
             assert data_equivalence(mine, gymnasiums, exact=True), attribute
-    assert not vectors.ours.launched
+    assert not vectors.ours.is_native
     vectors.run(20)
     vectors.same_streams()
     if vectors.ours.metadata["autoreset_mode"] is not AutoresetMode.DISABLED:
@@ -83,7 +83,7 @@ def test_a_table_that_rust_refuses_is_stepped_in_python():
         ("Taxi-v4", {"is_rainy": True, "rainy_probability": 1.5}),
     ):
         vectors = LockstepVectorEnv(name, 2, **kwargs)
-        assert not vectors.ours.launched
+        assert not vectors.ours.is_native
         vectors.reset(seed=0)
         vectors.run(30)
 
@@ -95,7 +95,7 @@ def test_a_constant_that_rust_does_not_know_is_stepped_in_python():
     }
     for name, kwargs in unknown.items():
         vectors = LockstepVectorEnv(name, 3, **kwargs)
-        assert not vectors.ours.launched
+        assert not vectors.ours.is_native
         vectors.reset(seed=1)
         vectors.run(20)
         assert vectors.ours.np_random_seed == (1, 2, 3)
@@ -112,7 +112,7 @@ def test_a_constant_that_rust_does_not_know_is_stepped_in_python():
 def test_far_out_is_gymnasiums_to_compute(options, name):
     vectors = LockstepVectorEnv(name, 2)
     vectors.reset(seed=0, options=options)
-    assert not vectors.ours.launched
+    assert not vectors.ours.is_native
     vectors.run(10)
 
 
@@ -133,5 +133,5 @@ ours.reset(seed=0), theirs.reset(seed=0)
 for _ in range(30):
     one, other = ours.step(np.ones(3, int)), theirs.step(np.ones(3, int))
     assert all(mine.tobytes() == gymnasiums.tobytes() for mine, gymnasiums in zip(one[:4], other[:4]))
-print(gym.make_vec("qtab/MountainCar-v0", num_envs=3).launched, ours.launched, "equal")
+print(gym.make_vec("qtab/MountainCar-v0", num_envs=3).is_native, ours.is_native, "equal")
 """

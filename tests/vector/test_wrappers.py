@@ -23,7 +23,7 @@ FRAMES = [
 def test_frames_are_gymnasiums(name, mode):
     vectors = LockstepVectorEnv(name, 2, render_mode=mode, max_episode_steps=4)
     assert vectors.ours.render_mode == mode
-    assert vectors.ours.launched == (mode != "rgb_array_list" and name != "Taxi-v4")
+    assert vectors.ours.is_native == (mode != "rgb_array_list" and name != "Taxi-v4")
     if mode != "rgb_array_list":
         with pytest.raises(gym.error.ResetNeeded):
             vectors.ours.render()
@@ -39,7 +39,7 @@ def test_frames_are_gymnasiums(name, mode):
 @pytest.mark.filterwarnings("ignore:.*human.*")
 def test_a_window_is_gymnasiums_too():
     vectors = LockstepVectorEnv("FrozenLake-v1", 1, render_mode="human")
-    assert not vectors.ours.launched
+    assert not vectors.ours.is_native
     vectors.reset(seed=0)
     vectors.run(2)
     frames: list[Any] = [vectors.ours.render(), vectors.theirs.render()]

@@ -4,16 +4,18 @@ import math
 import operator
 from collections.abc import Collection
 from os import PathLike
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from qtab._utils.suggestions import did_you_mean
 
+T = TypeVar("T")
+
 LARGEST_COUNT = 2**63 - 1
 """The largest number of episodes or steps: they are counted in 64 bits."""
 MAX_THREADS = 1024
-"""The most threads of a call, more than any machine has cores. If the system runs out of threads, the process ends."""
+"""The maximum number of threads of a call, above any core count. Running out of threads would abort the process."""
 
 
 def real(name: str, value: Any, low: float, high: float) -> float:
@@ -122,3 +124,14 @@ def instance(name: str, value: Any, kind: type) -> None:
     if not isinstance(value, kind):
         hint = "; qtab.load reads one from a file" if isinstance(value, str | PathLike) else ""
         raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}{hint}")
+
+
+def required(name: str, value: T | None) -> T:
+    """Returns a setting that a complete config has.
+
+    Raises:
+        ValueError: if it is None.
+    """
+    if value is None:
+        raise ValueError(f"{name} must be given, got None")
+    return value

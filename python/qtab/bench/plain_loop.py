@@ -25,7 +25,8 @@ def q_learning(name: str, episodes: int, seed: int) -> tuple[NDArray[np.float64]
     Returns:
         The Q table, (*cells, actions), and the number of steps.
     """
-    env, (_, settings) = gym.make(name), preset(name, None)
+    env = gym.make(name)
+    settings: Any = preset(name, None)[1]
     shape, discretize = _discretizer(env, settings)
     rng, actions = agent_stream(seed, "PCG64"), int(env.action_space.n)  # type: ignore[attr-defined]
     q = np.full((*shape, actions), settings["initial_q"])

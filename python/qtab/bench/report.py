@@ -137,8 +137,8 @@ def bench(
     seconds = checks.real("seconds", seconds, 0, 86_400)
     if rounds is not None:
         rounds = checks.integer("rounds", rounds, least=1)
-    if part is not None and part not in PARTS:
-        raise ValueError(f"part must be one of {', '.join(map(repr, PARTS))}, got {part!r}")
+    if part is not None:
+        part = checks.choice("part", part, PARTS)
     measured_footprint = footprint()
     benchmarks: dict[str, Benchmark] = {}
     for name, make in PARTS.items():

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from qtab._utils.suggestions import did_you_mean
 from qtab.book.experiment import Experiment
 from qtab.book.figures import (
     example_6_5,
@@ -53,7 +54,8 @@ def find(name: str) -> Experiment:
     if len(matches) > 1:
         raise ValueError(f"name must be {' or '.join(match.name for match in matches)}, got {name!r}, which is both")
     if not matches:
-        raise ValueError(f"name must be one of {', '.join(EXPERIMENTS)}, got {name!r}")
+        suggestion = did_you_mean(wanted, EXPERIMENTS)
+        raise ValueError(f"name must be one of {', '.join(EXPERIMENTS)}, got {name!r}{suggestion}")
     return matches[0]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.memory import memory_limit
-from qtab.training.train_many import MakeEnv, allocate, resolve_one, train_in_threads
+from qtab.training.train_many import MakeEnv, allocate_results, resolve_template, train_in_threads
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
@@ -33,12 +33,13 @@ def train_runs(env: str | MakeEnv, config: Mapping[str, Any], seeds: Sequence[in
     Where the action values of a run overflow, :func:`qtab.train` raises an error. Here the episodes that the run did
     not finish count as truncated, with a reward of -1 per step.
     """
-    resolved = resolve_one(env, {**config, "seed": seeds[0]})
-    max_steps = resolved.config.max_episode_steps
-    assert max_steps is not None  # noqa: S101 - resolved
-    results = allocate(resolved, len(seeds), min(threads, len(seeds)), tables=False, limit=memory_limit(None))
+    resolved = resolve_template(env, {**config, "seed": seeds[0]})
+    max_steps = resolved.max_episode_steps
+    results = allocate_results(
+        resolved, len(seeds), min(threads, len(seeds)), keep_tables=False, limit=memory_limit(None)
+    )
     diverged = np.zeros(len(seeds), np.bool_)
-    for index, error in train_in_threads(resolved, tuple(seeds), results, threads, go_on=True):
+    for index, error in train_in_threads(resolved, seeds, results, threads, keep_going=True):
         if not isinstance(error, OverflowError):
             raise error
         diverged[index] = True

@@ -25,6 +25,6 @@ class Setting:
     x: tuple[float, ...] | None = None
     """The x coordinates of its points; None means the numbers of the episodes, from 1."""
     max_runs: int | None = None
-    """The most runs of this setting, where the book makes fewer than the experiment's ``runs``."""
+    """The maximum number of runs, where the book has fewer runs of this setting than of the others."""
     drawn: bool = True
     """Whether the figure shows the line; the table always does."""

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs the command line and returns its exit code: 0, 1 (it went wrong), 2 (bad usage) or 130 (Ctrl-C).
+    """Runs the command line and returns its exit code: 0 (success), 1 (failure), 2 (bad usage) or 130 (Ctrl-C).
 
     Args:
-        arguments: What follows the command's name; None takes the process's own.
+        arguments: The arguments after the command's name; None means those of the process.
     """
     try:
-        import tyro  # noqa: F401 - every subcommand needs it
+        import tyro  # noqa: F401 - all subcommands need it
 
         from qtab.cli.command import run
     except ModuleNotFoundError as error:

@@ -13,21 +13,21 @@ COMMAND = "qtab bench"
 
 @dataclass(frozen=True)
 class Arguments:
-    """Time this package beside Gymnasium and the article's loop, in one process and in interleaved rounds."""
+    """Compare the speed of this package with Gymnasium and the article's loop, in interleaved rounds of one process."""
 
     seconds: float = DEFAULT_SECONDS
-    """About how long the rounds take together."""
+    """The approximate duration of all rounds."""
     rounds: int | None = None
-    """Make so many rounds, however long they take."""
+    """The number of rounds; by default as many as fit into the duration."""
     part: str | None = None
-    """Time this part alone: training, stepping, vectors, environments or learners."""
+    """Run only this part: training, stepping, vectors, environments or learners."""
 
 
 def run(arguments: list[str]) -> int:
-    """Times as the arguments say; returns the exit code."""
-    asked = parse(Arguments, COMMAND, arguments)
+    """Runs the command and returns its exit code."""
+    options = parse(Arguments, COMMAND, arguments)
     try:
-        report = bench(asked.seconds, asked.rounds, part=asked.part)
+        report = bench(options.seconds, options.rounds, part=options.part)
     except ValueError as error:
         raise UsageError(str(error)) from None
     print_above(str(report))

@@ -10,7 +10,7 @@ from qtab import book
 from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
-from qtab.cli.usage import UsageError, refusing
+from qtab.cli.usage import UsageError, usage_errors
 from qtab.plots.axes import check_format
 
 COMMAND = "qtab book"
@@ -18,47 +18,47 @@ COMMAND = "qtab book"
 
 @dataclass(frozen=True)
 class Arguments:
-    """Run an experiment of Sutton & Barto's book at the book's run counts, and print what it brings."""
+    """Run an experiment of Sutton & Barto's book with the book's number of runs, and print the results."""
 
     experiment: Annotated[tyro.conf.Positional[str | None], tyro.conf.arg(metavar="NAME")] = None
-    """figure-10.4, or 10.4 where there is no example of that number; without a name they are listed."""
+    """figure-10.4, or 10.4 if no example has the same number; without a name, the experiments are listed."""
     runs: int | None = None
-    """How many runs of each setting; as many as in the book where it is not given."""
+    """The number of runs of each setting; by default as many as in the book."""
     seed: int = 0
-    """The seed of the first run; the others follow it."""
+    """The seed of the first run; the other runs have the seeds after it."""
     plot: Path | None = None
-    """Draw the figure to this file; its ending gives the format."""
+    """Draw the figure to this file; its suffix determines the format."""
     save: Path | None = None
-    """Write every point to this CSV file."""
+    """Write all points to this CSV file."""
     threads: int | None = None
-    """How many threads; one a core where it is not given. The numbers do not depend on it."""
+    """The number of threads; by default one per core. It does not change the results."""
 
 
 def run(arguments: list[str]) -> int:
-    """Runs what the arguments ask for; returns the exit code."""
-    asked = parse(Arguments, COMMAND, arguments)
-    if asked.experiment is None and (asked.plot is not None or asked.save is not None):
-        raise UsageError("NAME must be given, of an experiment that qtab book lists")
-    if asked.experiment is None:
+    """Runs the command and returns its exit code."""
+    options = parse(Arguments, COMMAND, arguments)
+    if options.experiment is None and (options.plot is not None or options.save is not None):
+        raise UsageError("NAME must be given with --plot or --save; qtab book lists the names")
+    if options.experiment is None:
         for name, experiment in book.EXPERIMENTS.items():
             print_above(f"{name:14}{experiment.title}")
         return 0
-    with refusing():
-        experiment = book.find(asked.experiment)
-        if asked.plot is not None:
-            check_format("plot", asked.plot)
-            check_writable("plot", asked.plot)
-        if asked.save is not None:
-            check_writable("save", asked.save)
-        experiment.check_arguments(asked.runs, asked.seed, asked.threads)
-    result = experiment.run(asked.runs, asked.seed, threads=asked.threads)
+    with usage_errors():
+        experiment = book.find(options.experiment)
+        if options.plot is not None:
+            check_format("plot", options.plot)
+            check_writable("plot", options.plot)
+        if options.save is not None:
+            check_writable("save", options.save)
+        experiment.check_arguments(options.runs, options.seed, options.threads)
+    result = experiment.run(options.runs, options.seed, threads=options.threads)
     print_above(str(result))
-    if asked.save is not None:
-        result.save(asked.save)
-        print_above(f"Saved the points to {asked.save}")
-    if asked.plot is not None:
+    if options.save is not None:
+        result.save(options.save)
+        print_above(f"Saved the points to {options.save}")
+    if options.plot is not None:
         from qtab.book.drawing import save_plot
 
-        save_plot(result, asked.plot)
-        print_above(f"Saved the plot to {asked.plot}")
+        save_plot(result, options.plot)
+        print_above(f"Saved the plot to {options.plot}")
     return 0

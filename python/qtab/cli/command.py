@@ -1,4 +1,4 @@
-"""From the first word to its subcommand, and from errors to exit codes."""
+"""The choice of the subcommand, and the exit codes of errors."""
 
 import os
 import sys
@@ -6,24 +6,25 @@ from importlib import import_module
 
 import gymnasium as gym
 
+from qtab._utils.suggestions import did_you_mean
 from qtab.cli.usage import UsageError, one_line
 
 SUBCOMMANDS = {
-    "train": "train a tabular agent, plot and save what it learned, show its last episodes",
-    "verify": "replay a saved run through Gymnasium and NumPy, and compare byte for byte",
-    "optimum": "compute the best that can be returned: exactly from a table, or the best that is known",
-    "sweep": "train many settings over many seeds, as a file says; called again, it goes on",
-    "report": "turn a sweep's store into tables, pictures and one HTML page",
+    "train": "train a tabular agent, save and plot the run, replay its last episodes",
+    "verify": "repeat a saved run with Gymnasium and NumPy, and compare the results byte for byte",
+    "optimum": "compute the best policy of an environment: exact from a table, or the best known",
+    "sweep": "train many settings with many seeds, as a study file describes; resumes if called again",
+    "report": "turn the store of a sweep into tables, plots and one HTML page",
     "book": "run an experiment of Sutton & Barto's book: its settings, a table, a figure",
-    "bench": "time this package against Gymnasium and the article's loop",
+    "bench": "compare the speed of this package with Gymnasium and the article's loop",
 }
-"""Each is a module of this package with ``run(arguments) -> exit code``."""
+"""The subcommands with their help. Each is a module of this package with ``run(arguments) -> exit code``."""
 
 EXIT_ERROR, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
 
 
 def run(arguments: list[str]) -> int:
-    """Runs the command line and returns its exit code; what goes wrong is told in one line."""
+    """Runs the command line and returns its exit code. An error is reported in one line."""
     name = "qtab"
     try:
         if not arguments or arguments[0] in ("-h", "--help"):
@@ -35,7 +36,8 @@ def run(arguments: list[str]) -> int:
             print(f"qtab {qtab.__version__}")  # noqa: T201
             return 0
         if arguments[0] not in SUBCOMMANDS:
-            raise UsageError(f"there is no {arguments[0]!r}; there are {', '.join(SUBCOMMANDS)}, --help and --version")
+            suggestion = did_you_mean(arguments[0], SUBCOMMANDS)
+            raise UsageError(f"unknown command {arguments[0]!r}{suggestion}; use {', '.join(SUBCOMMANDS)}")
         name = f"qtab {arguments[0]}"
         code = import_module(f"qtab.cli.{arguments[0]}").run(arguments[1:])
         sys.stdout.flush()
@@ -43,7 +45,7 @@ def run(arguments: list[str]) -> int:
     except UsageError as error:
         return _fail(name, error, EXIT_USAGE)
     except BrokenPipeError:
-        # Whoever read the output has gone; Python's own flush at exit must not complain about it.
+        # The reader of the output has closed it. Python would report that once more when it flushes at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_ERROR
     except (ValueError, TypeError, OverflowError, OSError, ModuleNotFoundError, gym.error.Error) as error:
@@ -59,11 +61,11 @@ def _fail(name: str, error: Exception, code: int) -> int:
 
 
 def _help() -> str:
-    listed = "\n".join(f"  {name:8}{summary}" for name, summary in SUBCOMMANDS.items())
+    commands = "\n".join(f"  {name:8}{summary}" for name, summary in SUBCOMMANDS.items())
     return (
         "usage: qtab COMMAND [OPTIONS]\n\n"
-        "Tabular reinforcement learning on Gymnasium environments, from Rust.\n\n"
-        f"commands:\n{listed}\n\n"
-        "options:\n  --help    show this, or with a command before it, the command's options\n"
+        "Tabular reinforcement learning on Gymnasium environments, in Rust.\n\n"
+        f"commands:\n{commands}\n\n"
+        "options:\n  --help    show this help; after a command, show the options of the command\n"
         "  --version show the version"
     )

@@ -9,7 +9,7 @@ import tyro
 from qtab._utils.progress import print_above
 from qtab.cli.constructors import PAIRS
 from qtab.cli.parsing import parse
-from qtab.cli.usage import refusing
+from qtab.cli.usage import usage_errors
 from qtab.config import Config
 from qtab.planning import optimum
 
@@ -18,30 +18,30 @@ COMMAND = "qtab optimum"
 
 @dataclass(frozen=True)
 class Arguments:
-    """Compute the best that can be returned in an environment: exactly from its table, or the best that is known."""
+    """Compute the best policy of an environment: exact from its transition table, or the best known."""
 
     env: tyro.conf.Positional[str] = Config.env
     """Gymnasium's id of the environment."""
     env_kwargs: Annotated[Mapping[str, Any], PAIRS] = field(default_factory=dict)
     """Keyword arguments of the environment's constructor."""
     max_episode_steps: int | None = None
-    """The time limit; the environment's own, or 10,000 where it has none."""
+    """The time limit in steps; by default the environment's own, or 10,000 if it has none."""
     discount: float | None = None
-    """What the values and the policy count a later reward; 1, no discount, where it is not given."""
+    """The discount of the values and the policy; by default 1, no discount."""
     method: str | None = None
-    """finite_horizon (the default with a table), value_iteration or policy_iteration; search for MountainCar-v0."""
+    """With a table, finite_horizon (the default), value_iteration or policy_iteration; for MountainCar-v0, search."""
 
 
 def run(arguments: list[str]) -> int:
-    """Computes and prints as the arguments say; returns the exit code."""
-    asked = parse(Arguments, COMMAND, arguments)
-    with refusing():
-        found = optimum(
-            asked.env,
-            discount=asked.discount,
-            max_episode_steps=asked.max_episode_steps,
-            method=asked.method,
-            env_kwargs=asked.env_kwargs,
+    """Runs the command and returns its exit code."""
+    options = parse(Arguments, COMMAND, arguments)
+    with usage_errors():
+        result = optimum(
+            options.env,
+            discount=options.discount,
+            max_episode_steps=options.max_episode_steps,
+            method=options.method,
+            env_kwargs=options.env_kwargs,
         )
-    print_above(str(found))
+    print_above(str(result))
     return 0

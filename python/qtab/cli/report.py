@@ -7,7 +7,7 @@ import tyro
 
 from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
-from qtab.cli.usage import refusing
+from qtab.cli.usage import usage_errors
 from qtab.sweeps import load_sweep
 from qtab.sweeps.report import report
 
@@ -16,19 +16,19 @@ COMMAND = "qtab report"
 
 @dataclass(frozen=True)
 class Arguments:
-    """Write a sweep's tables and pictures into a folder, with one HTML page that needs nothing else."""
+    """Write the tables and plots of a sweep into a folder, with one self-contained HTML page."""
 
     store: tyro.conf.Positional[Path]
-    """The file that qtab sweep keeps its results in; the sweep may still be underway."""
+    """The store of a qtab sweep, which may still be running."""
     out: Path | None = None
-    """The folder; the store's name with -report where it is not given."""
+    """The folder; by default the name of the store with -report."""
 
 
 def run(arguments: list[str]) -> int:
-    """Reports as the arguments say; returns the exit code."""
-    asked = parse(Arguments, COMMAND, arguments)
-    with refusing():
-        folder = asked.out or asked.store.with_name(f"{asked.store.stem}-report")
-        written = report(load_sweep(asked.store), folder)
-    print_above(f"{len(written)} files in {folder}; open {written[-1]}")
+    """Runs the command and returns its exit code."""
+    options = parse(Arguments, COMMAND, arguments)
+    with usage_errors():
+        folder = options.out or options.store.with_name(f"{options.store.stem}-report")
+        files = report(load_sweep(options.store), folder)
+    print_above(f"{len(files)} files in {folder}; open {files[-1]}")
     return 0

@@ -16,7 +16,6 @@ from qtab.config import DEFAULTS, Config
 from qtab.config.choices import CHOICES
 from qtab.config.explanations import applicability, explanations, groups
 from qtab.config.unknown import check_names
-from qtab.discretizers.tile_coding import Tiling
 from qtab.results.storage import load
 
 if sys.version_info >= (3, 11):
@@ -119,4 +118,5 @@ def with_initial_q(settings: Mapping[str, Any]) -> dict[str, Any]:
     if not isinstance(path, Path):
         return dict(settings)
     run = load(path)
-    return {**settings, "initial_q": run.tables if isinstance(run.grid, Tiling) or len(run.tables) > 1 else run.q_table}
+    one_table_of_cells = run.discretizer.has_cells and len(run.tables) == 1
+    return {**settings, "initial_q": run.q_table if one_table_of_cells else run.tables}

@@ -7,7 +7,7 @@ import tyro
 
 from qtab._utils.progress import ProgressBar, print_above
 from qtab.cli.parsing import parse
-from qtab.cli.usage import refusing
+from qtab.cli.usage import usage_errors
 from qtab.results.storage import load
 from qtab.training.verify import verify
 
@@ -16,21 +16,21 @@ COMMAND = "qtab verify"
 
 @dataclass(frozen=True)
 class Arguments:
-    """Replay a saved run through Gymnasium and NumPy; the exit code is 1 where the two sides differ."""
+    """Repeat a saved run with Gymnasium and NumPy, and compare the results; the exit code is 1 if they differ."""
 
     run: tyro.conf.Positional[Path]
-    """The file that qtab train --save wrote."""
+    """A file written by qtab train --save."""
     episodes: int | None = None
-    """Compare only so many episodes, with the schedule of the full run."""
+    """Compare only the first episodes, using the schedules of the full run."""
 
 
 def run(arguments: list[str]) -> int:
-    """Verifies as the arguments say; returns the exit code."""
-    asked = parse(Arguments, COMMAND, arguments)
-    with refusing():
-        saved = load(asked.run)
-        total = asked.episodes if asked.episodes is not None else len(saved.episode_returns)
-        with ProgressBar(total, "episode", None, "Gymnasium") as shown:
-            verification = verify(saved, asked.episodes, progress=lambda done, _: shown.move_to(done))
+    """Runs the command and returns its exit code."""
+    options = parse(Arguments, COMMAND, arguments)
+    with usage_errors():
+        saved = load(options.run)
+        total = options.episodes if options.episodes is not None else len(saved.episode_returns)
+        with ProgressBar(total, "episode", None, "Gymnasium") as bar:
+            verification = verify(saved, options.episodes, progress=lambda done, _: bar.move_to(done))
     print_above(str(verification))
     return 0 if verification.equal else 1

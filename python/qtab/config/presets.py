@@ -205,7 +205,7 @@ def preset(env: str, name: str | None) -> tuple[str | None, Mapping[str, Any]]:
     """
     known = presets(env)
     if name is None:
-        return next(iter(known.items()), (None, {}))
+        return next(iter(known.items())) if known else (None, {})
     if name not in known:
         if not known:
             raise ValueError(f"preset must be left out for {env}, which has none, got {name!r}")

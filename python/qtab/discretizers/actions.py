@@ -1,4 +1,4 @@
-"""What a learner chooses from: the actions of a Discrete space, or a few of a continuous one."""
+"""The actions that an agent chooses from: those of a Discrete space, or a finite choice from a Box."""
 
 import itertools
 from dataclasses import dataclass
@@ -8,40 +8,60 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from qtab.config import Config
 from qtab.config.validation import MAX_ACTIONS
 
 FLOATS = (np.dtype(np.float32), np.dtype(np.float64))
-"""The dtypes of the boxes that qtab knows."""
+"""The dtypes of the Box spaces that qtab supports."""
 
 
 @dataclass(frozen=True)
 class Actions:
-    """So many actions, by the numbers that the columns of a table have."""
+    """The environment's actions, in the order of the columns of the Q table."""
 
     count: int
     first: int = 0
-    """The environment's own number of the first, where its space is Discrete."""
+    """The number of the first action, where the action space is Discrete."""
     values: NDArray[np.floating] | None = None
-    """(count, d) in the space's dtype: the actions themselves, where its space is a Box."""
+    """(count, d) in the dtype of the space: the actions themselves, where the action space is a Box."""
+
+    def __len__(self) -> int:
+        return self.count
 
     def __getitem__(self, index: int) -> Any:
-        """What the environment's step takes: an integer, or a (d,) array of its own."""
+        """Returns the action of a column as ``env.step`` takes it: an integer, or a new (d,) array."""
+        if not 0 <= index < self.count:
+            raise IndexError(f"there are {self.count} actions, got index {index}")
         return self.first + index if self.values is None else self.values[index].copy()
 
-    def greedy(self, indices: NDArray[np.int64]) -> NDArray[Any]:
-        """Returns the environment's actions in the place of their numbers; where it is a Box, with an axis more."""
-        return indices + self.first if self.values is None else self.values[indices]
+    def take(self, columns: NDArray[np.int64]) -> NDArray[Any]:
+        """Returns the actions of many columns: integers of the same shape, or (..., d) where the space is a Box."""
+        return columns + self.first if self.values is None else self.values[columns]
 
     def arrays(self) -> list[NDArray[np.floating]]:
-        """Returns each action of a Box; none of a Discrete space."""
+        """Returns each action of a Box; an empty list for a Discrete space."""
         return [] if self.values is None else list(self.values)
 
+    def match(self, config: Config) -> bool:
+        """Whether these are the actions that a config asks for: what is read from a file may be anything."""
+        values, wanted = self.values, config.actions
+        if values is None or wanted is None:
+            return values is None and wanted is None
+        if values.dtype not in FLOATS or values.ndim != 2 or len(values) != self.count:
+            return False
+        if not np.isfinite(values).all():
+            return False
+        dimensions = values.shape[1]
+        if isinstance(wanted, int):
+            return dimensions > 0 and bool(len(values) == wanted**dimensions)
+        return np.array_equal(np.array(wanted, values.dtype).reshape(-1, dimensions), values)
 
-def actions(space: Any, wanted: Any) -> Actions:
-    """Returns what a learner chooses from; ``wanted`` is the config's ``actions``.
+
+def choose_actions(space: Any, wanted: Any) -> Actions:
+    """Returns the actions of a space; ``wanted`` is the config's ``actions``.
 
     Raises:
-        ValueError: if the space does not fit, or what is wanted does not fit the space; it says what would.
+        ValueError: if the space is not supported, or ``wanted`` does not fit it.
     """
     if isinstance(space, spaces.Discrete):
         if wanted is not None:
@@ -54,12 +74,12 @@ def actions(space: Any, wanted: Any) -> Actions:
             f"actions must be given for the action space {space}: how many, in equal steps from its low to its high, "
             "or the actions themselves"
         )
-    values = _steps(space, wanted) if isinstance(wanted, int) else _listed(space, wanted)
+    values = _equal_steps(space, wanted) if isinstance(wanted, int) else _listed(space, wanted)
     return Actions(len(values), values=values)
 
 
-def _steps(space: spaces.Box, count: int) -> NDArray[np.floating]:
-    """Equal steps along each component, every combination of them, the last component running fastest."""
+def _equal_steps(space: spaces.Box, count: int) -> NDArray[np.floating]:
+    """Equal steps along each component, and every combination of them; the last component varies fastest."""
     if not (np.isfinite(space.low).all() and np.isfinite(space.high).all()):
         raise ValueError(f"actions must be the actions themselves where their space has no finite bounds: {space}")
     if count ** len(space.low) > MAX_ACTIONS:
@@ -69,13 +89,13 @@ def _steps(space: spaces.Box, count: int) -> NDArray[np.floating]:
 
 
 def _listed(space: spaces.Box, wanted: Any) -> NDArray[np.floating]:
-    components = space.shape[0]
-    if any((len(action) if isinstance(action, tuple) else 1) != components for action in wanted):
-        raise ValueError(f"actions must hold {components} numbers each for this action space, got {wanted!r}")
+    dimensions = space.shape[0]
+    if any((len(action) if isinstance(action, tuple) else 1) != dimensions for action in wanted):
+        raise ValueError(f"actions must hold {dimensions} numbers each for this action space, got {wanted!r}")
     if len(wanted) > MAX_ACTIONS:
         raise ValueError(f"actions must be at most {MAX_ACTIONS}, got {len(wanted)}")
     with np.errstate(over="ignore"):
-        values: NDArray[Any] = np.array(wanted, dtype=space.dtype).reshape(-1, components)
+        values: NDArray[Any] = np.array(wanted, dtype=space.dtype).reshape(-1, dimensions)
     if not ((space.low <= values) & (values <= space.high)).all():
         raise ValueError(f"actions must lie in the action space {space}, got {wanted!r}")
     return values

@@ -1,144 +1,139 @@
-"""What every discretizer has: from an observation to the rows of the table that it lights."""
+"""What every discretizer has: it maps an observation to the active rows of the Q table."""
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, cast
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Any, ClassVar
 
-import gymnasium as gym
 import numpy as np
-from gymnasium import spaces
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from qtab import _spec as plan
-from qtab.discretizers.actions import FLOATS, Actions
+from qtab import _core
+from qtab._spec import DiscretizerSpec
+from qtab.config import Config
 
-LARGEST_TABLE = 2**32
+MAX_TABLE_SIZE = 2**32
 """Rows are numbered in 32 bits."""
-Bounds = tuple[NDArray[np.floating], NDArray[np.floating]]
 
 
-@dataclass(frozen=True)
-class Features(ABC):
-    """The observations of a space as rows of a table."""
+@dataclass(frozen=True, eq=False)
+class Discretizer(ABC):
+    """Maps the observations of a space to rows of the Q table. Rust computes the rows, here as in training."""
 
     low: NDArray[Any]
-    """(d,) the space's bounds, in its dtype."""
+    """(d,): the lower bounds of the observation space, in its dtype; of shape () for a Discrete space."""
     high: NDArray[Any]
-    """(d,)"""
-    choices: Actions
-    """What the columns of the table stand for."""
+    """(d,) or (): the upper bounds."""
 
-    @property
-    def actions(self) -> int:
-        """How many columns the table has."""
-        return self.choices.count
+    has_cells: ClassVar[bool] = True
+    """Whether exactly one row is active, the cell of an observation, so that the table has an axis per component."""
 
-    @property
-    def first_action(self) -> int:
-        """The environment's own number of the first of them, where its space is Discrete."""
-        return self.choices.first
+    @classmethod
+    @abstractmethod
+    def build(cls, space: Any, config: Config, n_actions: int) -> "Discretizer":
+        """Returns the discretizer of an observation space; ``config`` has the defaults of its options filled in.
+
+        Raises:
+            ValueError: if the space or an option does not fit, or the table would be too large.
+        """
+
+    @classmethod
+    @abstractmethod
+    def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Discretizer":
+        """Returns the discretizer of a saved run, from what :meth:`arrays` returned.
+
+        Args:
+            config: The config in the file: complete, each of its values valid by itself.
+            arrays: The arrays in the file, of which nothing is known.
+            n_rows: How many rows the table in the file has. No more memory than such a table needs is allocated.
+
+        Raises:
+            KeyError: if an array is missing.
+            ValueError: if the arrays do not fit the config.
+        """
 
     @property
     @abstractmethod
     def shape(self) -> tuple[int, ...]:
-        """The shape of the Q table: cells along each axis where there are any, else rows; then the actions."""
+        """The cells along each component of the observation; ``(n_rows,)`` where there are no cells."""
+
+    @abstractmethod
+    def spec(self) -> DiscretizerSpec:
+        """Returns the discretizer as the extension takes it."""
 
     @property
-    def rows(self) -> int:
-        """How many rows the table has."""
-        return int(np.prod(self.shape[:-1]))
+    def n_rows(self) -> int:
+        """The number of rows of the table."""
+        return math.prod(self.shape)
 
-    @abstractmethod
-    def lit(self, observation: NDArray[Any]) -> list[int]:
-        """Returns the rows of an observation.
+    @property
+    def n_active(self) -> int:
+        """The number of rows that are active for an observation."""
+        return 1
+
+    def settings(self) -> dict[str, Any]:
+        """Returns the settings that followed from the space, for the config of the run."""
+        return {}
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Returns the arrays to save, from which :meth:`restore` rebuilds the discretizer."""
+        return {"low": self.low, "high": self.high}
+
+    def active_rows(self, observation: ArrayLike) -> NDArray[np.int64]:
+        """Returns the (n_active,) rows of an observation, or the (n, n_active) rows of n observations.
+
+        With hashing a row can appear several times.
 
         Raises:
-            TypeError: if it holds no numbers.
-            ValueError: if it has another shape than the space, or no row.
+            TypeError: if the observation does not hold numbers (integers for a discrete space).
+            ValueError: if it has another shape than the space, or has no row.
         """
+        return self._compiled.active_rows(observation)
 
-    @abstractmethod
-    def plan(self) -> plan.Features:
-        """Returns it as the extension module takes it."""
-
-    def numbers(self, observation: NDArray[Any]) -> NDArray[np.floating]:
-        """Returns an observation of a Box in the space's dtype.
+    def row(self, observation: ArrayLike) -> int:
+        """Returns the row of the cell of one observation.
 
         Raises:
-            TypeError: if it holds no numbers.
-            ValueError: if it has another shape than the space, or is NaN somewhere.
+            TypeError: if the observation does not hold numbers (integers for a discrete space).
+            ValueError: if it has another shape than the space, or has no cell.
         """
-        if observation.dtype.kind not in "fiu":
-            raise TypeError(f"observation must hold numbers, got {observation!r}")
-        if observation.shape != self.low.shape:
-            raise ValueError(f"observation must have shape {self.low.shape}, got {observation.shape}")
-        with np.errstate(over="ignore"):
-            numbers = observation.astype(self.low.dtype)
-        if np.isnan(numbers).any():
-            raise ValueError(f"observation[{int(np.argmax(np.isnan(numbers)))}] is nan, outside the observation space")
-        return numbers
-
-
-def box(env: gym.Env) -> Bounds:
-    """Returns the bounds of the observations of an environment whose space is a Box.
-
-    Raises:
-        ValueError: if it is another; it says which.
-    """
-    space = env.observation_space
-    if not isinstance(space, spaces.Box) or len(space.shape) != 1 or space.dtype not in FLOATS:
-        hint = (
-            "; discretizer must be left out for it" if isinstance(space, spaces.Discrete | spaces.MultiDiscrete) else ""
-        )
-        raise ValueError(f"the observation space must be a Box of one float axis, got {space}{hint}")
-    return cast(Bounds, (space.low, space.high))
-
-
-def limits(
-    env: gym.Env, low: Sequence[float] | None, high: Sequence[float] | None
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns what tilings or bins span: the limits given for all components, or else the space's own.
-
-    Raises:
-        ValueError: if there are none, they are not one for each component, or they do not rise.
-    """
-    edges = []
-    for name, given, bound in zip(("low", "high"), (low, high), box(env), strict=True):
-        edge = bound.astype(np.float64) if given is None else np.array(given)
-        if edge.shape != bound.shape:
-            raise ValueError(f"{name} must hold {len(bound)} numbers for this observation space, got {given!r}")
-        if not np.isfinite(edge).all():
+        if not self.has_cells:
             raise ValueError(
-                f"{name} must be given, a number for each component, where the observation space has no finite bounds: "
-                f"{env.observation_space}"
+                f"{type(self).__name__} has no cells; active_rows(observation) returns an observation's rows"
             )
-        edges.append(edge)
-    if not (edges[0] < edges[1]).all():
-        raise ValueError(f"low must lie below high, got {edges[0].tolist()} and {edges[1].tolist()}")
-    return edges[0], edges[1]
+        rows = self.active_rows(observation)
+        if rows.ndim > 1:
+            raise ValueError(f"observation must have shape {self.low.shape}, got {np.shape(observation)}")
+        return int(rows[0])
+
+    def cell(self, observation: ArrayLike) -> tuple[int, ...]:
+        """Returns the index of one observation in ``run.q_table`` and ``run.policy``; see :meth:`row`."""
+        return tuple(int(index) for index in np.unravel_index(self.row(observation), self.shape))
+
+    @cached_property
+    def _compiled(self) -> _core.Discretizer:
+        return _core.Discretizer(self.spec())
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields alone: what the extension holds is built anew."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
-def counts(name: str, given: tuple[int, ...], env: gym.Env) -> tuple[int, ...]:
-    """Returns a count for each component, where there may be one for all.
+def check_table_size(name: str, given: Any, values: float, instead: str = "") -> None:
+    """Refuses a table that is too large, before it is allocated.
+
+    Args:
+        name: The setting that decides the size.
+        given: Its value.
+        values: How many values the table would have.
+        instead: Which other setting would help, to be added to the message.
 
     Raises:
-        ValueError: if there are too few or too many.
+        ValueError: if rows could not be numbered, or the table does not fit into memory.
     """
-    (dimensions,) = cast(tuple[int], env.observation_space.shape)
-    every = given * dimensions if len(given) == 1 else given
-    if len(every) != dimensions:
-        raise ValueError(f"{name} must hold {dimensions} numbers for this observation space, or one, got {given!r}")
-    return every
-
-
-def check_size(name: str, given: Any, values: float, instead: str = "") -> None:
-    """Refuses a table of so many values that is too large, before it is made; ``instead`` says what else would do.
-
-    Raises:
-        ValueError: says what made it so large, and how large it would be.
-    """
-    if not values < LARGEST_TABLE:
+    if not values < MAX_TABLE_SIZE:
         raise ValueError(
             f"{name} must give a table of fewer than 2**32 values{instead}, got {given!r}, which needs {values:.3g}"
         )

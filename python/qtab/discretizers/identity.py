@@ -1,61 +1,71 @@
 """A row of the table for each observation of a discrete space."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab import _spec as plan
-from qtab.discretizers.actions import Actions
-from qtab.discretizers.base import Features, check_size
+from qtab._spec import IdentitySpec
+from qtab.config import Config
+from qtab.discretizers.base import Discretizer, check_table_size
 
 
-@dataclass(frozen=True)
-class Cells(Features):
-    """Observations that are whole numbers from ``low`` to ``high``, their rows counted in C order.
+@dataclass(frozen=True, eq=False)
+class Identity(Discretizer):
+    """Integers from ``low`` to ``high``, both int64; each combination is a cell, numbered in C order."""
 
-    The bounds are int64, of shape () for a Discrete space, else (d,).
-    """
+    @classmethod
+    def build(cls, space: Any, config: Config, n_actions: int) -> "Identity":  # noqa: ARG003 - it has no options
+        """Returns the cells of a discrete observation space.
 
-    @property
-    def counts(self) -> tuple[int, ...]:
-        """How many numbers each component takes."""
-        return tuple(np.ravel(self.high - self.low + 1).tolist())
+        Raises:
+            ValueError: if the space is not discrete, or the table would be too large.
+        """
+        return cls.of_space(space, n_actions)
+
+    @classmethod
+    def of_space(cls, space: Any, n_actions: int) -> "Identity":
+        """Returns the cells of a discrete observation space; see :meth:`build`."""
+        bounds = integer_bounds(space)
+        if bounds is None:
+            raise ValueError(
+                f"the observation space must be Discrete, or a row of them, for discretizer 'identity', got {space}"
+            )
+        low, high = bounds
+        values = float(np.prod((high - low + 1).astype(np.float64))) * n_actions
+        check_table_size("the observation space", space, values)
+        return cls(low, high)
+
+    @classmethod
+    def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Identity":  # noqa: ARG003
+        """Returns the cells of a saved run; see :meth:`Discretizer.restore`."""
+        low, high = arrays["low"], arrays["high"]
+        if low.dtype != np.int64 or high.dtype != np.int64:
+            raise ValueError("its bounds are not those of a space")
+        if low.shape != high.shape or low.ndim > 1 or (low > high).any():
+            raise ValueError("its bounds are not those of a discrete space")
+        return cls(low, high)
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Numbers of each component, then the actions: the shape of the Q table."""
-        return (*self.counts, self.actions)
+        """How many integers each component takes."""
+        return tuple(np.ravel(self.high - self.low + 1).tolist())
 
-    def lit(self, observation: NDArray[Any]) -> list[int]:
-        """Returns the rows of an observation: one.
-
-        Raises:
-            TypeError: if it holds no integers.
-            ValueError: if it has another shape than the space, or lies outside.
-        """
-        if observation.dtype.kind not in "iub":
-            raise TypeError(f"observation must hold integers, got {observation!r}")
-        if observation.shape != self.low.shape:
-            raise ValueError(f"observation must have shape {self.low.shape}, got {observation.shape}")
-        numbers = [int(number) for number in np.ravel(observation)]
-        row = 0
-        for axis, (number, first, count) in enumerate(zip(numbers, np.ravel(self.low), self.counts, strict=True)):
-            if not 0 <= number - int(first) < count:
-                raise ValueError(f"observation[{axis}] is {number}, outside the observation space")
-            row = row * count + number - int(first)
-        return [row]
-
-    def plan(self) -> plan.Cells:
-        """Returns it as the extension module takes it."""
-        return {"first": np.ravel(self.low).tolist(), "counts": list(self.counts), "scalar": not self.low.shape}
+    def spec(self) -> IdentitySpec:
+        """Returns the discretizer as the extension takes it."""
+        return {
+            "type": "identity",
+            "first": np.ravel(self.low).tolist(),
+            "counts": self.shape,
+            "scalar": not self.low.shape,
+        }
 
 
-def components(space: gym.Space[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
-    """Returns the first and the last numbers of a discrete space; None for any other space."""
+def integer_bounds(space: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
+    """Returns the first and the last integer of each component of a discrete space; None for any other space."""
     if isinstance(space, spaces.Discrete):
         first, count = np.array(space.start, np.int64), np.array(space.n, np.int64)
     elif isinstance(space, spaces.MultiDiscrete) and space.nvec.ndim == 1:
@@ -67,21 +77,3 @@ def components(space: gym.Space[Any]) -> tuple[NDArray[np.int64], NDArray[np.int
     else:
         return None
     return first, first + count - 1
-
-
-def cells(env: gym.Env, actions: Actions) -> Cells:
-    """Returns the rows of an environment's observations.
-
-    Raises:
-        ValueError: if a space does not fit, or the table would be too large; it says which, and what fits.
-    """
-    found = components(env.observation_space)
-    if found is None:
-        raise ValueError(
-            "the observation space must be Discrete, or a row of them, for discretizer 'identity', got "
-            f"{env.observation_space}"
-        )
-    low, high = found
-    values = float(np.prod((high - low + 1).astype(np.float64))) * actions.count
-    check_size("the observation space", env.observation_space, values)
-    return Cells(low, high, actions)

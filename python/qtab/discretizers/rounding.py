@@ -1,83 +1,79 @@
-"""The article's grid over an environment's observations."""
+"""A grid of cells around the multiples of a step: ``round((observation - low) * scale)``, as the article has it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab import _spec as plan
-from qtab.discretizers.actions import Actions
-from qtab.discretizers.actions import actions as choices_of
-from qtab.discretizers.base import Features, box, check_size
+from qtab._spec import RoundSpec
+from qtab.config import Config
+from qtab.discretizers.base import check_table_size
+from qtab.discretizers.box import BoxDiscretizer, box_of, check_stored_bounds
 
 
-@dataclass(frozen=True)
-class Grid(Features):
-    """The article's discretizer over a Box: the nearest cell."""
+@dataclass(frozen=True, eq=False)
+class Rounding(BoxDiscretizer):
+    """Rounds each component of the observation to the nearest cell. Observations outside the space are refused."""
 
     scale: NDArray[np.float64]
-    """(d,) cells per unit."""
+    """(d,): cells per unit."""
+
+    @classmethod
+    def build(cls, space: Any, config: Config, n_actions: int) -> "Rounding":
+        """Returns the grid over an observation space with finite bounds.
+
+        Raises:
+            ValueError: if the space or the scale does not fit, or the table would be too large.
+        """
+        box, scale = box_of(space), config.scale
+        if not (np.isfinite(box.low).all() and np.isfinite(box.high).all()):
+            raise ValueError(
+                f"the observation space must have finite bounds, got {box}; "
+                "discretizer 'bins' and 'tiles' take low= and high="
+            )
+        if not (box.low <= box.high).all():
+            raise ValueError(f"the observation space must have low <= high, got {box}")
+        if len(scale) != len(box.low):
+            raise ValueError(
+                f"scale must hold {len(box.low)} numbers for this observation space, the cells per unit of each "
+                f"component, got {scale!r}; or discretizer 'bins' or 'tiles' instead"
+            )
+        grid = cls(box.low, box.high, np.array(scale, dtype=np.float64))
+        with np.errstate(over="ignore"):
+            cells = (box.high - box.low).astype(np.float64) * grid.scale
+            check_table_size("scale", scale, float(np.prod(cells + 1)) * n_actions)
+        return grid
+
+    @classmethod
+    def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Rounding":  # noqa: ARG003
+        """Returns the grid of a saved run; see :meth:`Discretizer.restore`."""
+        grid = cls(arrays["low"], arrays["high"], arrays["scale"])
+        check_stored_bounds(grid.low, grid.high)
+        bounds = (grid.low, grid.high, grid.scale)
+        if any(bound.shape != (len(config.scale),) or not np.isfinite(bound).all() for bound in bounds):
+            raise ValueError("its bounds do not fit its scale")
+        if tuple(grid.scale) != config.scale:
+            raise ValueError("its scale is not that of its config")
+        return grid
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Returns the arrays to save."""
+        return {**super().arrays(), "scale": self.scale}
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Cells along each axis, then the actions: the shape of the Q table."""
+        """The cells along each component."""
         cells = np.round((self.high - self.low) * self.scale, 0).astype(int) + 1
-        return (*(int(count) for count in cells), self.actions)
+        return tuple(int(count) for count in cells)
 
-    def lit(self, observation: NDArray[Any]) -> list[int]:
-        """Returns the rows of an observation: one.
-
-        Raises:
-            TypeError: if it holds no numbers.
-            ValueError: if it has another shape than the space, or lies outside.
-        """
-        return [int(np.ravel_multi_index(self.cell(observation), self.shape[:-1]))]
-
-    def plan(self) -> plan.Rounding:
-        """Returns it as the extension module takes it."""
-        return {"scale": self.scale.tolist()}
-
-    def cell(self, observation: NDArray[Any]) -> tuple[int, ...]:
-        """Returns the index of an observation's row.
-
-        Raises:
-            TypeError: if it holds no numbers.
-            ValueError: if it has another shape than the space, or lies outside.
-        """
-        numbers = self.numbers(observation)
-        with np.errstate(over="ignore", invalid="ignore"):
-            rounded = np.round((numbers - self.low) * self.scale, 0)
-        inside = (rounded >= 0) & (rounded < self.shape[:-1])
-        if not inside.all():
-            axis = int(np.argmin(inside))
-            raise ValueError(f"observation[{axis}] is {numbers[axis]}, outside the observation space")
-        return tuple(int(index) for index in rounded)
-
-
-def grid(env: gym.Env, scale: tuple[float, ...], actions: Actions | None = None) -> Grid:
-    """Returns the grid over an environment's spaces.
-
-    Raises:
-        ValueError: if a space does not fit, or the table would be too large; it says which, and what fits.
-    """
-    low, high = box(env)
-    if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        raise ValueError(
-            f"the observation space must have finite bounds, got {env.observation_space}; "
-            "discretizer 'bins' and 'tiles' take low= and high="
-        )
-    if not (low <= high).all():
-        raise ValueError(f"the observation space must have low <= high, got {env.observation_space}")
-    if len(scale) != len(low):
-        raise ValueError(
-            f"scale must hold {len(low)} numbers for this observation space, the cells per unit of each component, "
-            f"got {scale!r}; or discretizer 'bins' or 'tiles' instead"
-        )
-    choices = choices_of(env.action_space, None) if actions is None else actions
-    table = Grid(low, high, choices, np.array(scale, dtype=np.float64))
-    with np.errstate(over="ignore"):
-        cells = (high - low).astype(np.float64) * table.scale
-        check_size("scale", scale, float(np.prod(cells + 1)) * choices.count)
-    return table
+    def spec(self) -> RoundSpec:
+        """Returns the discretizer as the extension takes it."""
+        return {
+            "type": "round",
+            "dtype": self.dtype,
+            "low": self.low.tolist(),
+            "high": self.high.tolist(),
+            "scale": self.scale.tolist(),
+        }

@@ -1,117 +1,108 @@
-"""Tile coding over an environment's observations (Sutton & Barto, 2nd ed., section 9.5.4)."""
+"""Tile coding (Sutton & Barto, 2nd ed., section 9.5.4)."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
-import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab import _spec as plan
+from qtab._spec import TilesSpec
+from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.discretizers.actions import Actions
-from qtab.discretizers.base import Features, box, check_size, counts, limits
-from qtab.discretizers.hashing import hashed_row
+from qtab.discretizers.base import check_table_size
+from qtab.discretizers.box import BoxDiscretizer, Span, box_of, check_stored_bounds, per_dimension, span
 
-MOST_PARTS = 2**32
-"""Each tile has as many parts as there are tilings, and a place is counted in parts."""
+MAX_OFFSETS = 2**32
+"""Each tile is divided into as many parts as there are tilings, and positions are counted in such parts."""
 
 
-@dataclass(frozen=True)
-class Tiling(Features):
-    """So many tilings of a box, each shifted by its own part of a tile."""
+@dataclass(frozen=True, eq=False)
+class TileCoding(BoxDiscretizer):
+    """Several tilings of a box, each shifted by a different fraction of a tile. One row of each tiling is active."""
 
-    edges: tuple[NDArray[np.float64], NDArray[np.float64]]
-    """Two of (d,): what the tilings span. Observations are clipped to it."""
+    has_cells: ClassVar[bool] = False
+
+    span: Span
+    """What the tilings cover. Observations are clipped to it."""
     tiles: tuple[int, ...]
-    """Along each component."""
+    """Tiles along each component."""
     tilings: int
     hashed_rows: int | None
-    """How many rows the tilings share; None gives each tile its own."""
+    """How many rows the tilings share; None gives each tile a row of its own."""
 
     def __post_init__(self) -> None:
-        """Refuses what no tile can be found in.
+        """Checks that tiles can be told apart, and numbered.
 
         Raises:
-            ValueError: where a tile is narrower than numbers are, or the parts of tiles outnumber 32 bits.
+            ValueError: if a tile is too narrow or too wide for floats, or the parts of tiles outnumber 32 bits.
         """
-        if max(self.tiles) * self.tilings >= MOST_PARTS:
+        if max(self.tiles) * self.tilings >= MAX_OFFSETS:
             raise ValueError(
                 f"tiles must come to fewer than 2**32 along a component, times {self.tilings} tilings, got {self.tiles}"
             )
-        low, high = self.edges
+        low, high = self.span
         with np.errstate(over="ignore", divide="ignore"):
-            tiles_a_unit = np.array(self.tiles) / (high - low)
-        if not (np.isfinite(tiles_a_unit) & (tiles_a_unit > 0)).all():
+            tiles_per_unit = np.array(self.tiles) / (high - low)
+        if not (np.isfinite(tiles_per_unit) & (tiles_per_unit > 0)).all():
             raise ValueError(
                 f"high must lie neither so close above low nor so far, got {low.tolist()} and {high.tolist()}"
             )
 
-    @property
-    def rows(self) -> int:
-        """How many rows the table has: the offsets add one tile along each component."""
-        return self.hashed_rows or self.tilings * math.prod(count + 1 for count in self.tiles)
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """The shape of the table: rows, actions."""
-        return self.rows, self.actions
-
-    def lit(self, observation: NDArray[Any]) -> list[int]:
-        """Returns the rows of an observation, one of each tiling; a hashed one may come twice.
+    @classmethod
+    def build(cls, space: Any, config: Config, n_actions: int) -> "TileCoding":
+        """Returns the tilings over the limits of a config, or else over the bounds of the space.
 
         Raises:
-            TypeError: if it holds no numbers.
-            ValueError: if it has another shape than the space, or is NaN.
+            ValueError: if the space or an option does not fit, or the table would be too large.
         """
-        numbers = self.numbers(observation).astype(np.float64)
-        low, high = self.edges
-        parts = np.floor((np.clip(numbers, low, high) - low) * (np.array(self.tiles) / (high - low)) * self.tilings)
-        rows = []
-        for tiling in range(self.tilings):
-            tile = [
-                (part + tiling * (2 * index + 1) % self.tilings) // self.tilings
-                for index, part in enumerate(parts.astype(int).tolist())
-            ]
-            if self.hashed_rows is not None:
-                rows.append(hashed_row((tiling, *tile), self.hashed_rows))
-            else:
-                rows.append(_dense_row(tiling, tile, self.tiles))
-        return rows
+        box = box_of(space)
+        limits = span(box, config.low, config.high)
+        tiles = per_dimension("tiles", required("tiles", config.tiles), box)
+        tilings, hashed_rows = required("tilings", config.tilings), config.hashed_rows
+        if hashed_rows is not None:
+            check_table_size("hashed_rows", hashed_rows, float(hashed_rows) * n_actions)
+        else:
+            values = tilings * float(np.prod([count + 1.0 for count in tiles])) * n_actions
+            check_table_size("tiles", tiles, values, ", or hashed_rows= of your choice")
+        return cls(box.low, box.high, limits, tiles, tilings, hashed_rows)
 
-    def plan(self) -> plan.Tiles:
-        """Returns it as the extension module takes it."""
-        low, high = self.edges
+    @classmethod
+    def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "TileCoding":  # noqa: ARG003
+        """Returns the tilings of a saved run; see :meth:`Discretizer.restore`."""
+        low, high = arrays["low"], arrays["high"]
+        check_stored_bounds(low, high)
+        limits = np.array(required("low", config.low)), np.array(required("high", config.high))
+        tiles = required("tiles", config.tiles)
+        if {bound.shape for bound in (low, high, *limits)} != {(len(tiles),)}:
+            raise ValueError("its bounds do not fit its tiles")
+        return cls(low, high, limits, tiles, required("tilings", config.tilings), config.hashed_rows)
+
+    def settings(self) -> dict[str, Any]:
+        """Returns the number of tiles of each component, and the limits."""
+        low, high = self.span
+        return {"tiles": self.tiles, "low": tuple(low.tolist()), "high": tuple(high.tolist())}
+
+    @property
+    def shape(self) -> tuple[int]:
+        """The number of rows: the shifts add one tile along each component."""
+        return (self.hashed_rows or self.tilings * math.prod(count + 1 for count in self.tiles),)
+
+    @property
+    def n_active(self) -> int:
+        """The number of tilings."""
+        return self.tilings
+
+    def spec(self) -> TilesSpec:
+        """Returns the discretizer as the extension takes it."""
+        low, high = self.span
         return {
+            "type": "tiles",
+            "dtype": self.dtype,
             "low": low.tolist(),
             "high": high.tolist(),
-            "tiles": list(self.tiles),
+            "tiles": self.tiles,
             "tilings": self.tilings,
             "hashed_rows": self.hashed_rows,
         }
-
-
-def _dense_row(tiling: int, tile: list[int], tiles: tuple[int, ...]) -> int:
-    row = tiling
-    for coordinate, count in zip(tile, tiles, strict=True):
-        row = row * (count + 1) + coordinate
-    return row
-
-
-def tiling(env: gym.Env, config: Config, actions: Actions) -> Tiling:
-    """Returns the tilings over an environment's observations; ``config`` has its options' defaults filled in.
-
-    Raises:
-        ValueError: if a space or an option does not fit, or the table would be too large; it says which.
-    """
-    edges = limits(env, config.low, config.high)
-    assert config.tiles is not None  # noqa: S101 - filled in
-    assert config.tilings is not None  # noqa: S101
-    tiles = counts("tiles", config.tiles, env)
-    if config.hashed_rows is not None:
-        check_size("hashed_rows", config.hashed_rows, float(config.hashed_rows) * actions.count)
-    else:
-        values = config.tilings * float(np.prod([count + 1.0 for count in tiles])) * actions.count
-        check_size("tiles", tiles, values, ", or hashed_rows= of your choice")
-    return Tiling(*box(env), actions, edges, tiles, config.tilings, config.hashed_rows)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from qtab import _core
 
 
-class ClassicControlMixin(_core.Physics):
+class ClassicControlMixin(_core.ClassicControl):
     """Mixin that steps a classic control environment in Rust; Gymnasium's class follows it in the bases.
 
     Spaces, reset options, rendering and attributes are inherited from Gymnasium. An attribute assigned on the instance
@@ -31,11 +31,11 @@ class ClassicControlMixin(_core.Physics):
 
     def __setattr__(self, name: str, value: Any) -> None:
         super().__setattr__(name, value)
-        self.changed()
+        self.invalidate()
 
     def __delattr__(self, name: str) -> None:
         super().__delattr__(name)
-        self.changed()
+        self.invalidate()
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -43,11 +43,11 @@ class ClassicControlMixin(_core.Physics):
         """Draws the first state in Rust from ``np_random``, or in Gymnasium's code if there are ``options``."""
         if options is None:
             gym.Env.reset(self, seed=seed)  # type: ignore[arg-type]
-            begun = self.begin()
-            if begun is not None:
-                return begun
+            first_state = self.native_reset()
+            if first_state is not None:
+                return first_state
             seed = None  # already applied
-        gymnasium_env: Any = super(_core.Physics, self)
+        gymnasium_env: Any = super(_core.ClassicControl, self)
         first: tuple[NDArray[np.float32], dict[str, Any]] = gymnasium_env.reset(seed=seed, options=options)
         return first
 
@@ -58,7 +58,7 @@ class ClassicControlMixin(_core.Physics):
             gymnasium.error.ResetNeeded: before the first reset.
         """
         try:
-            return super(_core.Physics, self).step(action)  # type: ignore[misc]
+            return super(_core.ClassicControl, self).step(action)  # type: ignore[misc]
         except (AttributeError, TypeError):
             if getattr(self, "state", None) is None:
                 raise ResetNeeded("Cannot call env.step() before calling env.reset()") from None

@@ -1,4 +1,4 @@
-"""Environment objects described for the extension module: constants, transition tables, rules."""
+"""Gymnasium's environments as the extension module steps them: by their parameters, their table or their rules."""
 
 from typing import Any
 
@@ -6,41 +6,39 @@ import numpy as np
 from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core
-from qtab import _spec as plan
 from qtab.discretizers.actions import Actions
-from qtab.envs.maximization_bias import MaximizationBiasEnv
+from qtab.envs.registry import TABULAR
 
 
-def native_spec(env: Any) -> plan.Process | plan.Rules | plan.Bias:
-    """Returns the description of an environment whose registry entry has a table; see :func:`toy_text_spec`."""
-    if isinstance(env, MaximizationBiasEnv):
-        return {"actions": env.actions, "mean": env.mean, "deviation": env.deviation}
-    return toy_text_spec(env)
+def native_env(name: str, env: Any, actions: Actions | None = None) -> _core.NativeEnv:
+    """Returns an environment that Rust steps, with what the unwrapped Gymnasium environment holds now.
+
+    Args:
+        name: The name of its registry entry.
+        env: The environment.
+        actions: What a learner chooses from.
+
+    Raises:
+        TypeError: if a table holds types for which Rust would not compute the sums that NumPy does.
+        ValueError: if Rust would not compute the same numbers as NumPy, for an attribute, the action space or on this
+            machine.
+    """
+    if not _core.matches_numpy(name):
+        raise ValueError("NumPy's sin and cos are not the platform's on this machine, which Rust calls")
+    if actions is None or actions.values is None:
+        return _core.NativeEnv(name, env)
+    if actions.values.dtype != np.float32:
+        raise ValueError(f"Rust computes with actions of float32, got {actions.values.dtype}")
+    return _core.NativeEnv(name, env, actions.values[:, 0].tolist())
 
 
-def toy_text_spec(env: Any) -> plan.Process | plan.Rules:
-    """Returns the description of a toy text environment or of any other environment with a transition table.
+def table_env(env: Any) -> _core.NativeEnv:
+    """Returns an environment of Gymnasium's toy text, or any other with a transition table, as Rust steps it.
 
     Raises:
         TypeError: if the table holds types for which Rust would not compute the sums that NumPy does.
         ValueError: if ``P`` and ``initial_state_distrib`` are not a valid table.
     """
     if isinstance(env, BlackjackEnv):
-        return {"natural": bool(env.natural), "sab": bool(env.sab)}
-    fickle = float(env.fickle_probability) if getattr(env, "fickle_passenger", False) else None
-    return {"table": _core.Transitions(env.P, env.initial_state_distrib, exact=True), "fickle": fickle}
-
-
-def classic_spec(env: Any, model: str, actions: Actions) -> plan.Control:
-    """Returns the description of a classic control environment.
-
-    Raises:
-        ValueError: if Rust would not compute the same numbers as NumPy for an attribute, the action space or on this
-            machine.
-    """
-    if not _core.computes_as_numpy(model):
-        raise ValueError("NumPy's sin and cos are not the platform's on this machine, which Rust calls")
-    if actions.values is not None and actions.values.dtype != np.float32:
-        raise ValueError(f"Rust computes with actions of float32, got {actions.values.dtype}")
-    forces = [] if actions.values is None else actions.values[:, 0].tolist()
-    return {"constants": _core.Classic(model, env), "forces": forces}
+        return native_env("Blackjack", env)
+    return native_env("Taxi" if hasattr(env, "fickle_passenger") else TABULAR.name, env)

@@ -10,6 +10,8 @@ from gymnasium.envs.registration import EnvSpec, find_highest_version, get_env_i
 
 PACKAGE = "qtab"
 PREFIX = "qtab/"
+_TABLE = "Table"
+"""The extension module's name of every environment that its transition table describes completely."""
 
 
 @dataclass(frozen=True)
@@ -37,11 +39,11 @@ def _classic_control(name: str, gymnasium_class: str, *supported_kwargs: str) ->
     )
 
 
-def _toy_text(name: str, gymnasium_class: str) -> EnvEntry:
+def _toy_text(class_name: str, gymnasium_class: str, name: str = _TABLE) -> EnvEntry:
     return EnvEntry(
         name=name,
         gymnasium_entry_point=f"gymnasium.envs.toy_text.{gymnasium_class}",
-        entry_point=f"qtab.envs.toy_text:{name}Env",
+        entry_point=f"qtab.envs.toy_text:{class_name}",
         has_table=True,
     )
 
@@ -55,12 +57,12 @@ ENTRIES: Mapping[str, EnvEntry] = {
     "CartPole-v1": _classic_control("CartPole", "cartpole:CartPoleEnv", "sutton_barto_reward"),
     "Acrobot-v1": _classic_control("Acrobot", "acrobot:AcrobotEnv"),
     "Pendulum-v1": _classic_control("Pendulum", "pendulum:PendulumEnv", "g"),
-    "FrozenLake-v1": _toy_text("FrozenLake", "frozen_lake:FrozenLakeEnv"),
-    "FrozenLake8x8-v1": _toy_text("FrozenLake", "frozen_lake:FrozenLakeEnv"),
-    "CliffWalking-v1": _toy_text("CliffWalking", "cliffwalking:CliffWalkingEnv"),
-    "CliffWalkingSlippery-v1": _toy_text("CliffWalking", "cliffwalking:CliffWalkingEnv"),
-    "Taxi-v4": _toy_text("Taxi", "taxi:TaxiEnv"),
-    "Blackjack-v1": _toy_text("Blackjack", "blackjack:BlackjackEnv"),
+    "FrozenLake-v1": _toy_text("FrozenLakeEnv", "frozen_lake:FrozenLakeEnv"),
+    "FrozenLake8x8-v1": _toy_text("FrozenLakeEnv", "frozen_lake:FrozenLakeEnv"),
+    "CliffWalking-v1": _toy_text("CliffWalkingEnv", "cliffwalking:CliffWalkingEnv"),
+    "CliffWalkingSlippery-v1": _toy_text("CliffWalkingEnv", "cliffwalking:CliffWalkingEnv"),
+    "Taxi-v4": _toy_text("TaxiEnv", "taxi:TaxiEnv", "Taxi"),
+    "Blackjack-v1": _toy_text("BlackjackEnv", "blackjack:BlackjackEnv", "Blackjack"),
 }
 """Gymnasium's environments, by Gymnasium's id."""
 
@@ -71,7 +73,7 @@ EXTRA: Mapping[str, EnvEntry] = {
 }
 """Environments that Gymnasium does not have, by their id."""
 
-TABULAR = EnvEntry("Table", "", "qtab.envs.tabular:TabularEnv", has_table=True)
+TABULAR = EnvEntry(_TABLE, "", "qtab.envs.tabular:TabularEnv", has_table=True)
 """:class:`qtab.TabularEnv`, which has no id."""
 
 
@@ -92,7 +94,7 @@ def entry_for_spec(spec: EnvSpec, kwargs: Mapping[str, Any]) -> EnvEntry | None:
         return None
     if spec.entry_point not in (entry.gymnasium_entry_point, entry.entry_point):
         return None
-    # With a render mode the user wants to see the environment itself, which Python steps.
+    # An environment with a render mode is stepped in Python, so that it can be seen.
     arguments = {
         name: value for name, value in {**spec.kwargs, **kwargs}.items() if (name, value) != ("render_mode", None)
     }

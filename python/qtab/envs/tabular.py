@@ -18,7 +18,7 @@ TransitionTable: TypeAlias = Mapping[int, Mapping[int, Sequence[Transition]]] | 
 """``P[state][action]`` lists the transitions, as in Gymnasium's toy text."""
 
 
-class TabularEnv(_core.Table, ToyTextMixin, gym.Env[Any, Any]):
+class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
     """A finite Markov decision process given as a transition table, with states and actions numbered from 0.
 
     Each reset and each step draws one ``np_random.random()``, as in Gymnasium's toy text, so that
@@ -43,7 +43,7 @@ class TabularEnv(_core.Table, ToyTextMixin, gym.Env[Any, Any]):
             raise TypeError(f"initial_state_distrib must hold numbers, got {initial_state_distrib!r}") from None
         if self.initial_state_distrib.ndim != 1:
             raise ValueError(f"initial_state_distrib must have one axis, got {self.initial_state_distrib.ndim}")
-        checked = _core.Transitions(P, self.initial_state_distrib, exact=False)
+        checked = _core.TransitionTable(P, self.initial_state_distrib)
         states, actions = checked.states, checked.actions
         # Copied, so that later changes to the argument do not change the environment.
         self.P: dict[int, dict[int, list[Transition]]] = {

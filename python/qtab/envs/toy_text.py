@@ -14,27 +14,27 @@ from qtab import _core
 class ToyTextMixin:
     """Mixin that resets a toy text environment in Rust; a class of the extension module precedes it in the bases.
 
-    ``begin``, which that class defines, draws the first state from ``np_random`` and returns what ``reset`` returns. It
-    calls ``reset_in_python`` if Rust does not support the distribution of first states.
+    ``native_reset``, which that class defines, draws the first state from ``np_random`` and returns what ``reset``
+    returns. It calls ``reset_in_python`` if Rust does not support the distribution of first states.
     """
 
-    begin: Any
+    native_reset: Any
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[int, dict[str, Any]]:
         """Draws the first state; ``options`` are ignored, as in Gymnasium."""
         gym.Env.reset(self, seed=seed, options=options)  # type: ignore[arg-type]
-        first: tuple[int, dict[str, Any]] = self.begin()
+        first: tuple[int, dict[str, Any]] = self.native_reset()
         return first
 
 
-class FrozenLakeEnv(_core.Table, ToyTextMixin, GymnasiumFrozenLakeEnv):
+class FrozenLakeEnv(_core.ToyText, ToyTextMixin, GymnasiumFrozenLakeEnv):
     """Gymnasium's FrozenLake stepped in Rust; changes to its table ``P`` take effect at the next step."""
 
     reset_in_python = GymnasiumFrozenLakeEnv.reset
     step_in_python = GymnasiumFrozenLakeEnv.step
 
 
-class CliffWalkingEnv(_core.Table, ToyTextMixin, GymnasiumCliffWalkingEnv):
+class CliffWalkingEnv(_core.ToyText, ToyTextMixin, GymnasiumCliffWalkingEnv):
     """Gymnasium's CliffWalking stepped in Rust; changes to its table ``P`` take effect at the next step."""
 
     reset_in_python = GymnasiumCliffWalkingEnv.reset
@@ -62,5 +62,5 @@ class BlackjackEnv(_core.Blackjack, GymnasiumBlackjackEnv):
     ) -> tuple[tuple[int, int, int], dict[str, Any]]:
         """Deals two cards to the player and two to the dealer; ``options`` are ignored, as in Gymnasium."""
         super(GymnasiumBlackjackEnv, self).reset(seed=seed)
-        dealt: tuple[tuple[int, int, int], dict[str, Any]] | None = self.deal()
+        dealt: tuple[tuple[int, int, int], dict[str, Any]] | None = self.native_reset()
         return super().reset(options=options) if dealt is None else dealt

@@ -13,16 +13,16 @@ from gymnasium.vector.utils import batch_space
 
 from qtab import _core
 from qtab._utils import checks
-from qtab.envs.native import toy_text_spec
+from qtab.envs.native import native_env
 from qtab.envs.python_vector import PythonVectorEnv, restore
-from qtab.envs.registry import PREFIX
+from qtab.envs.registry import ENTRIES, PREFIX
 from qtab.envs.vector_arguments import check_reset_mask, seeds_of
 
 _MAX_RESET_BOUND = 1e6
 """First states beyond this may overflow. Gymnasium's code then decides what happens."""
 
 
-class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
+class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
     """A vector environment of equal sub-environments, stepped together in Rust.
 
     It equals ``SyncVectorEnv([lambda: gymnasium.make(id)] * num_envs)`` bit for bit: arrays, dtypes, infos, seeds and
@@ -65,6 +65,7 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         self.copy = bool(copy)
         # A spec instead of an id: Gymnasium would warn of an old version a second time.
         spec = gym.spec(PREFIX + name)
+        self._entry_name = ENTRIES[name].name
         self._make = partial(gym.make, spec, max_episode_steps=max_episode_steps, **kwargs)
         self._example = self._make()
         self.metadata = {**self._example.metadata, "autoreset_mode": self.autoreset_mode}
@@ -87,15 +88,13 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         if self.render_mode is not None and not can_render:
             return False
         try:
-            kind = None if isinstance(env, _core.Physics) else toy_text_spec(env)
-        except (TypeError, ValueError):  # a table that Gymnasium accepts and Rust does not
+            native = native_env(self._entry_name, env)
+        except (TypeError, ValueError):  # parameters or a table that Gymnasium accepts and Rust does not
             return False
         limited = self._example.has_wrapper_attr("_max_episode_steps")
         limit = self._example.get_wrapper_attr("_max_episode_steps") if limited else None
-        return self.launch(
-            env,
-            kind,
-            [env.action_mask(state).tolist() for state in range(500)] if isinstance(env, TaxiEnv) else None,
+        return self.start(
+            native,
             self.num_envs,
             # Gymnasium accepts any integer; no episode reaches the largest of 64 bits.
             None if limit is None else min(limit, checks.LARGEST_COUNT),
@@ -127,18 +126,18 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         options = None if options is None else dict(options)
         mask = None
         if options is not None and "reset_mask" in options:
-            not_reset = self.unbegun() if self._python is None else self._python.not_reset()
+            not_reset = self.not_reset() if self._python is None else self._python.not_reset()
             mask = check_reset_mask(options.pop("reset_mask"), self.num_envs, not_reset)
-        bounds = self._reset_bounds(options) if self.launched else None
+        bounds = self._reset_bounds(options) if self.is_native else None
         if self._python is not None:
             masked = options if mask is None else {**(options or {}), "reset_mask": mask}
             return self._python.reset(seed=seeds, options=masked)
         indices = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
-        return self.begin(list(indices), [seeds[index] for index in indices], bounds)
+        return self.native_reset(list(indices), [seeds[index] for index in indices], bounds)
 
     def _reset_bounds(self, options: dict[str, Any] | None) -> tuple[float, float] | None:
         """Returns the bounds of the first states that the options set; None for the default ones."""
-        names = self.start()
+        names = self.reset_bounds()
         if names is None or not options:
             return None
         self._example.reset(options=options)  # raises Gymnasium's errors before anything changes
@@ -163,7 +162,7 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
 
     def _generator(self, index: int) -> np.random.Generator:
         """Returns a sub-environment's generator, from which Rust draws from now on."""
-        source = self.source(index)
+        source = self.rng(index)
         if isinstance(source, tuple):
             words_drawn, buffered_uint32 = source
             bit_generator = np.random.PCG64(np.random.SeedSequence(self.seed_of(index)))
@@ -174,7 +173,7 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
                 "uinteger": buffered_uint32 or 0,
             }
             source = np.random.Generator(bit_generator)
-            self.draw_from(index, source)
+            self.set_rng(index, source)
         return source
 
     def render(self) -> tuple[Any, ...]:
@@ -187,14 +186,14 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
             self._fall_back_to_python()
         if self._python is not None:
             return self._python.render()
-        missing = self.unbegun()
+        missing = self.not_reset()
         if missing:
             raise ResetNeeded(f"Cannot call `env.render()` before calling `env.reset()`: sub-environment {missing[0]}")
         if not self._render_envs:
             self._render_envs = [self._make() for _ in range(self.num_envs)]
             for env in self._render_envs:
                 env.reset(seed=0)
-        for env, snapshot in zip(self._render_envs, self.portraits(), strict=True):
+        for env, snapshot in zip(self._render_envs, self.snapshots(), strict=True):
             restore(env, snapshot)
         return tuple(env.render() for env in self._render_envs)
 
@@ -227,9 +226,9 @@ class RustVectorEnv(_core.Vector, VectorEnv[Any, Any, Any]):
         if self._python is not None:
             return self._python
         python = PythonVectorEnv([self._make] * self.num_envs, copy=self.copy, autoreset_mode=self.autoreset_mode)
-        if self.launched:
-            python.resume_from(self.portraits(), self.unbegun(), self.np_random, self.np_random_seed)
-            self.retire()
+        if self.is_native:
+            python.resume_from(self.snapshots(), self.not_reset(), self.np_random, self.np_random_seed)
+            self.release()
         self._python = python
         return python
 

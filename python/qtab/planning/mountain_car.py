@@ -31,11 +31,11 @@ class Search:
     """(velocities,): the second axis of the grid of values."""
 
 
-def search_routes(valley: _core.Valley, max_episode_steps: int) -> Search:
+def search_routes(valley: _core.MountainCarSearch, max_episode_steps: int) -> Search:
     """Searches a route from each start position."""
     starts, routes = valley.routes()
     steps = np.array([max_episode_steps if route is None else len(route) for route in routes], dtype=np.int64)
-    predict_return = -float(valley.followed().mean())
+    predict_return = -float(valley.rollout_lengths().mean())
     return Search(starts, steps, tuple(routes), predict_return, *valley.axes())
 
 
@@ -44,7 +44,7 @@ class MountainCarSolver:
 
     needs_step_count = False
 
-    def __init__(self, valley: _core.Valley) -> None:
+    def __init__(self, valley: _core.MountainCarSearch) -> None:
         self._valley = valley
 
     def action(self, observation: ArrayLike, steps_taken: int) -> int:  # noqa: ARG002 - see needs_step_count

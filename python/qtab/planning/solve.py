@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
-from qtab.discretizers.actions import actions
-from qtab.discretizers.identity import cells
+from qtab.discretizers import Identity
+from qtab.discretizers.actions import choose_actions
 from qtab.envs.classic_control import MountainCarEnv as RustMountainCarEnv
 from qtab.envs.matching import time_limit, unknown_wrapper
-from qtab.envs.native import toy_text_spec
+from qtab.envs.native import table_env
 from qtab.envs.registry import spec_of, versioned
 from qtab.planning.mountain_car import MountainCarSolver, Search, search_routes
 from qtab.planning.optimum import Optimum, Solver
@@ -165,21 +165,21 @@ class _Best:
 
 
 def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int) -> _Best:
-    table = cells(env, actions(env.action_space, None))
-    planner = _core.Planner(toy_text_spec(env))
+    actions = choose_actions(env.action_space, None)
+    cells = Identity.of_space(env.observation_space, len(actions))
+    planner = _core.MdpSolver(table_env(env))
     solution = solve_table(planner, method, discount, max_episode_steps)
-    if len(solution.values) < table.rows or solution.q_values.shape[1] != table.actions:
-        raise ValueError(f"P must have {table.rows} states of {table.actions} actions, as the spaces of env have")
+    if len(solution.values) < cells.n_rows or solution.q_values.shape[1] != len(actions):
+        raise ValueError(f"P must have {cells.n_rows} states of {len(actions)} actions, as the spaces of env have")
     # The first states of the solution are those that observations show. Where an observation hides part of the state,
     # the hidden variants follow.
-    observed = slice(table.rows)
-    shape = table.shape[:-1]
+    observed = slice(cells.n_rows)
     return _Best(
-        values=solution.values[observed].reshape(shape),
-        q_values=solution.q_values[observed].reshape(table.shape),
-        policy=solution.policy[observed].reshape(shape) + table.first_action,
+        values=solution.values[observed].reshape(cells.shape),
+        q_values=solution.q_values[observed].reshape(*cells.shape, len(actions)),
+        policy=solution.policy[observed].reshape(cells.shape) + actions.first,
         expected_return=solution.expected_return,
-        solver=TabularSolver(planner, table, solution, max_episode_steps),
+        solver=TabularSolver(planner, cells, actions, solution, max_episode_steps),
     )
 
 
@@ -187,7 +187,9 @@ def _search_mountain_car(env: Any, discount: float, max_episode_steps: int) -> _
     if discount != 1.0:
         raise ValueError(f"discount must be 1 for method 'search', which counts steps, got {discount!r}")
     names = _core.parameter_names("MountainCar")
-    valley = _core.Valley([(name, checks.finite(name, getattr(env, name))) for name in names], max_episode_steps)
+    valley = _core.MountainCarSearch(
+        [(name, checks.finite(name, getattr(env, name))) for name in names], max_episode_steps
+    )
     search = search_routes(valley, max_episode_steps)
     cost_to_go, action_costs_to_go = valley.steps()
     shape = (len(search.positions), len(search.velocities))

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
-from qtab.discretizers.identity import Cells
+from qtab.discretizers import Identity
+from qtab.discretizers.actions import Actions
 from qtab.results.run import Run
 
 METHODS = ("finite_horizon", "value_iteration", "policy_iteration")
@@ -30,7 +31,7 @@ class Solution:
     steps to go or more, until the next change. None where the best action does not depend on the steps to go."""
 
 
-def solve_table(planner: _core.Planner, method: str, discount: float, max_episode_steps: int) -> Solution:
+def solve_table(planner: _core.MdpSolver, method: str, discount: float, max_episode_steps: int) -> Solution:
     """Solves a transition table by one of ``METHODS``.
 
     Raises:
@@ -47,8 +48,10 @@ def solve_table(planner: _core.Planner, method: str, discount: float, max_episod
 class TabularSolver:
     """Acts by the solution of a transition table, and evaluates the policies of runs exactly."""
 
-    def __init__(self, planner: _core.Planner, cells: Cells, solution: Solution, max_episode_steps: int) -> None:
-        self._planner, self._cells, self._solution = planner, cells, solution
+    def __init__(
+        self, planner: _core.MdpSolver, cells: Identity, actions: Actions, solution: Solution, max_episode_steps: int
+    ) -> None:
+        self._planner, self._cells, self._actions, self._solution = planner, cells, actions, solution
         self._max_episode_steps = max_episode_steps
         self.needs_step_count = solution.policy_changes is not None
 
@@ -58,14 +61,14 @@ class TabularSolver:
         Raises:
             ValueError: for an observation outside the space, or one that does not determine the best action.
         """
-        [row] = self._cells.lit(np.asarray(observation))
+        row = self._cells.row(observation)
         # Several states share an observation if it hides part of the state.
         best_actions = {
             self._best_action(int(state), steps_taken) for state in np.flatnonzero(self._planner.rows == row)
         }
         if len(best_actions) > 1:
             raise ValueError(f"the best action depends on what the observation {observation!r} does not show")
-        return best_actions.pop() + self._cells.first_action
+        return best_actions.pop() + self._actions.first
 
     def _best_action(self, state: int, steps_taken: int) -> int:
         if self._solution.policy_changes is None:
@@ -82,7 +85,9 @@ class TabularSolver:
         Raises:
             ValueError: if the run's Q table has another shape than the environment.
         """
-        if not isinstance(run.grid, Cells) or run.grid.shape != self._cells.shape:
-            raise ValueError(f"run must have a table of shape {self._cells.shape}, got {run.grid.shape!r}")
-        policy: Any = np.ascontiguousarray(run.policy.ravel() - run.grid.first_action)
+        shape = (*self._cells.shape, len(self._actions))
+        found = (*run.discretizer.shape, len(run.actions))
+        if not run.discretizer.has_cells or found != shape:
+            raise ValueError(f"run must have a table of shape {shape}, got {found}")
+        policy: Any = np.ascontiguousarray(run.policy.ravel() - run.actions.first)
         return self._planner.policy_return(policy, self._max_episode_steps), 0.0

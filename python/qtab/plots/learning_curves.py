@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from qtab.planning import Optimum
 
 MAX_SINGLE_RUNS = 200
-"""The most single runs that are drawn behind the statistic."""
+"""The maximum number of single runs that are drawn behind the statistic."""
 
 
 def learning_curves(

@@ -1,4 +1,4 @@
-"""What a table's columns stand for."""
+"""The actions of an environment, in the order of the columns of the table."""
 
 import itertools
 from typing import Any
@@ -6,18 +6,24 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
+from qtab._utils.checks import required
 from qtab.config import Config
 
 
 def actions(env: gym.Env, config: Config) -> list[Any]:
-    """Returns what the environment's step takes: integers, or arrays where its action space is a Box."""
+    """Returns the actions as ``env.step`` takes them: integers, or arrays where the action space is a Box.
+
+    Raises:
+        TypeError: for any other action space.
+    """
     space = env.action_space
     if isinstance(space, gym.spaces.Discrete):
         return [int(space.start) + action for action in range(int(space.n))]
-    assert isinstance(space, gym.spaces.Box)  # noqa: S101
+    if not isinstance(space, gym.spaces.Box):
+        raise TypeError(f"the action space must be Discrete or a Box, got {space}")
     if isinstance(config.actions, int):
         # Equal steps along each component, and every combination of them.
         steps = np.linspace(space.low, space.high, config.actions, dtype=space.dtype)
         return [np.array(action, dtype=space.dtype) for action in itertools.product(*steps.T)]
-    assert config.actions is not None  # noqa: S101 - resolved
-    return [np.array(action, dtype=space.dtype).reshape(space.shape) for action in config.actions]
+    listed = required("actions", config.actions)
+    return [np.array(action, dtype=space.dtype).reshape(space.shape) for action in listed]

@@ -1,4 +1,4 @@
-"""From an observation to the rows of the table that it lights."""
+"""From an observation to the active rows of the table, in plain NumPy."""
 
 import math
 from typing import Any, Protocol
@@ -7,26 +7,27 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.discretizers.hashing import hashed_row
+from qtab.reference.hashing import hashed_row
 
 
 class Discretizer(Protocol):
-    """Rows, and how many there are."""
+    """Maps observations to rows of the table."""
 
     shape: tuple[int, ...]
-    """Of the table, without its actions."""
-    lit: int
-    """How many rows an observation lights."""
+    """The shape of the table, without its actions."""
+    n_active: int
+    """How many rows are active for an observation."""
 
     def rows(self, observation: ArrayLike) -> list[int]:
-        """Returns the rows of an observation."""
+        """Returns the active rows of an observation."""
 
 
 class Rounding:
     """The article's grid: the nearest cell."""
 
-    lit = 1
+    n_active = 1
 
     def __init__(self, space: gym.spaces.Box, config: Config) -> None:
         self.low, self.scale = space.low, np.array(config.scale)
@@ -34,16 +35,16 @@ class Rounding:
         self.shape = tuple(int(count) for count in cells)
 
     def rows(self, observation: ArrayLike) -> list[int]:
-        """Returns one row, the cells counted in C order."""
-        # In the dtype of the space, whatever the environment hands out.
+        """Returns one row; the cells are numbered in C order."""
+        # In the dtype of the space, whatever the dtype of the observation.
         cell = np.round((np.asarray(observation, dtype=self.low.dtype) - self.low) * self.scale, 0).astype(int)
         return [int(np.ravel_multi_index(tuple(cell), self.shape))]
 
 
 class Bins:
-    """A grid of bins between edges: of equal width, or the user's own."""
+    """A grid of bins: of equal width, or between the user's own edges."""
 
-    lit = 1
+    n_active = 1
 
     def __init__(self, space: gym.spaces.Box, config: Config) -> None:
         self.dtype: Any = space.dtype
@@ -57,7 +58,7 @@ class Bins:
         self.shape: tuple[int, ...] = tuple(len(edges) + 1 for edges in self.edges)
 
     def rows(self, observation: ArrayLike) -> list[int]:
-        """Returns one row, the bins counted in C order."""
+        """Returns one row; the bins are numbered in C order."""
         numbers = np.asarray(observation, dtype=self.dtype)
         bins = [np.digitize(number, edges) for number, edges in zip(numbers, self.edges, strict=True)]
         return [int(np.ravel_multi_index(tuple(bins), self.shape))]
@@ -66,38 +67,38 @@ class Bins:
 class TileCoding:
     """Tilings shifted by 1, 3, 5, … parts of a tile along the first, second, third … component (section 9.5.4).
 
-    A tile's row is counted in C order, or hashed into fewer rows.
+    The tiles' rows are numbered in C order, or hashed into fewer rows.
     """
 
     def __init__(self, space: gym.spaces.Box, config: Config) -> None:
-        assert config.tilings is not None  # noqa: S101
-        assert config.tiles is not None  # noqa: S101
+        tiles = required("tiles", config.tiles)
         self.dtype = space.dtype
         self.low, self.high = np.array(config.low), np.array(config.high)
-        self.tiles, self.lit = np.array(config.tiles), config.tilings
-        self.tiling_shape = tuple(count + 1 for count in config.tiles)
+        self.tiles, self.n_active = np.array(tiles), required("tilings", config.tilings)
+        self.tiling_shape = tuple(count + 1 for count in tiles)
         self.hashed_rows = config.hashed_rows
-        self.shape: tuple[int, ...] = (self.hashed_rows or self.lit * math.prod(self.tiling_shape),)
+        self.shape: tuple[int, ...] = (self.hashed_rows or self.n_active * math.prod(self.tiling_shape),)
 
     def rows(self, observation: ArrayLike) -> list[int]:
         """Returns one row of each tiling."""
         numbers = np.asarray(observation, dtype=self.dtype).astype(np.float64)
         clipped = np.clip(numbers, self.low, self.high)
-        parts = np.floor((clipped - self.low) * (self.tiles / (self.high - self.low)) * self.lit).astype(int)
+        parts = np.floor((clipped - self.low) * (self.tiles / (self.high - self.low)) * self.n_active).astype(int)
         odd = 2 * np.arange(len(parts)) + 1
-        return [self.row(tiling, (parts + tiling * odd % self.lit) // self.lit) for tiling in range(self.lit)]
+        shifts = [tiling * odd % self.n_active for tiling in range(self.n_active)]
+        return [self.row(tiling, (parts + shift) // self.n_active) for tiling, shift in enumerate(shifts)]
 
     def row(self, tiling: int, tile: NDArray[np.int64]) -> int:
         """Returns the row of a tiling's tile."""
         if self.hashed_rows is not None:
             return hashed_row((tiling, *tile.tolist()), self.hashed_rows)
-        return int(np.ravel_multi_index((tiling, *tile), (self.lit, *self.tiling_shape)))
+        return int(np.ravel_multi_index((tiling, *tile), (self.n_active, *self.tiling_shape)))
 
 
 class Identity:
-    """A row for each observation of a discrete space, a row of numbers counted in C order."""
+    """A row for each observation of a discrete space; those of several integers are numbered in C order."""
 
-    lit = 1
+    n_active = 1
 
     def __init__(self, space: gym.Space[Any]) -> None:
         parts: Any = space if isinstance(space, gym.spaces.Tuple) else [space]
@@ -114,10 +115,15 @@ class Identity:
 
 
 def discretizer(env: gym.Env, config: Config) -> Discretizer:
-    """Returns the discretizer of a resolved config."""
+    """Returns the discretizer of a complete config.
+
+    Raises:
+        TypeError: for an observation space that is neither discrete nor a Box.
+    """
     if config.discretizer == "identity":
         return Identity(env.observation_space)
-    assert isinstance(env.observation_space, gym.spaces.Box)  # noqa: S101
+    if not isinstance(env.observation_space, gym.spaces.Box):
+        raise TypeError(f"the observation space must be discrete or a Box, got {env.observation_space}")
     if config.discretizer == "tiles":
         return TileCoding(env.observation_space, config)
     if config.discretizer in ("bins", "edges"):

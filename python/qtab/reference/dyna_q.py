@@ -4,13 +4,14 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
+from qtab.config.algorithms import DynaQ
 from qtab.reference.task import Result, Rows, Table, Task, values
 
 
 def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    assert config.planning_steps is not None  # noqa: S101
+    options = DynaQ.of(config)
     Q = task.table()
     # Model(S, A) = R, S' (None after a terminal state); dicts keep the order of first visits and first tries.
     model: dict[int, dict[int, tuple[float, Rows | None]]] = {}
@@ -24,7 +25,7 @@ def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Resul
             learn(task, Q, state, action, step.reward, next_state)
             model.setdefault(state[0], {})[action] = (step.reward, next_state)
 
-            for _ in range(config.planning_steps):
+            for _ in range(options.planning_steps):
                 row = list(model)[int(task.rng.integers(0, len(model)))]
                 tried = list(model[row])
                 past_action = tried[int(task.rng.integers(0, len(tried)))]

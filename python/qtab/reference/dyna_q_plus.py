@@ -6,6 +6,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
+from qtab.config.algorithms import DynaQPlus
 from qtab.reference.dyna_q import learn
 from qtab.reference.task import Result, Rows, Task
 
@@ -13,10 +14,9 @@ from qtab.reference.task import Result, Rows, Task
 def dyna_q_plus(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    assert config.planning_steps is not None  # noqa: S101
-    assert config.time_weight is not None  # noqa: S101
+    options = DynaQPlus.of(config)
     Q = task.table()
-    # Model(S, A) = R, S' (None after a terminal state); what was never tried leads back with a reward of zero.
+    # Model(S, A) = R, S' (None after a terminal state); an untried action leads back to S with a reward of zero.
     model: dict[int, dict[int, tuple[float, Rows | None]]] = {}
     last_tried = np.zeros(Q.shape, dtype=int)
     now = 0
@@ -32,12 +32,12 @@ def dyna_q_plus(env: gym.Env, config: Config, stop_after: int | None = None) -> 
             learn(task, Q, state, action, step.reward, next_state)
             model.setdefault(state[0], {})[action] = (step.reward, next_state)
 
-            for _ in range(config.planning_steps):
+            for _ in range(options.planning_steps):
                 row = list(model)[int(task.rng.integers(0, len(model)))]
                 any_action = int(task.rng.integers(0, task.n_actions))
                 reward, after = model[row].get(any_action, (0.0, [row]))
                 # The reward grows with the time since the pair was last tried: R + κ √τ
-                bonus = config.time_weight * math.sqrt(now - int(last_tried[row, any_action]))
+                bonus = options.time_weight * math.sqrt(now - int(last_tried[row, any_action]))
                 learn(task, Q, [row], any_action, reward + bonus, after)
 
             state, over = step.state, step.over

@@ -6,6 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.reference.schedules import epsilon_schedule
 from qtab.reference.streams import AgentStream
@@ -14,69 +15,68 @@ Values = NDArray[np.float64]
 
 
 class Policy(Protocol):
-    """A way of choosing actions."""
+    """Chooses actions from their values."""
 
     def choose(self, values: Values) -> int:
         """Returns an action."""
 
     def probabilities(self, values: Values) -> list[float]:
-        """Returns how often each action would be chosen."""
+        """Returns the probability of each action."""
 
     def end_episode(self) -> None:
         """Called after every episode."""
 
 
 class EpsilonGreedy:
-    """Mostly the greedy action, now and then any."""
+    """With probability ε a random action, else a greedy one."""
 
     def __init__(self, config: Config, rng: AgentStream) -> None:
         self.rng = rng
         self.epsilon = epsilon_schedule(config)
         self.random_ties = config.ties == "random"
-        self.some_missing = isinstance(config.initial_q, np.ndarray) and bool(np.isneginf(config.initial_q).any())
+        self.has_masked_actions = isinstance(config.initial_q, np.ndarray) and bool(np.isneginf(config.initial_q).any())
 
     def choose(self, values: Values) -> int:
-        """Draws one ``random()`` always, and one integer to explore, or to choose among several greedy actions."""
+        """Always draws one ``random()``; one integer more to explore, or to choose among several greedy actions."""
         if self.rng.random() < 1.0 - self.epsilon.value:
             greedy = self.greedy(values)
             return greedy[0] if len(greedy) == 1 else greedy[int(self.rng.integers(0, len(greedy)))]
-        some = self.there(values)
-        return some[int(self.rng.integers(0, len(some)))]
+        valid = self.valid_actions(values)
+        return valid[int(self.rng.integers(0, len(valid)))]
 
-    def there(self, values: Values) -> list[int]:
-        """Returns the actions that a state has: where some are missing, their values are -inf."""
-        return [action for action, value in enumerate(values) if not (self.some_missing and value == -math.inf)]
+    def valid_actions(self, values: Values) -> list[int]:
+        """Returns the actions that a state has. The values of those that it does not have are -inf."""
+        return [action for action, value in enumerate(values) if not (self.has_masked_actions and value == -math.inf)]
 
     def greedy(self, values: Values) -> list[int]:
-        """Returns the actions among which the greedy one is chosen: the first, or all of the best."""
+        """Returns the greedy actions to choose from: the first, or with random ties all of them."""
         if self.random_ties:
             return [int(action) for action in np.flatnonzero(values == np.max(values))]
         return [int(np.argmax(values))]
 
     def probabilities(self, values: Values) -> list[float]:
-        """Returns ε / n for each of the actions there are, and the rest for the greedy ones."""
+        """Returns ε / n for each of the n actions that there are, and shares the rest among the greedy ones."""
         epsilon, greedy = self.epsilon.value, self.greedy(values)
-        some = self.there(values)
-        shares = [epsilon / len(some) if action in some else 0.0 for action in range(len(values))]
+        valid = self.valid_actions(values)
+        shares = [epsilon / len(valid) if action in valid else 0.0 for action in range(len(values))]
         for action in greedy:
             shares[action] += (1.0 - epsilon) / len(greedy)
         return shares
 
     def end_episode(self) -> None:
-        """Lets ε fall."""
+        """Decreases ε."""
         self.epsilon.end_episode()
 
 
 class Softmax:
-    """Each action by exp(Q / τ)."""
+    """Each action with probability proportional to exp(Q / τ)."""
 
     def __init__(self, config: Config, rng: AgentStream) -> None:
-        assert config.temperature is not None  # noqa: S101
         self.rng = rng
-        self.temperature = config.temperature
+        self.temperature = required("temperature", config.temperature)
 
     def choose(self, values: Values) -> int:
-        """Draws one ``random()``, and holds it against the probabilities' cumulative sum."""
+        """Draws one ``random()`` and compares it with the cumulative sum of the probabilities."""
         drawn, reached = self.rng.random(), 0.0
         for action, share in enumerate(self.probabilities(values)):
             reached += share
@@ -94,9 +94,9 @@ class Softmax:
         return [weight / total for weight in weights]
 
     def end_episode(self) -> None:
-        """The temperature stays."""
+        """The temperature is constant."""
 
 
 def policy(config: Config, rng: AgentStream) -> Policy:
-    """Returns the policy of a resolved config."""
+    """Returns the policy of a complete config."""
     return Softmax(config, rng) if config.exploration == "softmax" else EpsilonGreedy(config, rng)

@@ -4,14 +4,15 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
+from qtab.config.algorithms import EligibilityTraces
 from qtab.reference.task import Result, Task, value
-from qtab.reference.traces import correct, decay, mark
+from qtab.reference.traces import apply_td_error, decay, mark
 
 
 def sarsa_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    assert config.trace_decay is not None  # noqa: S101
+    options = EligibilityTraces.of("sarsa_lambda", config)
     Q = task.table()
 
     for _ in task.episodes():
@@ -21,15 +22,15 @@ def sarsa_lambda(env: gym.Env, config: Config, stop_after: int | None = None) ->
         while not over:
             step = task.step(action)
             task.learning_rate.visit(state, action)
-            mark(z, state, action, config.traces)
+            mark(z, state, action, options.traces)
 
             # δ = R + γ Q(S', A') - Q(S, A)
             target = step.reward
             if not step.terminal:
                 next_action = task.choose(Q, step.state)
                 target = step.reward + task.discount * value(Q, step.state, next_action)
-            correct(Q, z, task.learning_rate, target - value(Q, state, action))
-            decay(z, task.discount * config.trace_decay, config.trace_cutoff)
+            apply_td_error(Q, z, task.learning_rate, target - value(Q, state, action))
+            decay(z, task.discount * options.trace_decay, options.trace_cutoff)
 
             state, action, over = step.state, next_action, step.over
 

@@ -1,36 +1,37 @@
-"""How the rates fall: the exploration rate and the learning rate."""
+"""How the exploration rate and the learning rate change from episode to episode."""
 
 import numpy as np
 
+from qtab._utils.checks import required
 from qtab.config import Config
 
 
 class Schedule:
-    """A rate that falls from episode to episode, once its warm-up is over."""
+    """A rate that decreases after each episode, once its warm-up is over."""
 
-    def __init__(self, kind: str, value: float, least: float, decay: float | None, warm_up: int, episodes: int) -> None:
+    def __init__(
+        self, kind: str, value: float, minimum: float, decay: float | None, warm_up: int, episodes: int
+    ) -> None:
         self.value = value
-        self.kind, self.least, self.decay, self.warm_up = kind, least, decay, warm_up
-        self.reduction = (value - least) / (episodes - warm_up)
+        self.kind, self.minimum, self.decay, self.warm_up = kind, minimum, decay, warm_up
+        self.reduction = (value - minimum) / (episodes - warm_up)
 
     def end_episode(self) -> None:
-        """Falls by the article's rule, or by a factor."""
+        """Decreases by the article's constant amount, or by a factor."""
         if self.warm_up > 0:
             self.warm_up -= 1
-        elif self.value > self.least:
+        elif self.value > self.minimum:
             if self.kind == "linear":
                 self.value -= self.reduction
             elif self.decay is not None:
-                self.value = max(self.value * self.decay, self.least)
+                self.value = max(self.value * self.decay, self.minimum)
 
 
 def epsilon_schedule(config: Config) -> Schedule:
-    """Returns the exploration rate of a resolved config."""
-    assert config.epsilon_schedule is not None  # noqa: S101
-    assert config.epsilon is not None  # noqa: S101
+    """Returns the exploration rate of a complete config."""
     return Schedule(
-        config.epsilon_schedule,
-        config.epsilon,
+        required("epsilon_schedule", config.epsilon_schedule),
+        required("epsilon", config.epsilon),
         config.min_epsilon or 0.0,
         config.epsilon_decay,
         config.epsilon_warm_up or 0,
@@ -39,9 +40,9 @@ def epsilon_schedule(config: Config) -> Schedule:
 
 
 class LearningRate:
-    """α, over the number of rows that an observation lights: the step size of a weight."""
+    """The step size of a value in the table: α over the number of active rows."""
 
-    def __init__(self, config: Config, weights: tuple[int, int], lit: int) -> None:
+    def __init__(self, config: Config, shape: tuple[int, int], n_active: int) -> None:
         self.schedule = Schedule(
             config.learning_rate_schedule,
             config.learning_rate,
@@ -50,17 +51,17 @@ class LearningRate:
             config.learning_rate_warm_up or 0,
             config.episodes,
         )
-        self.lit = lit
-        self.visits = np.zeros(weights, dtype=int)
+        self.n_active = n_active
+        self.visits = np.zeros(shape, dtype=int)
         self.by_visits = config.learning_rate_schedule == "visits"
 
     def visit(self, rows: list[int], action: int) -> None:
-        """Counts a visit of a pair."""
+        """Counts a visit of a state and action."""
         for row in rows:
             self.visits[row, action] += 1
 
     def step(self, row: int, action: int) -> float:
-        """Returns the step size of a weight; its n-th visit takes 1/n of the first's, where visits count."""
+        """Returns the step size; by visits that of the n-th is 1/n of the first one's."""
         if self.by_visits:
-            return max(self.schedule.value / int(self.visits[row, action]), self.schedule.least) / self.lit
-        return self.schedule.value / self.lit
+            return max(self.schedule.value / int(self.visits[row, action]), self.schedule.minimum) / self.n_active
+        return self.schedule.value / self.n_active

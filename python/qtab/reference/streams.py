@@ -1,4 +1,4 @@
-"""The agent's random numbers, straight from NumPy."""
+"""The agent's random numbers, from NumPy."""
 
 from typing import Protocol
 
@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 
 class AgentStream(Protocol):
-    """The draws that a learner makes."""
+    """The random numbers that a learner draws."""
 
     def random(self) -> float:
         """Returns a float in [0, 1)."""
@@ -20,7 +20,7 @@ class AgentStream(Protocol):
 
 
 class LegacyStream:
-    """NumPy's legacy generator: what ``np.random.seed(seed)`` sets, without touching NumPy's global state."""
+    """NumPy's legacy generator: the numbers after ``np.random.seed(seed)``, without touching NumPy's global state."""
 
     def __init__(self, seed: int) -> None:
         self._state = np.random.RandomState(seed)
@@ -39,7 +39,7 @@ class LegacyStream:
 
 
 def agent_stream(seed: int, bit_generator: str) -> AgentStream:
-    """Returns the agent's stream of a run."""
+    """Returns the agent's random generator for a seed."""
     if bit_generator == "MT19937":
         return LegacyStream(seed)
     child = np.random.SeedSequence(seed).spawn(1)[0]

@@ -1,13 +1,14 @@
-"""Eligibility traces in plain NumPy: one for each weight (Sutton & Barto, 2nd ed., chapter 12)."""
+"""Eligibility traces in plain NumPy, one for each value of the table (Sutton & Barto, 2nd ed., chapter 12)."""
 
 import numpy as np
 
+from qtab.config.choices import Traces
 from qtab.reference.schedules import LearningRate
 from qtab.reference.task import Rows, Table
 
 
-def mark(z: Table, state: Rows, action: int, kind: str | None) -> None:
-    """A visit of a pair: accumulating traces grow by 1, replacing ones become 1; clearing ends the other actions'."""
+def mark(z: Table, state: Rows, action: int, kind: Traces) -> None:
+    """A visit adds 1 to an accumulating trace and sets a replacing one to 1; clearing also ends the other actions'."""
     for row in state:
         if kind == "accumulating":
             z[row, action] += 1.0
@@ -17,13 +18,13 @@ def mark(z: Table, state: Rows, action: int, kind: str | None) -> None:
             z[row, action] = 1.0
 
 
-def correct(Q: Table, z: Table, rate: LearningRate, error: float) -> None:
+def apply_td_error(Q: Table, z: Table, rate: LearningRate, error: float) -> None:
     """W <- w + α δ z, for the weights whose trace is not zero."""
     for row, action in np.argwhere(z != 0.0).tolist():
         Q[row, action] += rate.step(row, action) * error * z[row, action]
 
 
-def decay(z: Table, factor: float, cutoff: float | None) -> None:
-    """Z <- γλ z; what falls to the cutoff or below is forgotten."""
+def decay(z: Table, factor: float, cutoff: float) -> None:
+    """Z <- γλ z; traces at the cutoff or below are set to zero."""
     z *= factor
-    z[np.abs(z) <= (cutoff or 0.0)] = 0.0
+    z[np.abs(z) <= cutoff] = 0.0

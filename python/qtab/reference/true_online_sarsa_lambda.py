@@ -4,16 +4,17 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
+from qtab.config.algorithms import TrueOnlineSarsaLambda
 from qtab.reference.task import Result, Task, value
-from qtab.reference.traces import correct, decay
+from qtab.reference.traces import apply_td_error, decay
 
 
 def true_online_sarsa_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    assert config.trace_decay is not None  # noqa: S101
+    options = TrueOnlineSarsaLambda.of(config)
     Q = task.table()
-    gamma_lambda = task.discount * config.trace_decay
+    gamma_lambda = task.discount * options.trace_decay
 
     for _ in task.episodes():
         z, old_value = np.zeros_like(Q), 0.0
@@ -33,12 +34,12 @@ def true_online_sarsa_lambda(env: gym.Env, config: Config, stop_after: int | Non
             overlap = 0.0
             for row in state:
                 overlap += float(z[row, action])
-            decay(z, gamma_lambda, config.trace_cutoff)
+            decay(z, gamma_lambda, options.trace_cutoff)
             for row in state:
                 z[row, action] += 1.0 - alpha * gamma_lambda * overlap
 
             # w <- w + α (δ + Q - Q_old) z - α (Q - Q_old) x
-            correct(Q, z, task.learning_rate, error + (this_value - old_value))
+            apply_td_error(Q, z, task.learning_rate, error + (this_value - old_value))
             for row in state:
                 Q[row, action] -= alpha * (this_value - old_value)
 

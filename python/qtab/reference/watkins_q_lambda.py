@@ -4,14 +4,15 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
+from qtab.config.algorithms import EligibilityTraces
 from qtab.reference.task import Result, Task, value, values
-from qtab.reference.traces import correct, decay, mark
+from qtab.reference.traces import apply_td_error, decay, mark
 
 
 def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    assert config.trace_decay is not None  # noqa: S101
+    options = EligibilityTraces.of("watkins_q_lambda", config)
     Q = task.table()
 
     for _ in task.episodes():
@@ -21,7 +22,7 @@ def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None
         while not over:
             step = task.step(action)
             task.learning_rate.visit(state, action)
-            mark(z, state, action, config.traces)
+            mark(z, state, action, options.traces)
 
             # δ = R + γ max Q(S', a) - Q(S, A); the traces last while A' is greedy.
             target, greedy = step.reward, False
@@ -30,9 +31,9 @@ def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None
                 next_values = values(Q, step.state)
                 greedy = bool(next_values[next_action] == np.max(next_values))
                 target = step.reward + task.discount * float(np.max(next_values))
-            correct(Q, z, task.learning_rate, target - value(Q, state, action))
+            apply_td_error(Q, z, task.learning_rate, target - value(Q, state, action))
             if greedy:
-                decay(z, task.discount * config.trace_decay, config.trace_cutoff)
+                decay(z, task.discount * options.trace_decay, options.trace_cutoff)
             else:
                 z[:] = 0.0
 

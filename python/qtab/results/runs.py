@@ -1,4 +1,4 @@
-"""What many runs leave behind."""
+"""``qtab.Runs``: the results of many runs of one config."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -9,17 +9,19 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab.config import Config
-from qtab.discretizers.base import Features
+from qtab.config.config import replace_checked
+from qtab.discretizers import Discretizer
+from qtab.discretizers.actions import Actions
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES, block_means, summarize
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Runs:
-    """Many runs of one config, a row each. ``runs[i]`` is the run of ``seeds[i]``, where the tables were kept."""
+    """Many runs of one config, one per row. ``runs[i]`` is the run of ``seeds[i]``, where the tables were kept."""
 
     config: Config
-    """Everything needed to repeat them, but for the seed, which is the first run's."""
+    """Everything needed to repeat the runs; its seed is that of the first run."""
     seeds: tuple[int, ...]
     """(runs,): the seed of each."""
     episode_returns: NDArray[np.float64]
@@ -27,17 +29,19 @@ class Runs:
     episode_lengths: NDArray[np.int64]
     """(runs, episodes): the number of steps of each episode."""
     terminated: NDArray[np.bool_]
-    """(runs, episodes): whether each ended in a terminal state, and not by its time limit alone."""
+    """(runs, episodes): whether each ended in a terminal state, not only by its time limit."""
     tables: NDArray[np.float64] | None
-    """(runs, k, rows, actions): the raw tables, where they were asked for."""
-    grid: Features
-    """How observations become rows."""
+    """(runs, k, rows, actions): the Q tables of each run, where ``tables=True`` kept them."""
+    discretizer: Discretizer
+    """Maps observations to rows of the tables."""
+    actions: Actions
+    """The environment's actions, in the order of the columns of the tables."""
     completed: bool
-    """False after an interruption; the rows are then those of the runs that were finished."""
+    """False after an interruption; only the runs that were finished are there."""
     seconds: float
-    """How long it all took, by the wall clock."""
+    """How long all runs took together, in wall-clock time."""
     versions: Mapping[str, str]
-    """Of qtab, Gymnasium, NumPy and Python, and the platform."""
+    """The versions of qtab, Gymnasium, NumPy and Python, and the platform."""
 
     def __repr__(self) -> str:
         runs, episodes = self.episode_returns.shape
@@ -48,11 +52,16 @@ class Runs:
         )
         return f"<Runs of {self.config.env}: {self.config.algorithm}, {runs} seeds, {episodes} episodes each{mean}>"
 
+    @property
+    def grid(self) -> Discretizer:
+        """An alias of :attr:`discretizer`, its name in earlier versions."""
+        return self.discretizer
+
     def __len__(self) -> int:
         return len(self.seeds)
 
     def __getitem__(self, index: int) -> Run:
-        """Returns one run, equal to the lone one with its seed; its ``seconds`` are an equal share.
+        """Returns one run, equal to what :func:`qtab.train` returns for its seed; ``seconds`` is an equal share.
 
         Raises:
             IndexError: if there is no such run.
@@ -62,12 +71,13 @@ class Runs:
         if self.tables is None:
             raise ValueError("a single run needs its table: train_many(..., tables=True) keeps them")
         return Run(
-            config=self.config.replace(seed=self.seeds[index]),
+            config=replace_checked(self.config, seed=self.seeds[index]),
             tables=self.tables[index],
             episode_returns=self.episode_returns[index],
             episode_lengths=self.episode_lengths[index],
             terminated=self.terminated[index],
-            grid=self.grid,
+            discretizer=self.discretizer,
+            actions=self.actions,
             completed=True,
             seconds=self.seconds / len(self),
             versions=self.versions,
@@ -80,7 +90,7 @@ class Runs:
         """Returns (runs, blocks): the average return of each whole block of episodes, run by run.
 
         Raises:
-            TypeError: if ``block`` is no integer.
+            TypeError: if ``block`` is not an integer.
             ValueError: if it is less than one.
         """
         block = checks.integer("block", block, least=1)
@@ -90,7 +100,7 @@ class Runs:
         """Returns (runs,): the average return of the last episodes of each run, of all where there are fewer.
 
         Raises:
-            TypeError: if ``last`` is no integer.
+            TypeError: if ``last`` is not an integer.
             ValueError: if it is less than one.
         """
         last = checks.integer("last", last, least=1)
@@ -98,6 +108,6 @@ class Runs:
         return means
 
     def summaries(self) -> dict[str, NDArray[Any]]:
-        """Returns columns with a number a run: its seed, and what :func:`qtab.results.summary.summarize` says of it."""
+        """Returns columns with one number per run: its seed, and those of :func:`qtab.results.summary.summarize`."""
         seeds = np.array(self.seeds)
         return {"seed": seeds, **summarize(self.episode_returns, self.episode_lengths, self.terminated)}

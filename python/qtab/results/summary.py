@@ -1,4 +1,4 @@
-"""Runs in a few numbers."""
+"""Summaries of runs: a few numbers for each."""
 
 from typing import Any
 
@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 FINAL_EPISODES = 100
-"""How many of the last episodes the final return is the mean of."""
+"""The final return of a run is the mean of this many last episodes."""
 
 MAX_BLOCKS = 100
-"""More averages than this are neither read in a terminal nor told apart in a picture."""
+"""More averages than this cannot be read in a terminal or told apart in a figure."""
 
 
 def default_block(episodes: int) -> int:
-    """Returns how many episodes to average over where nobody says: the article's 100, ten times more in long runs."""
+    """Returns the default number of episodes to average over: the article's 100, ten times more in long runs."""
     block = 100
     while episodes > MAX_BLOCKS * block:
         block *= 10
@@ -23,10 +23,10 @@ def default_block(episodes: int) -> int:
 def summarize(
     returns: NDArray[np.float64], lengths: NDArray[np.int64], terminated: NDArray[np.bool_]
 ) -> dict[str, NDArray[Any]]:
-    """Returns what runs of (runs, episodes) come to, a number a run.
+    """Returns columns of (runs,) numbers, from arrays of (runs, episodes).
 
-    ``final_return`` is the mean of the last 100 returns (of all where there are fewer), ``mean_return`` that of all:
-    the area under the learning curve, an episode's width being one over their number.
+    ``final_return`` is the mean of the last 100 returns (of all where there are fewer), ``mean_return`` that of all
+    returns: the area under the learning curve, scaled to a width of 1.
     """
     runs, episodes = returns.shape
     return {

@@ -15,8 +15,8 @@ from qtab.config import DEFAULTS
 from qtab.config.layers import Base, over
 from qtab.config.unknown import check_names
 from qtab.sweeps import designs
-from qtab.training.resolve import Resolved
-from qtab.training.train_many import resolve_one, seed_numbers
+from qtab.training.resolved_run import ResolvedRun
+from qtab.training.train_many import resolve_template, seed_numbers
 
 CHUNK_STEPS = 2**26
 """The steps of a chunk, which Rust takes in about a second on one core."""
@@ -25,7 +25,7 @@ PYTHON_CHUNK_STEPS = 2**16
 TYPICAL_MAX_STEPS = 1000
 """Episodes with a longer time limit are expected to end before this many steps."""
 MAX_CHUNK_RUNS = 4096
-"""The most runs in a chunk."""
+"""The maximum number of runs in a chunk."""
 
 
 @dataclass(frozen=True)
@@ -48,12 +48,12 @@ class Study:
 
     env: Any
     settings: Sequence[Mapping[str, Any]]
-    """The points of the grid: the config fields by which the settings differ."""
+    """The points of the grid: the config fields in which the settings differ."""
     overrides: Sequence[Mapping[str, Any]]
-    """All that is given for each setting, the fields that all of them share included."""
+    """The config fields given for each setting, including those that all settings share."""
     seeds: tuple[int, ...]
     """The seeds of every setting."""
-    resolved: Sequence[Resolved]
+    resolved: Sequence[ResolvedRun]
     """The resolved config of each setting."""
     block: int
     """The number of episodes that each point of a learning curve averages."""
@@ -84,7 +84,8 @@ class Study:
         for resolved in self.resolved:
             episodes = resolved.config.episodes
             # The trainer's lists, and the arrays to which they are copied.
-            needed = 2 * episodes * BYTES_PER_EPISODE + 8 * math.prod(resolved.grid.shape)
+            values = resolved.discretizer.n_rows * len(resolved.actions)
+            needed = 2 * episodes * BYTES_PER_EPISODE + 8 * values
             check_memory(f"runs of {episodes} episodes", needed, limit)
 
     @cached_property
@@ -133,7 +134,7 @@ def plan_study(
     if in_both:
         raise TypeError(f"{in_both[0]} must be either in the grid or shared by all settings, got both")
     overrides = [over(base or {}, {**shared, **setting}) for setting in settings]
-    resolved = [resolve_one(env, {**given, "seed": max(numbers)}) for given in overrides]
+    resolved = [resolve_template(env, {**given, "seed": max(numbers)}) for given in overrides]
     return Study(env, settings, overrides, numbers, resolved, block)
 
 
@@ -152,11 +153,10 @@ def _settings_of(grid: Any) -> list[dict[str, Any]]:
     return [dict(setting) for setting in grid]
 
 
-def _work(resolved: Resolved) -> float:
+def _work(resolved: ResolvedRun) -> float:
     """Returns the estimated work of a run as a fraction of a chunk."""
-    config = resolved.config
-    steps = config.episodes * min(config.max_episode_steps or TYPICAL_MAX_STEPS, TYPICAL_MAX_STEPS)
-    return steps / (PYTHON_CHUNK_STEPS if resolved.model is None else CHUNK_STEPS)
+    steps = resolved.config.episodes * min(resolved.max_episode_steps, TYPICAL_MAX_STEPS)
+    return steps / (CHUNK_STEPS if resolved.is_native else PYTHON_CHUNK_STEPS)
 
 
 def _jsonable(value: Any) -> Any:

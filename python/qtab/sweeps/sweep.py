@@ -22,13 +22,13 @@ from qtab.sweeps.results import Sweep, build_sweep
 from qtab.sweeps.store import Store
 from qtab.sweeps.study import Chunk, Study, plan_study
 from qtab.sweeps.worker import train_chunk, train_setting
-from qtab.training.process_pool import pool
+from qtab.training.process_pool import process_pool
 from qtab.training.resolve import log_default_limit
 from qtab.training.train_many import MakeEnv, thread_count
 
 BLOCK = 100
 MAX_PENDING_CHUNKS = 64
-"""The most chunks that an executor is given at a time."""
+"""The maximum number of chunks that an executor is given at a time."""
 POLL_SECONDS = 0.5
 """The time between two attempts to claim a chunk while other processes hold all of them."""
 
@@ -109,10 +109,10 @@ def sweep(
         try:
             if executor is not None:
                 _train_with_executor(study, opened_store, executor, report_progress)
-            elif all(resolved.model is not None for resolved in study.resolved):
+            elif all(resolved.is_native for resolved in study.resolved):
                 _train_in_threads(study, opened_store, workers, report_progress)
             else:
-                with pool(workers) as processes:
+                with process_pool(workers) as processes:
                     _train_with_executor(study, opened_store, processes, report_progress, max_pending=2 * workers)
         except KeyboardInterrupt as error:
             error.run = _table(study, opened_store)  # type: ignore[attr-defined]

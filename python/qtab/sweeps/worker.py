@@ -9,9 +9,10 @@ import numpy as np
 from qtab import _core
 from qtab.results.summary import block_means, summarize
 from qtab.sweeps.database import RunRecord
-from qtab.training.process_pool import train_to_the_end
-from qtab.training.resolve import Resolved, resolve
-from qtab.training.train_many import allocate, resolve_one, train_in_threads
+from qtab.training.process_pool import train_unless_stopped
+from qtab.training.resolve import resolve
+from qtab.training.resolved_run import ResolvedRun
+from qtab.training.train_many import allocate_results, resolve_template, train_in_threads
 
 
 def train_chunk(task: bytes) -> list[RunRecord]:
@@ -24,7 +25,7 @@ def train_chunk(task: bytes) -> list[RunRecord]:
     records: list[RunRecord] = []
     for overrides, seeds in parts:
         try:
-            resolved = resolve_one(env, {**overrides, "seed": seeds[0]})
+            resolved = resolve_template(env, {**overrides, "seed": seeds[0]})
         except Exception as error:
             records += [_failure(seed, error) for seed in seeds]
         else:
@@ -33,29 +34,27 @@ def train_chunk(task: bytes) -> list[RunRecord]:
 
 
 def train_setting(
-    env: Any, overrides: Mapping[str, Any], resolved: Resolved, seeds: Sequence[int], block: int, threads: int
+    env: Any, overrides: Mapping[str, Any], resolved: ResolvedRun, seeds: Sequence[int], block: int, threads: int
 ) -> list[RunRecord]:
     """Trains one setting with each seed. The error of a run that fails is recorded, and the other runs continue."""
-    if resolved.model is None:
+    if not resolved.is_native:
         return [_train_in_python(env, overrides, seed, block) for seed in seeds]
-    results = allocate(resolved, len(seeds), threads, tables=False, limit=2**63)
-    failed = dict(train_in_threads(resolved, tuple(seeds), results, threads, go_on=True))
+    results = allocate_results(resolved, len(seeds), threads, keep_tables=False, limit=2**63)
+    failed = dict(train_in_threads(resolved, seeds, results, threads, keep_going=True))
     records = _records(seeds, block, results["returns"], results["lengths"], results["terminated"])
     return [_failure(record.seed, failed[index]) if index in failed else record for index, record in enumerate(records)]
 
 
 def _train_in_python(env: Any, overrides: Mapping[str, Any], seed: int, block: int) -> RunRecord:
-    made = env() if callable(env) else env
     try:
-        resolved = resolve(made, {**overrides, "seed": seed})
+        resolved = resolve(env() if callable(env) else env, {**overrides, "seed": seed}, owns_env=True)
         try:
-            trainer = _core.Trainer(resolved.core_environment(), resolved.plan())
-            train_to_the_end(trainer, resolved.config.episodes)
+            trainer = _core.Trainer(resolved.spec(), resolved.seed)
+            train_unless_stopped(trainer, resolved.config.episodes)
             returns, lengths, terminated = (column[np.newaxis] for column in trainer.episodes())
             return _records([seed], block, returns, lengths, terminated)[0]
         finally:
-            if resolved.env is not None:
-                resolved.env.close()
+            resolved.close()
     except Exception as error:
         return _failure(seed, error)
 

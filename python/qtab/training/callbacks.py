@@ -1,4 +1,4 @@
-"""What a callback sees of a run underway."""
+"""What a callback receives while a run is in progress."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ from qtab import _core
 
 @dataclass(frozen=True)
 class Progress:
-    """A run underway, as a callback sees it. The arrays of one call are the beginning of the next call's."""
+    """The progress of a run, as a callback receives it. Later calls receive longer arrays with the same beginning."""
 
     episodes: int
-    """How many episodes are finished …"""
+    """How many episodes are finished."""
     total: int
-    """… of how many."""
+    """How many episodes the run has."""
     returns: NDArray[np.float64]
     """(episodes,): the return of each finished episode."""
     lengths: NDArray[np.int64]
@@ -27,29 +27,29 @@ class Progress:
 Callback = Callable[[Progress], bool | None]
 
 
-class Finished:
-    """The episodes that a trainer has finished. A look takes over what is new; what it saw before it does not copy."""
+class EpisodeReader:
+    """Reads the finished episodes of a trainer. Each call copies only the episodes since the last one."""
 
     def __init__(self, trainer: _core.Trainer, total: int) -> None:
         self._trainer, self._total = trainer, total
         self._episodes = 0
         self._returns, self._lengths = np.empty(0, np.float64), np.empty(0, np.int64)
 
-    def look(self) -> Progress:
+    def read(self) -> Progress:
         """Returns the progress so far."""
         returns, lengths, _ = self._trainer.episodes(since=self._episodes)
         before, self._episodes = self._episodes, self._episodes + len(returns)
         if self._episodes > len(self._returns):
-            # Twice as much room each time: over a run every episode is copied about once more.
-            room = min(max(self._episodes, 2 * len(self._returns)), self._total)
-            self._returns = _roomier(self._returns, before, room)
-            self._lengths = _roomier(self._lengths, before, room)
+            # Doubled each time, so that over a run every episode is copied about once more.
+            capacity = min(max(self._episodes, 2 * len(self._returns)), self._total)
+            self._returns = _enlarge(self._returns, before, capacity)
+            self._lengths = _enlarge(self._lengths, before, capacity)
         now = slice(before, self._episodes)
         self._returns[now], self._lengths[now] = returns, lengths
         return Progress(self._episodes, self._total, self._returns[: self._episodes], self._lengths[: self._episodes])
 
 
-def _roomier(column: NDArray[Any], used: int, room: int) -> NDArray[Any]:
-    roomier = np.empty(room, column.dtype)
-    roomier[:used] = column[:used]
-    return roomier
+def _enlarge(column: NDArray[Any], used: int, capacity: int) -> NDArray[Any]:
+    enlarged = np.empty(capacity, column.dtype)
+    enlarged[:used] = column[:used]
+    return enlarged

@@ -1,4 +1,4 @@
-"""How good a greedy policy is."""
+"""``qtab.evaluate``: how good the greedy policy of a run is."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,26 +11,27 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab.envs.registry import spec_of
 from qtab.results.run import Run
-from qtab.training.train import train
+from qtab.training.resolve import resolve
+from qtab.training.train import train_resolved
 
-DISCRETIZERS = ("discretizer", "scale", "tilings", "tiles", "hashed_rows", "bins", "edges", "low", "high")
-"""What a table is to be read by."""
+TABLE_SETTINGS = ("discretizer", "scale", "tilings", "tiles", "hashed_rows", "bins", "edges", "low", "high", "actions")
+"""The settings that say what the rows and columns of a table stand for."""
 
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """The episodes of a greedy policy that learns no more."""
+    """Episodes played by a greedy policy, without learning."""
 
     returns: NDArray[np.float64]
-    """(episodes,): the sum of rewards of each."""
+    """(episodes,): the sum of rewards of each episode."""
     lengths: NDArray[np.int64]
-    """(episodes,): the steps of each."""
+    """(episodes,): the number of steps of each episode."""
     terminated: NDArray[np.bool_]
     """(episodes,): whether each ended in a terminal state."""
     seed: int
-    """What the environment was seeded with."""
+    """The seed of the environment."""
     reward_threshold: float | None
-    """The return from which Gymnasium calls the environment solved, where it says so."""
+    """The return at which Gymnasium considers the environment solved; None where it gives none."""
 
     @property
     def mean_return(self) -> float:
@@ -39,18 +40,18 @@ class Evaluation:
 
     @property
     def standard_error(self) -> float:
-        """Of the average return; NaN for a single episode."""
+        """The standard error of the average return; NaN for a single episode."""
         count = len(self.returns)
         return float(np.std(self.returns, ddof=1) / np.sqrt(count)) if count > 1 else float("nan")
 
     @property
     def terminated_rate(self) -> float:
-        """The share of episodes that ended in a terminal state."""
+        """The fraction of episodes that ended in a terminal state."""
         return float(np.mean(self.terminated))
 
     @property
     def success_rate(self) -> float | None:
-        """The share of returns at or above the threshold; None where there is none."""
+        """The fraction of returns at or above the threshold; None where there is none."""
         return None if self.reward_threshold is None else float(np.mean(self.returns >= self.reward_threshold))
 
 
@@ -81,33 +82,36 @@ def evaluate(
     """
     checks.instance("run", run, Run)
     config = run.config
-    # With α = 0 and ε = 0 training is evaluation: one loop serves both.
-    played = train(
-        config.env if env is None else env,
-        episodes=episodes,
-        seed=seed,
-        algorithm="q_learning",
-        learning_rate=0.0,
-        epsilon=0.0,
-        terminal_update="target",
-        initial_q=_greedy_table(run),
-        **{name: getattr(config, name) for name in (*DISCRETIZERS, "actions")},
-        env_kwargs=config.env_kwargs if env_kwargs is None else env_kwargs,
-        max_episode_steps=config.max_episode_steps if max_episode_steps is None else max_episode_steps,
-        backend=config.backend if env is None and env_kwargs is None else "auto",
-    )
+    # With a learning rate and an exploration rate of 0, training is evaluation.
+    settings: dict[str, Any] = {
+        "episodes": episodes,
+        "seed": seed,
+        "algorithm": "q_learning",
+        "learning_rate": 0.0,
+        "epsilon": 0.0,
+        "terminal_update": "target",
+        "initial_q": _greedy_table(run),
+        **{name: getattr(config, name) for name in TABLE_SETTINGS},
+        "env_kwargs": config.env_kwargs if env_kwargs is None else env_kwargs,
+        "max_episode_steps": config.max_episode_steps if max_episode_steps is None else max_episode_steps,
+        "backend": config.backend if env is None and env_kwargs is None else "auto",
+    }
+    resolved = resolve(config.env if env is None else env, settings)
+    try:
+        played = train_resolved(resolved)
+    finally:
+        resolved.close()
     spec = spec_of(config.env) if env is None else env.spec
-    assert played.config.seed is not None  # noqa: S101 - resolved
     return Evaluation(
         played.episode_returns,
         played.episode_lengths,
         played.terminated,
-        played.config.seed,
+        resolved.seed,
         None if spec is None else spec.reward_threshold,
     )
 
 
 def _greedy_table(run: Run) -> NDArray[np.float64]:
-    """What the greedy policy reads, with tile coding too: values add up over the tables as over the rows."""
+    """The table that the greedy policy reads: of two the sum, with tile coding as well, whose values are sums, too."""
     table: NDArray[np.float64] = run.tables[0] if len(run.tables) == 1 else run.tables[0] + run.tables[1]
     return table[np.newaxis]

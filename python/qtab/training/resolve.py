@@ -1,245 +1,194 @@
-"""From what a user asked for to what will be run: the environment found, every default filled in."""
+"""From what a user asked for to a :class:`ResolvedRun`: the environment found, and everything left open filled in."""
 
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
-from qtab import _spec as plan
-from qtab.config import DEFAULTS, Config
+from qtab import discretizers
+from qtab.config import Config
+from qtab.config.algorithms import algorithm_settings
+from qtab.config.config import replace_checked
+from qtab.config.merge import config_of, merge_layers
 from qtab.config.options import defaults, mismatch, n_tables
-from qtab.config.presets import preset
-from qtab.config.unknown import check_names
-from qtab.discretizers.actions import Actions, actions
-from qtab.discretizers.base import Features
-from qtab.discretizers.bins import Bins, bins
-from qtab.discretizers.identity import cells, components
-from qtab.discretizers.rounding import grid
-from qtab.discretizers.tile_coding import Tiling, tiling
+from qtab.config.policies import policy
+from qtab.config.schedules import learning_rate
+from qtab.discretizers import Discretizer
+from qtab.discretizers.actions import Actions, choose_actions
+from qtab.discretizers.identity import integer_bounds
 from qtab.envs.matching import entry_for_env, is_tabular_env, rust_unavailable, time_limit
-from qtab.envs.native import classic_spec, native_spec
+from qtab.envs.native import native_env
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
+from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun
 
 _LOGGER = logging.getLogger("qtab")
-_limited: set[str] = set()
-"""The environments whose want of a time limit was said in this process."""
+_logged: set[str] = set()
+"""The environments whose default time limit was logged in this process."""
 UNLIMITED_MAX_EPISODE_STEPS = 10_000
-"""The time limit in training of an environment that has none of its own."""
+"""The time limit in training for environments that have none."""
 
 
-Described: TypeAlias = plan.Control | plan.Process | plan.Rules | plan.Bias
-"""An environment as Rust steps it."""
+def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: bool = False) -> ResolvedRun:
+    """Finds the environment and fills in everything that is left open.
 
-
-@dataclass(frozen=True)
-class Resolved:
-    """A config without gaps, and what it is run on."""
-
-    config: Config
-    grid: Features
-    model: EnvEntry | None
-    """The model in Rust; None steps ``env`` in Python."""
-    env: gym.Env | None
-    """The environment stepped in Python."""
-    made: bool
-    """Whether the environment was made here, and so is closed here."""
-    described: Described | None = None
-    """What the model steps by."""
-    limited: bool = False
-    """Whether the time limit is ours, the environment having none."""
-
-    def close(self) -> None:
-        """Closes the environment if it was made here."""
-        if self.made and self.env is not None:
-            self.env.close()
-
-    def core_environment(self) -> Described | plan.PythonEnvironment:
-        """Returns the environment as the extension module takes it."""
-        if self.described is not None:
-            return self.described
-        assert self.config.seed is not None  # noqa: S101 - resolved
-        choices = self.grid.choices
-        return {
-            "env": self.env,
-            "seed": self.config.seed,
-            "first_action": self.grid.first_action,
-            "choices": choices.arrays(),
-        }
-
-    def plan(self, record: int = 0) -> plan.Plan:
-        """Returns the run's description as the extension module takes it."""
-        config = self.config
-        assert config.seed is not None  # noqa: S101 - resolved
-        return {
-            "low": np.ravel(self.grid.low).astype(np.float64).tolist(),
-            "high": np.ravel(self.grid.high).astype(np.float64).tolist(),
-            "single": self.grid.low.dtype == np.float32,
-            "features": self.grid.plan(),
-            "actions": self.grid.actions,
-            "max_episode_steps": config.max_episode_steps,
-            "seed": plan.seed_words(config.seed),
-            "bit_generator": config.bit_generator,
-            "initial_q": config.initial_q,
-            "learning_rate": plan.learning_rate(config),
-            "discount": config.discount,
-            "policy": plan.policy(config),
-            "episodes": config.episodes,
-            "terminal_update": config.terminal_update,
-            "on_truncation": config.on_truncation,
-            "algorithm": plan.algorithm(config),
-            "record": record,
-        }
-
-
-def merge(env: str, *layers: Mapping[str, Any]) -> Config:
-    """Returns the config of an environment: its preset, then each layer over the one before.
-
-    Raises:
-        TypeError: for an unknown or mistyped setting.
-        ValueError: for a setting out of range, or an unknown preset.
-    """
-    explicit: dict[str, Any] = {}
-    for layer in layers:
-        check_names(layer, DEFAULTS)
-        explicit.update(layer)
-    name = explicit.pop("preset", None)
-    if name is not None and not isinstance(name, str):
-        raise TypeError(f"preset must be a name, got {name!r}")
-    name, values = preset(env, name)
-    # A preset is a start: of what it says, that falls away which has no meaning beside what was asked for.
-    wanted = {**DEFAULTS, **values, **explicit}
-    values = {field: value for field, value in values.items() if not mismatch(field, value, wanted)}
-    return Config(**{**values, **explicit, "env": env, "preset": name})
-
-
-def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any]) -> Resolved:
-    """Finds the environment and fills in what is left open.
+    Args:
+        env: An environment's id, its EnvSpec, or an environment.
+        *layers: Settings by the names of their fields, a later layer over an earlier one, all over the preset.
+        owns_env: Whether an environment that is given is closed: with the run, or at once if it is not needed. One
+            that is made here always is.
 
     Raises:
         gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
-        TypeError: for what is no environment.
-        ValueError: if the backend or the spaces do not fit the environment.
+        TypeError: if ``env`` is something else, or a setting is unknown or has the wrong type.
+        ValueError: if a setting is out of range, or the backend or a space does not fit.
     """
     if isinstance(env, str | EnvSpec):
-        return _from_spec(env, *layers)
+        return _from_spec(env, layers)
     if isinstance(env, gym.Env):
-        return _from_object(env, *layers)
+        return _from_env(env, layers, owns_env)
     raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {env!r}")
 
 
-def _from_spec(env: str | EnvSpec, *layers: Mapping[str, Any]) -> Resolved:
+def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> ResolvedRun:
     # An id keeps the package that it names, so that the config makes the environment anywhere.
     if isinstance(env, str):
         env = versioned(env)
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
-    config = merge(name, {"env_kwargs": dict(spec.kwargs)}, *layers)
-    model = entry_for_spec(spec, config.env_kwargs)
-    if model is None and config.backend == "rust":
+    asked = merge_layers({"env_kwargs": dict(spec.kwargs)}, *layers)
+    config = config_of(name, asked)
+    entry = entry_for_spec(spec, config.env_kwargs)
+    if entry is None and config.backend == "rust":
         raise rust_unavailable(f"Rust does not implement {spec.id} with these keyword arguments and wrappers")
-    limit: dict[str, Any] = {}
-    if config.max_episode_steps is not None:
-        limit["max_episode_steps"] = config.max_episode_steps
+    limit: dict[str, Any] = {} if config.max_episode_steps is None else {"max_episode_steps": config.max_episode_steps}
     made = gym.make(spec, **config.env_kwargs, **limit)
-    try:
-        resolved = _resolved(made, model, config, spec.max_episode_steps, layers, made=True)
-    except BaseException:
-        made.close()
-        raise
-    if resolved.model is not None:
-        made.close()
-    return resolved
+    return _resolve(made, entry, config, asked, spec.max_episode_steps, owns_env=True)
 
 
-def _from_object(env: gym.Env, *layers: Mapping[str, Any]) -> Resolved:
+def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...], owns_env: bool) -> ResolvedRun:
     name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
     kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
-    config = merge(name, {"env_kwargs": kwargs}, *layers)
-    if config.backend == "auto":
-        config = config.replace(backend="rust" if is_tabular_env(env) else "gymnasium")
-    model = entry_for_env(env) if config.backend == "rust" else None
-    return _resolved(env, model, config, time_limit(env), layers, made=False)
+    try:
+        asked = merge_layers({"env_kwargs": kwargs}, *layers)
+        config = config_of(name, asked)
+        native = is_tabular_env(env) if config.backend == "auto" else config.backend == "rust"
+        entry = entry_for_env(env) if native else None
+        config = replace_checked(config, backend="rust" if native else "gymnasium")
+    except BaseException:
+        if owns_env:
+            env.close()
+        raise
+    return _resolve(env, entry, config, asked, time_limit(env), owns_env)
 
 
-def _resolved(
+def _resolve(
     env: gym.Env,
-    model: EnvEntry | None,
+    entry: EnvEntry | None,
     config: Config,
+    asked: Mapping[str, Any],
     own_limit: int | None,
-    layers: tuple[Mapping[str, Any], ...],
-    *,
-    made: bool,
-) -> Resolved:
-    """What is run, on the model where Rust can step by what the environment holds and is not kept from it."""
-    config = _fitting(env, config, *layers)
-    choices = actions(env.action_space, config.actions)
-    described = None
-    if model is not None and config.backend != "gymnasium":
+    owns_env: bool,
+) -> ResolvedRun:
+    """Resolves a checked config for an environment; closes one that is owned and not needed."""
+    try:
+        run = _fill(env, entry, config, asked, own_limit, owns_env)
+    except BaseException:
+        if owns_env:
+            env.close()
+        raise
+    if owns_env and run.is_native:
+        env.close()
+    return run
+
+
+def _fill(
+    env: gym.Env,
+    entry: EnvEntry | None,
+    config: Config,
+    asked: Mapping[str, Any],
+    own_limit: int | None,
+    owns_env: bool,
+) -> ResolvedRun:
+    config = _infer_discretizer(env, config, asked)
+    config = replace_checked(config, **defaults(vars(config)))
+    actions = choose_actions(env.action_space, config.actions)
+    environment = _environment(env, entry, config, actions, owns_env)
+    discretizer = discretizers.build(env.observation_space, config, len(actions))
+    limit = config.max_episode_steps or own_limit
+    seed = int(np.random.SeedSequence().generate_state(1)[0]) if config.seed is None else config.seed
+    config = replace_checked(
+        config,
+        **discretizer.settings(),
+        initial_q=_fit_initial_q(config, discretizer, len(actions)),
+        max_episode_steps=limit or UNLIMITED_MAX_EPISODE_STEPS,
+        seed=seed,
+        backend="rust" if isinstance(environment, NativeEnvironment) else "gymnasium",
+    )
+    return ResolvedRun(
+        config=config,
+        environment=environment,
+        discretizer=discretizer,
+        actions=actions,
+        algorithm=algorithm_settings(config),
+        policy=policy(config),
+        learning_rate=learning_rate(config),
+        seed=seed,
+        max_episode_steps=limit or UNLIMITED_MAX_EPISODE_STEPS,
+        default_time_limit=limit is None,
+    )
+
+
+def _infer_discretizer(env: gym.Env, config: Config, asked: Mapping[str, Any]) -> Config:
+    """A discrete observation space needs no discretizer: without one asked for, its observations index the table.
+
+    A wrapper may have made a Box discrete: the preset's scale then has no meaning, while one asked for is refused.
+    """
+    if config.discretizer != "round" or integer_bounds(env.observation_space) is None:
+        return config
+    identity = replace_checked(config, discretizer="identity")
+    if "scale" in asked and config.scale and (reason := mismatch("scale", config.scale, vars(identity))):
+        raise ValueError(reason)
+    return replace_checked(identity, scale=())
+
+
+def _environment(env: gym.Env, entry: EnvEntry | None, config: Config, actions: Actions, owns_env: bool) -> Environment:
+    """Rust's environment, where there is one that equals ``env`` and the backend allows it; else ``env`` itself."""
+    if entry is not None and config.backend != "gymnasium":
         try:
-            unwrapped = env.unwrapped
-            described = native_spec(unwrapped) if model.has_table else classic_spec(unwrapped, model.name, choices)
+            return NativeEnvironment(entry, native_env(entry.name, env.unwrapped, actions))
         except (TypeError, ValueError) as error:
             if config.backend == "rust":
                 raise rust_unavailable(str(error)) from None
-    table = _features(env, config, choices)
-    steps = config.max_episode_steps or own_limit
-    config = _complete(config, table, "gymnasium" if described is None else "rust", steps)
-    model, stepped = (None, env) if described is None else (model, None)
-    return Resolved(config, table, model, stepped, made, described, limited=steps is None)
+    return PythonEnvironment(env, actions, owns_env)
 
 
-def _fitting(env: gym.Env, config: Config, *layers: Mapping[str, Any]) -> Config:
-    """The config with the discretizer that a discrete space has, where none was asked for."""
-    if config.discretizer == "round" and components(env.observation_space) is not None:
-        # A wrapper may have made a box discrete, for which the preset's scale means nothing; one asked for is refused.
-        asked = any("scale" in layer for layer in layers)
-        return config.replace(discretizer="identity", scale=config.scale if asked else ())
-    return config
+def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> Any:
+    """The first Q table; for an algorithm of two tables one that is given is used twice."""
+    initial_q, count = config.initial_q, n_tables(config.algorithm)
+    if not isinstance(initial_q, np.ndarray):
+        return initial_q
+    one = (*discretizer.shape, n_actions)
+    shape = one if count == 1 else (count, *one)
+    if initial_q.shape == one and count > 1:
+        both = np.stack([initial_q] * count)
+        both.flags.writeable = False
+        return both
+    if initial_q.shape not in (shape, (count, discretizer.n_rows, n_actions)):
+        raise ValueError(f"initial_q must have the table's shape {shape}, got {initial_q.shape}")
+    if len(np.unique(np.isneginf(initial_q.reshape(count, -1)), axis=0)) > 1:
+        raise ValueError("initial_q must have -inf in both tables or in none, got it in one")
+    return initial_q
 
 
-def _features(env: gym.Env, config: Config, choices: Actions) -> Features:
-    if config.discretizer == "identity":
-        return cells(env, choices)
-    if config.discretizer == "round":
-        return grid(env, config.scale, choices)
-    filled = config.replace(**defaults(vars(config)))
-    return tiling(env, filled, choices) if config.discretizer == "tiles" else bins(env, filled, choices)
+def time_limit_notice(run: ResolvedRun) -> str:
+    """Returns what to tell the user where the time limit is qtab's default (``run.default_time_limit``)."""
+    return f"{run.config.env} has no time limit of its own: an episode ends after {run.max_episode_steps:,} steps"
 
 
-def _complete(config: Config, table: Features, backend: str, steps: int | None) -> Config:
-    changes: dict[str, Any] = defaults(vars(config))
-    changes |= {"backend": backend, "max_episode_steps": steps or UNLIMITED_MAX_EPISODE_STEPS}
-    if config.seed is None:
-        changes["seed"] = int(np.random.SeedSequence().generate_state(1)[0])
-    if isinstance(table, Tiling):
-        changes |= {"low": tuple(table.edges[0].tolist()), "high": tuple(table.edges[1].tolist())}
-        changes["tiles"] = table.tiles
-    if isinstance(table, Bins) and table.limits is not None:
-        changes |= {name: tuple(limit.tolist()) for name, limit in zip(("low", "high"), table.limits, strict=True)}
-        changes["bins"] = table.shape[:-1]
-    if isinstance(config.initial_q, np.ndarray):
-        count = n_tables(config.algorithm)
-        shape = table.shape if count == 1 else (count, *table.shape)
-        if config.initial_q.shape == table.shape and count > 1:
-            changes["initial_q"] = np.stack([config.initial_q] * count)
-        elif config.initial_q.shape not in (shape, (count, table.rows, table.actions)):
-            raise ValueError(f"initial_q must have the table's shape {shape}, got {config.initial_q.shape}")
-        elif len(np.unique(np.isneginf(config.initial_q.reshape(count, -1)), axis=0)) > 1:
-            raise ValueError("initial_q must have -inf in both tables or in none, got it in one")
-    return config.replace(**changes)
-
-
-def limit(resolved: Resolved) -> str:
-    """Returns what there is to say where the time limit is ours (``resolved.limited``)."""
-    config = resolved.config
-    return f"{config.env} has no time limit of its own: an episode ends after {config.max_episode_steps:,} steps"
-
-
-def log_default_limit(resolved: Resolved) -> None:
-    """Says that the time limit is ours, where it is: once a process for each environment."""
-    if resolved.limited and resolved.config.env not in _limited:
-        _limited.add(resolved.config.env)
-        _LOGGER.warning("%s; max_episode_steps= sets another", limit(resolved))
+def log_default_limit(run: ResolvedRun) -> None:
+    """Logs that the time limit is qtab's default, once in a process for each environment."""
+    if run.default_time_limit and run.config.env not in _logged:
+        _logged.add(run.config.env)
+        _LOGGER.warning("%s; max_episode_steps= sets another", time_limit_notice(run))

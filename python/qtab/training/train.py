@@ -1,4 +1,4 @@
-"""``qtab.train``: from an environment and a config to a run."""
+"""``qtab.train``: trains one agent."""
 
 import time
 from collections.abc import Mapping
@@ -20,8 +20,9 @@ from qtab.config.settings import Settings
 from qtab.config.signature import with_settings
 from qtab.rendering.replay import generator_states
 from qtab.results.run import Recording, Run
-from qtab.training.callbacks import Callback, Finished
-from qtab.training.resolve import Resolved, log_default_limit, resolve
+from qtab.training.callbacks import Callback, EpisodeReader
+from qtab.training.resolve import log_default_limit, resolve
+from qtab.training.resolved_run import ResolvedRun
 
 CALLBACK_EVERY = 100
 
@@ -80,65 +81,75 @@ def train(
 
 
 def train_resolved(
-    resolved: Resolved,
-    callback: Callback | None,
-    callback_every: int,
+    resolved: ResolvedRun,
+    callback: Callback | None = None,
+    callback_every: int = CALLBACK_EVERY,
     record: int = 0,
     progress: bool | None = None,
 ) -> Run:
-    """Trains what was resolved before; see :func:`train`."""
+    """Trains a run that is already resolved; see :func:`train`."""
     total = resolved.config.episodes
     began = time.perf_counter()
-    trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record))
-    finished = Finished(trainer, total)
+    trainer = _core.Trainer(resolved.spec(), resolved.seed, record)
+    reader = EpisodeReader(trainer, total)
     done = 0
     try:
-        with ProgressBar(total, "episode", progress) as shown:
+        with ProgressBar(total, "episode", progress) as bar:
             while done < total:
                 target = min(done + callback_every, total) if callback is not None else total
-                for stop in shown.chunks(done, target):
-                    trainer.advance(stop)
+                for until in bar.chunks(done, target):
+                    trainer.advance(until)
                 done = target
                 if callback is not None:
-                    verdict = callback(finished.look())
-                    if verdict is not None and not verdict:  # NumPy's False stops too
+                    proceed = callback(reader.read())
+                    if proceed is not None and not proceed:  # NumPy's False stops, too
                         break
-        _refuse_overflow(trainer, resolved.config)
     except BaseException as error:
-        run = _run(resolved, trainer, began)
-        with suppress(AttributeError):  # an exception that takes nothing along still comes through
-            error.run = run  # type: ignore[attr-defined]
+        _attach(error, _run(resolved, trainer, began))
         raise
-    return _run(resolved, trainer, began)
+    run = _run(resolved, trainer, began)
+    overflow = _overflow(run)
+    if overflow is not None:
+        _attach(overflow, run)
+        raise overflow
+    return run
 
 
-def _refuse_overflow(trainer: _core.Trainer, config: Config) -> None:
-    """The learners notice values that they compute with; here those that were never read again."""
-    missing = isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q.ravel())
-    if not (np.isfinite(trainer.tables()) | missing).all():
-        episode = len(trainer.episodes()[0]) - 1
-        raise OverflowError(
-            f"the action values overflowed by episode {episode} (counted from 0); most likely the rewards or initial_q "
-            "are too large"
-        )
+def _attach(error: BaseException, run: Run) -> None:
+    with suppress(AttributeError):  # some exceptions take no attributes
+        error.run = run  # type: ignore[attr-defined]
 
 
-def _run(resolved: Resolved, trainer: _core.Trainer, began: float) -> Run:
+def _overflow(run: Run) -> OverflowError | None:
+    """The learners notice an overflow in the values that they read; here it is in values that were not read again."""
+    initial_q = run.config.initial_q
+    missing = np.isneginf(initial_q.ravel()) if isinstance(initial_q, np.ndarray) else np.False_
+    if (np.isfinite(run.tables.ravel()) | missing).all():
+        return None
+    episode = len(run.episode_returns) - 1
+    return OverflowError(
+        f"the action values overflowed by episode {episode} (counted from 0); most likely the rewards or initial_q "
+        "are too large"
+    )
+
+
+def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float) -> Run:
     returns, lengths, terminated = trainer.episodes()
     kept: list[tuple[Any, list[int]]] = trainer.recordings()
     first = len(returns) - len(kept)
     generators = generator_states(resolved.config, [start for start, _ in kept])
     recordings = tuple(
-        Recording(first + index, generator, tuple(resolved.grid.choices[action] for action in actions))
-        for index, (generator, (_, actions)) in enumerate(zip(generators, kept, strict=True))
+        Recording(first + index, generator, tuple(resolved.actions[column] for column in columns))
+        for index, (generator, (_, columns)) in enumerate(zip(generators, kept, strict=True))
     )
     return Run(
         config=resolved.config,
-        tables=trainer.tables().reshape(-1, resolved.grid.rows, resolved.grid.actions),
+        tables=trainer.tables().reshape(-1, resolved.discretizer.n_rows, len(resolved.actions)),
         episode_returns=returns,
         episode_lengths=lengths,
         terminated=terminated,
-        grid=resolved.grid,
+        discretizer=resolved.discretizer,
+        actions=resolved.actions,
         completed=len(returns) == resolved.config.episodes,
         seconds=time.perf_counter() - began,
         versions=versions(),

@@ -1,8 +1,9 @@
-"""``qtab.train_many``: one config, many seeds, all cores."""
+"""``qtab.train_many``: trains one config with many seeds, on all cores."""
 
+import math
 import os
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import gymnasium as gym
@@ -11,16 +12,19 @@ from gymnasium.envs.registration import EnvSpec
 from typing_extensions import Unpack
 
 from qtab import _core
-from qtab import _spec as plan
+from qtab._spec import Results
 from qtab._utils import checks
-from qtab._utils.memory import BYTES_PER_EPISODE, check_memory, memory_limit
+from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
+from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
+from qtab.config.options import n_tables
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
 from qtab.results.runs import Runs
-from qtab.training.resolve import Resolved, log_default_limit, resolve
+from qtab.training.resolve import log_default_limit, resolve
+from qtab.training.resolved_run import ResolvedRun
 
 MakeEnv: TypeAlias = Callable[[], gym.Env]
 
@@ -61,15 +65,15 @@ def train_many(
     workers = thread_count(threads)
     env, base = collect(train_many, env, config, settings)
     overrides = over(base, settings)
-    resolved = resolve_one(env, {**overrides, "seed": numbers[0]})
+    # The largest seed is the one that the bit generator may refuse.
+    resolved = resolve_template(env, {**overrides, "seed": max(numbers)}).with_seed(numbers[0])
     log_default_limit(resolved)
-    resolved.config.replace(seed=max(numbers))
-    limit = _limit(memory_limit)
+    limit = bytes_limit(memory_limit)
     began = time.perf_counter()
-    results = allocate(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
+    results = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
     try:
-        if resolved.model is not None:
-            failed = train_in_threads(resolved, numbers, results, workers, go_on=False)
+        if resolved.is_native:
+            failed = train_in_threads(resolved, numbers, results, workers, keep_going=False)
         else:
             from qtab.training.process_pool import train_in_processes
 
@@ -85,11 +89,11 @@ def train_many(
 
 
 def seed_numbers(seeds: Any) -> tuple[int, ...]:
-    """Returns the seeds as Python integers.
+    """Returns the seeds as Python integers; an integer N means 0 to N - 1.
 
     Raises:
-        TypeError: if they are none.
-        ValueError: if there are none, one is negative, or one comes twice.
+        TypeError: if they are not integers.
+        ValueError: if there is none, one is negative, or one appears twice.
     """
     if hasattr(seeds, "__index__") and not np.ndim(seeds):  # an array has an __index__ too
         return tuple(range(checks.integer("seeds", seeds, least=1)))
@@ -105,10 +109,10 @@ def seed_numbers(seeds: Any) -> tuple[int, ...]:
 
 
 def thread_count(threads: int | None) -> int:
-    """Returns how many threads to use: one a core that this process may run on, where none is said.
+    """Returns how many threads to use: by default one for each core that this process may run on.
 
     Raises:
-        TypeError: if it is no integer.
+        TypeError: if it is not an integer.
         ValueError: if it is less than one, or more than a process can have.
     """
     if threads is not None:
@@ -118,8 +122,8 @@ def thread_count(threads: int | None) -> int:
     return os.cpu_count() or 1
 
 
-def resolve_one(env: str | EnvSpec | MakeEnv, overrides: dict[str, Any]) -> Resolved:
-    """Returns what one of the runs comes to, its environment closed again.
+def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any]) -> ResolvedRun:
+    """Resolves a run of which others differ by their seed; its environment is closed again.
 
     Raises:
         TypeError: for a single environment, which several runs cannot share.
@@ -128,76 +132,74 @@ def resolve_one(env: str | EnvSpec | MakeEnv, overrides: dict[str, Any]) -> Reso
         raise TypeError(
             "env must be an id, an EnvSpec or a function that makes an environment: many runs cannot share one"
         )
-    made = None if isinstance(env, str | EnvSpec) or not callable(env) else env()
-    if made is not None and not isinstance(made, gym.Env):
-        raise TypeError(f"env must make an environment, got {made!r}")
-    try:
-        resolved = resolve(env if made is None else made, overrides)  # type: ignore[arg-type]
-    except BaseException:
-        if made is not None:
-            made.close()
-        raise
-    if resolved.env is not None:
-        resolved.env.close()
-    elif made is not None:
-        made.close()
+    made: Any = env
+    if callable(env):
+        made = env()
+        if not isinstance(made, gym.Env):
+            raise TypeError(f"env must make an environment, got {made!r}")
+    resolved = resolve(made, settings, owns_env=True)
+    resolved.close()
     return resolved
 
 
-def allocate(resolved: Resolved, runs: int, alive: int, tables: bool, limit: int) -> plan.Results:
-    """Returns where the results go; ``alive`` runs are underway at a time.
+def allocate_results(resolved: ResolvedRun, runs: int, at_once: int, keep_tables: bool, limit: int) -> Results:
+    """Returns arrays for the results of many runs.
+
+    Args:
+        resolved: One of the runs.
+        runs: How many there are.
+        at_once: How many are trained at the same time.
+        keep_tables: Whether to keep the Q tables.
+        limit: How many bytes the results and the runs in progress may take.
 
     Raises:
-        MemoryError: if results and tables need more than the limit.
+        MemoryError: if they would take more.
     """
     episodes = resolved.config.episodes
-    values = resolved.grid.rows * resolved.grid.actions
-    needed = runs * episodes * BYTES_PER_EPISODE + alive * (episodes * BYTES_PER_EPISODE + 8 * values)
-    what = f"{runs} runs of {episodes} episodes"
-    check_memory(what, needed + (runs * 8 * values if tables else 0), limit)
-    if tables and resolved.model is not None:
-        # Some learners have several tables.
-        values = _core.Trainer(resolved.core_environment(), resolved.plan()).tables().size
-        check_memory(what, needed + runs * 8 * values, limit)
+    values = math.prod(_tables_shape(resolved, 1))
+    stored = episodes * BYTES_PER_EPISODE + (8 * values if keep_tables else 0)
+    in_progress = episodes * BYTES_PER_EPISODE + 8 * values
+    check_memory(f"{runs} runs of {episodes} episodes", runs * stored + at_once * in_progress, limit)
     return {
         "returns": np.zeros((runs, episodes)),
         "lengths": np.zeros((runs, episodes), dtype=np.int64),
         "terminated": np.empty((runs, episodes), dtype=np.bool_),
-        "tables": np.empty((runs, values if tables else 0)),
+        "tables": np.empty((runs, values if keep_tables else 0)),
         "finished": np.zeros(runs, dtype=np.bool_),
     }
 
 
 def train_in_threads(
-    resolved: Resolved, seeds: tuple[int, ...], results: plan.Results, threads: int, *, go_on: bool
+    resolved: ResolvedRun, seeds: Sequence[int], results: Results, threads: int, *, keep_going: bool
 ) -> list[tuple[int, Exception]]:
-    """Trains a model in Rust; returns the runs that failed. Nothing is begun after the first unless ``go_on``."""
-    environment, common = resolved.core_environment(), resolved.plan()
+    """Trains a native environment with many seeds; returns the index of each run that failed, and its error.
 
-    def describe(index: int) -> Any:
-        return environment, {**common, "seed": plan.seed_words(seeds[index])}
-
-    return _core.train_many(describe, results, threads, go_on)
+    Unless ``keep_going`` is set, no run is started after the first failure.
+    """
+    return _core.train_many(resolved.spec(), seeds, results, threads, keep_going)
 
 
-def _runs(resolved: Resolved, seeds: tuple[int, ...], results: plan.Results, tables: bool, began: float) -> Runs:
+def _runs(resolved: ResolvedRun, seeds: Sequence[int], results: Results, keep_tables: bool, began: float) -> Runs:
     finished = results["finished"]
-    whole = bool(finished.all())
-    rows = slice(None) if whole else finished
-    shape = (-1, resolved.grid.rows, resolved.grid.actions)
-    kept = results["tables"][rows]
+    completed = bool(finished.all())
+    rows = slice(None) if completed else finished  # a slice copies nothing
+    tables = results["tables"][rows]
     return Runs(
         config=resolved.config,
         seeds=tuple(seed for seed, done in zip(seeds, finished, strict=True) if done),
         episode_returns=results["returns"][rows],
         episode_lengths=results["lengths"][rows],
         terminated=results["terminated"][rows],
-        tables=kept.reshape(len(kept), *shape) if tables else None,
-        grid=resolved.grid,
-        completed=whole,
+        tables=tables.reshape(_tables_shape(resolved, len(tables))) if keep_tables else None,
+        discretizer=resolved.discretizer,
+        actions=resolved.actions,
+        completed=completed,
         seconds=time.perf_counter() - began,
         versions=versions(),
     )
 
 
-_limit = memory_limit
+def _tables_shape(resolved: ResolvedRun, runs: int) -> tuple[int, int, int, int]:
+    """The shape of the Q tables of so many runs: (runs, k, rows, actions)."""
+    k = n_tables(resolved.config.algorithm)
+    return runs, k, resolved.discretizer.n_rows, len(resolved.actions)

@@ -1,4 +1,4 @@
-"""Proof that the fast run computed what the slow one computes."""
+"""``qtab.verify``: compares a run with Gymnasium's environment and the reference learners in NumPy, byte for byte."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from qtab.training.resolve import resolve
 
 @dataclass(frozen=True)
 class Verification:
-    """What a comparison with Gymnasium and NumPy found."""
+    """The result of a comparison with Gymnasium and NumPy."""
 
     env: str
     seed: int
@@ -30,9 +30,9 @@ class Verification:
     lengths_equal: bool
     table_equal: bool
     episode: int | None
-    """The first episode (from 0) in which the two sides part; None where they do not."""
+    """The first episode (from 0) in which the two differ; None where none does."""
     step: int | None
-    """The first step (from 0) of that episode at which they part; None where its steps are equal."""
+    """The first step (from 0) of that episode at which their actions differ; None where none does."""
     versions: dict[str, str]
 
     @property
@@ -41,7 +41,7 @@ class Verification:
         return self.returns_equal and self.lengths_equal and self.table_equal
 
     def __str__(self) -> str:
-        """A report for a person."""
+        """A report of several lines."""
 
         def word(equal: bool) -> str:
             return "equal" if equal else "DIFFERENT"
@@ -54,7 +54,7 @@ class Verification:
         ]
         if self.episode is not None:
             where = "" if self.step is None else f", step {self.step}"
-            lines.append(f"  they part in episode {self.episode}{where} (counted from 0)")
+            lines.append(f"  they differ from episode {self.episode}{where} on (counted from 0)")
         lines.append("  " + ", ".join(f"{name} {value}" for name, value in self.versions.items()))
         return "\n".join(lines)
 
@@ -65,18 +65,18 @@ def verify(
     env: gym.Env | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Verification:
-    """Replays a run's config through real Gymnasium and the reference loop in plain NumPy.
+    """Trains a run's config again with Gymnasium's environment and the reference learner in plain NumPy, and compares.
 
     Args:
         run: What to verify.
-        episodes: Compare this many episodes of the full run's schedule: both sides run again, and their tables after
-            that many are compared. None compares the run as it is, its Q table included.
-        env: The environment, for a run that was trained on an object that no id names.
-        progress: Called after every episode of the reference loop with the number done and the total.
+        episodes: Compare only the first episodes, using the full run's schedule: both sides train again, and their
+            tables after that many are compared. None compares the run as it is, its Q table included.
+        env: The environment, for a run that was trained on an environment object without an id.
+        progress: Called after every episode of the reference with the number done and the total.
 
     Raises:
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or a run that was interrupted and so has no table to compare.
+        ValueError: for an argument out of range, or an interrupted run without ``episodes``.
     """
     checks.instance("run", run, Run)
     finished = len(run.episode_returns)
@@ -84,37 +84,34 @@ def verify(
         raise ValueError(f"episodes must be given for a run that was stopped early, at most {finished}")
     count = checks.integer("episodes", finished if episodes is None else episodes, least=1, most=finished)
     config = run.config
-    assert config.seed is not None  # noqa: S101 - a run's config is resolved
-
-    watched = _Watched(_environment(config, env), count, progress)
+    recorder = _Recorder(_environment(config, env), count, progress)
     try:
-        table, returns, lengths = LEARNERS[config.algorithm](watched, config, stop_after=count)
+        table, returns, lengths = LEARNERS[config.algorithm](recorder, config, stop_after=count)
         if progress is not None:
             progress(count, count)
     finally:
         if env is None:
-            watched.close()
+            recorder.close()
 
     ours = run.tables if episodes is None else _again(config, env, count)[0]
-    episode = _first_difference(returns, lengths, run.episode_returns[:count], run.episode_lengths[:count])
+    episode = _first_difference((returns, run.episode_returns[:count]), (lengths, run.episode_lengths[:count]))
     return Verification(
         env=config.env,
-        seed=config.seed,
+        seed=checks.required("seed", config.seed),
         episodes=count,
         returns_equal=returns.tobytes() == run.episode_returns[:count].tobytes(),
         lengths_equal=lengths.tobytes() == run.episode_lengths[:count].tobytes(),
         table_equal=table.tobytes() == ours.tobytes(),
         episode=episode,
-        step=None if episode is None else _first_step(config, env, run, watched, episode),
+        step=None if episode is None else _first_step(config, env, run, recorder, episode),
         versions=versions(),
     )
 
 
 def _environment(config: Config, env: gym.Env | None) -> gym.Env:
-    """Gymnasium's own environment, even for an id of ours."""
+    """Gymnasium's own environment, also where the id names qtab's."""
     if env is not None:
-        assert config.max_episode_steps is not None  # noqa: S101 - resolved
-        return gym.wrappers.TimeLimit(env, config.max_episode_steps)
+        return gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", config.max_episode_steps))
     name = gymnasium_id(config.env)
     return gym.make(
         name if name in ENTRIES else config.env, max_episode_steps=config.max_episode_steps, **config.env_kwargs
@@ -122,13 +119,13 @@ def _environment(config: Config, env: gym.Env | None) -> gym.Env:
 
 
 def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[np.float64], list[Any]]:
-    """The fast side once more: its table after so many episodes, and the actions of the last of them."""
+    """Trains in Rust again: the table after so many episodes, and the actions of the last of them."""
     resolved = resolve(config.env if env is None else env, _fields(config))
     try:
-        trainer = _core.Trainer(resolved.core_environment(), resolved.plan(record=1))
+        trainer = _core.Trainer(resolved.spec(), resolved.seed, record=1)
         trainer.advance(episodes)
-        (_, actions) = trainer.recordings()[-1]
-        return trainer.tables(), [resolved.grid.choices[action] for action in actions]
+        (_, columns) = trainer.recordings()[-1]
+        return trainer.tables(), [resolved.actions[column] for column in columns]
     finally:
         resolved.close()
 
@@ -137,26 +134,24 @@ def _fields(config: Config) -> dict[str, Any]:
     return {name: value for name, value in vars(config).items() if name != "env"}
 
 
-def _first_difference(*columns: NDArray[Any]) -> int | None:
-    half = len(columns) // 2
-    unequal = np.zeros(len(columns[0]), dtype=bool)
-    for theirs, ours in zip(columns[:half], columns[half:], strict=True):
-        unequal |= theirs != ours
+def _first_difference(*pairs: tuple[NDArray[Any], NDArray[Any]]) -> int | None:
+    """The first index at which the arrays of a pair differ, for any of the pairs."""
+    unequal = np.any([theirs != ours for theirs, ours in pairs], axis=0)
     return int(np.argmax(unequal)) if unequal.any() else None
 
 
-def _first_step(config: Config, env: gym.Env | None, run: Run, watched: "_Watched", episode: int) -> int | None:
-    theirs = watched.actions[episode]
+def _first_step(config: Config, env: gym.Env | None, run: Run, recorder: "_Recorder", episode: int) -> int | None:
+    theirs = recorder.actions[episode]
     _, ours = _again(config, env, episode + 1)
     for step, (one, other) in enumerate(zip(theirs, ours, strict=False)):
         if not np.array_equal(one, other):
             return step
-    shortest = min(len(theirs), len(ours), int(run.episode_lengths[episode]))
-    return shortest if shortest < max(len(theirs), len(ours), int(run.episode_lengths[episode])) else None
+    lengths = (len(theirs), len(ours), int(run.episode_lengths[episode]))
+    return min(lengths) if min(lengths) < max(lengths) else None
 
 
-class _Watched(gym.Wrapper[Any, Any, Any, Any]):
-    """Keeps every action, and says how far the reference loop is."""
+class _Recorder(gym.Wrapper[Any, Any, Any, Any]):
+    """Keeps every action, and reports the progress of the reference."""
 
     def __init__(self, env: gym.Env, total: int, progress: Callable[[int, int], None] | None) -> None:
         super().__init__(env)

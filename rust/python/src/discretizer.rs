@@ -1,81 +1,173 @@
-//! How observations become rows, as Python describes it, and the features of that description.
+//! `Discretizer`: the active rows of observations, one or many at once, by the features that training uses.
 
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
+use pyo3::intern;
 use pyo3::prelude::*;
-use qtab_core::features::{AnyGrid, Axis, Bins, Edges, Rounding, TileCoding};
+use qtab_core::features::{Features, MAX_TILINGS, OutOfBounds};
 use qtab_core::numeric::Float;
 
-use crate::plan::{Plan, unknown};
+use crate::convert::{DiscreteReader, FromNumber, floats, integers};
+use crate::spec::{DiscretizerSpec, Fields, FloatType};
 
-/// How observations become rows.
-#[derive(FromPyObject)]
-pub(crate) enum Discretizer {
-    #[pyo3(from_item_all)]
-    Rounding { scale: Vec<f64> },
-    #[pyo3(from_item_all)]
-    Tiles { low: Vec<f64>, high: Vec<f64>, tiles: Vec<u32>, tilings: u32, hashed_rows: Option<u32> },
-    #[pyo3(from_item_all)]
-    Cells { first: Vec<i64>, counts: Vec<u32>, scalar: bool },
-    #[pyo3(from_item_all)]
-    Bins { edges: Vec<Vec<f64>> },
+/// Maps observations to the active rows of a table, as a `DiscretizerSpec` describes.
+#[pyclass(frozen, name = "Discretizer", module = "qtab._core")]
+pub(crate) struct PyDiscretizer {
+    features: AnyFeatures,
+    /// How many components an observation has; None for a single integer.
+    dimensions: Option<usize>,
+    n_active: usize,
 }
 
-impl Plan<'_> {
-    /// The article's grid over two float32 components.
-    pub(crate) fn plane(&self, scale: &[f64]) -> PyResult<Rounding<f32, [Axis<f32>; 2]>> {
-        <[Axis<f32>; 2]>::try_from(self.axes(scale, |bound| bound as f32))
-            .map(Rounding::new)
-            .map_err(|axes| PyValueError::new_err(format!("scale must hold 2 numbers, got {}", axes.len())))
+enum AnyFeatures {
+    F32(Box<dyn DynFeatures<f32>>),
+    F64(Box<dyn DynFeatures<f64>>),
+    Integers(DiscreteReader),
+}
+
+#[pymethods]
+impl PyDiscretizer {
+    #[new]
+    fn new(spec: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let spec = DiscretizerSpec::parse(&Fields::new(spec)?)?;
+        let n_active = spec.n_active();
+        if let DiscretizerSpec::Identity(reader) = spec {
+            let dimensions = (!reader.is_scalar()).then(|| reader.dimensions());
+            return Ok(Self { features: AnyFeatures::Integers(reader), dimensions, n_active });
+        }
+        let (dtype, dimensions) = spec.box_space()?;
+        let features = match dtype {
+            FloatType::F32 => AnyFeatures::F32(dyn_features(&spec, |bound| bound as f32)?),
+            FloatType::F64 => AnyFeatures::F64(dyn_features(&spec, |bound| bound)?),
+        };
+        Ok(Self { features, dimensions: Some(dimensions), n_active })
     }
 
-    /// The grid of either kind, in the dtype of the bounds.
-    pub(crate) fn grid<T: Float>(&self, dtype: impl Fn(f64) -> T) -> PyResult<AnyGrid<T>> {
+    /// How many rows the table has.
+    #[getter]
+    fn n_rows(&self) -> usize {
         match &self.features {
-            Discretizer::Rounding { scale } => Ok(AnyGrid::Rounding(Rounding::new(self.axes(scale, dtype)))),
-            Discretizer::Bins { edges } => Ok(AnyGrid::Bins(Bins::new(self.axes_of(edges)?))),
-            Discretizer::Tiles { .. } | Discretizer::Cells { .. } => Err(unknown("discretizer", "identity")),
+            AnyFeatures::F32(features) => features.n_rows(),
+            AnyFeatures::F64(features) => features.n_rows(),
+            AnyFeatures::Integers(reader) => reader.n_rows(),
         }
     }
 
-    /// The axes of the article's grid.
-    fn axes<T: Float>(&self, scale: &[f64], dtype: impl Fn(f64) -> T) -> Vec<Axis<T>> {
-        let bounds = self.low.iter().zip(&self.high);
-        bounds.zip(scale).map(|((&low, &high), &scale)| Axis::new(dtype(low), dtype(high), scale)).collect()
+    /// How many rows are active at a time.
+    #[getter]
+    fn n_active(&self) -> usize {
+        self.n_active
     }
 
-    /// Bins over `N` float32 components.
-    pub(crate) fn bins<const N: usize>(&self, edges: &[Vec<f64>]) -> PyResult<Bins<f32, [Edges; N]>> {
-        self.axes_of(edges)?.try_into().map(Bins::new).map_err(|_| miscounted(N, edges))
-    }
-
-    fn axes_of(&self, edges: &[Vec<f64>]) -> PyResult<Vec<Edges>> {
-        if edges.len() != self.low.len() {
-            return Err(miscounted(self.low.len(), edges));
-        }
-        let rising = |edges: &&Vec<f64>| edges.is_sorted() && !edges.iter().any(|edge| edge.is_nan());
-        let checked = |edges: &Vec<f64>| match Some(edges).filter(rising) {
-            Some(edges) => Ok(Edges::new(edges.clone())),
-            None => Err(PyValueError::new_err(format!("edges must rise, got {edges:?}"))),
+    /// The active rows of one observation, an int64 array of shape `(n_active,)`; of a batch of `n` observations, one of
+    /// shape `(n, n_active)`.
+    fn active_rows<'py>(&self, observations: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
+        let py = observations.py();
+        let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), (observations,))?;
+        let array = array.cast_into::<PyUntypedArray>()?;
+        let batch = self.batch_size(&array)?;
+        let rows = match &self.features {
+            AnyFeatures::F32(features) => self.rows_of_floats(&**features, &array, batch)?,
+            AnyFeatures::F64(features) => self.rows_of_floats(&**features, &array, batch)?,
+            AnyFeatures::Integers(reader) => self.rows_of_integers(reader, &array, batch)?,
         };
-        edges.iter().map(checked).collect()
+        let rows = PyArray1::from_vec(py, rows);
+        match batch {
+            Some(count) => rows.reshape([count, self.n_active].as_slice()),
+            None => rows.reshape([self.n_active].as_slice()),
+        }
+    }
+}
+
+impl PyDiscretizer {
+    /// How many observations an array holds; None for one observation that is not in a batch.
+    fn batch_size(&self, array: &Bound<'_, PyUntypedArray>) -> PyResult<Option<usize>> {
+        let (shape, components) = (array.shape(), self.dimensions.as_slice());
+        if shape == components {
+            return Ok(None);
+        }
+        if let Some((&count, rest)) = shape.split_first()
+            && rest == components
+        {
+            return Ok(Some(count));
+        }
+        let got = array.getattr(intern!(array.py(), "shape"))?;
+        Err(PyValueError::new_err(match self.dimensions {
+            Some(count) if shape.len() < 2 => format!("observation must have shape ({count},), got {got}"),
+            Some(count) => format!("observations must have shape (n, {count}), got {got}"),
+            None => format!("observations must have shape () or (n,), got {got}"),
+        }))
     }
 
-    /// Tile coding.
-    pub(crate) fn tiles<T: Float, const M: usize>(&self) -> PyResult<TileCoding<T, M>> {
-        let Discretizer::Tiles { low, high, tiles, tilings, hashed_rows } = &self.features else {
-            return Err(PyValueError::new_err("discretizer must be 'tiles'"));
-        };
-        if [low.len(), high.len(), tiles.len()].iter().any(|&length| length != self.low.len()) {
-            return Err(PyValueError::new_err(format!("tiles must hold {} numbers", self.low.len())));
-        }
-        let tiles = TileCoding::new(low, high, tiles, *tilings);
-        Ok(match *hashed_rows {
-            Some(rows) => tiles.hashed(rows),
-            None => tiles,
+    fn rows_of_floats<T: FromNumber>(
+        &self,
+        features: &dyn DynFeatures<T>,
+        array: &Bound<'_, PyUntypedArray>,
+        batch: Option<usize>,
+    ) -> PyResult<Vec<i64>> {
+        let values = floats::<T>(array)?;
+        self.rows(&values, batch, |observation, rows| features.append_active_rows(observation, rows))
+    }
+
+    fn rows_of_integers(
+        &self,
+        reader: &DiscreteReader,
+        array: &Bound<'_, PyUntypedArray>,
+        batch: Option<usize>,
+    ) -> PyResult<Vec<i64>> {
+        let values = integers(array)?;
+        self.rows(&values, batch, |observation, rows| {
+            rows.push(reader.row(observation)?.into());
+            Ok(())
         })
     }
+
+    /// The rows of each observation in turn.
+    fn rows<T>(
+        &self,
+        values: &[T],
+        batch: Option<usize>,
+        append: impl Fn(&[T], &mut Vec<i64>) -> Result<(), OutOfBounds>,
+    ) -> PyResult<Vec<i64>> {
+        let dimensions = self.dimensions.unwrap_or(1);
+        let count = batch.unwrap_or(1);
+        let mut rows = Vec::with_capacity(count * self.n_active);
+        for index in 0..count {
+            append(&values[index * dimensions..][..dimensions], &mut rows).map_err(|error| {
+                PyValueError::new_err(match batch {
+                    None => error.to_string(),
+                    Some(_) => error.to_string().replacen("observation", &format!("observations[{index}]"), 1),
+                })
+            })?;
+        }
+        Ok(rows)
+    }
 }
 
-fn miscounted(components: usize, edges: &[Vec<f64>]) -> PyErr {
-    PyValueError::new_err(format!("edges must hold a row for each of {components} components, got {}", edges.len()))
+/// Features over observations of dtype `T`.
+trait DynFeatures<T>: Send + Sync {
+    fn n_rows(&self) -> usize;
+
+    fn append_active_rows(&self, observation: &[T], rows: &mut Vec<i64>) -> Result<(), OutOfBounds>;
+}
+
+impl<T, F: Features<[T]> + Send + Sync> DynFeatures<T> for F {
+    fn n_rows(&self) -> usize {
+        self.len()
+    }
+
+    fn append_active_rows(&self, observation: &[T], rows: &mut Vec<i64>) -> Result<(), OutOfBounds> {
+        rows.extend(self.active_rows(observation)?.as_ref().iter().map(|&row| i64::from(row)));
+        Ok(())
+    }
+}
+
+fn dyn_features<T: Float + 'static>(
+    spec: &DiscretizerSpec,
+    to_dtype: impl Fn(f64) -> T,
+) -> PyResult<Box<dyn DynFeatures<T>>> {
+    if let DiscretizerSpec::Tiles(tiles) = spec {
+        return Ok(Box::new(tiles.tile_coding::<T, MAX_TILINGS>()));
+    }
+    Ok(Box::new(spec.grid(to_dtype)?))
 }

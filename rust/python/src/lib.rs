@@ -1,67 +1,52 @@
-//! `qtab._core`: what Python calls. Convert, dispatch, return; nothing else.
+//! `qtab._core`: the extension module. It converts, dispatches and returns; what it computes is in `qtab-core`.
 
 #![allow(clippy::needless_pass_by_value, reason = "pyo3 passes arguments by value")]
 
-mod begin;
-mod blackjack;
-mod classic;
+mod convert;
 mod discretizer;
-mod dispatch;
-mod door;
-mod failure;
-mod finite;
-mod learning;
-mod many;
-mod model;
-mod native;
-mod numbers;
-mod observation;
-mod physics;
-mod plan;
+mod envs;
+mod error;
+mod interrupt;
 mod planning;
-mod play;
-mod python_world;
-mod run;
-mod stream;
-mod table;
-mod taxi;
-mod toy_text;
-mod trainer;
-mod trigonometry;
+mod rng;
+mod runs;
+mod spec;
+mod training;
 mod vector;
 
 use pyo3::prelude::*;
 
 #[pymodule]
 mod _core {
+    use pyo3::types::PyTuple;
+
+    use super::spec::{ALGORITHMS, DISCRETIZERS, SCHEDULES};
+    use super::{Bound, PyModule, PyModuleMethods, PyResult};
+
     #[pymodule_export]
-    use super::blackjack::Blackjack;
+    use super::discretizer::PyDiscretizer;
     #[pymodule_export]
-    use super::classic::Classic;
+    use super::envs::{
+        PyBlackjack, PyClassicControl, PyNativeEnv, PyTaxi, PyToyText, PyTransitionTable, PyVectorEnv, matches_numpy,
+        numpy_uses_libm, parameter_names,
+    };
     #[pymodule_export]
-    use super::many::train_many;
+    use super::planning::{PyMdpSolver, PyMountainCarSearch};
     #[pymodule_export]
-    use super::model::parameter_names;
+    use super::rng::PyAgentRng;
     #[pymodule_export]
-    use super::physics::Physics;
-    #[pymodule_export]
-    use super::planning::{Planner, Valley};
-    #[pymodule_export]
-    use super::stream::Stream;
-    #[pymodule_export]
-    use super::table::Transitions;
-    #[pymodule_export]
-    use super::taxi::Taxi;
-    #[pymodule_export]
-    use super::toy_text::Table;
-    #[pymodule_export]
-    use super::trainer::Trainer;
-    #[pymodule_export]
-    use super::trigonometry::{computes_as_numpy, numpy_calls_the_platform};
-    #[pymodule_export]
-    use super::vector::Vector;
+    use super::training::{PyTrainer, train_many};
 
     /// How the extension was compiled: only "release" says anything about speed.
     #[pymodule_export]
     const BUILD_PROFILE: &str = if cfg!(debug_assertions) { "debug" } else { "release" };
+
+    /// Adds the words that a spec may use.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let py = module.py();
+        module.add("ALGORITHMS", PyTuple::new(py, ALGORITHMS.iter().map(|(name, _)| name))?)?;
+        module.add("DISCRETIZERS", PyTuple::new(py, DISCRETIZERS.iter().map(|(name, _)| name))?)?;
+        module.add("SCHEDULES", PyTuple::new(py, SCHEDULES.iter().map(|(name, _)| name))?)
+    }
 }

@@ -1,4 +1,4 @@
-//! What a vector step takes: an action for each sub-environment, all of them looked at before any is taken.
+//! The actions of a vector step, one for each sub-environment. All of them are checked before any is taken.
 
 use numpy::{PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyAssertionError, PyTypeError, PyValueError};
@@ -6,27 +6,33 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 use qtab_core::numeric::Scalar;
 
-use crate::numbers::{LARGEST_FORCE, double, first, index, numpy_scalar};
+use crate::convert::{LARGEST_FORCE, discrete_action, double, first_item, numpy_scalar};
+use crate::error::invalid;
 
-/// So few are sooner asked for one by one than borrowed.
-const FEW: usize = 8;
+/// Up to this many items are read faster one by one than by borrowing the array.
+const READ_ONE_BY_ONE: usize = 8;
 
-/// An action as a type of the core's.
-pub(super) trait Acts: Copy + Send + Sync + 'static {
-    /// For whom no action is needed.
+/// A type of actions that Python passes in batches.
+pub(crate) trait BatchAction: Copy + Send + Sync + 'static {
+    /// Stands for the action of a sub-environment that does not take one.
     const NONE: Self;
 
-    /// Reads an action for each place; the `idle` ones may be anything.
-    fn read(actions: &Bound<'_, PyAny>, count: usize, idle: &dyn Fn(usize) -> bool, into: &mut [Self]) -> PyResult<()>;
+    /// Reads one action for each item of `into`. Those of `inactive` sub-environments may be anything.
+    fn read(
+        actions: &Bound<'_, PyAny>,
+        num_actions: usize,
+        inactive: &dyn Fn(usize) -> bool,
+        into: &mut [Self],
+    ) -> PyResult<()>;
 
-    /// As a sub-environment of Gymnasium's remembers it.
-    fn remembered(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>>;
+    /// The action as Gymnasium's environments store it.
+    fn to_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>>;
 }
 
-/// For what is no array.
-fn sized(actions: &Bound<'_, PyAny>, shape: &str, places: usize) -> PyResult<()> {
+/// Checks the length of a sequence that is no array.
+fn check_length(actions: &Bound<'_, PyAny>, shape: &str, expected: usize) -> PyResult<()> {
     match actions.len() {
-        Ok(length) if length == places => Ok(()),
+        Ok(length) if length == expected => Ok(()),
         Ok(length) => Err(PyValueError::new_err(format!("actions must have shape {shape}, got {length} of them"))),
         Err(_) => {
             Err(PyTypeError::new_err(format!("actions must be an array of shape {shape}, got {}", actions.repr()?)))
@@ -34,12 +40,17 @@ fn sized(actions: &Bound<'_, PyAny>, shape: &str, places: usize) -> PyResult<()>
     }
 }
 
-impl Acts for usize {
+impl BatchAction for usize {
     const NONE: Self = 0;
 
-    fn read(actions: &Bound<'_, PyAny>, count: usize, idle: &dyn Fn(usize) -> bool, into: &mut [Self]) -> PyResult<()> {
+    fn read(
+        actions: &Bound<'_, PyAny>,
+        num_actions: usize,
+        inactive: &dyn Fn(usize) -> bool,
+        into: &mut [Self],
+    ) -> PyResult<()> {
         if let Ok(array) = actions.cast::<PyArray1<i64>>()
-            && whole(array, count, into)?
+            && read_integers(array, num_actions, into)?
         {
             return Ok(());
         }
@@ -48,52 +59,55 @@ impl Acts for usize {
                 return Err(wrong_shape(array, &format!("({},)", into.len())));
             }
             if matches!(array.dtype().kind(), b'i' | b'u')
-                && whole(actions.call_method1("astype", ("int64",))?.cast()?, count, into)?
+                && read_integers(actions.call_method1("astype", ("int64",))?.cast()?, num_actions, into)?
             {
                 return Ok(());
             }
         }
-        sized(actions, &format!("({},)", into.len()), into.len())?;
-        for (lane, place) in into.iter_mut().enumerate() {
-            let action = actions.get_item(lane)?;
-            *place =
-                if idle(lane) { Self::NONE } else { index(&action, count).ok_or_else(|| invalid(lane, &action))? };
+        check_length(actions, &format!("({},)", into.len()), into.len())?;
+        for (index, item) in into.iter_mut().enumerate() {
+            let action = actions.get_item(index)?;
+            *item = if inactive(index) {
+                Self::NONE
+            } else {
+                discrete_action(&action, num_actions).ok_or_else(|| invalid_action(index, &action))?
+            };
         }
         Ok(())
     }
 
-    fn remembered(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    fn to_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         PyArray1::from_slice(py, &[self.cast_signed() as i64]).get_item(0)
     }
 }
 
-/// Whether there are as many as places, and all of them are actions; if so, they are read.
-fn whole(actions: &Bound<'_, PyArray1<i64>>, count: usize, into: &mut [usize]) -> PyResult<bool> {
+/// Reads the array if its length fits and all its items are actions, and returns whether they are.
+fn read_integers(actions: &Bound<'_, PyArray1<i64>>, num_actions: usize, into: &mut [usize]) -> PyResult<bool> {
     if actions.len() != into.len() {
         return Ok(false);
     }
-    // Negative ones become the largest.
-    let mut fit = true;
-    let mut put = |place: &mut usize, action: i64| {
-        *place = action as usize;
-        fit &= *place < count;
+    let mut valid = true;
+    let mut put = |item: &mut usize, action: i64| {
+        // A negative number becomes a large one.
+        *item = action as usize;
+        valid &= *item < num_actions;
     };
-    if into.len() <= FEW {
-        for (lane, place) in into.iter_mut().enumerate() {
-            put(place, actions.get_owned(lane).unwrap_or(-1));
+    if into.len() <= READ_ONE_BY_ONE {
+        for (index, item) in into.iter_mut().enumerate() {
+            put(item, actions.get_owned(index).unwrap_or(-1));
         }
     } else {
         let view = actions.try_readonly()?;
-        into.iter_mut().zip(view.as_array()).for_each(|(place, &action)| put(place, action));
+        into.iter_mut().zip(view.as_array()).for_each(|(item, &action)| put(item, action));
     }
-    Ok(fit)
+    Ok(valid)
 }
 
-/// Gymnasium's own words, and whose action it is.
-fn invalid(lane: usize, action: &Bound<'_, PyAny>) -> PyErr {
+/// Gymnasium's error for an invalid action, with the index of the sub-environment.
+fn invalid_action(index: usize, action: &Bound<'_, PyAny>) -> PyErr {
     let text = |part: PyResult<Bound<'_, PyString>>| part.map_or_else(|_| "?".into(), |part| part.to_string());
     let (value, class) = (text(action.repr()), text(action.get_type().repr()));
-    PyAssertionError::new_err(format!("sub-environment {lane}: {value} ({class}) invalid"))
+    PyAssertionError::new_err(format!("sub-environment {index}: {value} ({class}) invalid"))
 }
 
 fn wrong_shape(array: &Bound<'_, PyUntypedArray>, shape: &str) -> PyErr {
@@ -101,13 +115,13 @@ fn wrong_shape(array: &Bound<'_, PyUntypedArray>, shape: &str) -> PyErr {
     PyValueError::new_err(format!("actions must have shape {shape}, got {found}"))
 }
 
-impl Acts for Scalar {
+impl BatchAction for Scalar {
     const NONE: Self = Self::Single(0.0);
 
     fn read(
         actions: &Bound<'_, PyAny>,
-        _count: usize,
-        idle: &dyn Fn(usize) -> bool,
+        _num_actions: usize,
+        inactive: &dyn Fn(usize) -> bool,
         into: &mut [Self],
     ) -> PyResult<()> {
         let shape = format!("({}, 1)", into.len());
@@ -115,45 +129,51 @@ impl Acts for Scalar {
             if array.shape() != [into.len(), 1] {
                 return Err(wrong_shape(array, &shape));
             }
-            if let Ok(single) = actions.cast::<PyArray2<f32>>() {
-                let view = single.try_readonly()?;
-                into.iter_mut().zip(view.as_array()).for_each(|(place, &force)| *place = Self::Single(force));
-            } else {
-                let kind = array.dtype().kind();
-                if kind != b'i' && kind != b'u' && actions.cast::<PyArray2<f64>>().is_err() {
-                    let found = array.dtype();
-                    return Err(PyTypeError::new_err(format!(
-                        "actions must have dtype float32 or float64, got {found}"
-                    )));
-                }
-                // Integers meet floats alone, so they compute as doubles.
-                let double = actions.call_method1("astype", ("float64",))?.cast_into::<PyArray2<f64>>()?;
-                let view = double.try_readonly()?;
-                into.iter_mut().zip(view.as_array()).for_each(|(place, &force)| *place = Self::Double(force));
-            }
+            read_array(array, into)?;
         } else {
-            sized(actions, &shape, into.len())?;
-            for (lane, place) in into.iter_mut().enumerate().filter(|(lane, _)| !idle(*lane)) {
-                let row = actions.get_item(lane)?;
-                let plain = || double(&row.get_item(0).ok()?).map(Self::Python);
-                let force = if row.len().is_ok_and(|length| length == 1) { first(&row).or_else(plain) } else { None };
-                *place = force
-                    .ok_or_else(|| PyTypeError::new_err(format!("actions[{lane}] must hold one number, got {row}")))?;
+            check_length(actions, &shape, into.len())?;
+            for (index, item) in into.iter_mut().enumerate().filter(|(index, _)| !inactive(*index)) {
+                *item = read_item(&actions.get_item(index)?, index)?;
             }
         }
-        for (lane, place) in into.iter_mut().enumerate() {
-            let force = f64::from(*place);
+        for (index, item) in into.iter_mut().enumerate() {
+            let force = f64::from(*item);
             if force.is_nan() || force.abs() > LARGEST_FORCE {
-                if !idle(lane) {
-                    return Err(PyValueError::new_err(format!("actions[{lane}] must be a finite number, got {force}")));
+                if !inactive(index) {
+                    return Err(invalid(&format!("actions[{index}]"), "a finite number", force));
                 }
-                *place = Self::NONE;
+                *item = Self::NONE;
             }
         }
         Ok(())
     }
 
-    fn remembered(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    fn to_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         numpy_scalar(py, self)
     }
+}
+
+/// Reads an array of as many rows as `into` has items, in its dtype.
+fn read_array(actions: &Bound<'_, PyUntypedArray>, into: &mut [Scalar]) -> PyResult<()> {
+    if let Ok(single) = actions.cast::<PyArray2<f32>>() {
+        let view = single.try_readonly()?;
+        into.iter_mut().zip(view.as_array()).for_each(|(item, &force)| *item = Scalar::Single(force));
+        return Ok(());
+    }
+    let dtype = actions.dtype();
+    if !matches!(dtype.kind(), b'i' | b'u') && actions.cast::<PyArray2<f64>>().is_err() {
+        return Err(PyTypeError::new_err(format!("actions must have dtype float32 or float64, got {dtype}")));
+    }
+    // Integers meet Python floats alone, so they compute as doubles.
+    let double = actions.call_method1("astype", ("float64",))?.cast_into::<PyArray2<f64>>()?;
+    let view = double.try_readonly()?;
+    into.iter_mut().zip(view.as_array()).for_each(|(item, &force)| *item = Scalar::Double(force));
+    Ok(())
+}
+
+/// Reads an array of one number, or a sequence of one plain number.
+fn read_item(row: &Bound<'_, PyAny>, index: usize) -> PyResult<Scalar> {
+    let plain = || double(&row.get_item(0).ok()?).map(Scalar::Python);
+    let force = if row.len().is_ok_and(|length| length == 1) { first_item(row).or_else(plain) } else { None };
+    force.ok_or_else(|| PyTypeError::new_err(format!("actions[{index}] must hold one number, got {row}")))
 }

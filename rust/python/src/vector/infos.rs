@@ -1,5 +1,5 @@
-//! What Gymnasium's environments say besides, batched as `VectorEnv._add_info` batches it: for each name an array, and
-//! under the name with an underscore which sub-environments said it.
+//! The infos of sub-environments, batched as `VectorEnv._add_info` batches them: for each name an array, and under the
+//! name with an underscore a mask of the sub-environments that have it.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::intern;
@@ -8,122 +8,121 @@ use pyo3::types::PyDict;
 use qtab_core::Env;
 use qtab_core::VectorEnv;
 
-use super::observations::Shows;
+use super::BatchObservation;
 
-/// How the environments of one type appear in Gymnasium.
-pub(super) struct Nature<E: Env> {
-    /// So many sub-environments keep a thread busy for long enough to be worth its start.
-    pub(super) crew: usize,
-    /// What they say of themselves, if anything.
-    pub(super) says: Option<Says<E::State>>,
-    /// Puts a state, and the action that led to it, into Gymnasium's attributes.
-    pub(super) portray: Portray<E>,
-    /// What is 0 once an episode has come to a terminal state.
-    pub(super) fell: Option<&'static str>,
+/// What a vector environment needs to know of an environment type besides its dynamics.
+pub(crate) struct EnvInfo<E: Env> {
+    /// From this many sub-environments a thread on, a step takes long enough to be worth starting the thread.
+    pub(crate) envs_per_thread: usize,
+    /// The infos of its transitions, where it has any.
+    pub(crate) transition: Option<TransitionInfo<E::State>>,
+    /// Writes a state, and the action that led to it, into a dict of Gymnasium's attributes.
+    pub(crate) snapshot: Snapshot<E>,
+    /// The attribute that is 0 after an episode reached a terminal state.
+    pub(crate) terminal_counter: Option<&'static str>,
 }
 
-impl<E: Env> Nature<E> {
-    /// Of those that say nothing.
-    pub(super) fn new(crew: usize, portray: Portray<E>) -> Self {
-        Self { crew, says: None, portray, fell: None }
-    }
+pub(crate) type Snapshot<E> =
+    fn(&Bound<'_, PyDict>, &E, &<E as Env>::State, Option<<E as Env>::Action>) -> PyResult<()>;
+
+/// What the infos of a finite environment say.
+pub(crate) struct TransitionInfo<S> {
+    /// The probability of the last transition.
+    pub(crate) probability: fn(&S) -> f64,
+    /// Whether the probability after a reset is an integer 1.
+    pub(crate) integer_after_reset: bool,
+    pub(crate) action_masks: Option<ActionMasks<S>>,
 }
 
-pub(super) type Portray<E> = fn(&Bound<'_, PyDict>, &E, &<E as Env>::State, Option<<E as Env>::Action>) -> PyResult<()>;
-
-/// A table's info.
-pub(super) struct Says<S> {
-    /// How likely the last step was.
-    pub(super) probability: fn(&S) -> f64,
-    /// Whether a reset's probability is an integer 1.
-    pub(super) whole: bool,
-    /// For each cell of the table which actions change it, and the cell of a state.
-    pub(super) masks: Option<Masks<S>>,
+/// For each state of the table, which actions change it.
+pub(crate) struct ActionMasks<S> {
+    pub(crate) masks: Vec<[i8; 6]>,
+    /// The index of a state in the table.
+    pub(crate) index: fn(&S) -> usize,
 }
 
-pub(super) struct Masks<S> {
-    pub(super) table: Vec<[i8; 6]>,
-    pub(super) cell: fn(&S) -> usize,
-}
-
+/// The infos of one call, under construction.
 pub(super) struct Infos<'py> {
     py: Python<'py>,
-    size: usize,
+    num_envs: usize,
     pub(super) dict: Bound<'py, PyDict>,
 }
 
 impl<'py> Infos<'py> {
-    pub(super) fn new(py: Python<'py>, size: usize) -> Self {
-        Self { py, size, dict: PyDict::new(py) }
+    pub(super) fn new(py: Python<'py>, num_envs: usize) -> Self {
+        Self { py, num_envs, dict: PyDict::new(py) }
     }
 
-    /// After a step everyone has something to say.
-    pub(super) fn step<E: Env>(&self, vector: &VectorEnv<E>, nature: &Nature<E>) -> PyResult<()> {
-        let Some(says) = &nature.says else { return Ok(()) };
-        self.say(&self.dict, says, vector.states().enumerate(), false)
+    /// Adds what all sub-environments report after a step.
+    pub(super) fn add_step<E: Env>(&self, envs: &VectorEnv<E>, info: &EnvInfo<E>) -> PyResult<()> {
+        let Some(transition) = &info.transition else { return Ok(()) };
+        self.add_transition(&self.dict, transition, envs.states().enumerate(), false)
     }
 
-    /// After a reset those have that were reset.
-    pub(super) fn reset<E: Env>(&self, vector: &VectorEnv<E>, nature: &Nature<E>, lanes: &[usize]) -> PyResult<()> {
-        let Some(says) = &nature.says else { return Ok(()) };
-        let states = lanes.iter().map(|&lane| (lane, vector.state(lane)));
-        self.say(&self.dict, says, states, says.whole)
+    /// Adds what the sub-environments of these indices report after a reset.
+    pub(super) fn add_reset<E: Env>(&self, envs: &VectorEnv<E>, info: &EnvInfo<E>, indices: &[usize]) -> PyResult<()> {
+        let Some(transition) = &info.transition else { return Ok(()) };
+        let states = indices.iter().map(|&index| (index, envs.state(index)));
+        self.add_transition(&self.dict, transition, states, transition.integer_after_reset)
     }
 
-    /// What was seen last of the episodes that ended and began anew in the same step.
-    pub(super) fn finals<E: Env<Observation: Shows>>(&self, vector: &VectorEnv<E>, nature: &Nature<E>) -> PyResult<()> {
-        if vector.final_states().next().is_none() {
+    /// Adds the final observations and infos of the episodes that ended and were reset in the same step.
+    pub(super) fn add_final<E>(&self, envs: &VectorEnv<E>, info: &EnvInfo<E>) -> PyResult<()>
+    where
+        E: Env<Observation: BatchObservation>,
+    {
+        if envs.final_states().next().is_none() {
             return Ok(());
         }
-        let (py, size) = (self.py, self.size);
-        let last = PyArray1::<Py<PyAny>>::from_iter(py, (0..size).map(|_| py.None()));
-        for (lane, state) in vector.final_states() {
-            last.try_readwrite()?.as_slice_mut()?[lane] = vector.env().observe(state).alone(py)?.unbind();
+        let py = self.py;
+        let observations = PyArray1::<Py<PyAny>>::from_iter(py, (0..self.num_envs).map(|_| py.None()));
+        for (index, state) in envs.final_states() {
+            observations.try_readwrite()?.as_slice_mut()?[index] = envs.env().observe(state).single(py)?.unbind();
         }
         let infos = PyDict::new(py);
-        if let Some(says) = &nature.says {
-            self.say(&infos, says, vector.final_states(), false)?;
+        if let Some(transition) = &info.transition {
+            self.add_transition(&infos, transition, envs.final_states(), false)?;
         }
-        self.dict.set_item(intern!(py, "final_obs"), last)?;
-        self.dict.set_item(intern!(py, "_final_obs"), self.mask(vector.final_states().map(|(lane, _)| lane)))?;
+        self.dict.set_item(intern!(py, "final_obs"), observations)?;
+        self.dict.set_item(intern!(py, "_final_obs"), self.mask(envs.final_states().map(|(index, _)| index)))?;
         self.dict.set_item(intern!(py, "final_info"), infos)?;
-        self.dict.set_item(intern!(py, "_final_info"), self.mask(vector.final_states().map(|(lane, _)| lane)))
+        self.dict.set_item(intern!(py, "_final_info"), self.mask(envs.final_states().map(|(index, _)| index)))
     }
 
-    fn say<'a, S: 'a>(
+    fn add_transition<'a, S: 'a>(
         &self,
         dict: &Bound<'py, PyDict>,
-        says: &Says<S>,
+        info: &TransitionInfo<S>,
         states: impl Iterator<Item = (usize, &'a S)> + Clone,
-        whole: bool,
+        as_integers: bool,
     ) -> PyResult<()> {
-        let (py, size) = (self.py, self.size);
-        let mask = || self.mask(states.clone().map(|(lane, _)| lane));
-        let mut likely = vec![0.0; size];
-        states.clone().for_each(|(lane, state)| likely[lane] = (says.probability)(state));
+        let (py, num_envs) = (self.py, self.num_envs);
+        let mask = || self.mask(states.clone().map(|(index, _)| index));
+        let mut probabilities = vec![0.0; num_envs];
+        states.clone().for_each(|(index, state)| probabilities[index] = (info.probability)(state));
         let name = intern!(py, "prob");
-        if whole {
-            dict.set_item(name, PyArray1::from_iter(py, likely.into_iter().map(|number| number as i64)))?;
+        if as_integers {
+            dict.set_item(name, PyArray1::from_iter(py, probabilities.into_iter().map(|number| number as i64)))?;
         } else {
-            dict.set_item(name, PyArray1::from_vec(py, likely))?;
+            dict.set_item(name, PyArray1::from_vec(py, probabilities))?;
         }
         dict.set_item(intern!(py, "_prob"), mask())?;
-        if let Some(Masks { table, cell }) = &says.masks {
-            let rows = PyArray2::<i8>::zeros(py, [size, 6], false);
+        if let Some(ActionMasks { masks, index: index_of }) = &info.action_masks {
+            let array = PyArray2::<i8>::zeros(py, [num_envs, 6], false);
             {
-                let mut places = rows.try_readwrite()?;
-                let (places, _) = places.as_slice_mut()?.as_chunks_mut::<6>();
-                states.clone().for_each(|(lane, state)| places[lane] = table[cell(state)]);
+                let mut rows = array.try_readwrite()?;
+                let (rows, _) = rows.as_slice_mut()?.as_chunks_mut::<6>();
+                states.clone().for_each(|(index, state)| rows[index] = masks[index_of(state)]);
             }
-            dict.set_item(intern!(py, "action_mask"), rows)?;
+            dict.set_item(intern!(py, "action_mask"), array)?;
             dict.set_item(intern!(py, "_action_mask"), mask())?;
         }
         Ok(())
     }
 
-    fn mask(&self, lanes: impl Iterator<Item = usize>) -> Bound<'py, PyArray1<bool>> {
-        let mut mask = vec![false; self.size];
-        lanes.for_each(|lane| mask[lane] = true);
+    fn mask(&self, indices: impl Iterator<Item = usize>) -> Bound<'py, PyArray1<bool>> {
+        let mut mask = vec![false; self.num_envs];
+        indices.for_each(|index| mask[index] = true);
         PyArray1::from_vec(self.py, mask)
     }
 }

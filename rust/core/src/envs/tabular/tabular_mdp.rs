@@ -1,5 +1,7 @@
 //! Finite Markov decision processes given by a transition table, such as Gymnasium's toy text environments.
 
+use std::sync::Arc;
+
 use super::outcome::check_distribution;
 use super::outcome_distribution::{OutcomeDistribution, rank, thresholds};
 use super::{InvalidMdp, Outcome};
@@ -9,19 +11,21 @@ use crate::random::Rng;
 /// A Markov decision process with Gymnasium's transition table `P`: `P[state][action]` lists the possible outcomes
 /// (probability, next state, reward, terminated). Each reset and each step draws exactly one `random()`, deterministic
 /// steps too, as in Gymnasium.
+///
+/// A clone shares the table, so that many runs need it only once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TabularMdp {
     num_actions: usize,
     /// The distribution of the initial state, and its thresholds.
-    initial_distribution: Vec<f64>,
-    initial_thresholds: Vec<u64>,
+    initial_distribution: Arc<[f64]>,
+    initial_thresholds: Arc<[u64]>,
     /// The distribution of each state-action pair. Empty if every pair has a single outcome, which then has the index of
     /// the pair.
-    distributions: Vec<OutcomeDistribution>,
+    distributions: Arc<[OutcomeDistribution]>,
     /// The threshold, step and probability of each outcome. Steps use the thresholds, planning the probabilities.
-    thresholds: Vec<u64>,
-    steps: Vec<Step<u32>>,
-    probabilities: Vec<f64>,
+    thresholds: Arc<[u64]>,
+    steps: Arc<[Step<u32>]>,
+    probabilities: Arc<[f64]>,
 }
 
 impl TabularMdp {
@@ -47,24 +51,17 @@ impl TabularMdp {
         }
         check_distribution(|| "initial_state_distrib".into(), initial_distribution.iter().copied())?;
         let deterministic = pairs.iter().all(|outcomes| outcomes.len() == 1);
-        let mut mdp = Self {
-            num_actions,
-            initial_distribution: initial_distribution.to_vec(),
-            initial_thresholds: thresholds(initial_distribution),
-            distributions: vec![],
-            thresholds: vec![],
-            steps: vec![],
-            probabilities: vec![],
-        };
+        let (mut distributions, mut all_thresholds) = (Vec::new(), Vec::new());
+        let (mut steps, mut probabilities) = (Vec::with_capacity(num_outcomes), Vec::with_capacity(num_outcomes));
         for (pair, outcomes) in pairs.iter().enumerate() {
             let location = || format!("P[{}][{}]", pair / num_actions, pair % num_actions);
             check_distribution(location, outcomes.iter().map(|outcome| outcome.probability))?;
-            let first = mdp.steps.len();
-            mdp.probabilities.extend(outcomes.iter().map(|outcome| outcome.probability));
+            let first = steps.len();
+            probabilities.extend(outcomes.iter().map(|outcome| outcome.probability));
             if !deterministic {
-                let thresholds = thresholds(&mdp.probabilities[first..]);
-                mdp.distributions.push(OutcomeDistribution::new(&thresholds, first));
-                mdp.thresholds.extend(thresholds);
+                let thresholds = thresholds(&probabilities[first..]);
+                distributions.push(OutcomeDistribution::new(&thresholds, first));
+                all_thresholds.extend(thresholds);
             }
             for (index, &Outcome { state, reward, terminated, .. }) in outcomes.iter().enumerate() {
                 let Some(state) = u32::try_from(state).ok().filter(|&state| (state as usize) < num_states) else {
@@ -77,10 +74,18 @@ impl TabularMdp {
                 if !reward.is_finite() {
                     return invalid(format!("{}[{index}] must have a finite reward, got {reward}", location()));
                 }
-                mdp.steps.push(Step { state, reward, terminated });
+                steps.push(Step { state, reward, terminated });
             }
         }
-        Ok(mdp)
+        Ok(Self {
+            num_actions,
+            initial_distribution: initial_distribution.into(),
+            initial_thresholds: thresholds(initial_distribution).into(),
+            distributions: distributions.into(),
+            thresholds: all_thresholds.into(),
+            steps: steps.into(),
+            probabilities: probabilities.into(),
+        })
     }
 
     /// The number of states.

@@ -1,0 +1,50 @@
+"""From the layers of what a user asked for to one checked config: the preset below, then files, then keywords."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from qtab.config.config import DEFAULTS, Config
+from qtab.config.options import mismatch
+from qtab.config.presets import preset
+from qtab.config.unknown import check_names
+
+
+def merge_layers(*layers: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the settings that were asked for, a later layer over an earlier one. Their values are not checked.
+
+    Raises:
+        TypeError: for an unknown setting.
+    """
+    asked: dict[str, Any] = {}
+    for layer in layers:
+        check_names(layer, DEFAULTS)
+        asked.update(layer)
+    return asked
+
+
+def config_of(env: str, asked: Mapping[str, Any]) -> Config:
+    """Returns the config of an environment: the settings that were asked for over those of its preset.
+
+    A preset is a starting point: those of its settings that do not apply to what was asked for are left out.
+
+    Raises:
+        TypeError: for a setting of the wrong type.
+        ValueError: for a setting out of range, or an unknown preset.
+    """
+    name = asked.get("preset")
+    if name is not None and not isinstance(name, str):
+        raise TypeError(f"preset must be a name, got {name!r}")
+    name, start = preset(env, name)
+    wanted = {**DEFAULTS, **start, **asked}
+    applicable = {field: value for field, value in start.items() if not mismatch(field, value, wanted)}
+    return Config(**{**applicable, **asked, "env": env, "preset": name})
+
+
+def merge(env: str, *layers: Mapping[str, Any]) -> Config:
+    """Returns the config of an environment: its preset, then each layer over the one before.
+
+    Raises:
+        TypeError: for an unknown setting, or one of the wrong type.
+        ValueError: for a setting out of range, or an unknown preset.
+    """
+    return config_of(env, merge_layers(*layers))

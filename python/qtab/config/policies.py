@@ -1,0 +1,48 @@
+"""How the agent chooses actions."""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from qtab._spec import EpsilonGreedySpec, SoftmaxSpec
+from qtab._utils.checks import required
+from qtab.config.choices import Ties
+from qtab.config.config import Config
+from qtab.config.schedules import Schedule, epsilon
+
+
+@dataclass(frozen=True)
+class EpsilonGreedy:
+    """With probability epsilon a random action, else a greedy one."""
+
+    epsilon: Schedule
+    ties: Ties
+    """Which of several greedy actions."""
+
+    def spec(self) -> EpsilonGreedySpec:
+        """Returns the policy as the extension takes it."""
+        return {"type": "epsilon_greedy", "epsilon": self.epsilon.spec(), "ties": self.ties}
+
+
+@dataclass(frozen=True)
+class Softmax:
+    """Each action with probability proportional to exp(Q / temperature)."""
+
+    temperature: float
+
+    def spec(self) -> SoftmaxSpec:
+        """Returns the policy as the extension takes it."""
+        return {"type": "softmax", "temperature": self.temperature}
+
+
+Policy: TypeAlias = EpsilonGreedy | Softmax
+
+
+def policy(config: Config) -> Policy:
+    """Returns the policy of a complete config.
+
+    Raises:
+        ValueError: if one of its options is None.
+    """
+    if config.exploration == "softmax":
+        return Softmax(required("temperature", config.temperature))
+    return EpsilonGreedy(epsilon(config), required("ties", config.ties))

@@ -1,0 +1,102 @@
+"""How the learning rate and the exploration rate change over a run."""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from qtab._spec import ConstantSpec, ExponentialSpec, LinearSpec, VisitsSpec
+from qtab._utils.checks import required
+from qtab.config.config import Config
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The same value in every episode."""
+
+    value: float
+
+    def spec(self) -> ConstantSpec:
+        """Returns the schedule as the extension takes it."""
+        return {"type": "constant", "value": self.value}
+
+
+@dataclass(frozen=True)
+class Linear:
+    """From episode ``warm_up`` on, falls by equal amounts to reach ``minimum`` at the end of the run."""
+
+    value: float
+    minimum: float
+    warm_up: int
+
+    def spec(self) -> LinearSpec:
+        """Returns the schedule as the extension takes it."""
+        return {"type": "linear", "value": self.value, "minimum": self.minimum, "warm_up": self.warm_up}
+
+
+@dataclass(frozen=True)
+class Exponential:
+    """From episode ``warm_up`` on, is multiplied by ``decay`` after each episode, down to ``minimum``."""
+
+    value: float
+    minimum: float
+    decay: float
+    warm_up: int
+
+    def spec(self) -> ExponentialSpec:
+        """Returns the schedule as the extension takes it."""
+        return {
+            "type": "exponential",
+            "value": self.value,
+            "minimum": self.minimum,
+            "decay": self.decay,
+            "warm_up": self.warm_up,
+        }
+
+
+@dataclass(frozen=True)
+class ByVisits:
+    """``value`` / n at the n-th visit of a state and action, down to ``minimum``."""
+
+    value: float
+    minimum: float
+
+    def spec(self) -> VisitsSpec:
+        """Returns the schedule as the extension takes it."""
+        return {"type": "visits", "value": self.value, "minimum": self.minimum}
+
+
+Schedule: TypeAlias = Constant | Linear | Exponential
+LearningRate: TypeAlias = Schedule | ByVisits
+
+
+def learning_rate(config: Config) -> LearningRate:
+    """Returns the learning rate of a complete config.
+
+    Raises:
+        ValueError: if an option of its schedule is None.
+    """
+    value, kind = config.learning_rate, config.learning_rate_schedule
+    if kind == "constant":
+        return Constant(value)
+    minimum = required("min_learning_rate", config.min_learning_rate)
+    if kind == "visits":
+        return ByVisits(value, minimum)
+    warm_up = required("learning_rate_warm_up", config.learning_rate_warm_up)
+    if kind == "linear":
+        return Linear(value, minimum, warm_up)
+    return Exponential(value, minimum, required("learning_rate_decay", config.learning_rate_decay), warm_up)
+
+
+def epsilon(config: Config) -> Schedule:
+    """Returns the exploration rate of a complete config whose policy is epsilon-greedy.
+
+    Raises:
+        ValueError: if it, or an option of its schedule, is None.
+    """
+    value, kind = required("epsilon", config.epsilon), required("epsilon_schedule", config.epsilon_schedule)
+    if kind == "constant":
+        return Constant(value)
+    minimum = required("min_epsilon", config.min_epsilon)
+    warm_up = required("epsilon_warm_up", config.epsilon_warm_up)
+    if kind == "linear":
+        return Linear(value, minimum, warm_up)
+    return Exponential(value, minimum, required("epsilon_decay", config.epsilon_decay), warm_up)

@@ -1,0 +1,82 @@
+"""What the discretizers of Box observations share."""
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from qtab.discretizers.actions import FLOATS
+from qtab.discretizers.base import Discretizer
+
+Span = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""The lower and the upper limit of each component, two arrays of (d,)."""
+
+
+class BoxDiscretizer(Discretizer):
+    """A discretizer of the observations of a Box with one axis."""
+
+    @property
+    def dtype(self) -> Literal["float32", "float64"]:
+        """The dtype of the observations, in which their rows are computed."""
+        return "float32" if self.low.dtype == np.float32 else "float64"
+
+
+def box_of(space: Any) -> spaces.Box:
+    """Returns the observation space, a Box with one axis of floats.
+
+    Raises:
+        ValueError: if it is another space.
+    """
+    if not isinstance(space, spaces.Box) or len(space.shape) != 1 or space.dtype not in FLOATS:
+        hint = (
+            "; discretizer must be left out for it" if isinstance(space, spaces.Discrete | spaces.MultiDiscrete) else ""
+        )
+        raise ValueError(f"the observation space must be a Box of one float axis, got {space}{hint}")
+    return space
+
+
+def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] | None) -> Span:
+    """Returns what tilings or bins cover: the given limits of all components, or else the bounds of the space.
+
+    Raises:
+        ValueError: if there is not a finite limit for each component, or a lower limit is not below the upper one.
+    """
+    limits = []
+    for name, given, bound in zip(("low", "high"), (low, high), (space.low, space.high), strict=True):
+        limit = bound.astype(np.float64) if given is None else np.array(given)
+        if limit.shape != bound.shape:
+            raise ValueError(f"{name} must hold {len(bound)} numbers for this observation space, got {given!r}")
+        if not np.isfinite(limit).all():
+            raise ValueError(
+                f"{name} must be given, a number for each component, where the observation space has no finite bounds: "
+                f"{space}"
+            )
+        limits.append(limit)
+    if not (limits[0] < limits[1]).all():
+        raise ValueError(f"low must lie below high, got {limits[0].tolist()} and {limits[1].tolist()}")
+    return limits[0], limits[1]
+
+
+def per_dimension(name: str, given: tuple[int, ...], space: spaces.Box) -> tuple[int, ...]:
+    """Returns a number for each component of the observation, where one may have been given for all.
+
+    Raises:
+        ValueError: if there are too few or too many.
+    """
+    dimensions = space.shape[0]
+    numbers = given * dimensions if len(given) == 1 else given
+    if len(numbers) != dimensions:
+        raise ValueError(f"{name} must hold {dimensions} numbers for this observation space, or one, got {given!r}")
+    return numbers
+
+
+def check_stored_bounds(low: NDArray[Any], high: NDArray[Any]) -> None:
+    """Refuses bounds from a file that no supported Box has.
+
+    Raises:
+        ValueError: if their dtypes differ, or are not float32 or float64.
+    """
+    if low.dtype not in FLOATS or high.dtype != low.dtype:
+        raise ValueError("its bounds are not those of a space")

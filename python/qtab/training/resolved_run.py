@@ -1,0 +1,110 @@
+"""A run that is completely described: what training takes."""
+
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import gymnasium as gym
+
+from qtab import _core
+from qtab._spec import NativeEnvSpec, PythonEnvSpec, RunSpec
+from qtab.config import Config
+from qtab.config.algorithms import AlgorithmSettings
+from qtab.config.config import replace_checked
+from qtab.config.initial_q import initial_q_spec
+from qtab.config.policies import Policy
+from qtab.config.schedules import LearningRate
+from qtab.discretizers import Discretizer
+from qtab.discretizers.actions import Actions
+from qtab.envs.registry import EnvEntry
+
+
+@dataclass(frozen=True)
+class NativeEnvironment:
+    """An environment that Rust steps."""
+
+    entry: EnvEntry
+    parameters: _core.NativeEnv
+
+    def spec(self) -> NativeEnvSpec:
+        """Returns the environment as the extension takes it."""
+        return {"type": "native", "env": self.parameters}
+
+    def close(self) -> None:
+        """There is nothing to close."""
+
+
+@dataclass(frozen=True)
+class PythonEnvironment:
+    """An environment that is stepped in Python."""
+
+    env: gym.Env
+    actions: Actions
+    owns_env: bool
+    """Whether to close the environment after the run."""
+
+    def spec(self) -> PythonEnvSpec:
+        """Returns the environment as the extension takes it."""
+        return {
+            "type": "python",
+            "env": self.env,
+            "first_action": self.actions.first,
+            "actions": self.actions.arrays(),
+        }
+
+    def close(self) -> None:
+        """Closes the environment, unless it is the user's."""
+        if self.owns_env:
+            self.env.close()
+
+
+Environment: TypeAlias = NativeEnvironment | PythonEnvironment
+
+
+@dataclass(frozen=True, eq=False)
+class ResolvedRun:
+    """The environment found, its spaces matched, and every setting filled in."""
+
+    config: Config
+    """All settings as ``run.config`` shows them and files hold them."""
+    environment: Environment
+    discretizer: Discretizer
+    actions: Actions
+    algorithm: AlgorithmSettings
+    policy: Policy
+    learning_rate: LearningRate
+    seed: int
+    max_episode_steps: int
+    default_time_limit: bool
+    """Whether the environment has no time limit, so that ``max_episode_steps`` is qtab's default."""
+
+    @property
+    def is_native(self) -> bool:
+        """Whether Rust steps the environment."""
+        return isinstance(self.environment, NativeEnvironment)
+
+    def close(self) -> None:
+        """Closes the environment, unless it is the user's."""
+        self.environment.close()
+
+    def with_seed(self, seed: int) -> "ResolvedRun":
+        """Returns the same run with another seed, which must be valid for the bit generator."""
+        return replace(self, seed=seed, config=replace_checked(self.config, seed=seed))
+
+    def spec(self) -> RunSpec:
+        """Returns the run, except for its seed, as the extension takes it."""
+        config = self.config
+        return {
+            "env": self.environment.spec(),
+            "discretizer": self.discretizer.spec(),
+            "num_actions": len(self.actions),
+            "max_episode_steps": self.max_episode_steps,
+            "algorithm": self.algorithm.spec(),
+            "policy": self.policy.spec(),
+            "learning_rate": self.learning_rate.spec(),
+            "discount": config.discount,
+            "initial_q": initial_q_spec(config.initial_q),
+            "terminal_update": config.terminal_update,
+            "on_truncation": config.on_truncation,
+            "episodes": config.episodes,
+            "bit_generator": config.bit_generator,
+        }

@@ -1,0 +1,33 @@
+//! Single actions, as Gymnasium's `step` takes them.
+
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyInt, PyType};
+use qtab_core::numeric::Scalar;
+
+/// `math.pow` raises where the square of a larger force would overflow.
+pub(crate) const LARGEST_FORCE: f64 = 1e150;
+
+/// A discrete action: an integer of Python's or `NumPy`'s from 0 to `count` - 1; None for anything else.
+pub(crate) fn discrete_action(action: &Bound<'_, PyAny>, count: usize) -> Option<usize> {
+    static INTEGER: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let py = action.py();
+    if !action.is_instance_of::<PyInt>() && !action.is_instance(INTEGER.import(py, "numpy", "integer").ok()?).ok()? {
+        return None;
+    }
+    action.extract::<usize>().ok().filter(|&action| action < count)
+}
+
+/// The first number of a continuous action, in the dtype of its array; None where it is too large or no float array.
+pub(crate) fn box_action(action: &Bound<'_, PyAny>) -> Option<Scalar> {
+    first_item(action).filter(|&force| f64::from(force).abs() <= LARGEST_FORCE)
+}
+
+/// The first item of a float array, in its dtype.
+pub(crate) fn first_item(array: &Bound<'_, PyAny>) -> Option<Scalar> {
+    if let Ok(array) = array.cast::<PyArray1<f32>>() {
+        return array.get_owned(0).map(Scalar::Single);
+    }
+    array.cast::<PyArray1<f64>>().ok()?.get_owned(0).map(Scalar::Double)
+}

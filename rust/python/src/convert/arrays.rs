@@ -1,0 +1,76 @@
+//! Arrays of any numeric dtype, converted as `astype` converts them.
+
+use numpy::{PyArrayDescrMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::exceptions::PyTypeError;
+use pyo3::intern;
+use pyo3::prelude::*;
+use qtab_core::numeric::Float;
+
+/// A dtype of a Box, to which any number converts as `astype` converts it.
+pub(crate) trait FromNumber: Float + numpy::Element {
+    fn from_f64(number: f64) -> Self;
+    fn from_i64(number: i64) -> Self;
+    fn from_u64(number: u64) -> Self;
+}
+
+impl FromNumber for f32 {
+    fn from_f64(number: f64) -> Self {
+        number as Self
+    }
+
+    fn from_i64(number: i64) -> Self {
+        number as Self
+    }
+
+    fn from_u64(number: u64) -> Self {
+        number as Self
+    }
+}
+
+impl FromNumber for f64 {
+    fn from_f64(number: f64) -> Self {
+        number
+    }
+
+    fn from_i64(number: i64) -> Self {
+        number as Self
+    }
+
+    fn from_u64(number: u64) -> Self {
+        number as Self
+    }
+}
+
+/// The numbers of an array in C order, in the dtype `T`.
+pub(crate) fn floats<T: FromNumber>(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<T>> {
+    match array.dtype().kind() {
+        b'f' => {
+            if let Ok(values) = array.extract::<PyReadonlyArrayDyn<'_, T>>() {
+                return Ok(values.as_array().iter().copied().collect());
+            }
+            converted(array, "float64", T::from_f64)
+        }
+        b'i' => converted(array, "int64", T::from_i64),
+        b'u' => converted(array, "uint64", T::from_u64),
+        _ => Err(PyTypeError::new_err(format!("observation must hold numbers, got {}", array.repr()?))),
+    }
+}
+
+/// The integers of an array in C order.
+pub(crate) fn integers(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<i64>> {
+    match array.dtype().kind() {
+        b'i' | b'b' => converted(array, "int64", |number: i64| number),
+        // No space has integers beyond i64, and none contains its largest.
+        b'u' => converted(array, "uint64", |number: u64| i64::try_from(number).unwrap_or(i64::MAX)),
+        _ => Err(PyTypeError::new_err(format!("observation must hold integers, got {}", array.repr()?))),
+    }
+}
+
+fn converted<S, T>(array: &Bound<'_, PyUntypedArray>, dtype: &str, convert: impl Fn(S) -> T) -> PyResult<Vec<T>>
+where
+    S: numpy::Element + Copy,
+{
+    let array = array.call_method1(intern!(array.py(), "astype"), (dtype,))?;
+    let values: PyReadonlyArrayDyn<'_, S> = array.extract()?;
+    Ok(values.as_array().iter().map(|&value| convert(value)).collect())
+}

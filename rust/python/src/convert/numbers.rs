@@ -1,0 +1,40 @@
+//! Numbers of Python's and `NumPy`'s; None for those with which Python would compute something else.
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyInt};
+use qtab_core::numeric::Scalar;
+
+/// `NumPy` warns where a constant is too large for f32, Python raises where its square is too large for f64.
+const LARGEST_FLOAT: f64 = 1e30;
+/// Python computes exactly with integers of any size; f64 does up to the products of such integers.
+const LARGEST_INTEGER: f64 = 1e6;
+
+/// A constant of an environment: a plain Python number, since `NumPy`'s numbers promote differently.
+pub(crate) fn constant(value: &Bound<'_, PyAny>) -> Option<f64> {
+    if value.is_exact_instance_of::<PyFloat>() {
+        let number: f64 = value.extract().ok()?;
+        return (number.abs() <= LARGEST_FLOAT || number.is_infinite()).then_some(number);
+    }
+    if value.is_exact_instance_of::<PyInt>() {
+        let number: f64 = value.extract().ok()?;
+        return (number.abs() <= LARGEST_INTEGER).then_some(number);
+    }
+    None
+}
+
+/// A number that becomes f64 in any array: a Python float, an `np.float64` (which is a Python float), a small integer.
+pub(crate) fn double(value: &Bound<'_, PyAny>) -> Option<f64> {
+    if value.is_instance_of::<PyFloat>() {
+        return value.extract().ok();
+    }
+    constant(value)
+}
+
+/// A `NumPy` scalar. Taking an array's item is faster than calling the scalar's type.
+pub(crate) fn numpy_scalar(py: Python<'_>, number: Scalar) -> PyResult<Bound<'_, PyAny>> {
+    match number {
+        Scalar::Single(number) => PyArray1::from_slice(py, &[number]).get_item(0),
+        Scalar::Python(number) | Scalar::Double(number) => PyArray1::from_slice(py, &[number]).get_item(0),
+    }
+}

@@ -1,0 +1,81 @@
+//! `Acrobot-v1`
+
+use std::sync::Arc;
+
+use numpy::PyArray1;
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use qtab_core::envs::classic_control::{Acrobot, AcrobotState};
+
+use super::reset::reset;
+use super::snapshot::{set_f32_state, set_state};
+use super::trigonometry::{f32_cos_sin, f32_cos_sin_of_any_angle, numpy_uses_libm};
+use super::{ClassicEnv, EnvLayout, ResetResult, StepResult};
+use crate::convert::{StateArray, double};
+use crate::runs::{RunFactory, generic_box};
+use crate::spec::RunSpec;
+
+/// The torque of each action.
+const TORQUES: &str = "AVAIL_TORQUE";
+
+impl ClassicEnv for Acrobot {
+    const LAYOUT: EnvLayout = EnvLayout { calls_numpy_trigonometry: true, ..EnvLayout::new(4) };
+    const OTHER_PARAMETERS: &'static [&'static str] = &[TORQUES];
+    const ENVS_PER_THREAD: usize = 512;
+
+    fn read_other_parameters(&mut self, env: &Bound<'_, PyAny>) -> PyResult<()> {
+        f32_cos_sin(env.py())?;
+        self.f32_cos_sin = f32_cos_sin_of_any_angle;
+        self.torques = env.getattr(TORQUES)?.extract()?;
+        Ok(())
+    }
+
+    fn matches_numpy(py: Python<'_>) -> PyResult<bool> {
+        Ok(numpy_uses_libm(py)? && f32_cos_sin(py)?.is_some())
+    }
+
+    /// The initial state is float32.
+    fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>> {
+        let Some(f32_cos_sin) = f32_cos_sin(generator.py())? else { return Ok(None) };
+        let (state, observation) = reset(&Acrobot { f32_cos_sin, ..*self }, 4, generator)?;
+        let state = PyArray1::from_iter(generator.py(), <[f64; 4]>::from(state).map(|angle| angle as f32));
+        Ok(Some(ResetResult { state: state.into_any(), observation }))
+    }
+
+    fn step_python<'py>(
+        &self,
+        env: &Bound<'py, PyAny>,
+        state: &StateArray,
+        action: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<StepResult<'py>>> {
+        let py = env.py();
+        let Some(mut torque) = double(&env.getattr(intern!(py, TORQUES))?.get_item(action)?) else { return Ok(None) };
+        let state = <[f64; 4]>::into(state.numbers());
+        let noise = self.torque_noise_max;
+        if noise > 0.0 {
+            let generator = env.getattr(intern!(py, "np_random"))?;
+            torque += generator.call_method1(intern!(py, "uniform"), (-noise, noise))?.extract::<f64>()?;
+            // The noise is drawn, so Gymnasium's code cannot take this step any more.
+            return Ok(Some(StepResult::new(py, self, self.transition(state, torque))));
+        }
+        Ok(StepResult::new(py, self, self.transition(state, torque)).if_finite())
+    }
+
+    /// The state is float32 after a reset, float64 after a step.
+    fn snapshot(
+        attributes: &Bound<'_, PyDict>,
+        _env: &Self,
+        state: &AcrobotState,
+        _last_action: Option<usize>,
+    ) -> PyResult<()> {
+        if state.is_f32 {
+            return set_f32_state(attributes, &<[f64; 4]>::from(*state).map(|number| number as f32));
+        }
+        set_state::<4>(attributes, *state)
+    }
+
+    fn runs(&self, _actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+        generic_box(*self, spec, record)
+    }
+}

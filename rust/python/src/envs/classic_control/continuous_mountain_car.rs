@@ -1,0 +1,58 @@
+//! `MountainCarContinuous-v0`
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use qtab_core::Env;
+use qtab_core::envs::classic_control::{ContinuousMountainCar, ContinuousMountainCarState};
+use qtab_core::numeric::Scalar;
+use qtab_core::random::NoRng;
+
+use super::reset::reset_f64;
+use super::snapshot::{set_f32_state, set_state};
+use super::training::runs_with_discrete_actions;
+use super::{ClassicEnv, EnvLayout, ResetResult, StepResult, StoredState};
+use crate::convert::{StateArray, box_action};
+use crate::runs::RunFactory;
+use crate::spec::RunSpec;
+
+impl ClassicEnv for ContinuousMountainCar {
+    const LAYOUT: EnvLayout = EnvLayout::new(2);
+    const ENVS_PER_THREAD: usize = 4096;
+
+    fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>> {
+        reset_f64(self, 1, generator).map(Some)
+    }
+
+    fn step_python<'py>(
+        &self,
+        env: &Bound<'py, PyAny>,
+        state: &StateArray,
+        action: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<StepResult<'py>>> {
+        let Some((state, action)) = state.scalars().zip(box_action(action)) else { return Ok(None) };
+        let step = self.step(<[Scalar; 2]>::into(state), action, &mut NoRng);
+        let mut result = StepResult::new::<_, 2, 2>(env.py(), self, step);
+        // Gymnasium returns its state itself.
+        result.state = StoredState::Python(result.observation.clone().unbind());
+        Ok(result.if_finite())
+    }
+
+    /// The state is float64 after a reset, float32 after a step.
+    fn snapshot(
+        attributes: &Bound<'_, PyDict>,
+        env: &Self,
+        state: &ContinuousMountainCarState,
+        last_action: Option<Scalar>,
+    ) -> PyResult<()> {
+        if last_action.is_none() {
+            return set_state::<2>(attributes, *state);
+        }
+        set_f32_state(attributes, &env.observe(state))
+    }
+
+    fn runs(&self, actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+        runs_with_discrete_actions(*self, actions, spec, record)
+    }
+}

@@ -1,0 +1,65 @@
+//! `Pendulum-v1`
+
+use std::sync::Arc;
+
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use qtab_core::Env;
+use qtab_core::envs::classic_control::{Pendulum, PendulumState};
+use qtab_core::numeric::Scalar;
+use qtab_core::random::NoRng;
+
+use super::reset::reset_f64;
+use super::snapshot::set_state;
+use super::training::runs_with_discrete_actions;
+use super::{ClassicEnv, EnvLayout, ResetResult, StepResult};
+use crate::convert::{StateArray, box_action, numpy_scalar};
+use crate::runs::RunFactory;
+use crate::spec::RunSpec;
+
+/// The last torque, which is rendered.
+const LAST_TORQUE: &str = "last_u";
+
+impl ClassicEnv for Pendulum {
+    const LAYOUT: EnvLayout =
+        EnvLayout { calls_numpy_trigonometry: true, last_action: Some(LAST_TORQUE), ..EnvLayout::new(2) };
+    const ENVS_PER_THREAD: usize = 2048;
+
+    fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>> {
+        reset_f64(self, 2, generator).map(Some)
+    }
+
+    fn step_python<'py>(
+        &self,
+        env: &Bound<'py, PyAny>,
+        state: &StateArray,
+        action: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<StepResult<'py>>> {
+        let py = env.py();
+        let Some((state, u)) = state.double_array().zip(box_action(action)) else { return Ok(None) };
+        let step = self.step(<[f64; 2]>::into(state), u, &mut NoRng);
+        let Some(mut result) = StepResult::new(py, self, step).if_finite() else { return Ok(None) };
+        result.reward = numpy_scalar(py, Scalar::Double(step.reward))?;
+        // Around `__setattr__`, since no parameter changes.
+        let attributes = env.getattr(intern!(py, "__dict__"))?.cast_into::<PyDict>()?;
+        attributes.set_item(intern!(py, LAST_TORQUE), numpy_scalar(py, self.torque(u))?)?;
+        Ok(Some(result))
+    }
+
+    fn snapshot(
+        attributes: &Bound<'_, PyDict>,
+        env: &Self,
+        state: &PendulumState,
+        last_action: Option<Scalar>,
+    ) -> PyResult<()> {
+        set_state::<2>(attributes, *state)?;
+        let py = attributes.py();
+        let torque = last_action.map(|u| numpy_scalar(py, env.torque(u))).transpose()?;
+        attributes.set_item(intern!(py, LAST_TORQUE), torque)
+    }
+
+    fn runs(&self, actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+        runs_with_discrete_actions(*self, actions, spec, record)
+    }
+}

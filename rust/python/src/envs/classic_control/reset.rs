@@ -1,0 +1,55 @@
+//! Resets of Gymnasium's classes: the core's reset, with draws from the user's generator.
+
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::intern;
+use pyo3::prelude::*;
+use qtab_core::Env;
+use qtab_core::random::Rng;
+
+pub(crate) struct ResetResult<'py> {
+    pub(crate) state: Bound<'py, PyAny>,
+    pub(crate) observation: Bound<'py, PyArray1<f32>>,
+}
+
+/// The reset of an environment whose initial state Gymnasium keeps in float64, and which draws `draws` floats.
+pub(super) fn reset_f64<'py, E, const N: usize, const M: usize>(
+    env: &E,
+    draws: usize,
+    generator: &Bound<'py, PyAny>,
+) -> PyResult<ResetResult<'py>>
+where
+    E: Env<Observation = [f32; M], State: Into<[f64; N]>>,
+{
+    let (state, observation) = reset(env, draws, generator)?;
+    Ok(ResetResult { state: PyArray1::from_slice(generator.py(), &state.into()).into_any(), observation })
+}
+
+/// The initial state, and its observation.
+pub(super) fn reset<'py, E, const M: usize>(
+    env: &E,
+    draws: usize,
+    generator: &Bound<'py, PyAny>,
+) -> PyResult<(E::State, Bound<'py, PyArray1<f32>>)>
+where
+    E: Env<Observation = [f32; M]>,
+{
+    let py = generator.py();
+    // One call for all numbers is faster than a call for each, and draws the same.
+    let numbers = generator.call_method1(intern!(py, "random"), (draws,))?.cast_into::<PyArray1<f64>>()?.to_vec()?;
+    let state = env.reset(&mut PresetDraws(numbers.into_iter()));
+    Ok((state, PyArray1::from_slice(py, &env.observe(&state))))
+}
+
+/// A generator of numbers that were drawn before.
+struct PresetDraws(std::vec::IntoIter<f64>);
+
+impl Rng for PresetDraws {
+    fn random(&mut self) -> f64 {
+        self.0.next().unwrap_or_default()
+    }
+
+    /// No initial state of classic control takes integers.
+    fn integers(&mut self, _below: u32) -> u32 {
+        0
+    }
+}

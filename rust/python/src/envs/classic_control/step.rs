@@ -1,0 +1,51 @@
+//! Steps of Gymnasium's classes: the core's step, with the types that Gymnasium returns.
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyFloat;
+use qtab_core::Env;
+use qtab_core::envs::Step;
+
+/// The state of a Gymnasium class, which its steps leave in Rust until Python asks for it.
+pub(crate) enum StoredState {
+    /// Never assigned.
+    Unset,
+    /// As a step in Rust left it, followed by zeros: an array of float64, or a tuple, in Gymnasium.
+    Native([f64; 4]),
+    /// Assigned from Python, or handed to it. Python may write to an array, so it is read again at each step.
+    Python(Py<PyAny>),
+}
+
+/// What a step returns, and the state after it.
+pub(crate) struct StepResult<'py> {
+    pub(crate) state: StoredState,
+    pub(crate) observation: Bound<'py, PyAny>,
+    pub(crate) reward: Bound<'py, PyAny>,
+    pub(crate) terminated: bool,
+    /// Whether no number overflowed.
+    finite: bool,
+}
+
+impl<'py> StepResult<'py> {
+    /// The result of a step whose state Gymnasium keeps in float64 and whose reward is a Python float.
+    pub(super) fn new<E, const N: usize, const M: usize>(py: Python<'py>, env: &E, step: Step<E::State>) -> Self
+    where
+        E: Env<Observation = [f32; M], State: Into<[f64; N]>>,
+    {
+        let mut state = [0.0; 4];
+        state[..N].copy_from_slice(&step.state.into());
+        let observation = env.observe(&step.state);
+        Self {
+            state: StoredState::Native(state),
+            observation: PyArray1::from_slice(py, &observation).into_any(),
+            reward: PyFloat::new(py, step.reward).into_any(),
+            terminated: step.terminated,
+            finite: step.reward.is_finite() && observation.iter().all(|number| number.is_finite()),
+        }
+    }
+
+    /// None where a number overflowed: Python and `NumPy` then warn or raise, so Gymnasium's own code must take the step.
+    pub(super) fn if_finite(self) -> Option<Self> {
+        self.finite.then_some(self)
+    }
+}

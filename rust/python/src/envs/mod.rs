@@ -1,0 +1,21 @@
+//! The environments that Rust steps, one file each, and the registry of them.
+//!
+//! To add an environment, implement [`NativeEnv`] for it in a file of its own ([`classic_control::ClassicEnv`] brings an
+//! implementation for what has Gymnasium-style parameters), and add its line to the registry.
+
+mod classic_control;
+mod gymnasium;
+mod maximization_bias;
+mod native_env;
+mod py_classic_control;
+mod py_native_env;
+mod py_vector_env;
+mod registry;
+mod toy_text;
+
+pub(crate) use classic_control::numpy_uses_libm;
+pub(crate) use native_env::NativeEnv;
+pub(crate) use py_classic_control::{PyClassicControl, matches_numpy, parameter_names};
+pub(crate) use py_native_env::PyNativeEnv;
+pub(crate) use py_vector_env::PyVectorEnv;
+pub(crate) use toy_text::{PyBlackjack, PyTaxi, PyToyText, PyTransitionTable};

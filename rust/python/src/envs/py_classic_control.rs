@@ -1,0 +1,214 @@
+//! `ClassicControl`: the base of the Gymnasium-facing classes of classic control. The step runs in Rust, everything else is
+//! Gymnasium's.
+
+use std::sync::Arc;
+
+use numpy::PyArray1;
+use pyo3::exceptions::PyAttributeError;
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple, PyType};
+
+use super::classic_control::{DynClassicEnv, StepResult, StoredState, numpy_uses_libm};
+use super::gymnasium::{generator, is_numpy_generator, render_if_human};
+use super::registry::{Entry, classic_control, entry};
+use crate::convert::StateArray;
+
+/// The names of all parameters of an environment, as Gymnasium spells its attributes.
+#[pyfunction]
+pub(crate) fn parameter_names(name: &str) -> PyResult<Vec<&'static str>> {
+    Ok(classic_control(name)?.parameter_names())
+}
+
+/// Whether an environment in Rust computes the numbers of Gymnasium's on this machine, its reset included.
+#[pyfunction]
+pub(crate) fn matches_numpy(py: Python<'_>, name: &str) -> PyResult<bool> {
+    match entry(name)? {
+        Entry::ClassicControl(new) => new().matches_numpy(py),
+        Entry::FromGymnasium(_) => Ok(true),
+    }
+}
+
+/// Holds an environment's state, and steps it.
+///
+/// A Python class inherits from this class and from Gymnasium's, and names its `model`. The parameters stay where
+/// Gymnasium has them, in attributes of the instance or the class. They are read at the first step after a reset and after
+/// any assignment. What Rust does not compute with (a float32 state where Gymnasium keeps float64, a parameter of another
+/// width) steps in Python, in Gymnasium's own code, and so does every step that overflows.
+#[pyclass(subclass, name = "ClassicControl", module = "qtab._core")]
+pub(crate) struct PyClassicControl {
+    env: Arc<dyn DynClassicEnv>,
+    parameters: Parameters,
+    state: StoredState,
+}
+
+/// What is known of the attributes.
+#[derive(Clone, Copy)]
+enum Parameters {
+    /// Read before the last assignment, or never.
+    Stale,
+    /// Rust has all of them.
+    Loaded {
+        /// Whether `render_mode` is "human".
+        human: bool,
+    },
+    /// Rust cannot take over all of them.
+    Unsupported,
+}
+
+#[pymethods]
+impl PyClassicControl {
+    #[new]
+    #[classmethod]
+    #[pyo3(signature = (*_args, **_kwargs))]
+    fn new(
+        class: &Bound<'_, PyType>,
+        _args: &Bound<'_, PyTuple>,
+        _kwargs: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let model: String = class.getattr(intern!(class.py(), "model"))?.extract()?;
+        Ok(Self { env: classic_control(&model)?, parameters: Parameters::Stale, state: StoredState::Unset })
+    }
+
+    /// Draws the initial state from the environment's generator. Returns what `reset` returns; None, and nothing drawn,
+    /// where Gymnasium's own code must do it.
+    fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let py = slf.py();
+        let (generator, env) = (generator(slf)?, Arc::clone(&slf.borrow().env));
+        let layout = env.layout();
+        if !is_numpy_generator(&generator) || (layout.calls_numpy_trigonometry && !numpy_uses_libm(py)?) {
+            return Ok(None);
+        }
+        let Some(result) = env.reset_python(&generator)? else { return Ok(None) };
+        // Around `__setattr__`, since no parameter changes.
+        let attributes = slf.getattr(intern!(py, "__dict__"))?.cast_into::<PyDict>()?;
+        for name in layout.terminal_counter.iter().chain(&layout.last_action) {
+            attributes.set_item(name, py.None())?;
+        }
+        {
+            let mut this = slf.borrow_mut();
+            this.state = StoredState::Python(result.state.unbind());
+            this.parameters = Parameters::Stale;
+        }
+        render_if_human(slf)?;
+        Ok(Some((result.observation, PyDict::new(py)).into_pyobject(py)?.into_any()))
+    }
+
+    /// One step, with the types that Gymnasium returns.
+    fn step<'py>(slf: &Bound<'py, Self>, action: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let Some((result, human)) = Self::native_step(slf, action)? else {
+            return slf.call_method1(intern!(py, "step_in_python"), (action,));
+        };
+        slf.borrow_mut().state = result.state;
+        if human {
+            slf.call_method0(intern!(py, "render"))?;
+        }
+        let answer = (result.observation, result.reward, result.terminated, false, PyDict::new(py));
+        Ok(answer.into_pyobject(py)?.into_any())
+    }
+
+    /// Must be called after any attribute was assigned.
+    fn invalidate(&mut self) {
+        self.parameters = Parameters::Stale;
+    }
+
+    /// The state as Gymnasium keeps it.
+    #[getter]
+    fn state<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let (numbers, layout) = {
+            let this = slf.borrow();
+            let numbers = match &this.state {
+                StoredState::Python(state) => return Ok(state.bind(py).clone()),
+                StoredState::Native(numbers) => Some(*numbers),
+                StoredState::Unset => None,
+            };
+            (numbers, this.env.layout())
+        };
+        let Some(numbers) = numbers else {
+            let class = slf.get_type();
+            return Err(PyAttributeError::new_err(format!("'{}' object has no attribute 'state'", class.name()?)));
+        };
+        let mut state = PyArray1::from_slice(py, &numbers[..layout.state_len]).into_any();
+        if layout.state_is_tuple {
+            state = PyTuple::new(py, state.try_iter()?.collect::<PyResult<Vec<_>>>()?)?.into_any();
+        }
+        slf.borrow_mut().state = StoredState::Python(state.clone().unbind());
+        Ok(state)
+    }
+
+    #[setter]
+    fn set_state(&mut self, value: &Bound<'_, PyAny>) {
+        self.state = StoredState::Python(value.clone().unbind());
+    }
+}
+
+impl PyClassicControl {
+    /// The step, and whether `render_mode` is "human"; None where Gymnasium's own code must take the step.
+    fn native_step<'py>(
+        slf: &Bound<'py, Self>,
+        action: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<(StepResult<'py>, bool)>> {
+        let py = slf.py();
+        let parameters = slf.borrow().parameters;
+        let human = match parameters {
+            Parameters::Loaded { human } => human,
+            Parameters::Unsupported => return Ok(None),
+            Parameters::Stale => match Self::load_parameters(slf)? {
+                Some(human) => human,
+                None => return Ok(None),
+            },
+        };
+        let (env, state) = {
+            let this = slf.borrow();
+            let state = match &this.state {
+                StoredState::Native(numbers) => Some(StateArray::new(*numbers)),
+                StoredState::Python(state) => StateArray::read(state.bind(py), this.env.layout().state_len),
+                StoredState::Unset => None,
+            };
+            (Arc::clone(&this.env), state)
+        };
+        let Some(state) = state else { return Ok(None) };
+        Ok(env.step_python(slf, &state, action)?.map(|result| (result, human)))
+    }
+
+    /// Reads the attributes. Returns whether `render_mode` is "human"; None where Rust cannot take over all of them.
+    fn load_parameters(slf: &Bound<'_, Self>) -> PyResult<Option<bool>> {
+        let env = Arc::clone(&slf.borrow().env);
+        let loaded = Self::supported(slf, &*env)?;
+        let mut this = slf.borrow_mut();
+        this.parameters = Parameters::Unsupported;
+        Ok(loaded.map(|(env, human)| {
+            this.env = env;
+            this.parameters = Parameters::Loaded { human };
+            human
+        }))
+    }
+
+    /// The environment with its parameters, and whether `render_mode` is "human"; None where Rust cannot step it.
+    fn supported(slf: &Bound<'_, Self>, env: &dyn DynClassicEnv) -> PyResult<Option<(Arc<dyn DynClassicEnv>, bool)>> {
+        let py = slf.py();
+        let layout = env.layout();
+        if layout.calls_numpy_trigonometry && !numpy_uses_libm(py)? {
+            return Ok(None);
+        }
+        if let Some(name) = layout.terminal_counter
+            && !slf.getattr_opt(name)?.is_some_and(|value| value.is_none())
+        {
+            return Ok(None);
+        }
+        if let Some(num_actions) = layout.num_actions {
+            let Some(space) = slf.getattr_opt(intern!(py, "action_space"))? else { return Ok(None) };
+            let [n, start] = [space.getattr_opt(intern!(py, "n"))?, space.getattr_opt(intern!(py, "start"))?];
+            let (Some(n), Some(start)) = (n, start) else { return Ok(None) };
+            if !n.eq(num_actions)? || !start.eq(0)? {
+                return Ok(None);
+            }
+        }
+        let Ok(env) = env.with_parameters(slf)? else { return Ok(None) };
+        let render_mode = slf.getattr_opt(intern!(py, "render_mode"))?;
+        let human = render_mode.is_some_and(|mode| mode.eq(intern!(py, "human")).unwrap_or(false));
+        Ok(Some((env, human)))
+    }
+}

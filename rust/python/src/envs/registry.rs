@@ -1,0 +1,47 @@
+//! Every environment that Rust steps, by the name that `qtab/envs/registry.py` gives it.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use qtab_core::envs::classic_control::{Acrobot, CartPole, ContinuousMountainCar, MountainCar, Pendulum};
+
+use super::classic_control::DynClassicEnv;
+use super::maximization_bias::MaximizationBiasEnv;
+use super::native_env::NativeEnv;
+use super::toy_text::{BlackjackEnv, TableEnv, TaxiEnv};
+use crate::error::invalid;
+
+/// How an environment is made.
+#[derive(Clone, Copy)]
+pub(super) enum Entry {
+    /// With default parameters, which are then read from Gymnasium's environment.
+    ClassicControl(fn() -> Arc<dyn DynClassicEnv>),
+    /// From Gymnasium's environment.
+    FromGymnasium(fn(&Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>>),
+}
+
+const ENVS: &[(&str, Entry)] = &[
+    ("Acrobot", Entry::ClassicControl(|| Arc::new(Acrobot::default()))),
+    ("Blackjack", Entry::FromGymnasium(BlackjackEnv::from_gymnasium)),
+    ("CartPole", Entry::ClassicControl(|| Arc::new(CartPole::default()))),
+    ("ContinuousMountainCar", Entry::ClassicControl(|| Arc::new(ContinuousMountainCar::default()))),
+    ("MaximizationBias", Entry::FromGymnasium(MaximizationBiasEnv::from_gymnasium)),
+    ("MountainCar", Entry::ClassicControl(|| Arc::new(MountainCar::default()))),
+    ("Pendulum", Entry::ClassicControl(|| Arc::new(Pendulum::default()))),
+    ("Table", Entry::FromGymnasium(TableEnv::from_gymnasium)),
+    ("Taxi", Entry::FromGymnasium(TaxiEnv::from_gymnasium)),
+];
+
+/// The entry of a name.
+pub(super) fn entry(name: &str) -> PyResult<Entry> {
+    let found = ENVS.iter().find(|(known, _)| *known == name);
+    found.map(|&(_, entry)| entry).ok_or_else(|| invalid("name", "an environment that Rust knows", format!("'{name}'")))
+}
+
+/// A classic-control environment with its default parameters.
+pub(super) fn classic_control(name: &str) -> PyResult<Arc<dyn DynClassicEnv>> {
+    match entry(name)? {
+        Entry::ClassicControl(new) => Ok(new()),
+        Entry::FromGymnasium(_) => Err(invalid("name", "a classic-control environment", format!("'{name}'"))),
+    }
+}

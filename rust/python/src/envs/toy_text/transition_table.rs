@@ -1,0 +1,107 @@
+//! From Gymnasium's `P` to the table in Rust, checked on the way.
+
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::intern;
+use pyo3::prelude::*;
+use qtab_core::Env;
+use qtab_core::envs::tabular::{Outcome, TabularMdp};
+
+use crate::convert::double;
+
+/// The table of an environment. It is an error where `NumPy` would add its probabilities differently than Python floats.
+pub(super) fn table_of(env: &Bound<'_, PyAny>) -> PyResult<TabularMdp> {
+    let py = env.py();
+    let initial: Vec<f64> = env.getattr(intern!(py, "initial_state_distrib"))?.extract()?;
+    parse_table(&env.getattr(intern!(py, "P"))?, &initial, true)
+}
+
+/// `P[state][action]` lists (probability, state, reward, terminated); `initial` is `initial_state_distrib`. With
+/// `floats_only`, probabilities must be Python floats.
+fn parse_table(table: &Bound<'_, PyAny>, initial: &[f64], floats_only: bool) -> PyResult<TabularMdp> {
+    let wrong_type = |_| PyTypeError::new_err("P must hold for each state and action a list of outcomes");
+    let states = table.len().map_err(wrong_type)?;
+    if states != initial.len() {
+        return Err(PyValueError::new_err(format!(
+            "initial_state_distrib must hold {states} numbers, one for each state, got {}",
+            initial.len()
+        )));
+    }
+    let mut rows = Vec::new();
+    let mut actions = 0;
+    for state in 0..states {
+        let missing =
+            |_| PyValueError::new_err(format!("P must have the states 0 to {}, it lacks {state}", states - 1));
+        let row = table.get_item(state).map_err(missing)?;
+        let count = row.len().map_err(wrong_type)?;
+        if state == 0 {
+            actions = count;
+        }
+        if count != actions {
+            return Err(PyValueError::new_err(format!(
+                "P[{state}] must have {actions} actions as P[0] has, got {count}"
+            )));
+        }
+        for action in 0..actions {
+            let missing = |_| {
+                PyValueError::new_err(format!(
+                    "P[{state}] must have the actions 0 to {}, it lacks {action}",
+                    actions - 1
+                ))
+            };
+            let path = || format!("P[{state}][{action}]");
+            rows.push(parse_outcomes(path, &row.get_item(action).map_err(missing)?, floats_only)?);
+        }
+    }
+    TabularMdp::new(actions, initial, &rows).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// The outcomes of a state and an action; `path` says where they are.
+fn parse_outcomes(path: impl Fn() -> String, outcomes: &Bound<'_, PyAny>, floats_only: bool) -> PyResult<Vec<Outcome>> {
+    // An iterator without a length could be read only once, and Python reads the table too.
+    let entries = outcomes.len().and_then(|_| outcomes.try_iter());
+    let entries = entries.map_err(|_| PyTypeError::new_err(format!("{} must be a list of outcomes", path())))?;
+    entries.enumerate().map(|(index, entry)| parse_outcome(&path, index, &entry?, floats_only)).collect()
+}
+
+fn parse_outcome(
+    path: &impl Fn() -> String,
+    index: usize,
+    entry: &Bound<'_, PyAny>,
+    floats_only: bool,
+) -> PyResult<Outcome> {
+    if floats_only && entry.get_item(0).is_ok_and(|probability| double(&probability).is_none()) {
+        return Err(PyTypeError::new_err(format!("{}[{index}] must have a float for a probability", path())));
+    }
+    match entry.extract() {
+        Ok((probability, state, reward, terminated)) => Ok(Outcome { probability, state, reward, terminated }),
+        Err(_) => Err(PyTypeError::new_err(format!(
+            "{}[{index}] must be (probability, state, reward, terminated), got {}",
+            path(),
+            entry.repr()?
+        ))),
+    }
+}
+
+/// A transition table that was checked.
+#[pyclass(frozen, name = "TransitionTable", module = "qtab._core")]
+pub(crate) struct PyTransitionTable(TabularMdp);
+
+#[pymethods]
+impl PyTransitionTable {
+    /// `P[state][action]` lists (probability, state, reward, terminated).
+    #[new]
+    #[expect(non_snake_case, reason = "Gymnasium's name")]
+    fn new(P: &Bound<'_, PyAny>, initial_state_distrib: Vec<f64>) -> PyResult<Self> {
+        parse_table(P, &initial_state_distrib, false).map(Self)
+    }
+
+    #[getter]
+    fn states(&self) -> usize {
+        self.0.num_states()
+    }
+
+    #[getter]
+    fn actions(&self) -> usize {
+        self.0.num_actions()
+    }
+}

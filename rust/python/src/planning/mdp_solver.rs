@@ -1,0 +1,100 @@
+//! `MdpSolver`: the optimal policy of an environment with a transition table.
+
+use std::sync::atomic::AtomicBool;
+
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use qtab_core::Env;
+use qtab_core::envs::tabular::TabularMdp;
+use qtab_core::planning::{
+    FiniteHorizon, Mdp, PlanningError, Solution, finite_horizon, policy_iteration, policy_return, value_iteration,
+};
+
+use super::to_py_err;
+use crate::envs::PyNativeEnv;
+use crate::interrupt::run_interruptible;
+
+type Array<'py, T> = Bound<'py, PyArray1<T>>;
+/// State values, action values, the policy.
+type PySolution<'py> = (Array<'py, f64>, Array<'py, f64>, Array<'py, i64>);
+/// From how many remaining steps on, in which state, which action is best.
+type PyPolicyChanges<'py> = (Array<'py, i64>, Array<'py, i64>, Array<'py, i64>);
+
+type Method = fn(&TabularMdp, f64, &AtomicBool) -> Result<Solution, PlanningError>;
+
+/// The Markov decision process of an environment.
+#[pyclass(frozen, name = "MdpSolver", module = "qtab._core")]
+pub(crate) struct PyMdpSolver(Mdp);
+
+#[pymethods]
+impl PyMdpSolver {
+    #[new]
+    fn new(env: &PyNativeEnv) -> PyResult<Self> {
+        let mdp = env.shared().mdp()?;
+        mdp.map(Self).ok_or_else(|| PyValueError::new_err("env must have a transition table"))
+    }
+
+    /// For each state the row of an agent's table. Several states may share a row, where the observation hides the rest.
+    #[getter]
+    fn rows<'py>(&self, py: Python<'py>) -> Array<'py, i64> {
+        indices(py, &self.0.rows)
+    }
+
+    fn value_iteration<'py>(&self, py: Python<'py>, discount: f64) -> PyResult<PySolution<'py>> {
+        self.solve(py, discount, value_iteration)
+    }
+
+    fn policy_iteration<'py>(&self, py: Python<'py>, discount: f64) -> PyResult<PySolution<'py>> {
+        self.solve(py, discount, policy_iteration)
+    }
+
+    /// The solution for `steps` steps, how the policy depends on the remaining steps, and the expected return.
+    fn finite_horizon<'py>(
+        &self,
+        py: Python<'py>,
+        discount: f64,
+        steps: u64,
+    ) -> PyResult<(PySolution<'py>, PyPolicyChanges<'py>, f64)> {
+        let horizon = run_interruptible(py, |stop| finite_horizon(&self.0.table, discount, steps, stop))?;
+        let FiniteHorizon { values, q_values, policy, changes, expected_return, .. } =
+            horizon.map_err(|error| to_py_err(error, discount))?;
+        let changes = (
+            PyArray1::from_iter(py, changes.iter().map(|change| change.steps_to_go.cast_signed())),
+            indices(py, changes.iter().map(|change| &change.state)),
+            indices(py, changes.iter().map(|change| &change.action)),
+        );
+        Ok((to_python(py, values, q_values, &policy), changes, expected_return))
+    }
+
+    /// The expected return of a policy within `steps` steps. The policy has an action for each state, or for each row.
+    fn policy_return(&self, py: Python<'_>, policy: PyReadonlyArray1<'_, i64>, steps: u64) -> PyResult<f64> {
+        let policy = policy.as_slice()?;
+        let by_state = policy.len() == self.0.rows.len();
+        let action = |(state, &row): (usize, &usize)| {
+            let action =
+                policy.get(if by_state { state } else { row }).and_then(|&action| usize::try_from(action).ok());
+            action.filter(|&action| action < self.0.table.num_actions())
+        };
+        let policy: Option<Vec<usize>> = self.0.rows.iter().enumerate().map(action).collect();
+        let policy = policy.ok_or_else(|| PyValueError::new_err("policy must have an action for each row"))?;
+        let expected = run_interruptible(py, |stop| policy_return(&self.0.table, &policy, steps, stop))?;
+        expected.map_err(|error| to_py_err(error, 1.0))
+    }
+}
+
+impl PyMdpSolver {
+    fn solve<'py>(&self, py: Python<'py>, discount: f64, method: Method) -> PyResult<PySolution<'py>> {
+        let solution = run_interruptible(py, |stop| method(&self.0.table, discount, stop))?;
+        let Solution { values, q_values, policy, .. } = solution.map_err(|error| to_py_err(error, discount))?;
+        Ok(to_python(py, values, q_values, &policy))
+    }
+}
+
+fn to_python<'py>(py: Python<'py>, values: Vec<f64>, q_values: Vec<f64>, policy: &[usize]) -> PySolution<'py> {
+    (PyArray1::from_vec(py, values), PyArray1::from_vec(py, q_values), indices(py, policy))
+}
+
+fn indices<'a, 'py>(py: Python<'py>, indices: impl IntoIterator<Item = &'a usize>) -> Array<'py, i64> {
+    PyArray1::from_vec(py, indices.into_iter().map(|&index| (index as u64).cast_signed()).collect())
+}

@@ -1,0 +1,43 @@
+//! The core's agents, as a spec describes them.
+
+use pyo3::prelude::*;
+use qtab_core::learners::Agent;
+use qtab_core::policies::AnyPolicy;
+use qtab_core::random::Rng;
+use qtab_core::schedules::LearningRate;
+
+use crate::spec::{LearningRateSpec, PolicySpec, RunSpec};
+
+/// The agent of any learner, with its first table.
+pub(super) fn generic_agent(spec: &RunSpec, n_rows: usize, n_active: usize, rng: &mut impl Rng) -> PyResult<Agent> {
+    let shape = (n_rows, spec.num_actions);
+    Ok(Agent {
+        table: spec.initial_q.table((0, spec.algorithm.n_tables()), shape, rng)?,
+        policy: policy(spec),
+        learning_rate: learning_rate(spec, n_rows * spec.num_actions, n_active),
+        discount: spec.discount,
+        terminal_update: spec.terminal_update,
+    })
+}
+
+/// The behaviour policy, whichever the spec names.
+pub(super) fn policy(spec: &RunSpec) -> AnyPolicy {
+    match spec.policy {
+        PolicySpec::EpsilonGreedy { epsilon, ties } => {
+            let epsilon = epsilon.build(spec.episodes);
+            if spec.initial_q.has_masked_actions() {
+                AnyPolicy::MaskedEpsilonGreedy { epsilon, ties }
+            } else {
+                AnyPolicy::EpsilonGreedy { epsilon, ties }
+            }
+        }
+        PolicySpec::Softmax { temperature } => AnyPolicy::softmax(temperature, spec.num_actions),
+    }
+}
+
+fn learning_rate(spec: &RunSpec, weights: usize, n_active: usize) -> LearningRate {
+    match spec.learning_rate {
+        LearningRateSpec::Schedule(schedule) => LearningRate::scheduled(schedule.build(spec.episodes), n_active),
+        LearningRateSpec::Visits { value, minimum } => LearningRate::by_visit_count(value, minimum, weights, n_active),
+    }
+}

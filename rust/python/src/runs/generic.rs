@@ -1,0 +1,143 @@
+//! Runs of any learner on any task, boxed: what is not worth compiling for its types.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use qtab_core::features::MAX_TILINGS;
+use qtab_core::learners::{
+    Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
+    TdLearner, Traces, TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
+};
+use qtab_core::random::AgentRng;
+use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot};
+use qtab_core::{Env, Features, Learner, Task, Trainer};
+
+use super::agent::generic_agent;
+use super::factory::{Batching, Factory};
+use super::{AnyRecordings, Run, RunFactory};
+use crate::convert::Seed;
+use crate::error::{RunError, invalid};
+use crate::rng::environment_rng;
+use crate::spec::{AlgorithmSpec, DiscretizerSpec, RunSpec, TraceSpec};
+
+/// Runs in an environment whose observations are `M` float32 numbers, with any discretizer of a Box.
+pub(crate) fn generic_box<E, const M: usize>(
+    env: E,
+    spec: &Arc<RunSpec>,
+    record: usize,
+) -> PyResult<Box<dyn RunFactory>>
+where
+    E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
+{
+    let (_, dimensions) = spec.discretizer.box_space()?;
+    if dimensions != M {
+        return Err(invalid("discretizer", format!("one for observations of {M} components"), dimensions));
+    }
+    match &spec.discretizer {
+        // Eight tilings are the usual number; room for more costs time at every step.
+        DiscretizerSpec::Tiles(tiles) if tiles.tilings <= 8 => {
+            generic(env, tiles.tile_coding::<f32, 8>(), spec, record)
+        }
+        DiscretizerSpec::Tiles(tiles) => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec, record),
+        grid => generic(env, grid.grid(|bound| bound as f32)?, spec, record),
+    }
+}
+
+/// Runs in an environment with any features.
+pub(crate) fn generic<E, F>(env: E, features: F, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>>
+where
+    E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
+    F: Features<E::Observation, Active: Send> + Clone + Send + Sync + 'static,
+{
+    if spec.num_actions != env.num_actions() {
+        return Err(invalid("num_actions", format!("{}, the environment's", env.num_actions()), spec.num_actions));
+    }
+    let (spec, shape) = (Arc::clone(spec), (features.len(), spec.discretizer.n_active()));
+    let build = move |seed: &Seed| {
+        let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
+        boxed_run(task, shape, seed, &spec, record, AnyRecordings::Native)
+    };
+    Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
+}
+
+/// A run of any learner, with recordings if asked for. `shape` is the number of rows and of active rows.
+pub(super) fn boxed_run<W>(
+    task: W,
+    shape: (usize, usize),
+    seed: &Seed,
+    spec: &RunSpec,
+    record: usize,
+    keep: impl FnOnce(Recordings<W::Snapshot>) -> AnyRecordings,
+) -> PyResult<(Box<dyn Run>, AnyRecordings)>
+where
+    W: RngSnapshot + Task<Active: Send, State: Send, Error: Into<RunError>> + Send + 'static,
+    W::Snapshot: Send,
+    RunError: From<W::Error>,
+{
+    let (task, recordings) = if record == 0 {
+        (BoxedTask::<W::Active, RunError>::new(task), AnyRecordings::None)
+    } else {
+        let (task, recordings) = EpisodeRecorder::new(task, record);
+        (BoxedTask::new(task), keep(recordings))
+    };
+    let rng = spec.bit_generator.agent_rng(seed)?;
+    Ok((build_learner(task, shape, rng, spec)?, recordings))
+}
+
+/// Any learner on a boxed task, with a generator chosen at run time: compiled once for each kind of active rows.
+fn build_learner<R>(
+    task: BoxedTask<R, RunError>,
+    (n_rows, n_active): (usize, usize),
+    mut rng: AgentRng,
+    spec: &RunSpec,
+) -> PyResult<Box<dyn Run>>
+where
+    R: Copy + AsRef<[u32]> + Send + 'static,
+{
+    let agent = generic_agent(spec, n_rows, n_active, &mut rng)?;
+    let weights = agent.table.values().len();
+    let new_model = || Model::new(n_rows, spec.num_actions);
+    let new_traces = |cutoff: f64| Traces::new(weights, cutoff);
+    Ok(match spec.algorithm {
+        AlgorithmSpec::QLearning => with_rule(task, agent, QLearning, rng, spec),
+        AlgorithmSpec::Sarsa => with_rule(task, agent, Sarsa, rng, spec),
+        AlgorithmSpec::ExpectedSarsa => with_rule(task, agent, ExpectedSarsa, rng, spec),
+        AlgorithmSpec::DoubleQLearning => {
+            let second = spec.initial_q.table((1, 2), (n_rows, spec.num_actions), &mut rng)?;
+            into_run(task, DoubleQLearning::new(agent, second), rng, spec)
+        }
+        AlgorithmSpec::NStepSarsa { n_steps } => with_rule(task, agent, NStepSarsa::new(n_steps), rng, spec),
+        AlgorithmSpec::SarsaLambda(TraceSpec { kind, decay, cutoff }) => {
+            with_rule(task, agent, SarsaLambda { traces: new_traces(cutoff), kind, trace_decay: decay }, rng, spec)
+        }
+        AlgorithmSpec::TrueOnlineSarsaLambda { trace_decay, trace_cutoff } => {
+            with_rule(task, agent, TrueOnlineSarsaLambda::new(new_traces(trace_cutoff), trace_decay), rng, spec)
+        }
+        AlgorithmSpec::WatkinsQLambda(TraceSpec { kind, decay, cutoff }) => {
+            with_rule(task, agent, WatkinsQLambda { traces: new_traces(cutoff), kind, trace_decay: decay }, rng, spec)
+        }
+        AlgorithmSpec::DynaQ { planning_steps } => {
+            with_rule(task, agent, DynaQ { model: new_model(), planning_steps }, rng, spec)
+        }
+        AlgorithmSpec::DynaQPlus { planning_steps, time_weight } => {
+            with_rule(task, agent, DynaQPlus::new(new_model(), planning_steps, time_weight), rng, spec)
+        }
+    })
+}
+
+fn with_rule<R, U>(task: BoxedTask<R, RunError>, agent: Agent, rule: U, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>
+where
+    R: Copy + AsRef<[u32]> + Send + 'static,
+    U: UpdateRule<R, Agent> + Send + 'static,
+{
+    into_run(task, TdLearner { agent, rule }, rng, spec)
+}
+
+fn into_run<R, L>(task: BoxedTask<R, RunError>, learner: L, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>
+where
+    R: Copy + AsRef<[u32]> + Send + 'static,
+    L: Learner<R> + Send + 'static,
+{
+    let learner = TruncationHandling { learner, terminate: spec.terminate_on_truncation };
+    Box::new(Trainer::new(task, learner, rng))
+}

@@ -1,0 +1,14 @@
+//! Training runs of every type behind one interface, and how a run is built from its spec.
+
+mod agent;
+mod factory;
+mod generic;
+mod python_task;
+mod run;
+mod specialized;
+
+pub(crate) use factory::{RunBatch, RunFactory};
+pub(crate) use generic::{generic, generic_box};
+pub(crate) use python_task::{PythonEnv, python_run};
+pub(crate) use run::{AnyRecordings, BuiltRun, Run};
+pub(crate) use specialized::{QLearningBatching, specialized};

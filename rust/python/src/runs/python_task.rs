@@ -1,0 +1,172 @@
+//! A Gymnasium environment that is stepped in Python, as a learner's task.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use qtab_core::Features;
+use qtab_core::Task;
+use qtab_core::features::MAX_TILINGS;
+use qtab_core::numeric::Float;
+use qtab_core::tasks::RngSnapshot;
+use qtab_core::tasks::{Next, Transition};
+
+use super::generic::boxed_run;
+use super::{AnyRecordings, BuiltRun};
+use crate::convert::{BoxReader, ObservationReader, Seed};
+use crate::error::RunError;
+use crate::spec::{DiscretizerSpec, Fields, FloatType, RunSpec};
+
+/// A Python environment, and how the learner's actions are passed to it.
+pub(crate) struct PythonEnv {
+    env: Py<PyAny>,
+    /// The environment's number of the first action, `Discrete.start`.
+    first_action: i64,
+    /// The arrays that the actions of a continuous space stand for; empty for a discrete space.
+    actions: Vec<Py<PyAny>>,
+}
+
+impl PythonEnv {
+    pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
+        Ok(Self {
+            env: fields.any("env")?.unbind(),
+            first_action: fields.get("first_action")?,
+            actions: fields.get("actions")?,
+        })
+    }
+
+    /// What the environment's `step` takes. An array is a copy, so that the environment may write to it.
+    fn action<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+        match self.actions.get(index) {
+            Some(action) => action.bind(py).call_method0(intern!(py, "copy")),
+            None => Ok(self.first_action.saturating_add_unsigned(index as u64).into_pyobject(py)?.into_any()),
+        }
+    }
+}
+
+/// A run that steps a Python environment.
+pub(crate) fn python_run(
+    py: Python<'_>,
+    env: PythonEnv,
+    spec: &RunSpec,
+    seed: &Seed,
+    record: usize,
+) -> PyResult<BuiltRun> {
+    let task = TaskBuilder { env, first_seed: seed.to_python(py)?.unbind(), spec, seed, record };
+    if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
+        return task.run(reader.clone(), reader.n_rows());
+    }
+    match spec.discretizer.box_space()? {
+        (FloatType::F32, dimensions) => task.box_run(|bound| bound as f32, dimensions),
+        (FloatType::F64, dimensions) => task.box_run(|bound| bound, dimensions),
+    }
+}
+
+struct TaskBuilder<'a> {
+    env: PythonEnv,
+    first_seed: Py<PyAny>,
+    spec: &'a RunSpec,
+    seed: &'a Seed,
+    record: usize,
+}
+
+impl TaskBuilder<'_> {
+    /// With the observations of a Box of dtype `T`.
+    fn box_run<T>(self, to_dtype: impl Fn(f64) -> T, dimensions: usize) -> PyResult<BuiltRun>
+    where
+        T: Float + numpy::Element + 'static,
+    {
+        if let DiscretizerSpec::Tiles(tiles) = &self.spec.discretizer {
+            let tiles = tiles.tile_coding::<T, MAX_TILINGS>();
+            let n_rows = Features::<[T]>::len(&tiles);
+            return self.run(BoxReader::new(tiles, dimensions), n_rows);
+        }
+        let grid = self.spec.discretizer.grid(to_dtype)?;
+        let n_rows = Features::<[T]>::len(&grid);
+        self.run(BoxReader::new(grid, dimensions), n_rows)
+    }
+
+    fn run<R>(self, reader: R, n_rows: usize) -> PyResult<BuiltRun>
+    where
+        R: ObservationReader<Active: Send> + Send + 'static,
+    {
+        let Self { env, first_seed, spec, seed, record } = self;
+        let (max_episode_steps, shape) = (spec.max_episode_steps, (n_rows, spec.discretizer.n_active()));
+        let task = PythonTask { env, first_seed, seeded: false, max_episode_steps, reader };
+        let (run, recordings) = boxed_run(task, shape, seed, spec, record, AnyRecordings::Python)?;
+        Ok(BuiltRun { run, recordings, attached: true })
+    }
+}
+
+struct PythonTask<R> {
+    env: PythonEnv,
+    /// The seed of the first reset, a Python integer.
+    first_seed: Py<PyAny>,
+    seeded: bool,
+    max_episode_steps: u64,
+    reader: R,
+}
+
+impl<R: ObservationReader> Task for PythonTask<R> {
+    /// The steps taken since the reset.
+    type State = u64;
+    type Active = R::Active;
+    type Error = RunError;
+
+    fn reset(&mut self) -> Result<(u64, R::Active), RunError> {
+        Python::attach(|py| {
+            let env = self.env.env.bind(py);
+            let arguments = PyDict::new(py);
+            if !self.seeded {
+                arguments.set_item(intern!(py, "seed"), &self.first_seed)?;
+            }
+            let answer = env.call_method(intern!(py, "reset"), (), Some(&arguments))?;
+            self.seeded = true;
+            Ok((0, self.reader.active_rows(&answer.get_item(0)?)?))
+        })
+    }
+
+    fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<R::Active>, RunError> {
+        Python::attach(|py| {
+            let env = self.env.env.bind(py);
+            let answer = env.call_method1(intern!(py, "step"), (self.env.action(py, action)?,))?;
+            let (observation, reward, terminated, truncated, _info): (
+                Bound<'_, PyAny>,
+                f64,
+                Bound<'_, PyAny>,
+                Bound<'_, PyAny>,
+                Bound<'_, PyAny>,
+            ) = answer.extract()?;
+            if !reward.is_finite() {
+                let message = format!("the environment's reward is {reward}, which no value can be learned from");
+                return Err(PyValueError::new_err(message).into());
+            }
+            *elapsed += 1;
+            let rows = self.reader.active_rows(&observation)?;
+            let next = if terminated.is_truthy()? {
+                Next::Terminal
+            } else if truncated.is_truthy()? || *elapsed >= self.max_episode_steps {
+                Next::Truncated(rows)
+            } else {
+                Next::NonTerminal(rows)
+            };
+            Ok(Transition { reward, next })
+        })
+    }
+}
+
+/// The state of the environment's bit generator, a dict; the seed, before the first reset.
+impl<R: ObservationReader> RngSnapshot for PythonTask<R> {
+    type Snapshot = Py<PyAny>;
+
+    fn rng_snapshot(&self) -> Result<Py<PyAny>, RunError> {
+        Python::attach(|py| {
+            if !self.seeded {
+                return Ok(self.first_seed.clone_ref(py));
+            }
+            let env = self.env.env.bind(py);
+            let generator = env.getattr(intern!(py, "unwrapped"))?.getattr(intern!(py, "np_random"))?;
+            Ok(generator.getattr(intern!(py, "bit_generator"))?.getattr(intern!(py, "state"))?.unbind())
+        })
+    }
+}

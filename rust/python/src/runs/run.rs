@@ -1,0 +1,79 @@
+//! A training run of any type.
+
+use pyo3::prelude::*;
+use qtab_core::random::Rng;
+use qtab_core::tasks::Recordings;
+use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer};
+
+use crate::error::RunError;
+
+pub(crate) trait Run: Send {
+    fn advance(&mut self, budget: Budget) -> Result<(), RunError>;
+
+    /// An error where the learner has diverged.
+    fn check(&self) -> Result<(), RunError>;
+
+    fn episodes(&self) -> &EpisodeLog;
+
+    /// The values of each table, rows first.
+    fn tables(&self) -> Vec<&[f64]>;
+}
+
+impl<W, L, D> Run for Trainer<W, L, D>
+where
+    W: Task<Error: Into<RunError>, State: Send, Active: Send> + Send,
+    L: Learner<W::Active> + Send,
+    D: Rng + Clone + Send,
+{
+    fn advance(&mut self, budget: Budget) -> Result<(), RunError> {
+        Trainer::advance(self, budget).map_err(Into::into)?;
+        self.check()
+    }
+
+    fn check(&self) -> Result<(), RunError> {
+        if self.learner().diverged() { Err(RunError::Diverged { episode: self.last_episode() }) } else { Ok(()) }
+    }
+
+    fn episodes(&self) -> &EpisodeLog {
+        Trainer::episodes(self)
+    }
+
+    fn tables(&self) -> Vec<&[f64]> {
+        self.learner().tables()
+    }
+}
+
+impl Run for Box<dyn Run> {
+    fn advance(&mut self, budget: Budget) -> Result<(), RunError> {
+        (**self).advance(budget)
+    }
+
+    fn check(&self) -> Result<(), RunError> {
+        (**self).check()
+    }
+
+    fn episodes(&self) -> &EpisodeLog {
+        (**self).episodes()
+    }
+
+    fn tables(&self) -> Vec<&[f64]> {
+        (**self).tables()
+    }
+}
+
+/// The last episodes of a run, where it records them.
+pub(crate) enum AnyRecordings {
+    None,
+    /// By how many words the environment's generator had drawn when the episode began, and its buffered half-word.
+    Native(Recordings<(u64, Option<u32>)>),
+    /// By the state of the environment's generator when the episode began.
+    Python(Recordings<Py<PyAny>>),
+}
+
+/// A run that has not started.
+pub(crate) struct BuiltRun {
+    pub(crate) run: Box<dyn Run>,
+    pub(crate) recordings: AnyRecordings,
+    /// Whether it steps Python, and so stays on the calling thread, attached to the interpreter.
+    pub(crate) attached: bool,
+}

@@ -1,0 +1,192 @@
+//! How observations become rows of the table, and the core's features of that description.
+
+use pyo3::prelude::*;
+use qtab_core::features::{AnyGrid, Axis, Bins, Edges, MAX_TILINGS, Rounding, TileCoding};
+use qtab_core::numeric::Float;
+
+use super::fields::{Fields, Variant};
+use crate::convert::DiscreteReader;
+use crate::error::invalid;
+
+#[derive(Clone, Debug)]
+pub(crate) enum DiscretizerSpec {
+    Round(RoundSpec),
+    Bins(BinsSpec),
+    Tiles(TilesSpec),
+    Identity(DiscreteReader),
+}
+
+/// The dtype of a Box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FloatType {
+    F32,
+    F64,
+}
+
+/// A grid of cells to which observations are rounded.
+#[derive(Clone, Debug)]
+pub(crate) struct RoundSpec {
+    dtype: FloatType,
+    low: Vec<f64>,
+    high: Vec<f64>,
+    scale: Vec<f64>,
+}
+
+/// A grid of bins between edges.
+#[derive(Clone, Debug)]
+pub(crate) struct BinsSpec {
+    dtype: FloatType,
+    edges: Vec<Edges>,
+}
+
+/// Tile coding.
+#[derive(Clone, Debug)]
+pub(crate) struct TilesSpec {
+    dtype: FloatType,
+    low: Vec<f64>,
+    high: Vec<f64>,
+    tiles: Vec<u32>,
+    pub(crate) tilings: u32,
+    hashed_rows: Option<u32>,
+}
+
+/// Every discretizer by its name. `qtab.config` has `edges` besides, which is sent as `bins`; a test compares the lists.
+pub(crate) const DISCRETIZERS: &[Variant<DiscretizerSpec>] = &[
+    ("round", |fields| RoundSpec::parse(fields).map(DiscretizerSpec::Round)),
+    ("bins", |fields| BinsSpec::parse(fields).map(DiscretizerSpec::Bins)),
+    ("tiles", |fields| TilesSpec::parse(fields).map(DiscretizerSpec::Tiles)),
+    ("identity", identity),
+];
+
+impl DiscretizerSpec {
+    pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
+        fields.tagged(DISCRETIZERS)
+    }
+
+    /// The dtype and the number of components of the observations. It is an error for integers.
+    pub(crate) fn box_space(&self) -> PyResult<(FloatType, usize)> {
+        match self {
+            Self::Round(round) => Ok((round.dtype, round.scale.len())),
+            Self::Bins(bins) => Ok((bins.dtype, bins.edges.len())),
+            Self::Tiles(tiles) => Ok((tiles.dtype, tiles.tiles.len())),
+            Self::Identity(_) => Err(invalid("discretizer", "one for a Box of observations", "'identity'")),
+        }
+    }
+
+    /// Refuses all but the integers of an environment whose table has so many rows.
+    pub(crate) fn check_identity(&self, n_rows: usize) -> PyResult<()> {
+        match self {
+            Self::Identity(reader) if reader.n_rows() == n_rows => Ok(()),
+            Self::Identity(reader) => Err(invalid("discretizer", format!("of {n_rows} rows here"), reader.n_rows())),
+            _ => Err(invalid("discretizer", "'identity' here", "one for a Box of observations")),
+        }
+    }
+
+    /// How many rows are active at a time.
+    pub(crate) fn n_active(&self) -> usize {
+        if let Self::Tiles(tiles) = self { tiles.tilings as usize } else { 1 }
+    }
+
+    /// The grid, with arithmetic in `T`. It is an error for discretizers that are no grid of a Box.
+    pub(crate) fn grid<T: Float>(&self, to_dtype: impl Fn(f64) -> T) -> PyResult<AnyGrid<T>> {
+        match self {
+            Self::Round(round) => Ok(AnyGrid::Rounding(Rounding::new(round.axes(to_dtype)))),
+            Self::Bins(bins) => Ok(AnyGrid::Bins(Bins::new(bins.edges.clone()))),
+            Self::Tiles(_) => Err(invalid("discretizer", "'round' or 'bins'", "'tiles'")),
+            Self::Identity(_) => Err(invalid("discretizer", "'round' or 'bins'", "'identity'")),
+        }
+    }
+}
+
+fn identity(fields: &Fields<'_>) -> PyResult<DiscretizerSpec> {
+    let (first, counts): (Vec<i64>, Vec<u32>) = (fields.get("first")?, fields.get("counts")?);
+    same_length(fields, "counts", counts.len(), first.len())?;
+    let reader = DiscreteReader::new(first.into_iter().zip(counts).collect(), fields.get("scalar")?);
+    if reader.is_scalar() {
+        same_length(fields, "first", reader.dimensions(), 1)?;
+    }
+    Ok(DiscretizerSpec::Identity(reader))
+}
+
+impl FloatType {
+    fn parse(fields: &Fields<'_>) -> PyResult<Self> {
+        fields.word("dtype", &[("float32", Self::F32), ("float64", Self::F64)])
+    }
+}
+
+impl RoundSpec {
+    fn parse(fields: &Fields<'_>) -> PyResult<Self> {
+        let (low, high): (Vec<f64>, Vec<f64>) = (fields.get("low")?, fields.get("high")?);
+        let scale: Vec<f64> = fields.get("scale")?;
+        same_length(fields, "low", low.len(), scale.len())?;
+        same_length(fields, "high", high.len(), scale.len())?;
+        Ok(Self { dtype: FloatType::parse(fields)?, low, high, scale })
+    }
+
+    fn axes<T: Float>(&self, to_dtype: impl Fn(f64) -> T) -> Vec<Axis<T>> {
+        let bounds = self.low.iter().zip(&self.high);
+        bounds.zip(&self.scale).map(|((&low, &high), &scale)| Axis::new(to_dtype(low), to_dtype(high), scale)).collect()
+    }
+
+    /// The grid over `N` float32 components; None where there are more or fewer.
+    pub(crate) fn rounding<const N: usize>(&self) -> Option<Rounding<f32, [Axis<f32>; N]>> {
+        self.axes(|bound| bound as f32).try_into().ok().map(Rounding::new)
+    }
+}
+
+impl BinsSpec {
+    fn parse(fields: &Fields<'_>) -> PyResult<Self> {
+        let edges: Vec<Vec<f64>> = fields.get("edges")?;
+        let ascending = |edges: Vec<f64>| {
+            if edges.is_sorted() && !edges.iter().any(|edge| edge.is_nan()) {
+                return Ok(Edges::new(edges));
+            }
+            Err(invalid(&fields.path("edges"), "ascending numbers", format!("{edges:?}")))
+        };
+        let edges = edges.into_iter().map(ascending).collect::<PyResult<_>>()?;
+        Ok(Self { dtype: FloatType::parse(fields)?, edges })
+    }
+
+    /// The bins over `N` float32 components; None where there are more or fewer.
+    pub(crate) fn bins<const N: usize>(&self) -> Option<Bins<f32, [Edges; N]>> {
+        self.edges.clone().try_into().ok().map(Bins::new)
+    }
+}
+
+impl TilesSpec {
+    fn parse(fields: &Fields<'_>) -> PyResult<Self> {
+        let spec = Self {
+            dtype: FloatType::parse(fields)?,
+            low: fields.get("low")?,
+            high: fields.get("high")?,
+            tiles: fields.get("tiles")?,
+            tilings: fields.get("tilings")?,
+            hashed_rows: fields.get("hashed_rows")?,
+        };
+        same_length(fields, "low", spec.low.len(), spec.tiles.len())?;
+        same_length(fields, "high", spec.high.len(), spec.tiles.len())?;
+        if !(1..=MAX_TILINGS).contains(&(spec.tilings as usize)) {
+            return Err(invalid(&fields.path("tilings"), format!("from 1 to {MAX_TILINGS}"), spec.tilings));
+        }
+        if spec.hashed_rows == Some(0) {
+            return Err(invalid(&fields.path("hashed_rows"), "at least 1", 0));
+        }
+        Ok(spec)
+    }
+
+    /// Tile coding with room for `M` tilings, of which there must not be more.
+    pub(crate) fn tile_coding<T: Float, const M: usize>(&self) -> TileCoding<T, M> {
+        let tiles = TileCoding::new(&self.low, &self.high, &self.tiles, self.tilings);
+        match self.hashed_rows {
+            Some(rows) => tiles.hashed(rows),
+            None => tiles,
+        }
+    }
+}
+
+fn same_length(fields: &Fields<'_>, name: &str, length: usize, expected: usize) -> PyResult<()> {
+    if length == expected {
+        return Ok(());
+    }
+    Err(invalid(&fields.path(name), format!("a list of length {expected}"), format!("length {length}")))
+}

@@ -1,0 +1,66 @@
+//! The action values before the first episode.
+
+use std::sync::Arc;
+
+use numpy::PyReadonlyArrayDyn;
+use pyo3::prelude::*;
+use qtab_core::QTable;
+use qtab_core::random::Rng;
+
+use super::fields::{Fields, Variant};
+use crate::error::invalid;
+
+#[derive(Clone, Debug)]
+pub(crate) enum InitialQSpec {
+    /// The values of all tables, in C order. Shared, since many runs may start from them.
+    Table(Arc<[f64]>),
+    Uniform {
+        low: f64,
+        high: f64,
+    },
+    Constant {
+        value: f64,
+    },
+}
+
+const INITIAL_QS: &[Variant<InitialQSpec>] = &[
+    ("table", |fields| {
+        let values: PyReadonlyArrayDyn<'_, f64> = fields.get("values")?;
+        Ok(InitialQSpec::Table(values.as_array().iter().copied().collect()))
+    }),
+    ("uniform", |fields| Ok(InitialQSpec::Uniform { low: fields.get("low")?, high: fields.get("high")? })),
+    ("constant", |fields| Ok(InitialQSpec::Constant { value: fields.get("value")? })),
+];
+
+impl InitialQSpec {
+    pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
+        fields.tagged(INITIAL_QS)
+    }
+
+    /// Whether some states lack actions, which a first value of -∞ says.
+    pub(crate) fn has_masked_actions(&self) -> bool {
+        matches!(self, Self::Table(values) if values.contains(&f64::NEG_INFINITY))
+    }
+
+    /// Table number `index` of `n_tables`, as it is before the first episode.
+    pub(crate) fn table<const N: usize>(
+        &self,
+        (index, n_tables): (usize, usize),
+        (n_rows, num_actions): (usize, usize),
+        rng: &mut impl Rng,
+    ) -> PyResult<QTable<N>> {
+        let size = n_rows * num_actions;
+        let values = match self {
+            Self::Table(values) => {
+                if values.len() != n_tables * size {
+                    let expected = format!("{n_tables} tables of {n_rows} rows of {num_actions} values");
+                    return Err(invalid("initial_q", expected, format!("{} values", values.len())));
+                }
+                values[index * size..][..size].to_vec()
+            }
+            Self::Constant { value } => vec![*value; size],
+            Self::Uniform { low, high } => (0..size).map(|_| rng.uniform(*low, *high)).collect(),
+        };
+        Ok(QTable::new(values, num_actions))
+    }
+}

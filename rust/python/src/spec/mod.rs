@@ -1,0 +1,80 @@
+//! A run as Python describes it (`qtab/_spec.py`), parsed once: every tag becomes a variant, every word a value, and what
+//! is unknown is refused here.
+
+mod algorithm;
+mod discretizer;
+mod fields;
+mod initial_q;
+mod policy;
+mod schedule;
+
+use pyo3::prelude::*;
+use qtab_core::q_table::TerminalUpdate;
+
+pub(crate) use algorithm::{ALGORITHMS, AlgorithmSpec, TraceSpec};
+pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType};
+pub(crate) use fields::{Fields, Variant};
+pub(crate) use initial_q::InitialQSpec;
+pub(crate) use policy::PolicySpec;
+pub(crate) use schedule::{LearningRateSpec, SCHEDULES, ScheduleSpec};
+
+use crate::error::invalid;
+use crate::rng::BitGenerator;
+
+/// The agent and its training: all of a run's description but the environment and the seed.
+#[derive(Clone, Debug)]
+pub(crate) struct RunSpec {
+    pub(crate) discretizer: DiscretizerSpec,
+    pub(crate) num_actions: usize,
+    pub(crate) max_episode_steps: u64,
+    pub(crate) algorithm: AlgorithmSpec,
+    pub(crate) policy: PolicySpec,
+    pub(crate) learning_rate: LearningRateSpec,
+    pub(crate) discount: f64,
+    pub(crate) initial_q: InitialQSpec,
+    pub(crate) terminal_update: TerminalUpdate,
+    pub(crate) terminate_on_truncation: bool,
+    pub(crate) episodes: u64,
+    pub(crate) bit_generator: BitGenerator,
+}
+
+impl RunSpec {
+    pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
+        let episodes = fields.get("episodes")?;
+        let num_actions = fields.get("num_actions")?;
+        if num_actions == 0 {
+            return Err(invalid("num_actions", "at least 1", num_actions));
+        }
+        let spec = Self {
+            discretizer: DiscretizerSpec::parse(&fields.nested("discretizer")?)?,
+            num_actions,
+            max_episode_steps: fields.get("max_episode_steps")?,
+            algorithm: AlgorithmSpec::parse(&fields.nested("algorithm")?)?,
+            policy: PolicySpec::parse(&fields.nested("policy")?, episodes)?,
+            learning_rate: LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?,
+            discount: fields.get("discount")?,
+            initial_q: InitialQSpec::parse(&fields.nested("initial_q")?)?,
+            terminal_update: fields
+                .word("terminal_update", &[("target", TerminalUpdate::Target), ("assign", TerminalUpdate::Assign)])?,
+            terminate_on_truncation: fields.word("on_truncation", &[("bootstrap", false), ("terminate", true)])?,
+            episodes,
+            bit_generator: fields.word("bit_generator", BitGenerator::WORDS)?,
+        };
+        spec.check_tile_coding()?;
+        Ok(spec)
+    }
+
+    /// Refuses what needs a table with a row for each state.
+    fn check_tile_coding(&self) -> PyResult<()> {
+        if !matches!(self.discretizer, DiscretizerSpec::Tiles(_)) {
+            return Ok(());
+        }
+        if self.terminal_update == TerminalUpdate::Assign {
+            return Err(invalid("terminal_update", "'target' for tile coding", "'assign'"));
+        }
+        if matches!(self.algorithm, AlgorithmSpec::DynaQ { .. } | AlgorithmSpec::DynaQPlus { .. }) {
+            return Err(invalid("algorithm", "an algorithm without a model for tile coding", "Dyna-Q"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,130 @@
+//! Many runs in one call, on threads of the call's own, in batches where the runs can be batched.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::vec::IntoIter;
+
+use pyo3::prelude::*;
+use qtab_core::Budget;
+
+use super::STEPS_BETWEEN_CHECKS;
+use super::env_spec::EnvironmentSpec;
+use super::results::{Results, Row};
+use crate::convert::Seed;
+use crate::error::invalid;
+use crate::interrupt::run_interruptible;
+use crate::runs::{RunBatch, RunFactory};
+use crate::spec::{Fields, RunSpec};
+
+/// The index of a run that failed, and why.
+type FailedRun = (usize, PyErr);
+
+/// Trains one run for each seed, in an environment that Rust steps, on `threads` threads, and writes the runs into
+/// `results`. Returns the runs that failed; unless `keep_going` is set, no run starts after the first failure.
+///
+/// A run starts when a thread is free for it, so that few more tables are alive than threads are at work.
+#[pyfunction]
+pub(crate) fn train_many(
+    py: Python<'_>,
+    spec: &Bound<'_, PyAny>,
+    seeds: Vec<Seed>,
+    mut results: Results<'_>,
+    threads: usize,
+    keep_going: bool,
+) -> PyResult<Vec<FailedRun>> {
+    let fields = Fields::new(spec)?;
+    let EnvironmentSpec::Native(env) = EnvironmentSpec::parse(&fields.nested("env")?)? else {
+        return Err(invalid("env", "an environment that Rust steps", "one that is stepped in Python"));
+    };
+    let factory = env.runs(&Arc::new(RunSpec::parse(&fields)?), 0)?;
+    let rows = results.rows()?;
+    if rows.len() != seeds.len() {
+        return Err(invalid("results", format!("arrays of {} rows, one for each seed", seeds.len()), rows.len()));
+    }
+    let threads = threads.min(rows.len());
+    // A few runs are divided evenly among the threads first.
+    let share = rows.len().div_ceil(threads.max(1));
+    let queue = WorkQueue {
+        factory: &*factory,
+        seeds: &seeds,
+        rows: Mutex::new(rows.into_iter()),
+        failed: Mutex::default(),
+        keep_going,
+        cancelled: AtomicBool::new(false),
+    };
+    run_interruptible(py, |stop| {
+        thread::scope(|scope| {
+            // This thread is one of the workers.
+            for _ in 1..threads {
+                scope.spawn(|| queue.run_worker(share, stop));
+            }
+            queue.run_worker(share, stop);
+        });
+    })?;
+    let mut failed = queue.failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+    failed.sort_by_key(|&(index, _)| index);
+    Ok(failed)
+}
+
+/// What the threads of one call share.
+struct WorkQueue<'a> {
+    factory: &'a dyn RunFactory,
+    seeds: &'a [Seed],
+    rows: Mutex<IntoIter<Row<'a>>>,
+    failed: Mutex<Vec<FailedRun>>,
+    keep_going: bool,
+    cancelled: AtomicBool,
+}
+
+impl<'a> WorkQueue<'a> {
+    /// What one thread does: it keeps a batch of up to `share` runs full until no run is left.
+    fn run_worker(&self, share: usize, stop: &AtomicBool) {
+        let mut batch = self.factory.batch();
+        let mut rows = Vec::new();
+        let lanes = batch.lanes().min(share);
+        loop {
+            self.fill(&mut *batch, &mut rows, lanes, stop);
+            if rows.is_empty() || self.is_cancelled(stop) {
+                return;
+            }
+            let episodes = rows[0].episodes();
+            if let Err((index, error)) = batch.advance(Budget { episodes, steps: STEPS_BETWEEN_CHECKS }) {
+                let mut row = rows.swap_remove(index);
+                row.write_episodes(batch.run(index));
+                batch.swap_remove(index);
+                self.fail(row.index, error.into());
+            }
+            for index in (0..rows.len()).rev() {
+                if batch.run(index).episodes().returns.len() >= episodes {
+                    let row = rows.swap_remove(index);
+                    let run = row.index;
+                    if let Err(error) = row.write(batch.run(index)) {
+                        self.fail(run, error);
+                    }
+                    batch.swap_remove(index);
+                }
+            }
+        }
+    }
+
+    /// Starts runs until the batch has so many `lanes`, or no run is left.
+    fn fill(&self, batch: &mut dyn RunBatch, rows: &mut Vec<Row<'a>>, lanes: usize, stop: &AtomicBool) {
+        while rows.len() < lanes && !self.is_cancelled(stop) {
+            let Some(row) = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
+            match batch.push(&self.seeds[row.index]) {
+                Ok(()) => rows.push(row),
+                Err(error) => self.fail(row.index, error),
+            }
+        }
+    }
+
+    fn fail(&self, index: usize, error: PyErr) {
+        self.failed.lock().unwrap_or_else(PoisonError::into_inner).push((index, error));
+        self.cancelled.fetch_or(!self.keep_going, Ordering::AcqRel);
+    }
+
+    fn is_cancelled(&self, stop: &AtomicBool) -> bool {
+        stop.load(Ordering::Acquire) || self.cancelled.load(Ordering::Acquire)
+    }
+}

@@ -1,0 +1,182 @@
+//! The sub-environments of one type, and their interface to Python whatever the type is.
+
+use numpy::PyArray1;
+use pyo3::exceptions::PyAssertionError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use qtab_core::Env;
+use qtab_core::VectorEnv;
+use qtab_core::vector::{Autoreset, StepBuffers};
+
+use super::infos::{EnvInfo, Infos};
+use super::{BatchAction, BatchObservation, SubEnvRng};
+
+/// How sub-environments are to be stepped.
+#[derive(Clone, Copy)]
+pub(crate) struct VectorOptions {
+    pub(crate) num_envs: usize,
+    pub(crate) max_episode_steps: Option<u64>,
+    pub(crate) autoreset: Autoreset,
+    /// Whether observations are returned in new arrays each time.
+    pub(crate) copy: bool,
+    /// None chooses the number of threads by the number of sub-environments.
+    pub(crate) threads: Option<usize>,
+}
+
+/// Observations, rewards, terminations, truncations, infos.
+pub(crate) type VectorStep<'py> =
+    (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyDict>);
+
+/// A sub-environment as Gymnasium's class would hold it: its attributes, the steps of its episode so far, whether the
+/// episode is done, and the observation.
+pub(crate) type EnvSnapshot<'py> = (Bound<'py, PyDict>, u64, bool, Bound<'py, PyAny>);
+
+/// Sub-environments of any type.
+pub(crate) trait DynVectorEnv: Send + Sync {
+    fn step<'py>(&mut self, actions: &Bound<'py, PyAny>, rngs: &mut [SubEnvRng]) -> PyResult<VectorStep<'py>>;
+
+    /// Starts an episode in each of these sub-environments. `bounds` limits their initial states.
+    fn reset(&mut self, indices: &[usize], bounds: Option<[f64; 2]>, rngs: &mut [SubEnvRng]);
+
+    /// All observations, and the infos of a reset of these sub-environments.
+    fn observe<'py>(&self, py: Python<'py>, indices: &[usize]) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyDict>)>;
+
+    /// The two numbers that bound initial states, under the names of Gymnasium's reset options.
+    fn reset_bounds(&self) -> Option<[(&'static str, f64); 2]>;
+
+    fn snapshot<'py>(&self, py: Python<'py>, index: usize) -> PyResult<EnvSnapshot<'py>>;
+}
+
+/// Sub-environments that are copies of `env`.
+pub(crate) fn native_vector_env<E>(
+    py: Python<'_>,
+    env: E,
+    info: EnvInfo<E>,
+    options: VectorOptions,
+) -> PyResult<Box<dyn DynVectorEnv>>
+where
+    E: Env<State: Send + Sync, Action: BatchAction, Observation: BatchObservation + Sync> + Send + Sync + 'static,
+{
+    Ok(Box::new(NativeVectorEnv::new(py, env, info, options)?))
+}
+
+struct NativeVectorEnv<E: Env> {
+    envs: VectorEnv<E>,
+    info: EnvInfo<E>,
+    /// The last actions, and the actions that are being read.
+    actions: [Vec<E::Action>; 2],
+    observations: Vec<E::Observation>,
+    rewards: Vec<f64>,
+    terminated: Vec<bool>,
+    truncated: Vec<bool>,
+    autoreset: Autoreset,
+    /// The arrays that hold the observations where they are not copied.
+    out: Option<Py<PyAny>>,
+}
+
+impl<E> NativeVectorEnv<E>
+where
+    E: Env<Action: BatchAction, Observation: BatchObservation>,
+{
+    fn new(py: Python<'_>, env: E, info: EnvInfo<E>, options: VectorOptions) -> PyResult<Self> {
+        let VectorOptions { num_envs, max_episode_steps, autoreset, copy, threads } = options;
+        let threads = threads.unwrap_or_else(|| {
+            let cores = std::thread::available_parallelism().map_or(1, usize::from);
+            cores.min(num_envs / info.envs_per_thread)
+        });
+        let envs = VectorEnv::new(env, num_envs, max_episode_steps, autoreset, threads);
+        let observations: Vec<_> = envs.states().map(|state| envs.env().observe(state)).collect();
+        let out = if copy { None } else { Some(E::Observation::batched(py, &observations)?.unbind()) };
+        Ok(Self {
+            envs,
+            info,
+            actions: [vec![E::Action::NONE; num_envs], vec![E::Action::NONE; num_envs]],
+            observations,
+            rewards: vec![0.0; num_envs],
+            terminated: vec![false; num_envs],
+            truncated: vec![false; num_envs],
+            autoreset,
+            out,
+        })
+    }
+
+    fn batched_observations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Some(out) = &self.out else { return E::Observation::batched(py, &self.observations) };
+        let out = out.bind(py).clone();
+        E::Observation::write(&self.observations, &out)?;
+        Ok(out)
+    }
+}
+
+impl<E> DynVectorEnv for NativeVectorEnv<E>
+where
+    E: Env<State: Send + Sync, Action: BatchAction, Observation: BatchObservation + Sync> + Send + Sync,
+{
+    fn step<'py>(&mut self, actions: &Bound<'py, PyAny>, rngs: &mut [SubEnvRng]) -> PyResult<VectorStep<'py>> {
+        let py = actions.py();
+        let Self { envs, info, autoreset, .. } = self;
+        if *autoreset == Autoreset::Disabled
+            && let Some(index) = envs.done().position(|done| done)
+        {
+            let text = "is over: reset it first, with options={'reset_mask': ...}";
+            return Err(PyAssertionError::new_err(format!("the episode of sub-environment {index} {text}")));
+        }
+        let inactive = |index| *autoreset == Autoreset::NextStep && envs.is_done(index);
+        E::Action::read(actions, envs.env().num_actions(), &inactive, &mut self.actions[1])?;
+        self.actions.swap(0, 1);
+
+        let buffers = StepBuffers {
+            observations: &mut self.observations,
+            rewards: &mut self.rewards,
+            terminated: &mut self.terminated,
+            truncated: &mut self.truncated,
+        };
+        let actions = &self.actions[0];
+        if envs.threads() > 1 {
+            // Detached, so that a thread that draws from a generator of Python's can attach itself.
+            py.detach(|| envs.step(actions, rngs, buffers));
+        } else {
+            envs.step(actions, rngs, buffers);
+        }
+
+        let infos = Infos::new(py, self.rewards.len());
+        infos.add_final(envs, info)?;
+        infos.add_step(envs, info)?;
+        Ok((
+            self.batched_observations(py)?,
+            PyArray1::from_slice(py, &self.rewards).into_any(),
+            PyArray1::from_slice(py, &self.terminated).into_any(),
+            PyArray1::from_slice(py, &self.truncated).into_any(),
+            infos.dict,
+        ))
+    }
+
+    fn reset(&mut self, indices: &[usize], bounds: Option<[f64; 2]>, rngs: &mut [SubEnvRng]) {
+        for &index in indices {
+            self.envs.reset(index, bounds, &mut rngs[index]);
+        }
+        self.envs.observe(&mut self.observations);
+    }
+
+    fn observe<'py>(&self, py: Python<'py>, indices: &[usize]) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyDict>)> {
+        let infos = Infos::new(py, self.rewards.len());
+        infos.add_reset(&self.envs, &self.info, indices)?;
+        Ok((self.batched_observations(py)?, infos.dict))
+    }
+
+    fn reset_bounds(&self) -> Option<[(&'static str, f64); 2]> {
+        E::RESET_BOUNDS
+    }
+
+    fn snapshot<'py>(&self, py: Python<'py>, index: usize) -> PyResult<EnvSnapshot<'py>> {
+        let (state, elapsed) = (self.envs.state(index), self.envs.elapsed(index));
+        let attributes = PyDict::new(py);
+        let last_action = (elapsed > 0).then(|| self.actions[0][index]);
+        (self.info.snapshot)(&attributes, self.envs.env(), state, last_action)?;
+        let done = self.envs.is_done(index);
+        if done && self.terminated[index] {
+            self.info.terminal_counter.map_or(Ok(()), |name| attributes.set_item(name, 0))?;
+        }
+        Ok((attributes, elapsed, done, self.observations[index].single(py)?))
+    }
+}

@@ -1,0 +1,78 @@
+"""The words of a run's description stand once in Python and once in Rust: the lists are the same."""
+
+from typing import Any, get_args, get_type_hints
+
+import pytest
+
+import qtab
+from qtab import _core, _spec
+from qtab.config import choices
+from qtab.training.resolve import resolve
+
+
+def words(union: Any) -> set[str]:
+    """Returns the tags of a union of typed dictionaries."""
+    return {word for member in get_args(union) for word in get_args(get_type_hints(member)["type"])}
+
+
+def test_the_algorithms_are_the_same_everywhere() -> None:
+    assert set(_core.ALGORITHMS) == set(get_args(choices.Algorithm)) == words(_spec.AlgorithmSpec)
+
+
+def test_the_discretizers_are_the_same_but_for_edges_which_are_sent_as_bins() -> None:
+    assert set(_core.DISCRETIZERS) == words(_spec.DiscretizerSpec)
+    assert set(get_args(choices.DiscretizerName)) == {*_core.DISCRETIZERS, "edges"}
+
+
+def test_the_schedules_are_the_same_and_epsilon_has_none_by_visits() -> None:
+    assert set(_core.SCHEDULES) == set(get_args(choices.LearningRateSchedule)) == words(_spec.LearningRateSpec)
+    assert set(get_args(choices.EpsilonSchedule)) == set(_core.SCHEDULES) - {"visits"} == words(_spec.ScheduleSpec)
+
+
+def spec_with(path: str, value: Any) -> Any:
+    spec: Any = resolve("MountainCar-v0", {"seed": 0, "episodes": 5}).spec()
+    *parents, name = path.split(".")
+    inner = spec
+    for parent in parents:
+        inner[parent] = dict(inner[parent])
+        inner = inner[parent]
+    if value is None:
+        del inner[name]
+    else:
+        inner[name] = value
+    return spec
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "error", "message"),
+    [
+        ("algorithm.type", "qlearning", ValueError, r"^algorithm\.type must be 'q_learning' or .*, got 'qlearning'$"),
+        ("discretizer.type", 3, ValueError, r"^discretizer\.type must be 'round' or 'bins' or .*, got 3$"),
+        ("policy.epsilon.type", "visits", ValueError, r"^policy\.epsilon\.type must be a schedule by the episode"),
+        ("policy.epsilon.value", "much", TypeError, r"^policy\.epsilon\.value: "),
+        ("policy.epsilon.warm_up", 5, ValueError, r"^policy\.epsilon\.warm_up must be less than the 5 episodes"),
+        ("learning_rate.value", None, ValueError, r"^learning_rate\.value must be given$"),
+        ("discretizer.low", [1.0], ValueError, r"^discretizer\.low must be a list of length 2, got length 1$"),
+        ("bit_generator", "Philox", ValueError, r"^bit_generator must be 'PCG64' or 'MT19937', got 'Philox'$"),
+        ("env.type", "remote", ValueError, r"^env\.type must be 'native' or 'python', got 'remote'$"),
+        ("env", 7, TypeError, r"^env must be a dict, got 7$"),
+        ("num_actions", 2, ValueError, r"^num_actions must be 3, the environment's, got 2$"),
+    ],
+)
+def test_a_spec_that_does_not_fit_is_refused_by_the_path_of_the_field(
+    path: str, value: Any, error: type[Exception], message: str
+) -> None:
+    with pytest.raises(error, match=message):
+        _core.Trainer(spec_with(path, value), 0)
+
+
+def test_a_spec_is_a_dict() -> None:
+    with pytest.raises(TypeError, match=r"^spec must be a dict, got None$"):
+        _core.Trainer(None, 0)  # type: ignore[arg-type]
+
+
+def test_a_spec_trains_what_train_trains() -> None:
+    trainer = _core.Trainer(spec_with("episodes", 5), 0)
+    trainer.advance(5)
+    run = qtab.train("MountainCar-v0", seed=0, episodes=5)
+    assert trainer.tables().tobytes() == run.tables.tobytes()

@@ -1,0 +1,77 @@
+"""The pages of the repository: their links and paths exist, their pictures are described, their code runs."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import qtab
+from support.repository import ROOT, tracked_files
+
+PAGES = [path for path in tracked_files(".md") if path.parent in (ROOT, ROOT / "docs")]
+LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
+PYTHON = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
+
+
+def anchor(heading: str) -> str:
+    """The fragment that GitHub gives a heading."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def page_id(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_id)
+def test_links_lead_to_files_and_headings_that_exist(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    anchors = {anchor(heading) for heading in re.findall(r"^#+ (.+)$", text, re.MULTILINE)}
+    for _, _, target in LINK.findall(text):
+        if target.startswith("https://"):
+            continue
+        path, _, fragment = target.partition("#")
+        assert (page.parent / path).exists(), target
+        assert path or fragment in anchors, target
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_id)
+def test_every_picture_has_an_alternative_text(page: Path) -> None:
+    for picture, text, target in LINK.findall(page.read_text(encoding="utf-8")):
+        assert not picture or len(text) > 40, target
+
+
+def test_the_paths_that_contributing_names_exist() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    layout = re.search(r"## Where things are\n\n```\n(.*?)```", text, re.DOTALL)
+    assert layout is not None
+    folder = ROOT
+    paths = []
+    for line in layout.group(1).splitlines():
+        names = re.match(r"( *)(\S+(?: \S+)*)", line)
+        assert names is not None, line
+        if not names.group(1):
+            folder = ROOT / names.group(2).split()[0]
+            paths += [ROOT / name for name in names.group(2).split()]
+        else:
+            paths += [folder / name for name in names.group(2).split()]
+    paths += [ROOT / name for name in re.findall(r"`((?:rust|python|tests|docs)/[\w./-]+)`", text)]
+    assert len(paths) > 30
+    assert [path for path in paths if not path.exists()] == []
+
+
+def test_the_readme_has_its_two_commands() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    for marker, end in (("train", "qtab train --plot rewards.png --save run.npz"), ("test", "-m pytest")):
+        assert re.search(rf"<!-- {marker} -->\n```sh\npython3 -m venv \.venv && .*{re.escape(end)}\n```", text), marker
+
+
+def test_the_readmes_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In order and in one namespace, as a reader would paste it, with fewer seeds."""
+    monkeypatch.chdir(tmp_path)
+    blocks = PYTHON.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+    namespace: dict[str, object] = {}
+    for block in blocks:
+        exec(re.sub(r"seeds=\d+", "seeds=4", block), namespace)  # noqa: S102 - our own page
+    assert len(blocks) > 5
+    assert isinstance(namespace["run"], qtab.Run)
+    assert (tmp_path / "learning_curve.png").stat().st_size > 0
