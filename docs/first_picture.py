@@ -62,7 +62,7 @@ def draw_values(ax: Axes, run: qtab.Run, observations: NDArray[np.float32], step
     for row, velocity in enumerate(velocities):
         for column, position in enumerate(positions):
             state = np.array([position, velocity], np.float32)
-            if visited[run.grid.lit(state)].all():
+            if visited[run.discretizer.active_rows(state)].all():
                 values[row, column] = run.q_values(state).max()
     image = ax.pcolormesh(positions, velocities, values, cmap="viridis", vmax=0, rasterized=True)
     ax.figure.colorbar(image, ax=ax, label="max$_a$ Q(s, a)", pad=0.02)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from qtab.cli.train import _parse
+from qtab.cli.train_arguments import parse_arguments
 from qtab.cli.usage import UsageError
 from qtab.config.explanations import explanations
 from support.command import qtab
@@ -12,7 +12,7 @@ from support.command import qtab
 
 def help_of(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     with pytest.raises(SystemExit) as leaving:
-        _parse([*arguments, "--help"])
+        parse_arguments([*arguments, "--help"])
     assert not leaving.value.code
     return " ".join(capsys.readouterr().out.replace("│", "").split())
 
@@ -50,7 +50,9 @@ def test_help_shows_what_a_run_would_use(
 
 def test_only_the_flags_that_are_given_are_settings(tmp_path: Path) -> None:
     (tmp_path / "run.toml").write_text("episodes = 7\nseed = 1\ninitial_q = [[0.0, 1.0]]\n[env_kwargs]\nx = 1\n")
-    _, env, settings = _parse(["Taxi-v4", "--config", str(tmp_path / "run.toml"), "--seed", "2", "--epsilon", "None"])
+    _, env, settings = parse_arguments(
+        ["Taxi-v4", "--config", str(tmp_path / "run.toml"), "--seed", "2", "--epsilon", "None"]
+    )
     assert env == "Taxi-v4"
     assert settings.pop("initial_q").tolist() == [[0.0, 1.0]]
     assert settings == {"episodes": 7, "seed": 2, "epsilon": None, "env_kwargs": {"x": 1}}
@@ -74,7 +76,7 @@ def test_only_the_flags_that_are_given_are_settings(tmp_path: Path) -> None:
 )
 def test_a_bad_flag_is_named_with_what_fits(arguments: list[str], message: str) -> None:
     with pytest.raises(UsageError) as caught:
-        _parse(arguments)
+        parse_arguments(arguments)
     assert str(caught.value).startswith(message)
 
 

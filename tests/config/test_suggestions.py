@@ -53,7 +53,7 @@ def test_steps_are_not_episodes() -> None:
 
 
 def test_where_nothing_is_near_nothing_is_suggested() -> None:
-    message = "unknown setting 'colour'; help(qtab.Config) lists them all"
+    message = "unknown setting 'colour'; help(qtab.train) lists them all"
     with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
         qtab.Config().replace(colour="red")  # type: ignore[call-arg]
 

@@ -2,11 +2,13 @@
 
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
 from qtab import _core
 from qtab._spec import DiscretizerSpec
+from qtab.reference.discretizers import discretizer as numpy_discretizer
 from qtab.training.resolve import resolve
 
 TILES = {"discretizer": "tiles", "tilings": 8, "tiles": (8, 8)}
@@ -25,9 +27,10 @@ SETTINGS: dict[str, tuple[str, dict[str, Any]]] = {
 def test_a_batch_has_the_rows_of_each_observation(name: str) -> None:
     env, settings = SETTINGS[name]
     resolved = resolve(env, {"seed": 0, **settings})
-    discretizer = _core.Discretizer(resolved.grid.spec())
+    discretizer = _core.Discretizer(resolved.discretizer.spec())
+    reference = numpy_discretizer(gym.make(env), resolved.config)
     rng = np.random.default_rng(0)
-    low, high = resolved.grid.low, resolved.grid.high
+    low, high = resolved.discretizer.low, resolved.discretizer.high
     if low.dtype.kind == "f":
         batch = rng.uniform(low, high, (200, *low.shape)).astype(low.dtype)
     else:
@@ -36,10 +39,10 @@ def test_a_batch_has_the_rows_of_each_observation(name: str) -> None:
     assert rows.dtype == np.int64
     assert rows.shape == (200, discretizer.n_active)
     assert rows.min() >= 0
-    assert rows.max() < discretizer.n_rows == resolved.grid.rows
+    assert rows.max() < discretizer.n_rows == resolved.discretizer.n_rows
     for index, observation in enumerate(batch):
         assert discretizer.active_rows(observation).tolist() == rows[index].tolist()
-        assert resolved.grid.lit(np.asarray(observation)) == rows[index].tolist()
+        assert reference.rows(observation) == rows[index].tolist()
 
 
 def test_every_numeric_dtype_is_converted_as_astype_does() -> None:

@@ -131,7 +131,7 @@ def test_an_observation_outside_is_refused_by_the_run_and_its_component_named(va
 @pytest.mark.parametrize("observation", [0.0, [0.0], [0.0, 0.0, 0.0], [[[-0.5, 0.0]]], [[-0.5]], []])
 def test_an_observation_of_another_shape_is_refused(observation):
     run = qtab.train("MountainCar-v0", episodes=1, seed=0)
-    with pytest.raises(ValueError, match=r"observation must have shape \(2,\), or \(n, 2\) for several, got "):
+    with pytest.raises(ValueError, match=r"observations? must have shape \((n, 2|2,)\), got "):
         run.predict(observation)
 
 

@@ -190,7 +190,7 @@ def test_a_run_refuses_observations_that_are_none():
     run = qtab.train("FrozenLake-v1", **SETTINGS)
     with pytest.raises(ValueError, match=r"observation\[0\] is 16, outside the observation space"):
         run.predict(16)
-    with pytest.raises(ValueError, match=r"observation must have shape \(\), or \(n,\) for several, got \(1, 1\)"):
+    with pytest.raises(ValueError, match=r"observations must have shape \(\) or \(n,\), got \(1, 1\)"):
         run.predict([[3]])
     with pytest.raises(TypeError, match="observation must hold integers"):
         run.predict(3.0)

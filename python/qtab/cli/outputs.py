@@ -1,4 +1,4 @@
-"""What a training command leaves behind: checked before the training, written after it."""
+"""The files, the window and the videos of ``qtab train``: checked before the training, written after it."""
 
 from contextlib import ExitStack, closing
 from pathlib import Path
@@ -17,23 +17,23 @@ from qtab.rendering.window import open_window
 from qtab.results.run import Run
 
 DEFAULT_SHOWN = 20
-"""As many episodes as the article's code shows."""
+"""The number of episodes that ``--record`` writes without ``--watch``, as many as the article's code shows."""
 
 
 class Outputs:
-    """Files, a window, videos. A context: it closes what it opened.
+    """Where a run goes. A context manager, which closes the window and the videos.
 
     Args:
-        config: The resolved config of the run to come.
-        save: Where the run goes; None nowhere.
-        plot: Where the picture goes; None nowhere.
-        watch: How many episodes to show in a window; None shows none.
-        record: Where videos of them go; None nowhere.
+        config: The resolved config of the run.
+        save: The file to save the run to, or None.
+        plot: The file to draw the learning curve to, or None.
+        watch: The number of last episodes to show in a window, or None.
+        record: The folder for videos of the last episodes, or None.
 
     Raises:
         ModuleNotFoundError: if an optional library is missing; it names the ``pip install``.
         OSError: if a path cannot be written.
-        ValueError: if there is no display to watch on, or a picture cannot be made.
+        ValueError: if there is no display for the window, or the environment cannot be rendered.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class Outputs:
         if save is not None:
             check_writable("save", save)
         self.shown = watch or (DEFAULT_SHOWN if record is not None else 0)
-        """How many of the last episodes are played again."""
+        """The number of last episodes to replay."""
         with ExitStack() as opened:
             self._screen = None if watch is None else opened.enter_context(closing(open_window(config)))
             self._recorder = None if record is None else opened.enter_context(closing(VideoRecorder(config, record)))
@@ -63,10 +63,10 @@ class Outputs:
         self._opened.__exit__(kind, error, traceback)
 
     def keep(self, run: Run, optimum: Optimum | None = None) -> None:
-        """Saves and plots a run, a finished or an interrupted one, beside its optimum, and says where.
+        """Saves and plots a run, finished or interrupted, and prints where.
 
         Raises:
-            OSError: if a file cannot be written after all.
+            OSError: if a file cannot be written.
         """
         if self._save is not None:
             run.save(self._save)
@@ -76,15 +76,24 @@ class Outputs:
             print_above(f"Saved the plot to {self._plot}")
 
     def show(self, run: Run) -> None:
-        """Plays the recorded episodes to videos and on the screen."""
+        """Replays the recorded episodes in videos and in the window."""
         different = 0
         if self._recorder is not None:
             different = self._recorder.record(run)
-            print_above(f"Saved {len(run.recordings)} videos to {self._record}")
+            print_above(f"Saved {counted(len(run.recordings), 'video')} to {self._record}")
         if self._screen is not None:
-            print_above(f"Showing the last {len(run.recordings)} episodes")
+            print_above(f"Showing {last_episodes(len(run.recordings))}")
             different = replay_all(self._screen, run)
         if different:
-            print_above(
-                f"{different} of them went another way than in training: the environment keeps more than its random"
-            )
+            returned = f"{different} of them returned something else than in training"
+            print_above(f"{returned}: the environment keeps state besides its random generator")
+
+
+def counted(count: int, noun: str) -> str:
+    """Returns a number with its noun, such as ``1 episode`` or ``1,000 episodes``."""
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+
+
+def last_episodes(count: int) -> str:
+    """Returns ``the last episode`` or, for more, ``the last 100 episodes``."""
+    return "the last episode" if count == 1 else f"the last {counted(count, 'episode')}"

@@ -12,14 +12,14 @@ from qtab.config import config
 from qtab.config.config import DEFAULTS, Config
 from qtab.config.options import OPTIONS, listed
 
-_FIRST_OF_GROUP = {
-    "Environment": "env",
-    "Run": "episodes",
-    "Learning": "algorithm",
-    "Exploration": "exploration",
-    "Discretizer": "discretizer",
+_TITLES = {
+    "env": "Environment",
+    "episodes": "Run",
+    "algorithm": "Learning",
+    "exploration": "Exploration",
+    "discretizer": "Discretizer",
 }
-"""The config's fields are in groups: the title of each, and the field with which it begins."""
+"""The title of each group of settings, by the field of the config with which the group begins."""
 
 
 @cache
@@ -58,10 +58,9 @@ def groups(names: Iterable[str]) -> dict[str, list[str]]:
     """Returns the settings of each group by its title, in the order of the config; only those of ``names``."""
     wanted = set(names)
     grouped: dict[str, list[str]] = {}
-    titles = {first: title for title, first in _FIRST_OF_GROUP.items()}
     title = ""
     for name in DEFAULTS:
-        title = titles.get(name, title)
+        title = _TITLES.get(name, title)
         if name in wanted:
             grouped.setdefault(title, []).append(name)
     return grouped

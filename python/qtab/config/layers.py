@@ -2,6 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any, TypeAlias
 
 from gymnasium.envs.registration import EnvSpec
@@ -20,7 +21,7 @@ def collect(
     """Checks the names of a call's settings; returns its environment and the config that it starts from.
 
     Args:
-        function: The function that was called. Its signature tells which settings it takes.
+        function: The function that was called. Its signature shows which settings it takes.
         env: The environment given; None takes the config's.
         config: The config given. With another environment, its ``env_kwargs`` and ``preset`` do not count.
         settings: The keywords given.
@@ -28,7 +29,7 @@ def collect(
     Raises:
         TypeError: for an unknown setting, or a config that is neither a Config nor a mapping.
     """
-    arguments = inspect.signature(function).parameters
+    arguments = _arguments(function)
     check_names(settings, arguments)
     if config is None:
         return env, {}
@@ -44,6 +45,11 @@ def collect(
     base = dict(config)
     named = base.pop("env", None)
     return named if env is None else env, base
+
+
+@cache
+def _arguments(function: Callable[..., Any]) -> frozenset[str]:
+    return frozenset(inspect.signature(function).parameters)
 
 
 def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:

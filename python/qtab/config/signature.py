@@ -10,14 +10,14 @@ from qtab.config.explanations import applicability, default, explanations, group
 F = TypeVar("F", bound=Callable[..., Any])
 
 _INTRODUCTION = """\
-A preset's values replace the defaults of the settings below. Options, the settings that apply only beside certain
-choices, raise an error beside others."""
+The settings have the defaults of the signature unless ``config`` or a preset gives other values. A setting that does
+not apply to the choices made raises an error."""
 
 
 def with_settings(function: F) -> F:
     """Shows the settings that a function takes as ``**settings: Unpack[...]`` in its signature and its docstring.
 
-    Type checkers read the annotation, and need no help. At run time ``inspect.signature`` reports each setting as a
+    Type checkers read the annotation. At run time ``inspect.signature`` reports each setting as a
     keyword-only parameter with its type and default, and the docstring ends with their explanations.
     """
     signature = inspect.signature(function)
@@ -32,17 +32,11 @@ def with_settings(function: F) -> F:
     ]
     function.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
     if function.__doc__ is not None:
-        sections = [_section(title, names) for title, names in grouped.items()]
-        parts = [inspect.cleandoc(function.__doc__), _INTRODUCTION, *sections]
-        function.__doc__ = "\n\n".join(parts) + "\n"
+        sections = ["\n".join([f"{title}:", *map(_entry, names)]) for title, names in grouped.items()]
+        function.__doc__ = "\n\n".join([inspect.cleandoc(function.__doc__), _INTRODUCTION, *sections, ""])
     return function
 
 
-def _section(title: str, names: list[str]) -> str:
-    entries = [_entry(name) for name in names]
-    return "\n".join([f"{title}:", *entries])
-
-
 def _entry(name: str) -> str:
-    text = " ".join(filter(None, [explanations().get(name, ""), applicability(name)]))
-    return textwrap.fill(f"{name}: {text}", 112, initial_indent=" " * 4, subsequent_indent=" " * 8)
+    text = f"{name}: {explanations().get(name, '')} {applicability(name)}".strip()
+    return textwrap.fill(text, 112, initial_indent=" " * 4, subsequent_indent=" " * 8)

@@ -22,7 +22,7 @@ _OTHER_NAMES = {
     "planning_steps": ("n_planning", "n_planning_steps", "planning"),
     "time_weight": ("kappa",),
     "initial_q": ("init_q", "q_init", "q_table", "initial_value", "optimistic_value"),
-    "exploration": ("policy", "policy_type", "behaviour_policy", "behavior_policy"),
+    "exploration": ("policy", "policy_type", "behaviour_policy", "behavior_policy", "policy_kwargs"),
     "epsilon": ("eps", "exploration_rate", "epsilon_start", "eps_start", "exploration_initial_eps"),
     "min_epsilon": ("epsilon_min", "epsilon_end", "eps_min", "eps_end", "exploration_final_eps", "final_epsilon"),
     "epsilon_decay": ("eps_decay", "exploration_decay"),
@@ -71,6 +71,6 @@ def meant(name: str, known: Collection[str]) -> str | None:
 def _suggestion(name: str, known: Collection[str]) -> str:
     found = meant(name, known)
     if found is None:
-        return "; help(qtab.Config) lists them all"
+        return "; help(qtab.train) lists them all"
     counted = " qtab counts episodes, not steps" if name in _STEPS else ""
     return f" (did you mean {found!r}?{counted})"
