@@ -1,4 +1,4 @@
-"""What the bare wheel must do, in an environment with its required dependencies alone."""
+"""What the wheel must do in an environment that has its required dependencies only."""
 
 from importlib.metadata import distributions
 
@@ -6,7 +6,7 @@ import gymnasium
 import qtab
 
 extras = {"matplotlib", "tyro", "tqdm", "moviepy", "pygame"} & {found.metadata["Name"] for found in distributions()}
-assert not extras, f"the wheel requires {extras}"
+assert not extras, f"the wheel installed {extras}"
 
 run = qtab.train("MountainCar-v0", seed=0, episodes=200)
 assert qtab.verify(run, episodes=20).equal
@@ -24,4 +24,4 @@ try:
 except ModuleNotFoundError as error:
     assert "pip install 'qtab[plot]'" in str(error)
 else:
-    raise AssertionError("a plot without matplotlib")
+    raise AssertionError("qtab.plot ran without matplotlib")
