@@ -107,12 +107,12 @@ def choice(name: str, value: Any, choices: Collection[str]) -> str:
         TypeError: if it is not a string.
         ValueError: if it is another string.
     """
-    listed = ", ".join(map(repr, choices))
+    if isinstance(value, str) and value in choices:
+        return value
+    message = f"{name} must be one of {', '.join(map(repr, choices))}, got {value!r}"
     if not isinstance(value, str):
-        raise TypeError(f"{name} must be one of {listed}, got {value!r}")
-    if value not in choices:
-        raise ValueError(f"{name} must be one of {listed}, got {value!r}{did_you_mean(value, choices)}")
-    return value
+        raise TypeError(message)
+    raise ValueError(f"{message}{did_you_mean(value, choices)}")
 
 
 def instance(name: str, value: Any, kind: type) -> None:

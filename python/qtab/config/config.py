@@ -160,9 +160,7 @@ class Config:
 
     def __post_init__(self) -> None:
         """Checks the values and turns NumPy's numbers into Python's."""
-        fields = {field.name: getattr(self, field.name) for field in dataclasses.fields(Config)}
-        for name, value in validated(fields).items():
-            object.__setattr__(self, name, value)
+        vars(self).update(validated(vars(self)))
 
     def replace(self, **changes: "Unpack[ConfigSettings]") -> "Config":
         """Returns a copy with some settings changed.

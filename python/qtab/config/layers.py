@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 from gymnasium.envs.registration import EnvSpec
 
 from qtab.config.config import DEFAULTS, Config, replace_checked
-from qtab.config.options import is_set, mismatch
+from qtab.config.options import applicable, is_set
 from qtab.config.unknown import check_names
 
 Base: TypeAlias = Config | Mapping[str, Any]
@@ -59,11 +59,6 @@ def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:
     not apply beside the other settings, are left out.
     """
     if isinstance(base, Config):
-        fields = vars(base)
-        wanted = {**fields, **settings}
-        base = {
-            name: value
-            for name, value in fields.items()
-            if name != "env" and is_set(value) and not mismatch(name, value, wanted)
-        }
+        given = {name: value for name, value in vars(base).items() if name != "env" and is_set(value)}
+        base = applicable(given, {**vars(base), **settings})
     return {**base, **settings}

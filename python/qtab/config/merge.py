@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from qtab.config.config import DEFAULTS, Config
-from qtab.config.options import mismatch
+from qtab.config.options import applicable
 from qtab.config.presets import preset
 from qtab.config.unknown import check_names
 
@@ -35,9 +35,8 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
     if name is not None and not isinstance(name, str):
         raise TypeError(f"preset must be a name, got {name!r}")
     name, start = preset(env, name)
-    wanted = {**DEFAULTS, **start, **asked}
-    applicable = {field: value for field, value in start.items() if not mismatch(field, value, wanted)}
-    return Config(**{**applicable, **asked, "env": env, "preset": name})
+    start = applicable(start, {**DEFAULTS, **start, **asked})
+    return Config(**{**start, **asked, "env": env, "preset": name})
 
 
 def merge(env: str, *layers: Mapping[str, Any]) -> Config:

@@ -99,6 +99,11 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
     return None
 
 
+def applicable(fields: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns those of the settings in ``fields`` that go with the other settings."""
+    return {name: value for name, value in fields.items() if not mismatch(name, value, others)}
+
+
 def other_choice(name: str, value: str, excluded: Sequence[str], where: str) -> str:
     """Returns the message for a choice that is excluded where something else was chosen."""
     possible = [word for word in CHOICES[name] if word not in excluded]
