@@ -68,7 +68,7 @@ def cycle(graph: Graph) -> list[str]:
     return []
 
 
-def test_few_modules_stand_directly_in_the_package() -> None:
+def test_few_modules_lie_directly_in_the_package() -> None:
     top = sorted(path.name for path in PACKAGE.glob("*.py"))
     assert len(top) <= MAX_TOP_LEVEL_MODULES, top
 
