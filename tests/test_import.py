@@ -24,7 +24,7 @@ def test_importing_loads_no_plotting_video_or_command_line_library():
     assert in_a_process(code).strip() == "[]"
 
 
-def test_training_loads_none_either():
+def test_training_loads_no_plotting_video_or_command_line_library():
     code = f"""
 import sys, qtab
 qtab.evaluate(qtab.train("MountainCar-v0", seed=0, episodes=3), 2, seed=0)
@@ -38,7 +38,7 @@ def test_importing_registers_the_environments():
     assert "qtab/MountainCar-v0" in in_a_process(code)
 
 
-def test_importing_leaves_numpys_global_stream_alone():
+def test_importing_does_not_draw_from_numpys_global_generator():
     code = """
 import numpy as np
 np.random.seed(3); expected = np.random.random(); np.random.seed(3)
@@ -50,7 +50,7 @@ print(np.random.random() == expected)
     assert in_a_process(code).strip() == "True"
 
 
-def test_a_missing_plotting_library_is_named_with_the_command_that_brings_it():
+def test_a_missing_plotting_library_is_named_with_the_command_that_installs_it():
     code = """
 import sys
 sys.modules["matplotlib"] = None
@@ -74,7 +74,7 @@ def test_every_public_name_resolves_and_is_documented(name):
     assert name in dir(qtab)
 
 
-def test_no_module_takes_the_place_of_a_public_name():
+def test_no_module_shadows_a_public_name():
     code = """
 import importlib, pkgutil, types, qtab
 for module in pkgutil.iter_modules(qtab.__path__):
@@ -118,11 +118,11 @@ def test_an_unknown_name_is_an_attribute_error():
         _ = qtab.trian  # type: ignore[attr-defined]
 
 
-def test_the_version_is_the_distributions():
+def test_the_version_is_that_of_the_distribution():
     from importlib.metadata import version
 
     assert qtab.__version__ == version("qtab")
 
 
-def test_the_extension_says_how_it_was_built():
+def test_the_extension_tells_its_build_profile():
     assert _core.BUILD_PROFILE in ("debug", "release")

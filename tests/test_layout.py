@@ -1,6 +1,8 @@
 """The layout of the repository: few modules at the top, imports in one direction, short files."""
 
 import ast
+import re
+from collections import Counter
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -66,7 +68,7 @@ def cycle(graph: Graph) -> list[str]:
     return []
 
 
-def test_few_modules_stand_directly_in_the_package() -> None:
+def test_few_modules_lie_directly_in_the_package() -> None:
     top = sorted(path.name for path in PACKAGE.glob("*.py"))
     assert len(top) <= MAX_TOP_LEVEL_MODULES, top
 
@@ -90,6 +92,15 @@ def test_modules_do_not_import_each_other_in_a_circle(with_functions: bool) -> N
 
 def test_a_circle_of_imports_would_be_found() -> None:
     assert cycle({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}})
+
+
+@pytest.mark.parametrize("crate", ["core", "python"])
+def test_no_two_rust_types_have_the_same_name(crate: str) -> None:
+    defined = re.compile(r"^(?:pub(?:\([^)]*\))? )?(?:struct|enum|trait|union) (\w+)", re.MULTILINE)
+    sources = [path for path in tracked_files(".rs") if path.is_relative_to(ROOT / "rust" / crate / "src")]
+    names = Counter(name for path in sources for name in defined.findall(path.read_text(encoding="utf-8")))
+    assert len(names) > 10, "the sources were not found"
+    assert [name for name, count in names.items() if count > 1] == []
 
 
 def test_no_source_file_is_long() -> None:

@@ -29,7 +29,7 @@ from qtab.bench.timing import Benchmark, Timings
 from support.command import qtab, refused
 
 
-def test_the_numba_loop_is_the_articles_loop_to_the_bit() -> None:
+def test_the_numba_loop_equals_the_articles_loop_to_the_bit() -> None:
     run = package.train("MountainCar-v0", episodes=300, seed=4, bit_generator="MT19937", backend="rust")
     starts = np.random.default_rng(4).uniform(-0.6, -0.4, 300)
     table, returns, steps = article_numba.q_learning(starts, 4, 0.2, 0.9, 0.8, 0.0)
@@ -38,7 +38,7 @@ def test_the_numba_loop_is_the_articles_loop_to_the_bit() -> None:
     assert steps == run.episode_lengths.sum()
 
 
-def test_the_plain_loop_is_the_articles_loop_to_the_bit() -> None:
+def test_the_plain_loop_equals_the_articles_loop_to_the_bit() -> None:
     run = package.train("MountainCar-v0", episodes=30, seed=4)
     table, steps = article.q_learning(gym.make("MountainCar-v0"), 0.2, 0.9, 0.8, 0.0, 30, 4)
     assert table.tobytes() == run.q_table.tobytes()
@@ -46,7 +46,7 @@ def test_the_plain_loop_is_the_articles_loop_to_the_bit() -> None:
 
 
 @pytest.mark.parametrize("cutoff", [0.0, learners.CUTOFF])
-def test_the_numba_loop_of_sarsa_lambda_is_ours_to_the_bit(cutoff: float) -> None:
+def test_the_numba_loop_of_sarsa_lambda_equals_ours_to_the_bit(cutoff: float) -> None:
     settings: dict[str, Any] = {**learners.SETTINGS[learners.CUT], "episodes": 6, "trace_cutoff": cutoff}
     run = package.train("MountainCar-v0", seed=4, bit_generator="MT19937", **settings)
     starts = np.random.default_rng(4).uniform(-0.6, -0.4, 6)
@@ -70,14 +70,14 @@ def test_numba_compiles_the_loops(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("name", environments.names())
-def test_the_plain_loop_by_a_preset_is_ours_to_the_bit(name: str) -> None:
+def test_the_plain_loop_with_a_preset_equals_ours_to_the_bit(name: str) -> None:
     run = package.train(name, episodes=30, seed=4)
     table, steps = plain_loop.q_learning(name, 30, 4)
     assert table.tobytes() == run.q_table.tobytes()
     assert steps == run.episode_lengths.sum()
 
 
-def test_benchmarks_take_turns_and_ratios_are_taken_within_a_round() -> None:
+def test_benchmarks_alternate_and_ratios_are_computed_within_a_round() -> None:
     turns: list[str] = []
 
     def benchmark(name: str) -> Benchmark:
@@ -95,7 +95,7 @@ def test_benchmarks_take_turns_and_ratios_are_taken_within_a_round() -> None:
     assert drifting.median("slow") == 30.0
 
 
-def test_what_learning_adds_is_a_difference_within_each_round() -> None:
+def test_the_overhead_of_learning_is_a_difference_within_each_round() -> None:
     times = {overhead.BARE: np.array([100.0, 400.0, 200.0]), overhead.LEARNING: np.array([350.0, 600.0, 410.0])}
     assert overhead.sentence(Timings(times)).startswith("learning adds 210 ns per step")
 
@@ -113,7 +113,7 @@ def test_every_benchmark_counts_its_steps() -> None:
     assert [loop(0) for loop in overhead.python_stepping().values()] == [idle, idle]
 
 
-def test_vector_environments_count_the_steps_of_all_and_are_compared_with_their_own_kind() -> None:
+def test_vector_benchmarks_count_all_steps_and_are_compared_within_their_environment() -> None:
     steps = vector_envs.stepping()
     assert steps[vector_envs.QTAB_POLES](0) == 200 * 4096
     assert steps[vector_envs.QTAB_ONE](0) == 10_000
@@ -174,7 +174,7 @@ def test_the_bench_prints_its_tables_with_versions_and_build(small_rounds: None)
     assert f"build {versions()['build']}" in printed
 
 
-def test_a_part_is_timed_alone(tmp_path: Path) -> None:
+def test_a_part_can_be_timed_separately(tmp_path: Path) -> None:
     done = qtab("bench", "--rounds", "1", "--part", "stepping", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert f"\n{mountain_car.QTAB_STEP}  " in done.stdout
@@ -183,7 +183,7 @@ def test_a_part_is_timed_alone(tmp_path: Path) -> None:
     assert not any(name in done.stdout for name in (mountain_car.TRAIN, environments.FIRST, learners.Q_LEARNING))
 
 
-def test_a_learners_time_is_a_multiple_of_q_learnings() -> None:
+def test_the_time_of_a_learner_is_relative_to_q_learning() -> None:
     times = dict.fromkeys(learners.SETTINGS, np.array([30.0, 60.0])) | {learners.Q_LEARNING: np.array([10.0, 20.0])}
     times |= dict.fromkeys(learners.NUMBA, np.array([90.0, 180.0]))
     rows = {name: columns for name, *columns in learners.lines(Timings(times))}
@@ -191,7 +191,7 @@ def test_a_learners_time_is_a_multiple_of_q_learnings() -> None:
     assert rows[learners.Q_LEARNING] == ["15.0", "1.00", ""]
 
 
-def test_without_numba_the_table_says_how_to_get_it_and_a_debug_build_is_warned_of() -> None:
+def test_the_report_names_the_extra_for_numba_and_warns_of_a_debug_build() -> None:
     names = [mountain_car.ARTICLE, mountain_car.TRAIN, mountain_car.GYMNASIUM_STEP, mountain_car.QTAB_STEP]
     names += [mountain_car.GYMNASIUM_MAKE, mountain_car.QTAB_MAKE]
     timings = Timings({name: np.array([1.0]) for name in names})

@@ -42,7 +42,7 @@ def shortest(env):
     raise AssertionError("no way")
 
 
-def test_the_shortest_way_through_the_wind_takes_fifteen_steps():
+def test_the_shortest_path_through_the_windy_grid_world_takes_fifteen_steps():
     env = qtab.book.windy_grid_world()
     assert shortest(env) == 15
     assert {reward for row in env.P.values() for [(_, _, reward, _)] in row.values()} == {-1.0}
@@ -53,7 +53,7 @@ def test_the_shortest_way_through_the_wind_takes_fifteen_steps():
     assert env.P[47][down] == [(1.0, 37, -1.0, True)]  # back by the wind: into the goal
 
 
-def test_the_shortest_way_through_the_maze_takes_fourteen_steps():
+def test_the_shortest_path_through_the_maze_takes_fourteen_steps():
     env = qtab.book.dyna_maze()
     assert shortest(env) == 14
     up, right, _, left = range(4)
@@ -63,7 +63,7 @@ def test_the_shortest_way_through_the_maze_takes_fourteen_steps():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_an_experiment_is_what_the_reference_computes(name):
+def test_an_experiment_equals_the_reference(name):
     experiment = qtab.book.find(name)
     lines = {setting.line: setting for setting in experiment.settings}
     for setting in {id(setting): setting for setting in (*list(lines.values())[:1], experiment.settings[-1])}.values():
@@ -95,7 +95,7 @@ def test_an_experiment_makes_a_table_and_a_picture(name, tmp_path):
     assert len(ax.lines) == sum(made.drawn for made in result.lines)
 
 
-def test_the_cost_to_go_grows_to_what_it_costs():
+def test_the_cost_to_go_grows_towards_the_true_cost():
     result = qtab.book.run("10.1")
     largest = [made.mean[0] for made in result.lines]
     assert result.runs == result.lines[0].runs == 1
@@ -106,7 +106,7 @@ def test_the_cost_to_go_grows_to_what_it_costs():
         result.plot(result.plot())
 
 
-def test_neither_threads_nor_other_runs_change_a_run():
+def test_threads_and_other_runs_do_not_change_a_run():
     several = qtab.book.run("8.2", runs=3, seed=7, threads=2)
     for threads in (1, 3):
         again = qtab.book.run("8.2", runs=3, seed=7, threads=threads)
@@ -135,7 +135,7 @@ def test_a_run_that_diverges_counts_as_truncated_where_train_raises():
     assert outcome.truncated[0, len(finished) :].all()
 
 
-def test_another_error_is_not_swallowed():
+def test_other_errors_are_raised():
     config: dict[str, Any] = {"discretizer": "tiles", "episodes": 1, "max_episode_steps": 5, "learning_rate": 3.0}
     with pytest.raises(ValueError, match="learning_rate"):
         runner.train_runs("MountainCar-v0", config, [0], 1)
@@ -159,7 +159,7 @@ def test_planning_needs_fewer_episodes():
     assert all(mean[-10:].mean() < 22 for mean in (none, some, many))
 
 
-def test_sarsa_learns_the_safe_way_along_the_cliff():
+def test_sarsa_learns_the_safe_path_along_the_cliff():
     result = qtab.book.run("6.6", runs=20)
     assert line(result, "Sarsa").mean[-200:].mean() > -32 > -40 > line(result, "Q-learning").mean[-200:].mean()
 
@@ -178,7 +178,7 @@ def test_expected_sarsa_wins_on_the_cliff_and_full_steps_ruin_sarsa():
     assert interim[0] < interim[1] < interim[2]
 
 
-def test_an_intermediate_n_does_best():
+def test_an_intermediate_n_learns_fastest():
     best = {n: -measured("10.4", f"n = {n}", alpha, 40).mean() for n, alpha in ((1, 1.13), (4, 0.8), (16, 0.4))}
     assert best[4] < best[1]
     assert best[4] < best[16]
@@ -189,7 +189,7 @@ def test_without_traces_sarsa_lambda_is_one_step_sarsa():
     assert traces.tobytes() == steps.tobytes()
 
 
-def test_true_online_learns_soonest_and_accumulating_traces_diverge():
+def test_true_online_learns_fastest_and_accumulating_traces_diverge():
     result = qtab.book.run("12.11", runs=10)
     true_online, clearing, replacing, accumulating = result.lines
     small = slice(0, 4)
@@ -201,7 +201,7 @@ def test_true_online_learns_soonest_and_accumulating_traces_diverge():
     assert (accumulating.mean[5:9] < -4000).all()
 
 
-def test_a_whole_figure_has_the_books_counts():
+def test_a_complete_figure_has_the_books_number_of_runs():
     counts = {name: experiment.runs for name, experiment in qtab.book.EXPERIMENTS.items()}
     assert counts["figure-6.3"] == 50_000
     assert counts["figure-6.5"] == 10_000
@@ -212,7 +212,7 @@ def test_a_whole_figure_has_the_books_counts():
     assert set(limits.values()) == {5_000, 20_000}
 
 
-def test_a_number_finds_its_experiment():
+def test_an_experiment_is_found_by_its_number():
     assert qtab.book.find("10.4") is qtab.book.find("Figure 10.4") is qtab.book.EXPERIMENTS["figure-10.4"]
     with pytest.raises(ValueError, match=r"example-6\.5 or figure-6\.5, got '6\.5', which is both"):
         qtab.book.find("6.5")
@@ -245,7 +245,7 @@ def outcome(*lengths):
     return runner.EpisodeLog(-steps.astype(float), steps, cut, cut[:, 0])
 
 
-def test_what_is_measured():
+def test_measures_of_runs_are_computed_as_documented():
     from qtab.book import measures
     from qtab.book.figures import example_6_5, figure_6_5
 

@@ -30,7 +30,7 @@ def test_an_experiment_prints_its_settings_and_its_table(tmp_path):
     assert rows in done.stdout
 
 
-def test_a_whole_figure_says_its_count(tmp_path):
+def test_a_complete_figure_prints_its_number_of_runs(tmp_path):
     done = qtab_here("book", "8.2", cwd=tmp_path)
     assert "30 runs of each setting, seeds from 0" in done.stdout
     assert "FEWER" not in done.stdout
@@ -78,7 +78,7 @@ sys.exit(main(["book", "6.3", "--plot", "cliff.png"]))
 """
 
 
-def test_ctrl_c_ends_it_and_leaves_no_file(tmp_path):
+def test_ctrl_c_stops_an_experiment_and_leaves_no_file(tmp_path):
     done = subprocess.run(
         [sys.executable, "-c", INTERRUPTED], cwd=tmp_path, env=environment(tmp_path), capture_output=True, check=False
     )
@@ -86,5 +86,5 @@ def test_ctrl_c_ends_it_and_leaves_no_file(tmp_path):
     assert not (tmp_path / "cliff.png").exists()
 
 
-def test_a_picture_of_no_experiment_is_refused(tmp_path):
+def test_a_plot_without_an_experiment_is_refused(tmp_path):
     assert "NAME must be given" in refused("book", "--plot", "maze.png", cwd=tmp_path)

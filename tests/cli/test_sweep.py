@@ -22,7 +22,7 @@ episodes = 30
 """
 
 
-def test_a_study_is_swept_goes_on_and_is_reported(tmp_path, capsys):
+def test_a_study_is_swept_resumed_and_reported(tmp_path, capsys):
     study = tmp_path / "study.toml"
     study.write_text(STUDY)
     assert main(["sweep", str(study)]) == 0
@@ -75,7 +75,7 @@ def test_a_bad_study_is_refused_in_one_line(tmp_path, capsys, text, message):
     assert message in said
 
 
-def test_what_is_no_store_is_refused(tmp_path, capsys):
+def test_files_that_are_not_stores_are_refused(tmp_path, capsys):
     assert main(["report", str(tmp_path / "none.db")]) == 2
     (tmp_path / "x.db").write_text("x" * 5000)
     assert main(["report", str(tmp_path / "x.db")]) == 2

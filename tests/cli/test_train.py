@@ -14,7 +14,7 @@ import qtab as package
 from support.command import QTAB, environment, qtab, qtab_here, refused
 
 
-def test_train_prints_averages_as_the_article_does_and_saves_what_the_api_returns(tmp_path: Path) -> None:
+def test_train_prints_the_articles_averages_and_saves_the_run(tmp_path: Path) -> None:
     done = qtab("train", "--seed", "3", "--episodes", "450", "--save", "run.npz", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
@@ -75,7 +75,7 @@ def test_flags_win_over_the_file_and_the_file_over_the_preset(tmp_path: Path) ->
     assert (config.discount, config.terminal_update, config.env_kwargs) == (0.99, "assign", {"goal_velocity": 0.01})
 
 
-def test_pairs_and_negative_ranges_reach_the_run(tmp_path: Path) -> None:
+def test_env_kwargs_and_negative_ranges_are_parsed(tmp_path: Path) -> None:
     done = qtab_here(
         *("train", "--episodes", "3", "--env-kwargs", "goal_velocity", "-0.01", "--initial-q", "-2", "-1"),
         *("--save", "a.npz"),
@@ -86,7 +86,7 @@ def test_pairs_and_negative_ranges_reach_the_run(tmp_path: Path) -> None:
     assert (config.env_kwargs, config.initial_q) == ({"goal_velocity": -0.01}, (-2.0, -1.0))
 
 
-def test_a_saved_run_goes_on_from_its_table(tmp_path: Path) -> None:
+def test_training_continues_from_the_table_of_a_file(tmp_path: Path) -> None:
     first = package.train("MountainCar-v0", seed=0, episodes=50)
     first.save(tmp_path / "first.npz")
     for settings in (["--initial-q", "first.npz"], ["--config", "run.toml"]):
@@ -97,7 +97,7 @@ def test_a_saved_run_goes_on_from_its_table(tmp_path: Path) -> None:
         assert package.load(tmp_path / "more.npz").q_table.tobytes() == more.q_table.tobytes()
 
 
-def test_an_environment_in_python_is_said_to_be_and_so_is_the_limit_it_lacks(tmp_path: Path) -> None:
+def test_the_header_reports_python_stepping_and_the_default_time_limit(tmp_path: Path) -> None:
     done = qtab("train", "toys:Walk-v0", "--scale", "1", "--episodes", "3", "--seed", "0", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     first, second, *_ = done.stdout.splitlines()
@@ -109,7 +109,7 @@ def test_an_environment_in_python_is_said_to_be_and_so_is_the_limit_it_lacks(tmp
 
 
 @pytest.mark.parametrize("arguments", [["CliffWalking"], ["--seed", "0", "CliffWalking"], ["--env", "CliffWalking"]])
-def test_an_id_without_a_version_is_the_newest_with_its_preset(tmp_path: Path, arguments: list[str]) -> None:
+def test_an_id_without_a_version_means_the_newest_with_its_preset(tmp_path: Path, arguments: list[str]) -> None:
     done = qtab("train", *arguments, "--episodes", "2", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("CliffWalking-v1 in Rust, preset tuned, 2 episodes, seed ")
@@ -119,7 +119,7 @@ def test_an_id_without_a_version_is_the_newest_with_its_preset(tmp_path: Path, a
 
 
 @pytest.mark.parametrize("name", ["rewards.jpg", "rewards.png", "rewards.pdf", "rewards.svg"])
-def test_plots_are_written_in_the_format_of_their_ending(tmp_path: Path, name: str) -> None:
+def test_plots_are_written_in_the_format_of_their_extension(tmp_path: Path, name: str) -> None:
     done = qtab_here("train", "--episodes", "300", "--plot", name, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     starts = {"jpg": b"\xff\xd8\xff", "png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}
@@ -176,12 +176,12 @@ def test_bad_usage_ends_the_process_with_exit_code_2(tmp_path: Path) -> None:
         ("episodes =", "must be a TOML file, got 'run.toml'"),
     ],
 )
-def test_a_bad_config_file_is_named_with_what_is_wrong(tmp_path: Path, text: str, said: str) -> None:
+def test_a_bad_config_file_is_refused_with_the_reason(tmp_path: Path, text: str, said: str) -> None:
     (tmp_path / "run.toml").write_text(text)
     assert said in refused("train", "--config", "run.toml", cwd=tmp_path)
 
 
-def test_an_unknown_command_is_refused_and_the_known_ones_named(tmp_path: Path) -> None:
+def test_an_unknown_command_is_refused_with_the_known_ones(tmp_path: Path) -> None:
     assert "unknown command 'fly'; use train, verify, optimum" in refused("fly", cwd=tmp_path)
     assert "'trian' (did you mean 'train'?)" in refused("trian", cwd=tmp_path)
 
@@ -192,7 +192,7 @@ def test_version_and_help(tmp_path: Path) -> None:
     assert qtab_here(cwd=tmp_path).returncode == 2
 
 
-def test_an_environment_that_fails_leaves_what_was_learned_and_one_line(tmp_path: Path) -> None:
+def test_a_failing_environment_saves_the_run_and_prints_one_line(tmp_path: Path) -> None:
     done = qtab(
         *("train", "toys:Walk-v0", "--scale", "1", "--episodes", "5000", "--env-kwargs", "fail_after", "2000"),
         *("--save", "part.npz"),
@@ -267,7 +267,7 @@ def test_verify_reports_equality_and_exits_with_0(tmp_path: Path) -> None:
         assert done.stdout.count(" equal\n") == 3
 
 
-def test_verify_exits_with_1_where_the_table_was_tampered_with(tmp_path: Path) -> None:
+def test_verify_exits_with_1_for_a_changed_table(tmp_path: Path) -> None:
     run = package.train("MountainCar-v0", seed=0, episodes=10)
     run.tables[0, 0, 0] += 1e-12
     run.save(tmp_path / "run.npz")
@@ -277,7 +277,7 @@ def test_verify_exits_with_1_where_the_table_was_tampered_with(tmp_path: Path) -
     assert done.stderr == ""
 
 
-def test_verify_refuses_what_is_no_run(tmp_path: Path) -> None:
+def test_verify_refuses_files_that_are_not_runs(tmp_path: Path) -> None:
     (tmp_path / "bad.npz").write_bytes(b"not a run")
     assert "'bad.npz' is not a run file" in refused("verify", "bad.npz", cwd=tmp_path)
     assert "none.npz" in refused("verify", "none.npz", cwd=tmp_path)

@@ -96,7 +96,7 @@ def test_a_seed_that_is_no_integer_is_refused(bit_generator, value):
 
 
 @pytest.mark.parametrize("value", [2**32, 2**64, np.uint64(2**63)])
-def test_mt19937_takes_seeds_of_32_bits_alone(value):
+def test_mt19937_accepts_only_seeds_of_32_bits(value):
     refused(ValueError, "seed", value, bit_generator="MT19937")
 
 
@@ -127,7 +127,7 @@ def test_a_choice_of_another_type_is_refused(name, value):
 
 
 @pytest.mark.parametrize("value", ["articel", "", "ARTICLE"])
-def test_an_unknown_preset_is_refused_and_the_known_ones_listed(value):
+def test_an_unknown_preset_is_refused_with_the_known_ones(value):
     with pytest.raises(
         ValueError, match=f"preset must be one of 'article', 'solved' for MountainCar-v0, got {value!r}"
     ):
@@ -137,25 +137,25 @@ def test_an_unknown_preset_is_refused_and_the_known_ones_listed(value):
 
 
 @pytest.mark.parametrize("value", [(0.0, -1.0), (NAN, 1.0), (0.0, INFINITY), (-1.7e308, 1.7e308), (0, HUGE)])
-def test_a_range_of_first_values_that_is_none_is_refused(value):
+def test_an_invalid_range_of_initial_values_is_refused(value):
     with pytest.raises(ValueError, match=r"^initial_q must be"):
         qtab.train("MountainCar-v0", initial_q=value)
 
 
 @pytest.mark.parametrize("value", ["zeros", None, (0.0,), (0.0, "1"), (0, 1, 2), {"low": 0}, [["a"]], (True, False)])
-def test_first_values_of_another_type_are_refused(value):
+def test_initial_values_of_another_type_are_refused(value):
     with pytest.raises(TypeError, match=r"^initial_q must be"):
         qtab.train("MountainCar-v0", initial_q=value)
 
 
 @pytest.mark.parametrize("shape", [(19, 15), (285, 3), (15, 19, 3), (19, 15, 4), (0,), (1, 19, 15, 3)])
-def test_a_first_table_of_another_shape_is_refused_and_both_shapes_shown(shape):
+def test_an_initial_table_of_another_shape_is_refused_with_both_shapes(shape):
     with pytest.raises(ValueError, match=re.escape(f"initial_q must have the table's shape (19, 15, 3), got {shape}")):
         qtab.train("MountainCar-v0", initial_q=np.zeros(shape))
 
 
 @pytest.mark.parametrize("value", [NAN, INFINITY])
-def test_a_first_table_that_is_not_finite_is_refused(value):
+def test_an_initial_table_that_is_not_finite_is_refused(value):
     with pytest.raises(ValueError, match="initial_q must hold finite numbers"):
         qtab.train("MountainCar-v0", initial_q=np.full((19, 15, 3), value))
 
@@ -173,18 +173,18 @@ def test_a_scale_of_another_type_is_refused(value):
 
 
 @pytest.mark.parametrize("value", [(), (10,), (10, 100, 1)])
-def test_a_scale_of_another_length_is_refused_and_the_length_named(value):
+def test_a_scale_of_another_length_is_refused_with_its_length(value):
     with pytest.raises(ValueError, match=r"scale must hold 2 numbers .* got \("):
         qtab.train("MountainCar-v0", scale=value)
 
 
 @pytest.mark.parametrize("value", [(1e9, 1e9), (1e300, 1e300)])
-def test_a_table_too_large_is_refused_and_the_scale_named(value):
+def test_a_table_too_large_is_refused_with_the_scale(value):
     with pytest.raises(ValueError, match=r"^scale must give a table "):
         qtab.train("MountainCar-v0", scale=value)
 
 
-def test_a_table_that_does_not_fit_into_memory_is_refused_and_the_process_goes_on():
+def test_a_table_that_does_not_fit_into_memory_is_refused_and_the_process_continues():
     code = """
 import resource, qtab
 resource.setrlimit(resource.RLIMIT_AS, (3 * 2**30, 3 * 2**30))
@@ -198,13 +198,13 @@ except ValueError as error:
 
 
 @pytest.mark.parametrize("value", [[("goal_velocity", 0.1)], "goal_velocity=0.1", 5, {1: 2}, None], ids=repr)
-def test_keyword_arguments_that_are_none_are_refused(value):
+def test_invalid_env_kwargs_are_refused(value):
     refused(TypeError, "env_kwargs", value)
 
 
 @pytest.mark.parametrize("name", ["callback_every", "record"])
 @pytest.mark.parametrize(("value", "error"), [(-1, ValueError), (1.5, TypeError), (True, TypeError), ("9", TypeError)])
-def test_how_often_and_how_many_are_checked_too(name, value, error):
+def test_callback_every_and_record_are_checked(name, value, error):
     with pytest.raises(error, match=f"^{name} must be an integer .* got {value!r}"):
         qtab.train("MountainCar-v0", **{name: value})
 
@@ -215,7 +215,7 @@ def test_an_unknown_setting_is_named_with_the_one_that_was_probably_meant():
 
 
 @pytest.mark.parametrize("env", [None, 3, b"MountainCar-v0", ["MountainCar-v0"], gym.Env], ids=repr)
-def test_what_is_no_environment_is_refused(env):
+def test_an_invalid_environment_is_refused(env):
     with pytest.raises(
         TypeError, match=re.escape(f"env must be an environment id, an EnvSpec or an environment, got {env!r}")
     ):
@@ -232,13 +232,13 @@ UNKNOWN = {
 
 
 @pytest.mark.parametrize(("env", "answer"), UNKNOWN.items(), ids=UNKNOWN)
-def test_an_unknown_environment_is_gymnasiums_own_error_with_its_suggestion(env, answer):
+def test_an_unknown_environment_raises_gymnasiums_error_with_its_suggestion(env, answer):
     error, suggestion = answer
     with pytest.raises(error, match=re.escape(suggestion)):
         qtab.train(env)
 
 
-def test_an_unknown_keyword_argument_is_gymnasiums_own_error():
+def test_an_unknown_keyword_argument_raises_gymnasiums_error():
     with pytest.raises(TypeError, match="unexpected keyword argument 'wheels'"):
         qtab.train("MountainCar-v0", env_kwargs={"wheels": 4})
 
@@ -270,7 +270,7 @@ SPACES = {
 
 
 @pytest.mark.parametrize(("env", "message"), SPACES.values(), ids=SPACES)
-def test_spaces_that_do_not_fit_are_named_with_what_fits(env, message):
+def test_unsupported_spaces_are_refused_with_what_is_supported(env, message):
     with pytest.raises(ValueError, match=message):
         qtab.train(env, discretizer="round", scale=(1.0,))
 

@@ -22,7 +22,7 @@ def best_average(run: qtab.Run) -> float:
 
 @pytest.mark.filterwarnings("ignore:.*out of date")
 @pytest.mark.parametrize("env", SOLVED)
-def test_every_seed_solves_its_environment_and_together_they_end_above_the_threshold(env: str) -> None:
+def test_every_seed_solves_its_environment_and_the_mean_ends_above_the_threshold(env: str) -> None:
     preset, seeds, least = SOLVED[env]
     runs = [qtab.train(env, preset=preset, seed=seed) for seed in range(seeds)]
     threshold = gym.spec(env).reward_threshold
@@ -32,13 +32,13 @@ def test_every_seed_solves_its_environment_and_together_they_end_above_the_thres
     assert np.mean([run.mean_returns(100)[-1] for run in runs]) >= least
 
 
-def test_pendulum_learns_to_stand() -> None:
+def test_pendulum_learns_to_balance() -> None:
     # Upright in time costs some 140; hanging down costs 1,200 and more.
     for seed in range(3):
         assert qtab.train("Pendulum-v1", seed=seed).mean_returns(100)[-1] > -200
 
 
-def test_cart_poles_own_preset_is_a_grid_that_learns() -> None:
+def test_the_default_preset_of_cart_pole_is_a_grid_that_solves_it() -> None:
     run = qtab.train("CartPole-v1", seed=0)
     assert run.config.preset == "tuned"
     assert run.q_table.shape == (3, 3, 6, 6, 2)
@@ -46,6 +46,6 @@ def test_cart_poles_own_preset_is_a_grid_that_learns() -> None:
 
 
 @pytest.mark.parametrize("env", ["CartPole-v1", "MountainCarContinuous-v0"])
-def test_the_presets_are_what_numpy_computes(env: str) -> None:
+def test_the_presets_verify(env: str) -> None:
     run = qtab.train(env, preset=SOLVED[env][0], seed=0)
     assert qtab.verify(run, episodes=3).equal

@@ -65,7 +65,7 @@ def test_no_preset_has_an_option_that_a_run_may_leave_none() -> None:
     assert not any("hashed_rows" in preset for preset in values)
 
 
-def test_a_keyword_comes_before_the_config_the_config_before_the_preset() -> None:
+def test_keywords_override_the_config_and_the_config_overrides_the_preset() -> None:
     config = qtab.Config(CAR, episodes=7, learning_rate=0.3)
     run = qtab.train(config=config, learning_rate=0.4)
     assert (run.config.learning_rate, run.config.episodes) == (0.4, 7)
@@ -75,7 +75,7 @@ def test_a_keyword_comes_before_the_config_the_config_before_the_preset() -> Non
     assert (named.episodes, named.discount, named.tilings, named.algorithm) == (7, 0.95, 4, "sarsa_lambda")
 
 
-def test_what_does_not_apply_beside_a_keyword_yields_in_a_config_and_not_in_a_mapping() -> None:
+def test_a_keyword_drops_conflicting_options_of_a_config_but_not_of_a_mapping() -> None:
     run = qtab.train(CAR, preset="solved", episodes=3)
     other = qtab.train(config=run.config, algorithm="q_learning")
     assert (other.config.algorithm, other.config.trace_decay, other.config.tilings) == ("q_learning", None, 8)
@@ -83,7 +83,7 @@ def test_what_does_not_apply_beside_a_keyword_yields_in_a_config_and_not_in_a_ma
         qtab.train(CAR, config={"algorithm": "sarsa_lambda", "trace_decay": 0.5}, algorithm="q_learning")
 
 
-def test_another_environment_does_not_take_what_belongs_to_the_configs() -> None:
+def test_another_environment_ignores_the_configs_environment_specific_settings() -> None:
     run = qtab.train(CAR, env_kwargs={"goal_velocity": 0.01}, episodes=3, seed=5)
     other = qtab.train("CartPole-v1", config=run.config, backend="auto", discretizer="bins", bins=3, scale=())
     assert (other.config.env_kwargs, other.config.preset, other.config.seed) == ({}, "tuned", 5)

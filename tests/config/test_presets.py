@@ -51,19 +51,19 @@ def greedy_returns(env: str, runs: qtab.Runs) -> NDArray[np.float64]:
     ("env", "seeds", "mean"),
     [("MountainCar-v0", 20, -106), ("FrozenLake-v1", 100, 0.7), ("FrozenLake8x8-v1", 100, 0.85)],
 )
-def test_every_seed_reaches_the_threshold_and_together_they_end_above_it(env, seeds, mean):
+def test_every_seed_reaches_the_threshold_and_the_mean_ends_above_it(env, seeds, mean):
     runs = training(env, seeds)
     threshold = gym.spec(env).reward_threshold
     assert best_hundreds(runs).min() >= threshold
     assert runs.final_returns(100).mean() > mean >= threshold
 
 
-def test_on_the_small_lake_every_seed_finds_what_is_best_without_a_time_limit():
+def test_every_seed_finds_the_best_policy_of_the_small_lake_without_a_time_limit():
     # Under the limit that policy has 0.7402; the best of all, which looks at the clock, 0.7442.
     assert greedy_returns("FrozenLake-v1", training("FrozenLake-v1")) == pytest.approx(0.740165, abs=1e-6)
 
 
-def test_every_seed_drives_the_taxi_as_well_as_can_be():
+def test_every_seed_learns_an_optimal_policy_for_the_taxi():
     runs = training("Taxi-v4")
     assert greedy_returns("Taxi-v4", runs) == pytest.approx(7.93, abs=1e-9)
     # Gymnasium's threshold of 8 is above the optimum: some 100 episodes reach it by luck, all of them do not.
@@ -71,7 +71,7 @@ def test_every_seed_drives_the_taxi_as_well_as_can_be():
     assert runs.final_returns(100).mean() > 7.83
 
 
-def test_every_seed_walks_along_the_cliff_and_ends_doing_so():
+def test_every_seed_learns_the_shortest_path_along_the_cliff():
     runs = training("CliffWalking-v1")
     assert (runs.episode_returns[:, -100:] == -13).all()
     assert (greedy_returns("CliffWalking-v1", runs) == -13).all()
@@ -92,6 +92,6 @@ def test_blackjack_is_played_close_to_the_optimum():
 
 
 @pytest.mark.parametrize("env", ["MountainCar-v0", "FrozenLake-v1", "Taxi-v4"])
-def test_the_solved_preset_is_what_numpy_computes(env):
+def test_the_solved_preset_verifies(env):
     run = qtab.train(env, preset="solved", seed=0)
     assert qtab.verify(run, episodes=5).equal

@@ -52,7 +52,7 @@ def test_steps_are_not_episodes() -> None:
         qtab.train(CAR, total_timesteps=10_000)  # type: ignore[call-arg]
 
 
-def test_where_nothing_is_near_nothing_is_suggested() -> None:
+def test_nothing_is_suggested_where_nothing_is_similar() -> None:
     message = "unknown setting 'colour'; help(qtab.train) lists them all"
     with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
         qtab.Config().replace(colour="red")  # type: ignore[call-arg]

@@ -44,7 +44,7 @@ def handed(space: gym.spaces.Box, actions: Any) -> tuple[list[Any], qtab.Run]:
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_a_count_is_numpys_linspace_in_the_dtype_of_the_space(dtype: Any) -> None:
+def test_a_number_of_actions_means_numpys_linspace_in_the_dtype_of_the_space(dtype: Any) -> None:
     space = gym.spaces.Box(-1.0, 0.7, (1,), dtype)
     actions, run = handed(space, 7)
     assert actions == [(value,) for value in np.linspace(space.low[0], space.high[0], 7, dtype=dtype).tolist()]
@@ -59,7 +59,7 @@ def test_several_components_make_a_grid_in_c_order() -> None:
     assert [tuple(run.actions[index]) for index in range(len(run.actions))] == actions
 
 
-def test_actions_are_taken_as_given() -> None:
+def test_listed_actions_are_used_unchanged() -> None:
     one = gym.spaces.Box(-1.0, 1.0, (1,), np.float32)
     assert handed(one, (-0.3, 0.9))[0] == [(float(np.float32(-0.3)),), (float(np.float32(0.9)),)]
     assert handed(one, [[0.5], [0.25]])[0] == [(0.25,), (0.5,)]
@@ -93,7 +93,7 @@ def test_actions_are_taken_as_given() -> None:
     ],
     ids=str,
 )
-def test_what_does_not_fit_is_refused(space: Any, actions: Any, error: str) -> None:
+def test_settings_that_do_not_fit_are_refused(space: Any, actions: Any, error: str) -> None:
     with pytest.raises((TypeError, ValueError), match=error):
         qtab.train(ScriptedEnv([np.zeros(1, np.float32)], actions=space), actions=actions, **BINS)
 
@@ -121,7 +121,7 @@ def test_a_run_predicts_and_is_saved_evaluated_replayed_and_verified(env: str, t
     assert qtab.evaluate(loaded, episodes=2, seed=0).returns.shape == (2,)
 
 
-def test_recorded_episodes_play_again() -> None:
+def test_recorded_episodes_can_be_replayed() -> None:
     from qtab.rendering.replay import make_render_env, replay_all
 
     run = qtab.train("Pendulum-v1", seed=2, episodes=5, actions=3, record=3, **BINS)
@@ -130,7 +130,7 @@ def test_recorded_episodes_play_again() -> None:
     env.close()
 
 
-def test_a_step_in_an_object_is_a_step_in_rust() -> None:
+def test_stepping_an_object_equals_stepping_in_rust() -> None:
     settings: dict[str, Any] = {"seed": 5, "episodes": 4, "actions": (-2, 0.3, 1.7), **BINS}
     rust = qtab.train("Pendulum-v1", **settings)
     assert rust.config.backend == "rust"
@@ -138,7 +138,7 @@ def test_a_step_in_an_object_is_a_step_in_rust() -> None:
     assert_same_run(rust, qtab.train(gym.make("Pendulum-v1"), backend="rust", **settings))
 
 
-def test_float64_actions_step_in_python() -> None:
+def test_float64_actions_are_stepped_in_python() -> None:
     env = gym.make("Pendulum-v1")
     env.unwrapped.action_space = gym.spaces.Box(-2.0, 2.0, (1,), np.float64)
     with pytest.raises(ValueError, match=r"got 'rust': Rust computes with actions of float32, got float64"):

@@ -89,7 +89,7 @@ PAIRS: DiscretizerSpec = {"type": "identity", "first": [0, 1], "counts": [3, 2],
         (PAIRS, [0, 0], ValueError, r"^observation\[1\] is 0, outside the observation space$"),
     ],
 )
-def test_what_has_no_rows_is_refused_by_its_place(
+def test_an_observation_without_rows_is_refused_with_its_index(
     spec: DiscretizerSpec, observations: Any, error: type[Exception], message: str
 ) -> None:
     with pytest.raises(error, match=message):

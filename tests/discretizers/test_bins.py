@@ -41,7 +41,7 @@ def boxes(draw: st.DrawFn) -> tuple[Any, ...]:
 
 @settings(max_examples=300, deadline=None)
 @given(box=boxes(), data=st.data())
-def test_rows_are_those_of_gymnasiums_wrapper(box: tuple[Any, ...], data: st.DataObject) -> None:
+def test_rows_equal_gymnasiums_discretize_observation(box: tuple[Any, ...], data: st.DataObject) -> None:
     low, high, bins = box
     edges = [np.linspace(*ends) for ends in zip(low, high, np.array(bins) + 1, strict=True)]
     # Edges, their neighbours, and anything else in the box.
@@ -68,7 +68,7 @@ def test_rows_are_those_of_gymnasiums_wrapper(box: tuple[Any, ...], data: st.Dat
     dtype=st.sampled_from(DTYPES),
     data=st.data(),
 )
-def test_own_edges_are_np_digitizes(edges: list[float], value: float, dtype: Any, data: st.DataObject) -> None:
+def test_given_edges_equal_np_digitize(edges: list[float], value: float, dtype: Any, data: st.DataObject) -> None:
     pick: Any = data.draw
     if edges and pick(st.booleans()):
         value = data.draw(st.sampled_from(edges))
@@ -81,7 +81,7 @@ def test_own_edges_are_np_digitizes(edges: list[float], value: float, dtype: Any
     assert qtab.verify(run, env=env).equal
 
 
-def test_a_user_of_the_wrapper_gets_the_same_table() -> None:
+def test_training_with_the_wrapper_gives_the_same_table() -> None:
     bins = (12, 9)
     ours = qtab.train("MountainCar-v0", seed=3, episodes=50, discretizer="bins", bins=bins)
     wrapped = DiscretizeObservation(gym.make("MountainCar-v0"), bins)
@@ -91,7 +91,7 @@ def test_a_user_of_the_wrapper_gets_the_same_table() -> None:
 
 
 @pytest.mark.parametrize("dtype", DTYPES)
-def test_a_box_narrower_than_the_wrappers_margin_has_all_its_bins(dtype: Any) -> None:
+def test_a_box_narrower_than_the_wrappers_margin_has_all_bins(dtype: Any) -> None:
     low, high = 0.0, 1e-9
     rows = [
         row_of_training(np.array([part * high], dtype), low, high, discretizer="bins", bins=4)[0]
@@ -100,13 +100,13 @@ def test_a_box_narrower_than_the_wrappers_margin_has_all_its_bins(dtype: Any) ->
     assert rows == [0, 1, 2, 3]
 
 
-def test_what_lies_beyond_the_limits_belongs_to_the_outermost_bins() -> None:
+def test_observations_beyond_the_limits_belong_to_the_outermost_bins() -> None:
     for value, row in ((-np.inf, 0), (-5.0, 0), (5.0, 3), (np.inf, 3)):
         observation = np.array([value], np.float32)
         assert row_of_training(observation, -1.0, 1.0, discretizer="bins", bins=4)[0] == row
 
 
-def test_limits_are_taken_for_all_components_or_none() -> None:
+def test_limits_are_given_for_all_components_or_none() -> None:
     with pytest.raises(ValueError, match=r"^low must be given, a number for each component, .*no finite bounds"):
         qtab.train("CartPole-v1", discretizer="bins", bins=3, low=None, high=None)
     with pytest.raises(ValueError, match=r"^low must hold 4 numbers for this observation space, got \(-2.4,\)"):
@@ -140,12 +140,12 @@ def test_limits_are_taken_for_all_components_or_none() -> None:
     ],
     ids=str,
 )
-def test_what_does_not_fit_is_refused(chosen: dict[str, Any], error: str) -> None:
+def test_settings_that_do_not_fit_are_refused(chosen: dict[str, Any], error: str) -> None:
     with pytest.raises((TypeError, ValueError), match=error):
         qtab.train("MountainCar-v0", **{"discretizer": "bins", **chosen})
 
 
-def test_an_observation_of_nan_is_refused_with_its_place() -> None:
+def test_nan_in_an_observation_is_refused_with_its_index() -> None:
     good, bad = np.zeros(2, np.float32), np.array([0.0, np.nan], np.float32)
     env = ScriptedEnv([good, good, bad], low=-1.0, high=1.0, dimensions=2)
     with pytest.raises(ValueError, match=r"observation\[1\] is NaN, outside the observation space") as caught:
@@ -161,7 +161,7 @@ def test_an_observation_of_nan_is_refused_with_its_place() -> None:
     ],
     ids=str,
 )
-def test_it_is_saved_loaded_evaluated_and_verified(chosen: dict[str, Any], tmp_path: Any) -> None:
+def test_a_run_is_saved_loaded_evaluated_and_verified(chosen: dict[str, Any], tmp_path: Any) -> None:
     run = qtab.train("MountainCar-v0", seed=1, episodes=40, **chosen)
     run.save(tmp_path / "run.npz")
     loaded = qtab.load(tmp_path / "run.npz")
@@ -178,7 +178,7 @@ def test_it_is_saved_loaded_evaluated_and_verified(chosen: dict[str, Any], tmp_p
     assert played.returns.tobytes() == qtab.evaluate(loaded, episodes=3, seed=1).returns.tobytes()
 
 
-def test_a_settings_sweep_takes_bins_and_edges() -> None:
+def test_a_sweep_accepts_bins_and_edges() -> None:
     table = qtab.sweep("MountainCar-v0", {"bins": [4, (6, 8)]}, seeds=2, episodes=5, discretizer="bins")
     assert len(table.columns["seed"]) == 4
     rows = [((0.0,), ()), ((), (0.0,))]
@@ -186,6 +186,6 @@ def test_a_settings_sweep_takes_bins_and_edges() -> None:
     assert len(table.columns["seed"]) == 4
 
 
-def test_discrete_observations_take_no_bins() -> None:
+def test_discrete_observations_refuse_bins() -> None:
     with pytest.raises(ValueError, match=r"got Discrete\(500\); discretizer must be left out for it$"):
         qtab.train("Taxi-v4", discretizer="bins")

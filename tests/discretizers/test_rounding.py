@@ -52,7 +52,7 @@ def test_the_table_has_the_shape_that_the_article_computes(scale):
 
 @pytest.mark.parametrize("dtype", DTYPES)
 @pytest.mark.parametrize("low", [0.0, -1.2, 0.1])
-def test_training_uses_the_cell_that_numpy_rounds_to(dtype, low):
+def test_training_updates_the_cell_that_numpy_rounds_to(dtype, low):
     # Halves, their neighbours on both sides, and the corners, in the dtype of the space.
     space: Any = gym.spaces.Box(low, low + 4.0, (1,), dtype)
     halves = (np.arange(9) / 2 + low).astype(dtype)
@@ -107,7 +107,7 @@ def test_the_corners_of_the_space_are_the_corners_of_the_table():
 @pytest.mark.parametrize("dtype", DTYPES)
 @pytest.mark.parametrize("value", [-0.6, 4.6, 1e30, -1e30, np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("axis", [0, 1])
-def test_an_observation_outside_is_refused_by_the_training_and_its_component_named(dtype, value, axis):
+def test_training_refuses_an_observation_outside_with_its_component(dtype, value, axis):
     good, bad = np.full(2, 2.0, dtype), np.full(2, 2.0, dtype)
     bad[axis] = value
     env = ScriptedEnv([good, good, bad], dtype=dtype, dimensions=2)
@@ -126,7 +126,7 @@ def test_an_observation_outside_is_refused_at_the_reset_and_at_a_terminal_state_
 
 
 @pytest.mark.parametrize("value", [-1.4, 0.8, 1e30, 1e300, np.nan, np.inf, -np.inf])
-def test_an_observation_outside_is_refused_by_the_run_and_its_component_named(value):
+def test_a_run_refuses_an_observation_outside_with_its_component(value):
     run = qtab.train("MountainCar-v0", episodes=1, seed=0)
     for ask in (run.q_values, run.predict):
         with pytest.raises(ValueError, match=r"observation\[0\] is .*outside the observation space"):

@@ -70,7 +70,7 @@ def observations(draw: st.DrawFn) -> tuple[Any, ...]:
 
 @settings(max_examples=300, deadline=None)
 @given(observations())
-def test_the_rows_lit_are_those_of_the_formula(case: tuple[Any, ...]) -> None:
+def test_active_rows_equal_the_formula(case: tuple[Any, ...]) -> None:
     observation, low, high, tiles, tilings, hashed = case
     space = gym.spaces.Box(-np.inf, np.inf, observation.shape, observation.dtype.type)
     env = Shown(space, observation)
@@ -84,14 +84,14 @@ def test_the_rows_lit_are_those_of_the_formula(case: tuple[Any, ...]) -> None:
     assert qtab.verify(run, env=env).equal
 
 
-def test_each_weight_moves_by_its_share() -> None:
+def test_each_weight_is_updated_by_its_share() -> None:
     env = Shown(gym.spaces.Box(0.0, 1.0, (2,), np.float64), np.array([0.5, 0.5]))
     run = qtab.train(env, discretizer="tiles", tilings=4, learning_rate=0.5, episodes=1, initial_q=0.0, seed=0)
     assert run.tables[run.tables != 0.0].tolist() == [0.125] * 4
     assert run.q_values(np.array([0.5, 0.5])).tolist() == [0.5]
 
 
-def test_a_row_that_is_lit_twice_counts_twice() -> None:
+def test_a_row_that_is_active_twice_counts_twice() -> None:
     observation = np.array([0.5, 0.5])
     env = Shown(gym.spaces.Box(0.0, 1.0, (2,), np.float64), observation)
     run = qtab.train(
@@ -149,7 +149,7 @@ def test_the_limits_must_be_given_where_the_space_has_none() -> None:
         qtab.train(env, discretizer="tiles")
 
 
-def test_an_observation_of_nan_is_refused() -> None:
+def test_nan_in_an_observation_is_refused() -> None:
     env = Shown(gym.spaces.Box(0.0, 1.0, (2,), np.float64), np.array([0.5, np.nan]))
     with pytest.raises(ValueError, match=r"observation\[1\] is NaN"):
         qtab.train(env, discretizer="tiles")
@@ -170,13 +170,13 @@ def run() -> qtab.Run:
     )
 
 
-def test_it_has_no_cells_and_names_what_works(run: qtab.Run) -> None:
+def test_tile_coding_has_no_cells_and_suggests_alternatives(run: qtab.Run) -> None:
     for name in ("q_table", "policy"):
         with pytest.raises(ValueError, match=r"run\.q_values\(observation\)"):
             getattr(run, name)
 
 
-def test_it_predicts(run: qtab.Run) -> None:
+def test_a_run_with_tile_coding_predicts(run: qtab.Run) -> None:
     observation = np.array([-0.5, 0.0], dtype=np.float32)
     values = run.q_values(observation)
     assert values.shape == (3,)
@@ -187,7 +187,7 @@ def test_it_predicts(run: qtab.Run) -> None:
         run.q_values([float("nan"), 0.0])
 
 
-def test_it_is_saved_and_loaded(run: qtab.Run, tmp_path: Any) -> None:
+def test_a_run_with_tile_coding_is_saved_and_loaded(run: qtab.Run, tmp_path: Any) -> None:
     run.save(tmp_path / "run.npz")
     loaded = qtab.load(tmp_path / "run.npz")
     assert loaded.tables.tobytes() == run.tables.tobytes()
@@ -209,9 +209,9 @@ def test_a_hashed_run_is_saved_loaded_and_evaluated(tmp_path: Any) -> None:
     assert qtab.evaluate(loaded, episodes=20, seed=1).mean_return > -150
 
 
-def test_it_is_evaluated(run: qtab.Run) -> None:
+def test_a_run_with_tile_coding_is_evaluated(run: qtab.Run) -> None:
     assert qtab.evaluate(run, episodes=20, seed=1).mean_return > -150
 
 
-def test_it_gets_out_of_the_valley(run: qtab.Run) -> None:
+def test_tile_coding_solves_mountain_car(run: qtab.Run) -> None:
     assert run.episode_returns[-100:].mean() > -125

@@ -21,14 +21,14 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_gymnasiums_checker_is_content(name):
+def test_gymnasiums_checker_passes(name):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what it says of Gymnasium's own spaces
         check_env(gym.make(f"qtab/{name}", render_mode="rgb_array").unwrapped)
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_pixels_are_gymnasiums(name):
+def test_pixels_equal_gymnasiums(name):
     pair = LockstepClassicControl(name, render_mode="rgb_array")
     pair.reset(seed=8)
     for _ in range(3):
@@ -38,7 +38,7 @@ def test_pixels_are_gymnasiums(name):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_a_person_watches_every_step(name):
+def test_every_step_is_rendered_in_human_mode(name):
     shown = []
     env: Any = gym.make(f"qtab/{name}").unwrapped
     env.reset(seed=0)
@@ -51,7 +51,7 @@ def test_a_person_watches_every_step(name):
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])  # noqa: S301
-def test_a_copy_goes_on_where_its_original_stands(name, copied):
+def test_a_copy_continues_like_its_original(name, copied):
     pair = LockstepClassicControl(name)
     copied(pair.ours)
     pair.reset(seed=9)
@@ -64,7 +64,7 @@ def test_a_copy_goes_on_where_its_original_stands(name, copied):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_wrappers_work_on_it(name):
+def test_gymnasiums_wrappers_return_the_same_around_ours(name):
     ours, theirs = (
         NormalizeObservation(RecordEpisodeStatistics(gym.make(env, max_episode_steps=20)))
         for env in (f"qtab/{name}", name)
@@ -81,7 +81,7 @@ def test_wrappers_work_on_it(name):
 
 @pytest.mark.filterwarnings("ignore:.*out of date")
 @pytest.mark.parametrize("name", [*IDS, "CartPole-v0"])
-def test_limits_thresholds_and_spaces_are_gymnasiums(name):
+def test_limits_thresholds_and_spaces_equal_gymnasiums(name):
     ours, theirs = gym.spec(f"qtab/{name}"), gym.spec(name)
     for field in ("max_episode_steps", "reward_threshold", "nondeterministic", "order_enforce", "disable_env_checker"):
         assert getattr(ours, field) == getattr(theirs, field), field
@@ -94,12 +94,12 @@ def fresh(code: str) -> str:
     return subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
 
 
-def test_an_id_brings_its_own_import():
+def test_an_id_with_a_module_imports_it():
     code = "import gymnasium as g; e = g.make('qtab:qtab/CartPole-v1'); e.reset(); print(type(e.unwrapped).__module__)"
     assert fresh(code).strip() == "qtab.envs.classic_control"
 
 
-def test_another_numpys_sine_is_still_gymnasiums():
+def test_steps_equal_gymnasiums_where_numpy_does_not_use_libm():
     """As on a CPU for which NumPy has vector code of its own: patched before anything asks for it."""
     assert fresh(PATCHED).split() == ["False", "1", "equal"]
 

@@ -29,7 +29,7 @@ def frozen_generator(generator: np.random.Generator) -> str:
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_every_first_state_is_gymnasiums(name: str) -> None:
+def test_every_first_state_equals_gymnasiums(name: str) -> None:
     pair = LockstepClassicControl(name)
     for seed in [*range(1000), *[None] * 1000, 2**64, 0]:
         pair.reset(seed=seed)
@@ -38,7 +38,7 @@ def test_every_first_state_is_gymnasiums(name: str) -> None:
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("bits", [np.random.MT19937, np.random.Philox, np.random.SFC64])
-def test_the_users_generator_is_drawn_from(name: str, bits: Any) -> None:
+def test_an_assigned_generator_is_used(name: str, bits: Any) -> None:
     pair = LockstepClassicControl(name)
     for env in (pair.ours, pair.theirs):
         env.np_random = np.random.Generator(bits(5))
@@ -48,7 +48,7 @@ def test_the_users_generator_is_drawn_from(name: str, bits: Any) -> None:
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_a_generator_that_is_not_numpys_is_asked_as_gymnasium_asks_it(name: str) -> None:
+def test_any_object_with_a_generators_methods_is_used_as_in_gymnasium(name: str) -> None:
     class Mine(np.random.Generator):
         def uniform(self, low: Any = 0.0, high: Any = 1.0, size: Any = None) -> Any:
             return super().uniform(low, high, size) / 2
@@ -78,7 +78,7 @@ BOUNDS: list[Any] = [
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("options", BOUNDS, ids=repr)
-def test_options_are_gymnasiums_to_read(name: str, options: Any) -> None:
+def test_reset_options_have_gymnasiums_result(name: str, options: Any) -> None:
     pair = LockstepClassicControl(name)
     for seed in (3, None, None):
         pair.reset(seed=seed, options=options)
@@ -87,12 +87,12 @@ def test_options_are_gymnasiums_to_read(name: str, options: Any) -> None:
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("seed", ["x", -1, 1.5, np.int64(3)], ids=repr)
-def test_an_odd_seed_is_gymnasiums_to_judge(name: str, seed: Any) -> None:
+def test_an_odd_seed_has_gymnasiums_result(name: str, seed: Any) -> None:
     LockstepClassicControl(name).reset(seed=seed)
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_a_reset_forgets_the_episode_before(name: str) -> None:
+def test_a_reset_clears_the_previous_episode(name: str) -> None:
     pair = LockstepClassicControl(name)
     action = np.array([0.5], np.float32) if name in CONTINUOUS else 1
     for _ in range(3):
@@ -105,7 +105,7 @@ def test_a_reset_forgets_the_episode_before(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_a_person_watches_the_first_state(name: str) -> None:
+def test_the_first_state_is_rendered_in_human_mode(name: str) -> None:
     counts = []
     for env_id in (f"qtab/{name}", name):
         env: Any = gym.make(env_id, render_mode="human")
@@ -124,7 +124,7 @@ def test_a_person_watches_the_first_state(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_a_reset_of_ones_own_may_call_ours(name: str) -> None:
+def test_an_overridden_reset_may_call_ours(name: str) -> None:
     base: Any = type(gym.make(f"qtab/{name}").unwrapped)
 
     class Mine(base):  # type: ignore[misc]

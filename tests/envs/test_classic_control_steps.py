@@ -17,7 +17,7 @@ STEPS = 50_000
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("policy", [None, heuristic_policy], ids=["random", "heuristic"])
-def test_long_walks_are_gymnasiums(name, policy, record_property):
+def test_long_walks_equal_gymnasiums(name, policy, record_property):
     record_property("machine", MACHINE)
     pair = LockstepClassicControl(name)
     pair.reset(seed=7)
@@ -26,7 +26,7 @@ def test_long_walks_are_gymnasiums(name, policy, record_property):
         assert episodes > 100  # the goal was met, not only the slope below
 
 
-def test_the_steps_are_rusts_where_numpy_uses_libm(monkeypatch):
+def test_rust_steps_where_numpy_uses_libm(monkeypatch):
     stepped = []
     monkeypatch.setattr(
         "qtab.envs.classic_control.ClassicControlMixin.step_in_python", lambda env, action: stepped.append(env)
@@ -54,7 +54,7 @@ def test_the_steps_are_rusts_where_numpy_uses_libm(monkeypatch):
         ("Pendulum-v1", {"g": np.float64(3.7)}),
     ],
 )
-def test_every_constructor_argument_counts(name, kwargs):
+def test_every_constructor_argument_has_its_effect(name, kwargs):
     pair = LockstepClassicControl(name, **kwargs)
     pair.reset(seed=1)
     pair.run(4_000)
@@ -65,7 +65,7 @@ ATTRIBUTES = [(name, attribute, value) for name, edits in EDITS.items() for attr
 
 
 @pytest.mark.parametrize(("name", "attribute", "value"), ATTRIBUTES)
-def test_every_attribute_counts_from_the_next_step_on(name, attribute, value):
+def test_every_assigned_attribute_is_used_from_the_next_step(name, attribute, value):
     pair = LockstepClassicControl(name)
     pair.reset(seed=2)
     pair.run(50, heuristic_policy)
@@ -79,7 +79,7 @@ def test_every_attribute_counts_from_the_next_step_on(name, attribute, value):
             pair.run(100)
 
 
-def test_the_action_space_and_the_torques_count():
+def test_an_assigned_action_space_and_torques_are_used():
     pair = LockstepClassicControl("CartPole-v1")
     pair.reset(seed=1)
     pair.set(action_space=gym.spaces.Discrete(2, start=1))
@@ -94,7 +94,7 @@ def test_the_action_space_and_the_torques_count():
         pair.both(lambda env: env.step(-1))
 
 
-def test_numpys_draws_are_the_noises():
+def test_torque_noise_is_drawn_from_numpy():
     pair = LockstepClassicControl("Acrobot-v1")
     pair.set(torque_noise_max=1.0)
     pair.reset(seed=5)
@@ -102,7 +102,7 @@ def test_numpys_draws_are_the_noises():
     pair.both(lambda env: env.np_random.random())
 
 
-def test_a_class_may_say_the_constants():
+def test_a_subclass_may_override_constants():
     class Light(AcrobotEnv):
         dt = 0.1
 
@@ -120,7 +120,7 @@ def test_a_class_may_say_the_constants():
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("form", [np.float64, np.float32, tuple, list, None])
-def test_an_assigned_state_is_the_state(name, form):
+def test_an_assigned_state_of_any_type_is_used(name, form):
     pair = LockstepClassicControl(name)
     pair.reset(seed=3)
     pair.run(20)
@@ -137,7 +137,7 @@ def test_an_assigned_state_is_the_state(name, form):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_a_state_written_to_in_place_counts(name):
+def test_a_state_edited_in_place_is_used(name):
     pair = LockstepClassicControl(name)
     pair.reset(seed=3)
     action = pair.theirs.action_space.sample()
@@ -152,7 +152,7 @@ def test_a_state_written_to_in_place_counts(name):
     "options",
     [{"low": -0.3, "high": -0.2}, {"low": 1}, {"x_init": 0.1, "y_init": 3}, {"high": "up"}, {"x_init": None}, {}],
 )
-def test_reset_options_are_gymnasiums(name, options):
+def test_reset_options_equal_gymnasiums(name, options):
     pair = LockstepClassicControl(name)
     pair.reset(seed=4, options=options)
     if hasattr(pair.theirs, "state") and pair.theirs.state is not None:
@@ -166,7 +166,7 @@ FORCES = st.floats(-3, 3) | st.floats(width=32) | st.sampled_from([0.0, -0.0, 1.
 @pytest.mark.parametrize("name", CONTINUOUS)
 @settings(max_examples=300, deadline=None)
 @given(forces=st.lists(st.tuples(FORCES, WIDTHS), max_size=8), seed=st.integers(0, 99))
-def test_forces_of_any_size_and_width_are_gymnasiums(name, forces, seed):
+def test_forces_of_any_size_and_dtype_equal_gymnasiums(name, forces, seed):
     pair = LockstepClassicControl(name)
     pair.reset(seed=seed)
     for force, width in forces:
@@ -183,7 +183,7 @@ ODD += [np.int64(1), np.uint8(0), np.int8(-1), True, 1.0, 2**70, np.array([1, 0]
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("action", ODD, ids=repr)
-def test_odd_actions_are_gymnasiums_to_judge(name, action):
+def test_odd_actions_have_gymnasiums_result(name, action):
     if name == "MountainCar-v0" and type(action) is np.uint8:
         return  # where Gymnasium's own arithmetic wraps round
     pair = LockstepClassicControl(name)
@@ -192,19 +192,19 @@ def test_odd_actions_are_gymnasiums_to_judge(name, action):
 
 
 @pytest.mark.parametrize("name", ["CartPole-v1", "Acrobot-v1"])
-def test_no_step_before_a_reset_as_gymnasium_says_it(name):
+def test_a_step_before_a_reset_raises_gymnasiums_error(name):
     LockstepClassicControl(name).both(lambda env: env.step(0))
 
 
 @pytest.mark.parametrize("name", ["MountainCar-v0", *CONTINUOUS])
-def test_no_step_before_a_reset_where_gymnasium_only_stumbles(name):
+def test_a_step_before_a_reset_is_refused_where_gymnasium_fails_with_another_error(name):
     env = gym.make(f"qtab/{name}").unwrapped
     assert not hasattr(env, "state")
     with pytest.raises(gym.error.ResetNeeded):
         env.step(env.action_space.sample())
 
 
-def test_who_steps_on_after_the_fall_is_warned():
+def test_stepping_after_termination_warns_once():
     pair = LockstepClassicControl("CartPole-v1")
     pair.reset(seed=0)
     warned = [bool(pair.both(lambda env: env.step(1))[1]) for _ in range(40)]
@@ -215,7 +215,7 @@ def test_who_steps_on_after_the_fall_is_warned():
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_where_numbers_run_over_python_says_so(name):
+def test_overflow_raises_what_python_raises(name):
     for huge in (1e155, 1e308, np.inf, np.nan):
         pair = LockstepClassicControl(name)
         pair.reset(seed=0)

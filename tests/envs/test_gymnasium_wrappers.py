@@ -85,7 +85,7 @@ FIT_ALL = {
 
 
 @pytest.mark.parametrize("wrapper", WRAPPERS)
-def test_a_wrapper_sees_what_it_sees_on_gymnasiums_environment(wrapper: str) -> None:
+def test_a_wrapper_returns_the_same_around_ours(wrapper: str) -> None:
     fitting = set()
     for name in IDS:
         ours, theirs = made(f"qtab/{name}", WRAPPERS[wrapper]), made(name, WRAPPERS[wrapper])
@@ -109,7 +109,7 @@ def test_statistics_of_episodes_are_gymnasiums() -> None:
 
 
 @pytest.mark.parametrize("name", ["MountainCar-v0", "CartPole-v1", "FrozenLake-v1", "Blackjack-v1"])
-def test_a_video_holds_gymnasiums_frames(name: str, tmp_path: Path) -> None:
+def test_a_recorded_video_holds_gymnasiums_frames(name: str, tmp_path: Path) -> None:
     frames = []
     for env in (f"qtab/{name}", name):
         folder = tmp_path / env.replace("/", "-")
@@ -135,7 +135,7 @@ def test_a_video_holds_gymnasiums_frames(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", REGISTERED)
-def test_gymnasiums_checker_is_content_with_every_environment(name: str) -> None:
+def test_every_environment_passes_gymnasiums_checker(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # CartPole-v0 is said to be out of date
         env = gym.make(name)

@@ -51,7 +51,7 @@ STATES = [
 
 
 @pytest.mark.parametrize("state", STATES, ids=repr)
-def test_an_assigned_state_is_stepped_from_as_gymnasium_does(state):
+def test_steps_from_an_assigned_state_equal_gymnasiums(state):
     ours, theirs = pair()
     ours.state, theirs.state = copy.copy(state), copy.copy(state)
     assert np.array_equal(np.array(ours.state), np.array(theirs.state))
@@ -65,7 +65,7 @@ def test_an_assigned_state_is_stepped_from_as_gymnasium_does(state):
     walk(ours, theirs)
 
 
-def test_a_state_is_of_the_types_that_gymnasium_keeps():
+def test_the_state_has_the_types_of_gymnasiums():
     ours, theirs = pair()
     for _ in range(3):
         assert type(ours.state) is type(theirs.state)
@@ -73,14 +73,14 @@ def test_a_state_is_of_the_types_that_gymnasium_keeps():
         ours.step(2), theirs.step(2)
 
 
-def test_a_reset_state_changed_in_place_is_stepped_from():
+def test_a_state_edited_in_place_after_a_reset_is_used():
     ours, theirs = pair()
     for env in (ours, theirs):
         env.state[0] = 0.3
     walk(ours, theirs)
 
 
-def test_a_state_of_three_numbers_fails_where_gymnasiums_fails():
+def test_a_state_of_three_numbers_raises_gymnasiums_error():
     for env in pair():
         env.state = (0.0, 0.0, 0.0)
         with pytest.raises(ValueError, match="too many values to unpack"):
@@ -97,7 +97,7 @@ def test_a_state_of_none_needs_a_reset():
     assert ours.step(0)[1] == -1.0
 
 
-def test_an_infinite_position_fails_as_gymnasiums_does():
+def test_an_infinite_position_raises_gymnasiums_error():
     texts = []
     for env in pair():
         env.state = (float("inf"), 0.0)
@@ -107,7 +107,7 @@ def test_an_infinite_position_fails_as_gymnasiums_does():
     assert texts[0] == texts[1]
 
 
-def test_a_foreign_state_gives_way_to_rust_again_after_a_reset():
+def test_rust_steps_again_after_a_reset_of_an_unsupported_state():
     ours, theirs = pair()
     for env in (ours, theirs):
         env.state = np.array([-0.5, 0.0], dtype=np.float32)
@@ -154,7 +154,7 @@ NUMBERS = st.floats(-0.2, 0.2)
 
 
 @given(values=st.fixed_dictionaries(dict.fromkeys(VALUES, NUMBERS)), position=st.floats(-0.3, 0.3))
-def test_any_constants_give_gymnasiums_steps(values, position):
+def test_steps_with_any_constants_equal_gymnasiums(values, position):
     ours, theirs = pair()
     for env in (ours, theirs):
         for name, value in values.items():
@@ -163,14 +163,14 @@ def test_any_constants_give_gymnasiums_steps(values, position):
     walk(ours, theirs, steps=6)
 
 
-def test_constants_are_those_of_one_environment_alone():
+def test_constants_belong_to_one_environment():
     one: Any = gym.make("qtab/MountainCar-v0").unwrapped
     other: Any = gym.make("qtab/MountainCar-v0").unwrapped
     one.gravity = 0.0
     assert other.gravity == 0.0025
 
 
-def test_a_constant_that_is_put_back_gives_the_default_steps():
+def test_restoring_a_constant_restores_the_default_steps():
     ours, theirs = pair()
     ours.gravity = np.float32(0.1)
     ours.gravity = 0.0025
@@ -181,7 +181,7 @@ COPIES: dict[str, Any] = {"deepcopy": copy.deepcopy, "pickle": lambda env: pickl
 
 
 @pytest.mark.parametrize("made", COPIES.values(), ids=COPIES)
-def test_a_copy_made_in_mid_episode_goes_on_as_the_original_does(made):
+def test_a_copy_made_during_an_episode_continues_like_the_original(made):
     env: Any = gym.make("qtab/MountainCar-v0", goal_velocity=0.01)
     env.unwrapped.gravity = 0.0024
     env.unwrapped.force = np.float32(0.001)
@@ -200,7 +200,7 @@ def test_a_copy_made_in_mid_episode_goes_on_as_the_original_does(made):
 
 
 @pytest.mark.parametrize("made", COPIES.values(), ids=COPIES)
-def test_a_copy_and_its_original_part_ways(made):
+def test_a_copy_and_its_original_are_independent(made):
     env: Any = gym.make("qtab/MountainCar-v0").unwrapped
     env.reset(seed=4)
     twin = made(env)

@@ -16,7 +16,7 @@ def pair(render_mode):
     )
 
 
-def test_pixels_along_a_way_to_the_goal_are_gymnasiums():
+def test_pixels_on_the_way_to_the_goal_equal_gymnasiums():
     ours, theirs = pair("rgb_array")
     observation, _ = theirs.reset(seed=0)
     ours.reset(seed=0)
@@ -68,7 +68,7 @@ def test_every_step_is_drawn_on_the_screen_in_human_mode(monkeypatch):
     ours.close()
 
 
-def test_no_frames_are_made_where_no_render_mode_was_asked_for():
+def test_no_frames_are_made_without_a_render_mode():
     ours, _ = pair(None)
     ours.reset(seed=0)
     ours.step(0)

@@ -54,26 +54,26 @@ def assert_same_walk(ours, theirs, policy, seed, steps):
 
 
 @pytest.mark.parametrize("seed", [0, 2**32 - 1, 2**70])
-def test_random_walks_are_gymnasiums(seed):
+def test_random_walks_equal_gymnasiums(seed):
     assert assert_same_walk(*pair(), random_policy, seed, STEPS_PER_SEED)["time"] > 0
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
-def test_energy_pumping_walks_reach_the_goal_as_gymnasiums_do(seed):
+def test_walks_of_the_energy_policy_equal_gymnasiums(seed):
     assert assert_same_walk(*pair(), pumping_policy, seed, STEPS_PER_SEED)["goal"] > 50
 
 
 @pytest.mark.parametrize("seed", [3, 4])
-def test_mixed_walks_are_gymnasiums(seed):
+def test_mixed_walks_equal_gymnasiums(seed):
     assert assert_same_walk(*pair(), mixed_policy, seed, STEPS_PER_SEED)["goal"] > 10
 
 
-def test_walks_without_a_time_limit_are_gymnasiums():
+def test_walks_without_a_time_limit_equal_gymnasiums():
     ended = assert_same_walk(*pair(max_episode_steps=10**9), random_policy, 5, STEPS_PER_SEED)
     assert ended["time"] == 0
 
 
-def test_the_goals_velocity_decides_as_in_gymnasium():
+def test_the_goal_velocity_decides_as_in_gymnasium():
     fast = assert_same_walk(*pair(goal_velocity=0.03), pumping_policy, 6, 4000)
     never = assert_same_walk(*pair(goal_velocity=0.08), pumping_policy, 6, 4000)
     assert fast["goal"] > 0
@@ -91,7 +91,7 @@ VELOCITIES = around(-0.07, 0.05) | around(0.07, 0.05) | around(0.0, 1e-3) | st.j
 
 
 @given(position=POSITIONS, velocity=VELOCITIES, actions=st.lists(st.integers(0, 2), min_size=1, max_size=5))
-def test_a_step_from_any_state_is_gymnasiums(position, velocity, actions):
+def test_a_step_from_any_state_equals_gymnasiums(position, velocity, actions):
     ours, theirs = (env.unwrapped for env in pair())
     for env in (ours, theirs):
         env.reset(seed=0)
@@ -106,7 +106,7 @@ def test_a_step_from_any_state_is_gymnasiums(position, velocity, actions):
     width=st.floats(0.0, 0.6),
     seed=st.integers(0, 2**70),
 )
-def test_reset_bounds_are_gymnasiums(low, width, seed):
+def test_resets_within_bounds_equal_gymnasiums(low, width, seed):
     ours, theirs = pair()
     options = {"low": low, "high": low + width}
     assert_identical(ours.reset(seed=seed, options=options), theirs.reset(seed=seed, options=options))
@@ -116,19 +116,19 @@ def test_reset_bounds_are_gymnasiums(low, width, seed):
 
 
 @pytest.mark.parametrize("options", [{"low": -0.5}, {"high": -0.3}, {}, {"low": np.float32(-0.5), "high": 0}])
-def test_partial_reset_bounds_are_gymnasiums(options):
+def test_resets_within_one_given_bound_equal_gymnasiums(options):
     ours, theirs = pair()
     assert_identical(ours.reset(seed=3, options=options), theirs.reset(seed=3, options=options))
 
 
-def test_an_unseeded_reset_goes_on_with_the_same_generator():
+def test_a_reset_without_a_seed_continues_the_generator():
     ours, theirs = pair()
     ours.reset(seed=9), theirs.reset(seed=9)
     for _ in range(20):
         assert_identical(ours.reset(), theirs.reset())
 
 
-def test_a_generator_put_in_by_the_user_is_drawn_from():
+def test_an_assigned_generator_is_used():
     ours, theirs = pair()
     for env in (ours, theirs):
         env.unwrapped.np_random = np.random.Generator(np.random.Philox(4))
@@ -136,7 +136,7 @@ def test_a_generator_put_in_by_the_user_is_drawn_from():
 
 
 @pytest.mark.parametrize("action", [0, 2, True, np.int64(2), np.int8(0), np.array(2), np.int32(1)])
-def test_every_kind_of_integer_is_an_action(action):
+def test_every_integer_type_is_an_action(action):
     ours, theirs = pair()
     ours.reset(seed=0), theirs.reset(seed=0)
     assert_identical(ours.step(action), theirs.step(int(action)))

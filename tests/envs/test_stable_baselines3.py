@@ -26,7 +26,7 @@ def weights(model: Any) -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("name", REGISTERED)
-def test_its_checker_is_content(name: str) -> None:
+def test_stable_baselines3s_checker_passes(name: str) -> None:
     from stable_baselines3.common.env_checker import check_env
 
     with warnings.catch_warnings():
@@ -35,7 +35,7 @@ def test_its_checker_is_content(name: str) -> None:
 
 
 @pytest.mark.parametrize("algorithm", ["PPO", "DQN", "A2C"])
-def test_it_learns_what_it_learns_on_gymnasiums_environment(algorithm: str) -> None:
+def test_stable_baselines3_learns_the_same_as_on_gymnasiums_environment(algorithm: str) -> None:
     import stable_baselines3
 
     settings: dict[str, Any] = {"seed": 0, "device": "cpu"}
@@ -47,7 +47,7 @@ def test_it_learns_what_it_learns_on_gymnasiums_environment(algorithm: str) -> N
     assert weights(ours) == weights(theirs)
 
 
-def test_it_learns_to_balance_the_pole() -> None:
+def test_stable_baselines3_learns_to_balance_the_pole() -> None:
     from stable_baselines3 import PPO
     from stable_baselines3.common.evaluation import evaluate_policy
 

@@ -16,7 +16,7 @@ from support.toy_text import TABLES
 
 
 @pytest.mark.parametrize("name", [name for name in TABLES if name != "Taxi-v4"])
-def test_gymnasiums_own_table_walks_as_gymnasiums_environment(name):
+def test_a_tabular_env_of_gymnasiums_table_steps_like_gymnasiums_environment(name):
     theirs: Any = gym.make(name).unwrapped
     ours = qtab.TabularEnv(theirs.P, theirs.initial_state_distrib)
     assert (ours.observation_space, ours.action_space) == (theirs.observation_space, theirs.action_space)
@@ -50,7 +50,7 @@ def test_a_table_may_be_nested_lists():
         assert bitwise(one.step(1)) == bitwise(other.step(1))
 
 
-def test_gymnasiums_checker_is_content_and_copies_go_on():
+def test_a_tabular_env_passes_gymnasiums_checker_and_can_be_copied():
     check_env(qtab.TabularEnv(chain(), [1, 0]), skip_render_check=True)
     env = qtab.TabularEnv(chain(), [0.5, 0.5])
     env.reset(seed=1)
@@ -61,7 +61,7 @@ def test_gymnasiums_checker_is_content_and_copies_go_on():
             assert one.step(1) == twin.step(1)
 
 
-def test_a_table_is_its_own_and_can_be_edited():
+def test_a_tabular_env_copies_its_table_and_lets_it_be_edited():
     table = chain()
     env: Any = qtab.TabularEnv(table, [1, 0])
     table[0][0].append("nonsense")
@@ -86,7 +86,7 @@ def test_an_action_outside_the_space_is_refused(action):
     assert env.np_random.bit_generator.state == before
 
 
-def test_sums_within_a_billionth_pass():
+def test_probabilities_may_sum_to_1_within_a_billionth():
     qtab.TabularEnv(chain(p00=[(1 / 3, 0, 0, False)] * 2 + [(1 / 3 + 9e-10, 0, 0, False)]), [1, 0])
     with pytest.raises(ValueError, match=r"^P\[0\]\[0\] must have probabilities that sum to 1, got 1.00000000"):
         qtab.TabularEnv(chain(p00=[(1.0, 0, 0, False), (2e-9, 0, 0, False)]), [1, 0])
@@ -110,7 +110,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("changes", "error", "text"), BAD, ids=short_repr)
-def test_a_bad_table_is_refused_and_says_where(changes, error, text):
+def test_a_bad_table_is_refused_with_the_entry(changes, error, text):
     with pytest.raises(error, match=text):
         qtab.TabularEnv(chain(**changes), [1, 0])
 
@@ -126,7 +126,7 @@ def test_a_bad_table_is_refused_and_says_where(changes, error, text):
     ],
     ids=repr,
 )
-def test_what_is_no_table_is_refused(table, error, text):
+def test_a_table_of_another_structure_is_refused(table, error, text):
     with pytest.raises(error, match=text):
         qtab.TabularEnv(table, [1, 0])
 
@@ -145,6 +145,6 @@ def test_what_is_no_table_is_refused(table, error, text):
     ],
     ids=repr,
 )
-def test_a_bad_start_is_refused(start, error, text):
+def test_a_bad_initial_distribution_is_refused(start, error, text):
     with pytest.raises(error, match=text):
         qtab.TabularEnv(chain(), start)

@@ -17,14 +17,14 @@ from support.toy_text import IDS, TABLES, LockstepToyText
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_gymnasiums_checker_is_content(name):
+def test_gymnasiums_checker_passes(name):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what it says of Gymnasium's own spaces
         check_env(gym.make(f"qtab/{name}", render_mode="rgb_array").unwrapped)
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_registration_and_spaces_are_gymnasiums(name):
+def test_registration_and_spaces_equal_gymnasiums(name):
     ours, theirs = gym.spec(f"qtab/{name}"), gym.spec(name)
     fields = ("max_episode_steps", "reward_threshold", "nondeterministic", "order_enforce", "disable_env_checker")
     for field in (*fields, "kwargs"):
@@ -41,7 +41,7 @@ MODES = [(name, mode) for name in IDS for mode in ("rgb_array", "ansi") if (name
 
 
 @pytest.mark.parametrize(("name", "mode"), MODES)
-def test_pictures_and_text_are_gymnasiums(name, mode):
+def test_rendered_images_and_text_equal_gymnasiums(name, mode):
     pair = LockstepToyText(name, render_mode=mode)
     pair.both(lambda env: env.reset(seed=8))
     seen = set()
@@ -54,7 +54,7 @@ def test_pictures_and_text_are_gymnasiums(name, mode):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_a_person_watches_every_step(name):
+def test_every_step_is_rendered_in_human_mode(name):
     shown = []
     env: Any = gym.make(f"qtab/{name}").unwrapped
     env.reset(seed=0)
@@ -68,7 +68,7 @@ def test_a_person_watches_every_step(name):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_no_mode_no_frames(name):
+def test_no_frames_are_made_without_a_render_mode(name):
     env = gym.make(f"qtab/{name}").unwrapped
     env.reset(seed=0)
     with pytest.warns(UserWarning, match=f"qtab/{name}"):
@@ -77,7 +77,7 @@ def test_no_mode_no_frames(name):
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])  # noqa: S301
-def test_a_copy_goes_on_where_its_original_stands(name, copied):
+def test_a_copy_continues_like_its_original(name, copied):
     pair = LockstepToyText(name)
     copied(pair.ours)
     pair.both(lambda env: env.reset(seed=9))
@@ -92,7 +92,7 @@ def test_a_copy_goes_on_where_its_original_stands(name, copied):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_wrappers_work_on_it(name):
+def test_gymnasiums_wrappers_return_the_same_around_ours(name):
     ours, theirs = (RecordEpisodeStatistics(gym.make(env, max_episode_steps=20)) for env in (f"qtab/{name}", name))
     assert bitwise(ours.reset(seed=0)) == bitwise(theirs.reset(seed=0))
     for _ in range(20):
@@ -134,7 +134,7 @@ def test_an_assigned_hand_is_played(hand, side, action):
             pair.both(lambda env: env.step(action))
 
 
-def test_the_rules_can_be_changed_and_the_space_too():
+def test_rules_and_action_space_can_be_assigned():
     pair = LockstepToyText("Blackjack-v1")
     pair.set(sab=False, natural=1)
     for seed in range(200):
@@ -145,7 +145,7 @@ def test_the_rules_can_be_changed_and_the_space_too():
         pair.both(lambda env, action=action: env.step(action))
 
 
-def test_hands_stay_the_lists_that_they_were():
+def test_hands_keep_their_list_objects():
     env: Any = gym.make("qtab/Blackjack-v1").unwrapped
     env.reset(seed=0)
     player = env.player
@@ -155,7 +155,7 @@ def test_hands_stay_the_lists_that_they_were():
 
 
 @pytest.mark.parametrize("state", [*range(500), np.int64(17), True, -1, 500, 1.5, None])
-def test_the_mask_is_gymnasiums(state):
+def test_the_action_mask_equals_gymnasiums(state):
     pair = TAXIS
     pair.both(lambda env: env.action_mask(state))
 
@@ -180,7 +180,7 @@ MAPS = [
 
 
 @pytest.mark.parametrize("edit", MAPS, ids=lambda edit: f"{next(iter(edit))} {next(iter(edit.values()))!r:.40}")
-def test_another_map_is_another_mask(edit):
+def test_an_assigned_map_changes_the_action_mask(edit):
     pair = LockstepToyText("Taxi-v4", fickle_passenger=True, fickle_probability=1.0)
     pair.both(lambda env: env.reset(seed=1))
     pair.set(**edit)
@@ -190,7 +190,7 @@ def test_another_map_is_another_mask(edit):
         pair.both(lambda env: env.step(1))
 
 
-def test_a_mask_of_ones_own_is_in_the_info():
+def test_an_overridden_action_mask_is_in_the_info():
     class Mine(TaxiEnv):
         def action_mask(self, state):
             return "all"
@@ -200,7 +200,7 @@ def test_a_mask_of_ones_own_is_in_the_info():
     assert env.step(0)[4]["action_mask"] == "all"
 
 
-def test_a_step_of_ones_own_may_call_ours():
+def test_an_overridden_step_may_call_ours():
     class Mine(FrozenLakeEnv):
         def step(self, a):
             return (*super().step(a)[:4], {"mine": True})

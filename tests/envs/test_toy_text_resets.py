@@ -38,14 +38,14 @@ DISTRIBUTIONS = {
 
 @pytest.mark.parametrize("distribution", DISTRIBUTIONS)
 @pytest.mark.parametrize("name", ["FrozenLake-v1", "CliffWalking-v1", "Taxi-v4"])
-def test_an_odd_distribution_is_gymnasiums_to_judge(name, distribution):
+def test_an_odd_distribution_has_gymnasiums_result(name, distribution):
     pair = LockstepToyText(name)
     pair.set(initial_state_distrib=DISTRIBUTIONS[distribution])
     for seed in [*range(20), None, None]:
         pair.both(lambda env, seed=seed: env.reset(seed=seed))
 
 
-def test_without_a_distribution_the_error_is_gymnasiums():
+def test_a_missing_distribution_raises_gymnasiums_error():
     pair = LockstepToyText("FrozenLake-v1")
     for env in (pair.ours, pair.theirs):
         del env.initial_state_distrib
@@ -54,7 +54,7 @@ def test_without_a_distribution_the_error_is_gymnasiums():
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=30), st.integers(0, 2**40))
-def test_any_distribution_begins_in_the_same_state(weights, seed):
+def test_every_distribution_starts_in_gymnasiums_state(weights, seed):
     for name in ("FrozenLake-v1", "CliffWalkingSlippery-v1"):
         pair = PAIRS[name]
         pair.set(initial_state_distrib=np.array(weights))
@@ -64,14 +64,14 @@ def test_any_distribution_begins_in_the_same_state(weights, seed):
 
 @pytest.mark.parametrize("passenger", [True, False, 1, 0, None, "yes", np.True_])
 @pytest.mark.parametrize("probability", [0.3, np.float64(0.3), np.float32(0.3), 1, 0, np.array([0.3])], ids=repr)
-def test_a_fickle_passenger_makes_up_their_mind_as_gymnasiums_does(passenger, probability):
+def test_the_fickle_step_is_drawn_as_in_gymnasium(passenger, probability):
     pair = LockstepToyText("Taxi-v4")
     pair.set(fickle_passenger=passenger, fickle_probability=probability)
     for seed in range(20):
         pair.both(lambda env, seed=seed: env.reset(seed=seed))
 
 
-def test_a_table_of_ones_own_begins_as_gymnasiums():
+def test_a_tabular_env_starts_like_gymnasiums_environment():
     theirs: Any = gym.make("FrozenLake-v1").unwrapped
     ours: Any = qtab.TabularEnv(theirs.P, theirs.initial_state_distrib)
     for name in ("one state", "float32", "a list", "zeros", "nan in it", "a view"):
@@ -81,7 +81,7 @@ def test_a_table_of_ones_own_begins_as_gymnasiums():
             assert bitwise(ours.s) == bitwise(theirs.s)
 
 
-def test_a_reset_of_ones_own_may_call_ours():
+def test_an_overridden_reset_may_call_ours():
     class Mine(qtab.TabularEnv):
         def reset(self, *, seed=None, options=None):
             first, info = super().reset(seed=seed, options=options)
@@ -91,7 +91,7 @@ def test_a_reset_of_ones_own_may_call_ours():
     assert Mine(theirs.P, theirs.initial_state_distrib).reset(seed=0) == (0, {"prob": 1, "mine": True})
 
 
-def test_the_seed_alone_is_taken_by_name():
+def test_reset_takes_keyword_arguments_only():
     for name in ("FrozenLake-v1", "Taxi-v4"):
         pair = PAIRS[name]
         for call in (lambda env: env.reset(seed="x"), lambda env: env.reset(seed=-1), lambda env: env.reset(7)):

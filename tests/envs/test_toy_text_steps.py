@@ -19,13 +19,13 @@ def optimal_policy(name: str) -> list[int]:
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_random_steps_are_gymnasiums(name):
+def test_random_steps_equal_gymnasiums(name):
     terminated = LockstepToyText(name).run(STEPS, seed=3)
     assert terminated > 5 or name == "Taxi-v4"  # at random a taxi seldom arrives
 
 
 @pytest.mark.parametrize("name", [name for name in TABLES if "Taxi" not in name])
-def test_steps_to_the_goal_are_gymnasiums(name):
+def test_steps_to_the_goal_equal_gymnasiums(name):
     assert LockstepToyText(name).run(STEPS // 2, optimal_policy(name), seed=3) > 100
 
 
@@ -34,7 +34,7 @@ def test_steps_to_the_goal_are_gymnasiums(name):
     [{}, {"fickle_passenger": True}, {"is_rainy": True}, {"is_rainy": True, "fickle_passenger": True}],
     ids=repr,
 )
-def test_rides_of_every_taxi_are_gymnasiums(kwargs):
+def test_rides_of_every_taxi_equal_gymnasiums(kwargs):
     assert LockstepToyText("Taxi-v4", **kwargs).run(STEPS // 2, optimal_policy("Taxi-v4"), seed=4) > 300
 
 
@@ -72,17 +72,17 @@ LAKE = ["SFFHF", "FHFSF", "FFFFG"]
     ],
     ids=repr,
 )
-def test_every_constructor_argument_counts(name, kwargs):
+def test_every_constructor_argument_has_its_effect(name, kwargs):
     LockstepToyText(name, **kwargs).run(5_000, seed=5)
 
 
-def test_a_lake_may_be_drawn_at_random():
+def test_a_random_map_can_be_generated():
     env: Any = gym.make("qtab/FrozenLake-v1", desc=None, map_name=None).unwrapped
     assert env.observation_space.n == 64
 
 
 @pytest.mark.parametrize("desc", [["FFF", "FFG"], ["SFF", "FG"]])
-def test_a_bad_map_is_gymnasiums_to_judge(desc):
+def test_a_bad_map_has_gymnasiums_result(desc):
     texts: list[Any] = []
     for name in ("qtab/FrozenLake-v1", "FrozenLake-v1"):
         try:
@@ -104,7 +104,7 @@ def edited(env):
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_an_edited_table_counts_from_the_next_step_on(name):
+def test_an_edited_table_is_used_from_the_next_step(name):
     pair = LockstepToyText(name)
     pair.both(lambda env: env.reset(seed=2))
     pair.both(edited)
@@ -145,7 +145,7 @@ ROWS = [
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: repr(row)[:50])
 @pytest.mark.parametrize("name", ["FrozenLake-v1", "CliffWalking-v1", "Taxi-v4"])
-def test_an_odd_row_is_gymnasiums_to_judge(name, row):
+def test_an_odd_row_has_gymnasiums_result(name, row):
     pair = LockstepToyText(name)
     pair.both(lambda env: env.reset(seed=1))
     for env in (pair.ours, pair.theirs):
@@ -154,7 +154,7 @@ def test_an_odd_row_is_gymnasiums_to_judge(name, row):
     pair.both(lambda env: env.step(0))
 
 
-def test_a_table_may_be_another_mapping():
+def test_the_table_may_be_nested_lists():
     pair = LockstepToyText("FrozenLake-v1")
     pair.both(lambda env: env.reset(seed=1))
     for env in (pair.ours, pair.theirs):
@@ -170,7 +170,7 @@ STATES = [0, 3, 5, np.int64(3), np.uint8(4), True, 499, 500, -1, 2.0, 2.5, None,
 
 @pytest.mark.parametrize("name", TABLES)
 @pytest.mark.parametrize("state", STATES, ids=repr)
-def test_an_assigned_state_is_stepped_from(name, state):
+def test_an_assigned_state_is_used(name, state):
     pair = LockstepToyText(name)
     pair.both(lambda env: env.reset(seed=4))
     pair.set(s=state)
@@ -183,14 +183,14 @@ ACTIONS = [0, 1, np.int64(1), np.uint8(0), True, 1.0, 0.5, -1, 4, 7, None, "a", 
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("action", ACTIONS, ids=repr)
-def test_odd_actions_are_gymnasiums_to_judge(name, action):
+def test_odd_actions_have_gymnasiums_result(name, action):
     pair = LockstepToyText(name)
     pair.both(lambda env: env.reset(seed=6))
     pair.both(lambda env: env.step(action))
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_another_first_state_counts(name):
+def test_an_assigned_initial_distribution_is_used(name):
     pair = LockstepToyText(name)
     states = pair.theirs.observation_space.n
     pair.set(initial_state_distrib=np.eye(states)[7])
@@ -201,7 +201,7 @@ def test_another_first_state_counts(name):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_reset_takes_what_gymnasiums_takes(name):
+def test_reset_accepts_what_gymnasiums_accepts(name):
     pair = LockstepToyText(name)
     for seed in (0, 2**40, None, -1, 1.5, np.int64(3)):
         if seed is not None:
@@ -212,7 +212,7 @@ def test_reset_takes_what_gymnasiums_takes(name):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_no_step_before_a_reset(name):
+def test_a_step_before_a_reset_is_refused(name):
     with pytest.raises(gym.error.ResetNeeded, match="before calling"):
         gym.make(f"qtab/{name}").unwrapped.step(0)
     with pytest.raises(gym.error.ResetNeeded):
@@ -221,7 +221,7 @@ def test_no_step_before_a_reset(name):
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("bits", [np.random.MT19937, np.random.Philox, np.random.SFC64])
-def test_the_users_generator_is_drawn_from(name, bits):
+def test_an_assigned_generator_is_used(name, bits):
     pair = LockstepToyText(name)
     pair.both(lambda env: env.reset(seed=0))
     pair.ours.np_random, pair.theirs.np_random = (np.random.Generator(bits(7)) for _ in range(2))
@@ -234,7 +234,7 @@ def test_the_users_generator_is_drawn_from(name, bits):
     assert [one.random(), one.integers(9)] == [other.random(), other.integers(9)]
 
 
-def test_blackjack_deals_from_a_generator_that_is_not_numpys():
+def test_blackjack_deals_from_a_random_state():
     pair = LockstepToyText("Blackjack-v1")
     pair.ours.np_random, pair.theirs.np_random = (np.random.RandomState(7) for _ in range(2))
     for step in range(60):

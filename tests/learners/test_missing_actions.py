@@ -45,7 +45,7 @@ def settings(draw):
 
 
 @given(settings())
-def test_missing_actions_are_the_references(config):
+def test_runs_with_missing_actions_equal_the_reference(config):
     run = qtab.train(BIAS, **config)
     assert run.config.backend == "rust"
     assert qtab.verify(run).equal
@@ -54,7 +54,7 @@ def test_missing_actions_are_the_references(config):
     assert (np.isneginf(run.tables) == missing).all()
 
 
-def test_a_missing_action_is_never_taken_even_while_exploring():
+def test_a_missing_action_is_never_taken():
     env = qtab.book.windy_grid_world()
     first = np.zeros((70, 4))
     first[:, 3] = -np.inf  # nobody goes left
@@ -66,7 +66,7 @@ def test_a_missing_action_is_never_taken_even_while_exploring():
     assert qtab.evaluate(run, episodes=1, seed=0, env=env).lengths[0] > 0
 
 
-def test_backends_agree_and_a_run_survives_its_file(tmp_path):
+def test_both_backends_agree_and_a_run_can_be_saved(tmp_path):
     rust, python = (qtab.train(BIAS, seed=4, backend=backend) for backend in ("rust", "gymnasium"))
     assert rust.tables.tobytes() == python.tables.tobytes()
     assert rust.episode_returns.tobytes() == python.episode_returns.tobytes()
@@ -76,13 +76,13 @@ def test_backends_agree_and_a_run_survives_its_file(tmp_path):
     assert qtab.verify(back).equal
 
 
-def test_one_first_table_serves_both_of_double_q_learning():
+def test_one_initial_table_is_used_for_both_tables_of_double_q_learning():
     run = qtab.train(BIAS, algorithm="double_q_learning", seed=1)
     assert np.shape(run.config.initial_q) == (2, 3, 10)
     assert qtab.verify(run).equal
 
 
-def test_the_environment_is_gymnasiums_kind():
+def test_maximization_bias_passes_gymnasiums_checker():
     env = gym.make(BIAS).unwrapped
     check_env(env, skip_render_check=True)
     observation, info = env.reset(seed=0)
@@ -136,7 +136,7 @@ def test_a_bad_table_is_refused(settings, message):
         qtab.train(BIAS, seed=0, **settings)
 
 
-def test_tile_coding_has_no_states_to_lack_an_action():
+def test_tile_coding_refuses_missing_actions():
     table = np.zeros((648, 3))
     table[0, 0] = -np.inf
     with pytest.raises(

@@ -60,13 +60,13 @@ def test_every_option_has_a_value_here() -> None:
 
 
 @pytest.mark.parametrize(("name", "chosen"), strangers(), ids=str)
-def test_an_option_without_a_meaning_is_refused_by_name(name: str, chosen: dict[str, Any]) -> None:
+def test_an_option_that_does_not_apply_is_refused_by_name(name: str, chosen: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match=rf"^{name} applies to .*, not to .*, got "):
         qtab.train("MountainCar-v0", episodes=1, **chosen, **{name: VALUES[name]})
 
 
 @pytest.mark.parametrize("algorithm", ["dyna_q", "dyna_q_plus"])
-def test_a_model_of_pairs_needs_a_table(algorithm: Any) -> None:
+def test_dyna_needs_a_table(algorithm: Any) -> None:
     with pytest.raises(
         ValueError,
         match=r"^algorithm must be 'q_learning', .* or 'watkins_q_lambda' for discretizer 'tiles', got 'dyna_q",
@@ -75,12 +75,12 @@ def test_a_model_of_pairs_needs_a_table(algorithm: Any) -> None:
 
 
 @pytest.mark.parametrize("settings", [TILES, {"algorithm": "n_step_sarsa"}, {"algorithm": "watkins_q_lambda"}])
-def test_only_the_value_of_a_lone_pair_can_be_assigned(settings: dict[str, Any]) -> None:
+def test_terminal_values_can_be_assigned_only_in_one_step_table_learners(settings: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match=r"^terminal_update must be 'target' for .*, got 'assign'"):
         qtab.train("MountainCar-v0", terminal_update="assign", **settings)
 
 
-def test_dutch_traces_know_one_step_size() -> None:
+def test_true_online_sarsa_lambda_refuses_the_visits_schedule() -> None:
     with pytest.raises(
         ValueError, match=r"^learning_rate_schedule must be 'constant', 'linear' or 'exponential' for .*, got 'visits'"
     ):
@@ -165,12 +165,12 @@ def test_a_resolved_config_gives_the_same_run() -> None:
     assert again.tables.tobytes() == run.tables.tobytes()
 
 
-def test_the_presets_values_yield_to_what_is_asked_for() -> None:
+def test_given_settings_override_the_preset() -> None:
     run = qtab.train("MountainCar-v0", episodes=1, preset="article", algorithm="n_step_sarsa")
     assert (run.config.terminal_update, run.config.scale) == ("target", (10.0, 100.0))
 
 
-def test_double_q_learning_has_two_tables_and_their_sum_is_what_is_read() -> None:
+def test_double_q_learning_has_two_tables_and_acts_on_their_sum() -> None:
     run = qtab.train("MountainCar-v0", episodes=20, seed=0, algorithm="double_q_learning")
     assert run.tables.shape == (2, 285, 3)
     assert run.q_table.tobytes() == (run.tables[0] + run.tables[1]).tobytes()
@@ -180,7 +180,7 @@ def test_double_q_learning_has_two_tables_and_their_sum_is_what_is_read() -> Non
 
 @pytest.mark.parametrize("algorithm", ["double_q_learning", "sarsa"])
 @pytest.mark.parametrize("settings", [{}, TILES])
-def test_training_goes_on_from_a_runs_tables(algorithm: Any, settings: dict[str, Any]) -> None:
+def test_training_continues_from_the_tables_of_a_run(algorithm: Any, settings: dict[str, Any]) -> None:
     first = qtab.train("MountainCar-v0", episodes=20, seed=0, algorithm=algorithm, **settings)
     more = qtab.train(
         "MountainCar-v0",
@@ -195,7 +195,7 @@ def test_training_goes_on_from_a_runs_tables(algorithm: Any, settings: dict[str,
     assert qtab.verify(more).equal
 
 
-def test_a_mistake_about_time_outs_costs_what_it_costs() -> None:
+def test_treating_truncation_as_termination_hurts_learning() -> None:
     right, wrong = (
         np.mean([qtab.train("MountainCar-v0", seed=seed, on_truncation=way).mean_returns(100)[-1] for seed in range(8)])
         for way in ("bootstrap", "terminate")
@@ -216,7 +216,7 @@ DIVERGING: dict[str, Any] = {
 }
 
 
-def test_divergence_stops_the_run_and_names_the_episode_and_the_likely_cause() -> None:
+def test_divergence_stops_the_run_with_the_episode_and_the_likely_cause() -> None:
     with pytest.raises(OverflowError, match=r"overflowed in episode \d+ .*learning_rate") as caught:
         qtab.train("MountainCar-v0", **DIVERGING)
     run: qtab.Run = caught.value.run  # type: ignore[attr-defined]
@@ -225,13 +225,13 @@ def test_divergence_stops_the_run_and_names_the_episode_and_the_likely_cause() -
     assert len(run.episode_returns) == len(run.episode_lengths) == len(run.terminated)
 
 
-def test_divergence_is_noticed_in_an_episode_that_never_ends() -> None:
+def test_divergence_is_detected_in_an_endless_episode() -> None:
     with pytest.raises(OverflowError, match="episode 0 "):
         qtab.train("MountainCar-v0", **DIVERGING, max_episode_steps=10**15)
 
 
 @pytest.mark.parametrize("backend", ["rust", "gymnasium"])
-def test_callbacks_and_backends_do_not_move_a_divergence(backend: Any) -> None:
+def test_divergence_is_the_same_with_callbacks_and_on_both_backends(backend: Any) -> None:
     episodes = set()
     for every in (1, 7):
         with pytest.raises(OverflowError) as caught:
@@ -246,7 +246,7 @@ def test_callbacks_and_backends_do_not_move_a_divergence(backend: Any) -> None:
     assert len(episodes) == 1
 
 
-def test_rewards_too_large_to_compute_with_are_an_overflow_too() -> None:
+def test_rewards_that_overflow_raise_an_overflow_error() -> None:
     class Huge(gym.Env[Any, Any]):
         observation_space = gym.spaces.Box(0.0, 1.0, (1,), np.float64)
         action_space = gym.spaces.Discrete(2)
@@ -273,7 +273,7 @@ def test_rewards_too_large_to_compute_with_are_an_overflow_too() -> None:
     assert not np.isfinite(caught.value.run.tables).all()  # type: ignore[attr-defined]
 
 
-def test_the_command_tells_a_divergence_in_one_line(capfd: pytest.CaptureFixture[str]) -> None:
+def test_the_command_reports_divergence_in_one_line(capfd: pytest.CaptureFixture[str]) -> None:
     from qtab.cli.command import run
 
     settings: dict[str, Any] = {**DIVERGING, "env": "MountainCar-v0"}

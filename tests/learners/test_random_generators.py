@@ -81,7 +81,7 @@ def test_mt19937_draws_what_numpy_draws_in_any_order(seed, requests):
 
 @pytest.mark.parametrize("pair", [pcg64, mt19937])
 @pytest.mark.parametrize("below", range(1, 21))
-def test_integers_stay_numpys_over_thousands_of_draws(pair, below):
+def test_thousands_of_integers_equal_numpys(pair, below):
     ours, numpys = pair(7)
     assert [ours.integers(below) for _ in range(3000)] == [numpys.integers(below) for _ in range(3000)]
     assert ours.random() == numpys.random()
@@ -89,21 +89,21 @@ def test_integers_stay_numpys_over_thousands_of_draws(pair, below):
 
 @pytest.mark.parametrize("pair", [pcg64, mt19937])
 @pytest.mark.parametrize("below", [2**31 - 1, 2**31 + 1, 3 * 2**30, 2**32 - 1])
-def test_wide_integers_reject_the_words_that_numpy_rejects(pair, below):
+def test_large_bounds_reject_the_words_that_numpy_rejects(pair, below):
     ours, numpys = pair(11)
     assert [ours.integers(below) for _ in range(500)] == [numpys.integers(below) for _ in range(500)]
     assert ours.random() == numpys.random()
 
 
 @pytest.mark.parametrize("pair", [pcg64, mt19937])
-def test_a_choice_of_one_draws_nothing(pair):
+def test_a_bound_of_1_draws_no_random_numbers(pair):
     ours, numpys = pair(3)
     assert [ours.integers(1) for _ in range(10)] == 10 * [0]
     assert ours.random() == numpys.random()
 
 
 @pytest.mark.parametrize("pair", [pcg64, mt19937])
-def test_a_million_words_later_the_streams_are_still_together(pair):
+def test_hundreds_of_thousands_of_floats_equal_numpys(pair):
     ours, numpys = pair(2**32 - 1)
     theirs = numpys.generator.random(200_000)
     mine = np.array([ours.random() for _ in range(200_000)])
@@ -111,12 +111,12 @@ def test_a_million_words_later_the_streams_are_still_together(pair):
 
 
 @pytest.mark.parametrize("seed", EDGES)
-def test_every_size_of_seed_makes_numpys_pcg64(seed):
+def test_seeds_of_any_size_seed_pcg64_as_numpy_does(seed):
     ours, numpys = pcg64(seed)
     assert [ours.random() for _ in range(20)] == [numpys.random() for _ in range(20)]
 
 
-def test_mt19937_is_numpys_legacy_seeding():
+def test_mt19937_is_seeded_as_numpys_legacy_generator():
     np.random.seed(5)  # noqa: NPY002 - the article's way
     assert AgentRng("MT19937", 5).random() == np.random.random()  # noqa: NPY002
     assert AgentRng("MT19937", 5).random() != np.random.Generator(np.random.MT19937(5)).random()

@@ -19,16 +19,16 @@ def course(kind: str, value: float, least: float, decay: float | None, warm_up: 
     return values
 
 
-def test_a_constant_rate_stays() -> None:
+def test_a_constant_rate_does_not_change() -> None:
     assert course("constant", 0.5, 0.0, None, 0, 3) == [0.5] * 3
 
 
-def test_a_linear_rate_falls_by_the_same_amount() -> None:
+def test_a_linear_rate_decreases_by_the_same_amount() -> None:
     assert course("linear", 1.0, 0.0, None, 0, 4) == [1.0, 0.75, 0.5, 0.25]
     assert course("linear", 1.0, 0.5, None, 2, 4) == [1.0, 1.0, 1.0, 0.75]
 
 
-def test_an_exponential_rate_falls_by_a_factor_to_its_least() -> None:
+def test_an_exponential_rate_decays_to_its_minimum() -> None:
     assert course("exponential", 1.0, 0.2, 0.5, 0, 5) == [1.0, 0.5, 0.25, 0.2, 0.2]
     assert course("exponential", 1.0, 0.0, 0.0, 1, 3) == [1.0, 1.0, 0.0]
 
@@ -69,7 +69,7 @@ def test_the_learning_rate_follows_its_schedule() -> None:
 
 
 @pytest.mark.parametrize("algorithm", ["q_learning", "n_step_sarsa", "sarsa_lambda"])
-def test_one_over_the_visits_gives_the_average_of_the_targets(algorithm: Any) -> None:
+def test_the_visits_schedule_averages_the_targets(algorithm: Any) -> None:
     run = qtab.train(
         "MountainCar-v0",
         algorithm=algorithm,
@@ -103,7 +103,7 @@ def test_exploration_ends_with_its_schedule() -> None:
     assert [len(set(recording.actions)) for recording in run.recordings] == [3, 3, 1, 1]
 
 
-def test_constant_first_values_draw_nothing() -> None:
+def test_constant_initial_values_draw_no_random_numbers() -> None:
     settings: dict[str, Any] = {"seed": 0, "episodes": 1, "learning_rate": 0.0}
     same = qtab.train("MountainCar-v0", initial_q=2.5, **settings)
     drawn = qtab.train("MountainCar-v0", initial_q=(2.5, 2.5), **settings)
@@ -122,7 +122,7 @@ def test_random_ties_take_every_greedy_action() -> None:
     assert set(anyone.recordings[0].actions) == {0, 1, 2}
 
 
-def test_a_cold_softmax_is_greedy_and_a_hot_one_takes_anything() -> None:
+def test_a_low_temperature_is_greedy_and_a_high_one_is_random() -> None:
     table = np.zeros((19, 15, 3))
     table[..., 1] = 1.0
     settings: dict[str, Any] = {"seed": 0, "episodes": 1, "initial_q": table, "learning_rate": 0.0, "record": 1}

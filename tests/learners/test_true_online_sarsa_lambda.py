@@ -30,7 +30,7 @@ def online_lambda_return(features, rewards, alpha, discount, decay):
 
 
 @pytest.mark.parametrize(("decay", "discount"), [(0.0, 1.0), (0.8, 0.9), (0.95, 1.0), (1.0, 0.99)])
-def test_true_online_is_the_forward_view(decay, discount):
+def test_true_online_sarsa_lambda_equals_the_forward_view(decay, discount):
     # It explores always, so that what it does does not depend on what it has learned.
     run = qtab.train(
         "MountainCar-v0",

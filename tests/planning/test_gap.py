@@ -14,7 +14,7 @@ MINT = qtab.TabularEnv({0: {0: [(1.0, 0, 1.0, False)], 1: [(1.0, 0, 0.0, True)]}
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_a_greedy_policys_exact_return_is_what_it_returns_when_evaluated(name):
+def test_the_exact_return_of_a_greedy_policy_matches_its_evaluation(name):
     run = qtab.train(name, seed=3, episodes=3000)
     gap = qtab.optimum(run).gap(run)
     played = qtab.evaluate(run, episodes=2000, seed=1)
@@ -25,7 +25,7 @@ def test_a_greedy_policys_exact_return_is_what_it_returns_when_evaluated(name):
     assert gap.greedy >= -1e-12
 
 
-def test_a_fickle_passenger_is_modelled_exactly():
+def test_the_fickle_passenger_is_modelled_exactly():
     kwargs = {"fickle_passenger": True, "fickle_probability": 0.6}
     run = qtab.train("Taxi-v4", env_kwargs=kwargs, seed=0, episodes=6000)
     found = qtab.optimum(run)
@@ -45,7 +45,7 @@ def test_a_fickle_passenger_is_modelled_exactly():
     assert 0 < refused < len(aboard)
 
 
-def test_runs_are_compared_too():
+def test_the_gap_is_computed_for_many_runs():
     runs = qtab.train_many("FrozenLake-v1", seeds=4, episodes=2000, tables=True)
     found = qtab.optimum(runs)
     gap = found.gap(runs)
@@ -54,7 +54,7 @@ def test_runs_are_compared_too():
     assert np.isnan(found.gap(qtab.train_many("FrozenLake-v1", seeds=4, episodes=200)).greedy).all()
 
 
-def test_a_gap_wants_a_run_of_its_environment_and_limit():
+def test_the_gap_requires_a_run_of_the_same_environment_and_time_limit():
     found = qtab.optimum("FrozenLake-v1")
     with pytest.raises(ValueError, match="run must have env 'FrozenLake-v1' as this optimum has, got 'Taxi-v4'"):
         found.gap(qtab.train("Taxi-v4", episodes=2, seed=0))
@@ -74,7 +74,7 @@ def test_a_gap_wants_a_run_of_its_environment_and_limit():
         qtab.optimum(own, env_kwargs={})
 
 
-def test_keyword_arguments_count_whether_they_are_said_or_not():
+def test_default_keyword_arguments_equal_those_left_out():
     said = {"is_slippery": True, "map_name": "4x4"}
     run = qtab.train("qtab/FrozenLake-v1", episodes=2, seed=0, env_kwargs=said)
     assert qtab.optimum("FrozenLake-v1", env_kwargs={"is_slippery": True}).gap(run).optimum > 0.7

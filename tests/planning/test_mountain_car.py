@@ -28,7 +28,7 @@ def drive(env: gym.Env, position: float, actions: Any) -> list[bool]:
     return [bool(env.step(int(action))[2]) for action in actions]
 
 
-def test_every_route_arrives_in_gymnasium_with_its_last_action(found):
+def test_every_route_reaches_the_goal_in_gymnasium_with_its_last_action(found):
     env = gym.make("MountainCar-v0")
     search = found.search
     for position, steps, route in zip(search.starts, search.steps, search.routes, strict=True):
@@ -37,7 +37,7 @@ def test_every_route_arrives_in_gymnasium_with_its_last_action(found):
     assert found.expected_return == -search.steps.mean()
 
 
-def test_it_is_the_best_known_and_says_that_it_is_no_proof(found):
+def test_the_optimum_is_labelled_best_known_and_not_exact(found):
     assert (found.method, found.exact, found.label) == ("search", False, "best known")
     assert -98 < found.expected_return < -97.6
     assert found.expected_return >= found.search.predict_return > -98
@@ -45,14 +45,14 @@ def test_it_is_the_best_known_and_says_that_it_is_no_proof(found):
     assert found.reward_threshold == -110
 
 
-def test_the_starts_are_spread_over_gymnasiums(found):
+def test_start_positions_cover_gymnasiums_range(found):
     starts = found.search.starts
     assert len(starts) == 1000
     assert -0.6 < starts[0] < starts[-1] < -0.4
     np.testing.assert_allclose(np.diff(starts), 0.2 / 1000)
 
 
-def test_its_predictions_drive_as_well(found):
+def test_predicted_actions_reach_the_estimated_return(found):
     env = gym.make("MountainCar-v0")
     lengths = []
     for episode in range(EPISODES):
@@ -67,7 +67,7 @@ def test_its_predictions_drive_as_well(found):
     assert abs(np.mean(lengths) + found.search.predict_return) < 3.5 * np.std(lengths) / np.sqrt(EPISODES)
 
 
-def test_the_values_are_costs_to_go_on_their_grid(found):
+def test_values_are_negative_costs_to_go_on_the_grid(found):
     search = found.search
     assert found.values.shape == found.policy.shape == (len(search.positions), len(search.velocities))
     assert found.q_values.shape == (*found.values.shape, 3)
@@ -82,7 +82,7 @@ def test_the_values_are_costs_to_go_on_their_grid(found):
     assert found.predict(state)[0] == found.policy[position, velocity]
 
 
-def test_a_goal_velocity_is_honoured():
+def test_the_goal_velocity_is_used():
     slower: Any = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.04})
     env = gym.make("MountainCar-v0", goal_velocity=0.04)
     for index in range(0, 1000, 100):
@@ -94,7 +94,7 @@ def test_a_goal_velocity_is_honoured():
     assert set(never.search.routes) == {None}
 
 
-def test_an_edited_environment_is_taken_as_it_stands():
+def test_an_edited_environment_is_searched_as_edited():
     env: Any = gym.make("qtab/MountainCar-v0")
     env.unwrapped.force = 0.002
     strong: Any = qtab.optimum(env)
@@ -108,7 +108,7 @@ def test_an_edited_environment_is_taken_as_it_stands():
 
 
 @pytest.mark.parametrize("edit", [{"max_speed": 0.0}, {"min_position": 0.6}, {"gravity": 1e300}, {"max_speed": -1.0}])
-def test_a_car_that_goes_nowhere_has_no_route(edit):
+def test_a_car_that_cannot_move_has_no_route(edit):
     env: Any = gym.make("qtab/MountainCar-v0", max_episode_steps=50)
     for name, value in edit.items():
         setattr(env.unwrapped, name, value)
@@ -125,7 +125,7 @@ def test_a_time_limit_ends_every_episode():
     assert (short.search.steps[[route is None for route in short.search.routes]] == 90).all()
 
 
-def test_a_run_is_that_far_from_it(found):
+def test_the_gap_of_a_run_is_its_distance_from_the_optimum(found):
     run = qtab.train("MountainCar-v0", preset="solved", episodes=500, seed=0)
     gap = found.gap(run)
     played = qtab.evaluate(run, 1000, seed=0)
@@ -136,12 +136,12 @@ def test_a_run_is_that_far_from_it(found):
 
 
 @pytest.mark.parametrize("observation", [[0.0], [0.0, float("nan")], 3])
-def test_what_is_no_observation_is_refused(found, observation):
+def test_an_invalid_observation_is_refused(found, observation):
     with pytest.raises(ValueError, match="observation must be a position and a velocity, got"):
         found.predict(observation)
 
 
-def test_a_curve_is_drawn_beside_it(found):
+def test_the_optimum_is_drawn_in_learning_curves(found):
     run = qtab.train("MountainCar-v0", episodes=300, seed=0)
     drawings: list[tuple[Any, str]] = [
         (qtab.plot(run, optimum=found), f"best known {found.expected_return:.4g}"),
@@ -173,7 +173,7 @@ except KeyboardInterrupt:
 """
 
 
-def test_ctrl_c_stops_it():
+def test_ctrl_c_stops_planning():
     assert json.loads(in_a_process(ENDLESS).stdout) == "stopped"
 
 
@@ -192,7 +192,7 @@ def test_the_command_prints_a_small_table(tmp_path: Path):
     assert "discount must lie in [0, 1], got 2.0" in refused("optimum", "Taxi-v4", "--discount", "2", cwd=tmp_path)
 
 
-def test_training_says_how_far_it_is_from_the_optimum(tmp_path: Path):
+def test_training_reports_the_gap_to_the_optimum(tmp_path: Path):
     done = command("train", "CliffWalking-v1", "--seed", "0", "--plot", "curve.png", cwd=tmp_path)
     assert "Greedy policy -13, optimum -13, gap 0" in done.stdout.splitlines()
     assert (tmp_path / "curve.png").exists()

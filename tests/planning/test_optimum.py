@@ -31,7 +31,7 @@ VARIANTS = [
 
 
 @pytest.mark.parametrize(("name", "kwargs"), VARIANTS)
-def test_values_are_those_of_plain_numpy_to_the_last_bit(name, kwargs):
+def test_values_equal_numpys_to_the_last_bit(name, kwargs):
     env = table_of(name, **kwargs)
     for discount in (0.9, 1.0):
         found = qtab.optimum(name, env_kwargs=kwargs, method="value_iteration", discount=discount)
@@ -44,7 +44,7 @@ def test_values_are_those_of_plain_numpy_to_the_last_bit(name, kwargs):
 
 
 @pytest.mark.parametrize(("name", "kwargs"), VARIANTS)
-def test_policy_iteration_finds_value_iterations_values(name, kwargs):
+def test_policy_iteration_finds_the_values_of_value_iteration(name, kwargs):
     for discount in (0.9, 1.0):
         ours, theirs = (qtab.optimum(name, env_kwargs=kwargs, method=each, discount=discount) for each in METHODS[:2])
         np.testing.assert_allclose(theirs.values, ours.values, rtol=1e-9, atol=1e-12)
@@ -53,7 +53,7 @@ def test_policy_iteration_finds_value_iterations_values(name, kwargs):
         assert ours.expected_return == exactly
 
 
-def test_what_is_known_comes_out():
+def test_known_optima_are_found():
     assert qtab.optimum("CliffWalking-v1").expected_return == -13
     assert qtab.optimum("Taxi-v4").expected_return == pytest.approx(7.93, abs=1e-12)
     assert qtab.optimum("FrozenLake-v1", env_kwargs={"is_slippery": False}).expected_return == 1
@@ -64,7 +64,7 @@ def test_what_is_known_comes_out():
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_the_optimum_is_what_its_policy_returns_in_gymnasiums_environment(name):
+def test_the_optimal_policy_earns_the_optimum_in_gymnasium(name):
     found = qtab.optimum(name)
     env = gym.make(name)
     returns = []
@@ -96,7 +96,7 @@ def tables(draw: st.DrawFn) -> Any:
 
 @settings(max_examples=100)
 @given(tables(), st.floats(0, 0.95))
-def test_any_table_has_plain_numpys_values(table, discount):
+def test_values_of_random_tables_equal_numpys(table, discount):
     start = np.full(len(table), 1 / len(table))
     env = qtab.TabularEnv(table, start)
     values = qtab.optimum(env, method="value_iteration", discount=discount).values
@@ -107,7 +107,7 @@ def test_any_table_has_plain_numpys_values(table, discount):
 
 @settings(max_examples=50)
 @given(tables(), st.integers(1, 4))
-def test_no_way_of_acting_returns_more_than_the_finite_horizon(table, steps):
+def test_no_policy_earns_more_than_the_finite_horizon_optimum(table, steps):
     def best(state: int, left: int) -> float:
         if left == 0:
             return 0.0
@@ -120,7 +120,7 @@ def test_no_way_of_acting_returns_more_than_the_finite_horizon(table, steps):
     assert qtab.optimum(env, max_episode_steps=steps).expected_return == pytest.approx(best(0, steps), abs=1e-12)
 
 
-def test_predict_minds_the_steps_left():
+def test_predict_depends_on_the_remaining_steps():
     # 1 now, or 3 at the third step: with two steps left it is too late to wait.
     wait, take, slow = [(1.0, 1, 0.0, False)], [(1.0, 0, 1.0, True)], [(1.0, 2, 0.0, False)]
     env = qtab.TabularEnv(
@@ -145,7 +145,7 @@ def test_blackjack_is_computed_from_its_rules(kwargs):
     assert found.predict((20, 5, 0))[0] == 0
 
 
-def test_every_way_of_naming_an_environment_comes_to_the_same():
+def test_all_ways_of_naming_an_environment_give_the_same_optimum():
     env = gym.make("FrozenLake-v1")
     run = qtab.train("FrozenLake-v1", episodes=10, seed=0)
     ways: list[Any] = ["FrozenLake-v1", "qtab/FrozenLake-v1", gym.spec("FrozenLake-v1"), env, env.unwrapped, run]
@@ -160,7 +160,7 @@ MINT = qtab.TabularEnv({0: {0: [(1.0, 0, 1.0, False)], 1: [(1.0, 0, 0.0, True)]}
 
 
 @pytest.mark.parametrize("method", METHODS[:2])
-def test_endless_rewards_need_a_discount(method):
+def test_unbounded_returns_need_a_discount(method):
     with pytest.raises(
         ValueError, match=r"^discount must be smaller here, got 1: .*'finite_horizon' fits any discount$"
     ):
@@ -206,7 +206,7 @@ def test_bad_input_is_refused(arguments, error, message):
         qtab.optimum(**{"env": "Taxi-v4", **arguments})
 
 
-def test_a_table_that_is_none_says_where():
+def test_an_invalid_table_is_refused_with_the_entry():
     env: Any = gym.make("FrozenLake-v1")
     env.unwrapped.P[3][1] = [(0.5, 0, 0.0, False)]
     with pytest.raises(ValueError, match=r"P\[3\]\[1\] must have probabilities that sum to 1, got 0.5"):
@@ -228,14 +228,14 @@ def test_observations_outside_the_space_are_refused():
         found.predict(0, -1)
 
 
-def test_an_environment_that_was_handed_in_stays_open_and_unstepped():
+def test_an_environment_that_is_passed_in_is_neither_closed_nor_stepped():
     env: Any = gym.make("FrozenLake-v1")
     observation, _ = env.reset(seed=0)
     qtab.optimum(env)
     assert env.unwrapped.s == observation
 
 
-def test_it_says_what_it_is():
+def test_an_optimum_describes_itself():
     text = str(qtab.optimum("Taxi-v4"))
     assert text.startswith("Taxi-v4\n  expected return  7.93 within 200 steps\n  threshold        8\n")
     assert "finite_horizon, discount 1: exact" in text

@@ -15,7 +15,7 @@ def lines(ax):
     return {line.get_label(): line for line in ax.get_lines()}
 
 
-def test_a_learning_curve_shows_the_mean_its_interval_and_every_run():
+def test_learning_curves_show_the_mean_its_interval_and_every_run():
     ax = plots.learning_curves(RETURNS, block=50, title="t")
     points = stats.curve(RETURNS, block=50)
     mean = lines(ax)["mean of 12 runs, 95% interval"]
@@ -40,7 +40,7 @@ def test_every_function_draws_on_the_axes_it_is_given():
         assert ax.get_ylabel()
 
 
-def test_sensitivity_pools_what_is_not_shown_and_colours_by_a_second():
+def test_sensitivity_pools_the_other_settings_and_colours_by_a_second():
     grid: dict[str, Any] = {
         "learning_rate": [0.01, 0.1, 1.0],
         "epsilon": [0.1, 0.9],

@@ -25,7 +25,7 @@ def test_the_curve_is_the_block_means_at_the_ends_of_their_blocks() -> None:
     assert curve(run, block=50) == (list(range(50, 451, 50)), run.mean_returns(50).tolist())
 
 
-def test_every_episode_is_a_dot_and_the_settings_are_noted() -> None:
+def test_every_episode_is_a_dot_and_the_title_lists_the_settings() -> None:
     run = qtab.train("MountainCar-v0", episodes=120, seed=7)
     ax = qtab.plot(run)
     dots: Any = ax.lines[0].get_ydata()
@@ -42,7 +42,7 @@ def test_an_axis_is_drawn_on_and_returned() -> None:
     assert qtab.plot(qtab.train("MountainCar-v0", episodes=100, seed=0), ax) is ax
 
 
-def test_a_run_shorter_than_a_block_has_no_curve_but_its_dots(tmp_path: Path) -> None:
+def test_a_run_shorter_than_a_block_has_dots_and_no_curve(tmp_path: Path) -> None:
     run = qtab.train("MountainCar-v0", episodes=3, seed=0)
     assert len(qtab.plot(run).lines) == 1
     save_plot(run, tmp_path / "a.png")
@@ -54,20 +54,20 @@ def test_a_run_stopped_before_its_first_episode_can_be_drawn(tmp_path: Path) -> 
     save_plot(type(run)(**{**vars(run), **nothing}), tmp_path / "a.png")
 
 
-def test_a_huge_run_is_thinned_but_its_means_are_not() -> None:
+def test_dots_of_a_huge_run_are_thinned_and_its_means_are_not() -> None:
     run = qtab.train("MountainCar-v0", episodes=30_000, seed=0, max_episode_steps=2)
     cloud, means = qtab.plot(run).lines
     assert np.size(cloud.get_xdata()) == 20_000
     assert np.size(means.get_xdata()) == 30  # of 1,000 episodes each: 300 would be a thick band
 
 
-def test_an_ending_that_matplotlib_does_not_write_is_refused() -> None:
+def test_a_file_extension_that_matplotlib_does_not_support_is_refused() -> None:
     with pytest.raises(ValueError, match=r"plot must end in one of .*\.jpg.*, got 'a.docx'"):
         check_format("plot", Path("a.docx"))
     check_format("plot", Path("A.PNG"))
 
 
-def test_a_plot_that_fails_leaves_nothing_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_plot_that_fails_leaves_no_partial_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object, **__: object) -> None:
         raise OSError("the disk is full")
 
@@ -107,7 +107,7 @@ def test_progress_must_be_true_false_or_none() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="it has no pseudo-terminals")
-def test_on_a_terminal_the_bar_and_the_lines_share_the_screen(tmp_path: Path) -> None:
+def test_progress_bar_and_printed_lines_do_not_overlap_on_a_terminal(tmp_path: Path) -> None:
     import fcntl
     import os
     import pty
@@ -137,7 +137,7 @@ def test_on_a_terminal_the_bar_and_the_lines_share_the_screen(tmp_path: Path) ->
     assert lines[-2].startswith("Mean return over the last 100 episodes")
 
 
-def test_an_optimum_that_is_none_is_refused_by_name() -> None:
+def test_an_invalid_optimum_is_refused_by_name() -> None:
     run = qtab.train("MountainCar-v0", seed=0, episodes=10)
     with pytest.raises(TypeError, match=r"^optimum must be a number or a result of qtab.optimum, got .best."):
         qtab.plot(run, optimum="best")  # type: ignore[arg-type]

@@ -26,7 +26,7 @@ def test_recordings_play_the_same_returns_and_lengths_in_gymnasium(backend: Any,
     assert replay_all(env, run) == 0
 
 
-def test_a_recording_from_the_first_episode_starts_where_the_seed_starts() -> None:
+def test_a_recording_of_the_first_episode_starts_from_the_seed() -> None:
     run = package.train("MountainCar-v0", episodes=3, seed=9, record=3)
     env = gym.make("MountainCar-v0")
     seeded, _ = gym.make("MountainCar-v0").reset(seed=9)
@@ -43,17 +43,17 @@ def test_a_recording_from_the_first_episode_starts_where_the_seed_starts() -> No
     assert starts[0].tobytes() == seeded.tobytes()
 
 
-def test_more_recordings_than_episodes_are_all_episodes() -> None:
+def test_recording_more_episodes_than_there_are_records_all() -> None:
     assert len(package.train("MountainCar-v0", episodes=4, seed=0, record=20).recordings) == 4
 
 
-def test_episodes_that_go_another_way_are_counted() -> None:
+def test_episodes_that_differ_are_counted() -> None:
     run = package.train("MountainCar-v0", episodes=3, seed=0, record=3)
     run.episode_returns[1] -= 1
     assert replay_all(gym.make("MountainCar-v0"), run) == 1
 
 
-def test_the_stage_has_the_limits_and_constants_of_the_run() -> None:
+def test_the_render_environment_has_the_time_limit_and_keyword_arguments_of_the_run() -> None:
     config = package.train("MountainCar-v0", episodes=1, max_episode_steps=7, env_kwargs={"goal_velocity": 0.01}).config
     env = make_render_env(config, "rgb_array")
     assert env.unwrapped.goal_velocity == 0.01  # type: ignore[attr-defined]
@@ -61,12 +61,12 @@ def test_the_stage_has_the_limits_and_constants_of_the_run() -> None:
     assert replay_all(env, run) == 0
 
 
-def test_an_environment_without_pictures_is_refused_before_training(tmp_path: Path) -> None:
+def test_an_environment_that_cannot_be_rendered_is_refused_before_training(tmp_path: Path) -> None:
     line = refused("train", "toys:Walk-v0", "--scale", "1", "--record", "videos", cwd=tmp_path, run=qtab)
     assert "cannot be rendered" in line
 
 
-def test_record_writes_the_last_episodes_as_videos_and_leaves_the_table_alone(tmp_path: Path) -> None:
+def test_record_writes_the_last_episodes_as_videos_and_does_not_change_the_run(tmp_path: Path) -> None:
     import imageio_ffmpeg  # type: ignore[import-untyped]
 
     common = ["train", "--seed", "1", "--episodes", "50", "--max-episode-steps", "20"]

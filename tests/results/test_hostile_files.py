@@ -51,7 +51,7 @@ def changed_header(members, change):
     return members | {"header": np.array(json.dumps(header))}
 
 
-def test_a_file_cut_off_anywhere_is_refused(saved, tmp_path):
+def test_a_truncated_file_is_refused(saved, tmp_path):
     whole = saved.read_bytes()
     for length in [*range(0, 80), *range(80, len(whole), 97), *range(len(whole) - 80, len(whole))]:
         (tmp_path / "cut.npz").write_bytes(whole[:length])
@@ -59,7 +59,7 @@ def test_a_file_cut_off_anywhere_is_refused(saved, tmp_path):
 
 
 @pytest.mark.parametrize("content", [b"", b"text", b"\x93NUMPY\x01\x00", b"PK\x03\x04" + 100 * b"\0", pickle.dumps({})])
-def test_what_is_no_archive_is_refused(tmp_path, content):
+def test_a_file_that_is_not_an_archive_is_refused(tmp_path, content):
     (tmp_path / "run.npz").write_bytes(content)
     refused(tmp_path / "run.npz")
 
@@ -83,7 +83,7 @@ def test_flipped_bytes_are_refused_or_change_nothing(saved, tmp_path_factory, da
 @pytest.mark.parametrize(
     "name", ["tables", "episode_returns", "terminated", "low", "scale", "initial_q", "header", "episode_lengths"]
 )
-def test_no_pickled_object_array_is_ever_opened(members, tmp_path, name):
+def test_a_pickled_object_array_is_never_loaded(members, tmp_path, name):
     members[name] = np.array([Marker(tmp_path / "marker")], dtype=object)
     np.savez(tmp_path / "run.npz", allow_pickle=True, **members)
     assert b"marker" in (tmp_path / "run.npz").read_bytes()
@@ -91,13 +91,13 @@ def test_no_pickled_object_array_is_ever_opened(members, tmp_path, name):
     assert not (tmp_path / "marker").exists()
 
 
-def test_a_bare_pickle_under_our_name_is_not_opened(tmp_path):
+def test_a_pickle_with_our_extension_is_not_loaded(tmp_path):
     (tmp_path / "run.npz").write_bytes(pickle.dumps(Marker(tmp_path / "marker")))
     refused(tmp_path / "run.npz")
     assert not (tmp_path / "marker").exists()
 
 
-def test_a_pickle_as_a_member_is_not_opened(members, saved, tmp_path):
+def test_a_pickle_inside_the_archive_is_not_loaded(members, saved, tmp_path):
     path = tmp_path / "run.npz"
     with zipfile.ZipFile(saved) as source, zipfile.ZipFile(path, "w") as target:
         for entry in source.infolist():
@@ -107,12 +107,12 @@ def test_a_pickle_as_a_member_is_not_opened(members, saved, tmp_path):
     assert not (tmp_path / "marker").exists()
 
 
-def test_a_compressed_file_is_refused_before_anything_is_unpacked(members, tmp_path):
+def test_a_compressed_file_is_refused_before_decompression(members, tmp_path):
     np.savez_compressed(tmp_path / "run.npz", **members)
     refused(tmp_path / "run.npz", "compressed")
 
 
-def test_a_bomb_of_zeros_is_refused(saved, tmp_path):
+def test_a_decompression_bomb_is_refused(saved, tmp_path):
     path = tmp_path / "run.npz"
     with zipfile.ZipFile(saved) as source, zipfile.ZipFile(path, "w") as target:
         for entry in source.infolist():
@@ -276,7 +276,7 @@ HEADERS = {
 
 
 @pytest.mark.parametrize("header", HEADERS.values(), ids=HEADERS)
-def test_a_header_that_is_no_json_object_is_refused(members, tmp_path, header):
+def test_a_header_that_is_not_a_json_object_is_refused(members, tmp_path, header):
     np.savez(tmp_path / "run.npz", **members | {"header": header})
     refused(tmp_path / "run.npz")
 

@@ -16,7 +16,7 @@ def run():
     return qtab.train("MountainCar-v0", seed=0, episodes=250)
 
 
-def test_its_arrays_have_the_promised_shapes_and_dtypes(run):
+def test_the_arrays_of_a_run_have_the_documented_shapes_and_dtypes(run):
     assert (run.q_table.shape, run.q_table.dtype) == ((19, 15, 3), np.float64)
     assert (run.tables.shape, run.tables.dtype) == ((1, 285, 3), np.float64)
     assert (run.episode_returns.shape, run.episode_returns.dtype) == ((250,), np.float64)
@@ -26,13 +26,13 @@ def test_its_arrays_have_the_promised_shapes_and_dtypes(run):
     assert run.seconds > 0.0
 
 
-def test_the_policy_is_the_first_maximum_of_each_cell(run):
+def test_the_policy_is_the_argmax_of_each_cell(run):
     assert run.policy.tolist() == run.q_table.argmax(axis=-1).tolist()
     level = qtab.train("MountainCar-v0", seed=0, episodes=1, initial_q=(0.0, 0.0), learning_rate=0.0)
     assert not level.policy.any()
 
 
-def test_predict_answers_as_stable_baselines3_does(run):
+def test_predict_has_the_signature_of_stable_baselines3(run):
     action, state = run.predict(np.array([-0.5, 0.0], np.float32), None, None, True)
     assert type(action) is int
     assert state is None
@@ -90,7 +90,7 @@ def test_mean_returns_are_those_of_whole_blocks(run):
 
 
 @pytest.mark.parametrize(("block", "error"), [(0, ValueError), (-5, ValueError), (2.0, TypeError), (True, TypeError)])
-def test_a_block_that_does_not_fit_is_refused(run, block, error):
+def test_a_bad_block_is_refused(run, block, error):
     with pytest.raises(error, match=f"block must be an integer of at least 1, got {block}"):
         run.mean_returns(block)
 
@@ -110,19 +110,19 @@ def test_a_config_cannot_be_changed_in_place(run):
         run.config.replace(colour="red")
 
 
-def test_the_table_that_a_run_began_from_cannot_be_changed_through_its_config():
+def test_the_initial_table_in_a_config_is_read_only():
     run = qtab.train("MountainCar-v0", seed=0, episodes=1, initial_q=np.zeros((19, 15, 3)))
     with pytest.raises(ValueError, match="read-only"):
         run.config.initial_q[0] = 1.0  # type: ignore[index]
 
 
-def test_the_versions_name_what_the_numbers_rest_on(run):
+def test_a_run_records_the_versions_it_was_computed_with(run):
     assert {"qtab", "gymnasium", "numpy", "python", "platform", "build"} <= set(run.versions)
     assert run.versions["numpy"] == np.__version__
     assert run.versions["qtab"] == qtab.__version__
 
 
-def test_presets_are_named_per_environment():
+def test_presets_are_listed_per_environment():
     assert list(qtab.presets("MountainCar-v0")) == ["article", "solved"]
     assert qtab.presets("qtab/MountainCar-v0") == qtab.presets("MountainCar-v0")
     assert qtab.presets("MountainCar-v0")["article"]["terminal_update"] == "assign"
@@ -135,7 +135,7 @@ def test_an_explicit_setting_wins_over_the_preset():
     assert (run.config.terminal_update, run.config.scale) == ("target", (5.0, 50.0))
 
 
-def test_a_run_shows_itself_in_a_line() -> None:
+def test_the_repr_of_a_run_is_one_line() -> None:
     run = qtab.train("MountainCar-v0", episodes=150, seed=0)
     assert repr(run) == "<Run of MountainCar-v0: q_learning, seed 0, 150 episodes, the last 100 at -200.00>"
     runs = qtab.train_many("MountainCar-v0", seeds=3, episodes=150)
@@ -143,7 +143,7 @@ def test_a_run_shows_itself_in_a_line() -> None:
 
 
 @pytest.mark.parametrize("use", [qtab.plot, qtab.evaluate, qtab.verify])
-def test_what_is_no_run_is_refused_by_name(use) -> None:
+def test_arguments_that_are_not_runs_are_refused_by_name(use) -> None:
     with pytest.raises(TypeError, match=r"^run must be a Run, got 3$"):
         use(3)
     with pytest.raises(TypeError, match=r"^run must be a Run, got 'run.npz'; qtab.load reads one from a file$"):

@@ -54,7 +54,7 @@ def test_a_loaded_run_is_the_saved_one(tmp_path, settings):
     assert loaded.completed is True
 
 
-def test_a_run_that_was_stopped_early_is_saved_as_such(tmp_path):
+def test_a_stopped_run_is_saved_as_stopped(tmp_path):
     run = qtab.train("MountainCar-v0", seed=0, callback=lambda progress: False)
     run.save(tmp_path / "run.npz")
     loaded = qtab.load(str(tmp_path / "run.npz"))
@@ -72,7 +72,7 @@ def test_a_run_of_a_users_own_environment_is_saved(tmp_path, dtype):
         assert loaded.predict(observation) == run.predict(observation)
 
 
-def test_a_saved_run_can_be_gone_on_from_and_repeated(tmp_path):
+def test_a_saved_run_can_be_continued_and_repeated(tmp_path):
     run = qtab.train("MountainCar-v0", seed=0, episodes=20)
     run.save(tmp_path / "run.npz")
     loaded = qtab.load(tmp_path / "run.npz")
@@ -82,7 +82,7 @@ def test_a_saved_run_can_be_gone_on_from_and_repeated(tmp_path):
     assert_same_run(*on)
 
 
-def test_any_name_is_kept_as_it_is(tmp_path):
+def test_the_file_name_is_used_unchanged(tmp_path):
     run = qtab.train("MountainCar-v0", seed=0, episodes=1)
     for name in ("run", "run.data", "run.npz", "läufe 1.npz"):
         run.save(tmp_path / name)
@@ -110,7 +110,7 @@ def test_a_save_replaces_the_file_that_was_there(tmp_path):
     assert [entry.name for entry in tmp_path.iterdir()] == ["run.npz"]
 
 
-def test_a_save_that_fails_half_way_leaves_the_old_file_and_nothing_else(tmp_path):
+def test_a_failed_save_leaves_the_old_file_and_nothing_else(tmp_path):
     # In a process of its own that may write no file of more than 8000 bytes.
     path = tmp_path / "run.npz"
     qtab.train("MountainCar-v0", seed=0, episodes=1).save(path)
@@ -136,7 +136,7 @@ except OSError as error:
     [(np.float32(0.1), TypeError), (float("nan"), ValueError), (object(), TypeError)],
     ids=short_repr,
 )
-def test_what_json_cannot_hold_is_named_and_leaves_the_old_file(tmp_path, value, error):
+def test_a_value_that_json_cannot_hold_is_refused_and_leaves_the_old_file(tmp_path, value, error):
     path = tmp_path / "run.npz"
     run = qtab.train("MountainCar-v0", seed=0, episodes=1)
     run.save(path)
@@ -147,7 +147,7 @@ def test_what_json_cannot_hold_is_named_and_leaves_the_old_file(tmp_path, value,
     assert [entry.name for entry in tmp_path.iterdir()] == ["run.npz"]
 
 
-def test_a_path_that_cannot_be_written_is_named(tmp_path):
+def test_a_path_that_cannot_be_written_is_refused_by_name(tmp_path):
     run = qtab.train("MountainCar-v0", seed=0, episodes=1)
     (tmp_path / "file").write_text("no folder")
     for path, error in (

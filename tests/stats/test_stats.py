@@ -31,7 +31,7 @@ def test_an_estimate_lies_in_its_interval(function, reference):
     assert function(SAMPLE) == found
 
 
-def test_the_interval_of_the_mean_is_about_students():
+def test_the_interval_of_the_mean_is_close_to_students():
     values = np.random.default_rng(0).normal(5.0, 2.0, size=400)
     found = stats.mean(values)
     low, high = scipy_stats.t.interval(0.95, len(values) - 1, values.mean(), scipy_stats.sem(values))
@@ -44,7 +44,7 @@ def test_a_constant_sample_has_the_interval_of_its_one_value(values):
     assert stats.iqm(values) == stats.Interval(3.0, 3.0, 3.0, 0.95, "constant")
 
 
-def test_where_bca_is_not_finite_the_percentile_interval_says_so():
+def test_where_bca_is_not_finite_the_percentile_interval_is_used_and_reported():
     # Nearly every resample's median is the sample's: there is no bias to estimate from.
     found = stats.median([0.0] * 99 + [1.0])
     assert found.method == "percentile"
@@ -60,7 +60,7 @@ def test_an_interval_is_finite_and_in_order(values):
         assert min(values) - 1e-6 <= found.low <= found.high <= max(values) + 1e-6
 
 
-def test_a_tolerance_interval_covers_as_often_as_it_says():
+def test_a_tolerance_interval_has_its_nominal_coverage():
     rng = np.random.default_rng(3)
     covered = 0
     for _ in range(400):
@@ -69,7 +69,7 @@ def test_a_tolerance_interval_covers_as_often_as_it_says():
     assert covered / 400 >= 0.87
 
 
-def test_wilks_smallest_sample():
+def test_the_smallest_sample_for_a_tolerance_interval_is_wilks():
     # 46 values are known to be the fewest whose range covers 90 % with confidence 95 %.
     found = stats.tolerance_interval(np.arange(46.0))
     assert (found.low, found.high) == (0.0, 45.0)
@@ -94,19 +94,19 @@ def test_the_area_is_the_mean_return():
     assert stats.area_under_curve([[0.0, 2.0], [4.0, 4.0]]).tolist() == [1.0, 4.0]
 
 
-def test_episodes_to_threshold_looks_at_whole_windows():
+def test_episodes_to_threshold_uses_whole_windows():
     returns = [[0, 0, 1, 1, 1], [0, 0, 0, 0, 0], [1, 1, 0, 0, 0]]
     assert stats.episodes_to_threshold(returns, 1.0, window=2).tolist() == [4, np.inf, 2]
     assert stats.episodes_to_threshold(returns, 0.5, window=2).tolist() == [3, np.inf, 2]
 
 
-def test_a_curve_has_an_interval_a_block():
+def test_a_curve_has_an_interval_per_block():
     runs = qtab.train_many("MountainCar-v0", 8, episodes=250)
     curve = stats.curve(runs.episode_returns, block=100, resamples=99)
     assert [point.estimate for point in curve] == runs.mean_returns(100).mean(axis=0).tolist()
 
 
-def test_a_paired_comparison_finds_what_pairs_show():
+def test_a_paired_comparison_detects_a_consistent_difference():
     rng = np.random.default_rng(5)
     luck = rng.normal(0, 10, size=40)
     a, b = luck + rng.normal(1, 0.5, size=40), luck
@@ -122,12 +122,12 @@ def test_a_paired_comparison_finds_what_pairs_show():
     assert mirrored.p_value == found.p_value
 
 
-def test_few_pairs_are_permuted_exactly():
+def test_the_permutation_test_of_few_pairs_is_exact():
     # Of the 2**4 ways of swapping, two give a mean difference as large as all four of one sign.
     assert stats.compare([1.0, 2.0, 3.0, 4.0], [0.0, 0.0, 0.0, 0.0]).p_value == 2 / 16
 
 
-def test_equal_settings_do_not_differ():
+def test_equal_samples_do_not_differ():
     found = stats.compare(SAMPLE, SAMPLE)
     assert (found.difference.estimate, found.effect_size, found.better, found.p_value) == (0, 0, 0.5, 1)
 
@@ -138,7 +138,7 @@ def test_a_constant_difference_is_an_infinite_effect():
 
 @pytest.mark.filterwarnings("ignore")  # rliable's own imports
 @pytest.mark.parametrize("statistic", ["mean", "median", "iqm"])
-def test_aggregates_are_rliables(statistic):
+def test_aggregates_match_rliable(statistic):
     from rliable import library, metrics
 
     theirs = {
@@ -160,7 +160,7 @@ def test_aggregates_are_rliables(statistic):
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_gap_and_profile_are_rliables():
+def test_optimality_gap_and_performance_profile_match_rliable():
     from rliable import library, metrics
 
     scores = np.random.default_rng(2).beta(2, 2, size=(12, 4)) * 1.5

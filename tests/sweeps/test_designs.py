@@ -9,7 +9,7 @@ from qtab import designs
 from support.sweeps import CAR
 
 
-def test_a_design_is_a_grid_too():
+def test_a_design_can_be_used_as_a_grid():
     space = {"learning_rate": (0.01, 1.0, "log"), "discount": (0.8, 1.0), "episodes": range(3, 9)}
     for design in (designs.random(space, 8, seed=1), designs.sobol(space, 8, seed=1)):
         study = qtab.sweep(CAR, design, seeds=2)
@@ -17,7 +17,7 @@ def test_a_design_is_a_grid_too():
         assert study.columns["learning_rate"][::2].tolist() == [setting["learning_rate"] for setting in design]
 
 
-def test_sobols_points_are_spread_evenly():
+def test_sobol_points_are_spread_evenly():
     points = designs.sobol({"a": (0.0, 8.0), "b": ["x", "y"]}, 8, seed=3)
     assert sorted(int(point["a"]) for point in points) == list(range(8))
     assert sorted(point["b"] for point in points) == ["x"] * 4 + ["y"] * 4
@@ -28,7 +28,7 @@ def test_sobols_points_are_spread_evenly():
 
 @settings(max_examples=50, deadline=None)
 @given(low=st.floats(1e-6, 1.0), span=st.floats(0.01, 100), seed=st.integers(0, 2**32))
-def test_points_lie_in_their_space(low, span, seed):
+def test_points_lie_within_their_space(low, span, seed):
     space = {"a": (low, low + span), "b": (low, low + span, "log"), "c": [1, 2, 3]}
     for point in designs.random(space, 5, seed=seed):
         assert low <= point["a"] <= low + span

@@ -57,12 +57,12 @@ def test_a_damaged_store_is_refused(tmp_path):
         qtab.sweep(CAR, GRID, store=path, **SMALL)
 
 
-def test_a_store_that_cannot_be_written_is_an_error_of_the_system(tmp_path):
+def test_a_store_that_cannot_be_written_raises_an_os_error(tmp_path):
     with pytest.raises(OSError, match="unable to open"):
         qtab.sweep(CAR, GRID, store=tmp_path / "no" / "study.db", **SMALL)
 
 
-def test_a_full_disk_is_an_error_and_breaks_nothing(tmp_path, small_chunks, monkeypatch):
+def test_a_full_disk_raises_an_error_and_the_sweep_can_be_resumed(tmp_path, small_chunks, monkeypatch):
     path = tmp_path / "study.db"
     connect = stores.connect  # type: ignore[attr-defined]
 
@@ -83,7 +83,7 @@ def test_a_full_disk_is_an_error_and_breaks_nothing(tmp_path, small_chunks, monk
     assert_equal(study, qtab.sweep(CAR, GRID, **many))
 
 
-def test_a_run_that_fails_is_recorded_and_the_others_go_on(tmp_path):
+def test_a_failing_run_is_recorded_and_the_others_continue(tmp_path):
     grid: dict[str, Any] = {"learning_rate": [0.1, 0.5]}
     study = qtab.sweep(make_brittle, grid, seeds=3, episodes=2, scale=(10, 100), threads=2, store=tmp_path / "s.db")
     assert study.failed == 2

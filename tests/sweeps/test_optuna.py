@@ -12,7 +12,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "optuna_study.py"
 
 
 @pytest.mark.filterwarnings("ignore::optuna.exceptions.ExperimentalWarning")
-def test_a_trial_is_told_what_its_setting_brings():
+def test_a_trial_gets_the_mean_return_of_its_setting():
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     example = runpy.run_path(str(EXAMPLE))
     study = example["search"](batches=2, size=2, episodes=100)

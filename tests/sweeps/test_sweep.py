@@ -18,7 +18,7 @@ from support.parity import run_of
 from support.sweeps import CAR, GRID, SMALL, assert_equal
 
 
-def test_a_row_a_run_with_the_lone_runs_numbers():
+def test_each_row_holds_the_results_of_its_single_run():
     study = qtab.sweep(CAR, GRID, seeds=3, episodes=250, block=50)
     assert len(study) == 3 * 2 * 3
     names = ["setting", "learning_rate", "epsilon", "seed", "episodes", "steps"]
@@ -41,7 +41,7 @@ def test_every_setting_has_the_same_seeds():
         assert study.values("seed", setting).tolist() == [7, 3]
 
 
-def test_the_table_for_pandas_and_arrow():
+def test_the_table_converts_to_pandas_and_arrow():
     study = qtab.sweep(CAR, {"scale": [(5, 50), (10, 100)], "terminal_update": ["assign", "target"]}, **SMALL)
     frame = study.to_pandas()
     assert frame.shape == (20, 11)
@@ -53,20 +53,20 @@ def test_the_table_for_pandas_and_arrow():
 
 
 @pytest.mark.parametrize("threads", [1, 3])
-def test_threads_and_stores_change_nothing(tmp_path, small_chunks, threads):
+def test_threads_and_stores_do_not_change_the_results(tmp_path, small_chunks, threads):
     study = qtab.sweep(CAR, GRID, threads=threads, store=tmp_path / "study.db", **SMALL)
     assert_equal(study, qtab.sweep(CAR, GRID, **SMALL))
 
 
 @pytest.mark.parametrize("make", [ThreadPoolExecutor, ProcessPoolExecutor])
-def test_any_executor_changes_nothing(small_chunks, make):
+def test_executors_do_not_change_the_results(small_chunks, make):
     extra = {"mp_context": multiprocessing.get_context("spawn")} if make is ProcessPoolExecutor else {}
     with make(2, **extra) as executor:
         study = qtab.sweep(CAR, GRID, executor=executor, **SMALL)
     assert_equal(study, qtab.sweep(CAR, GRID, **SMALL))
 
 
-def test_progress_comes_as_it_happens(small_chunks):
+def test_progress_is_reported_during_the_sweep(small_chunks):
     seen: list[qtab.SweepProgress] = []
     qtab.sweep(CAR, GRID, callback=seen.append, **SMALL)
     assert len(seen) >= 10
@@ -74,7 +74,7 @@ def test_progress_comes_as_it_happens(small_chunks):
     assert (seen[-1].runs, seen[-1].total, seen[-1].new) == (30, 30, 30)
 
 
-def test_a_finished_store_is_read_and_nothing_trained_again(tmp_path, small_chunks):
+def test_a_finished_store_is_read_without_training(tmp_path, small_chunks):
     path = tmp_path / "study.db"
     first = qtab.sweep(CAR, GRID, store=path, **SMALL)
     seen: list[qtab.SweepProgress] = []
@@ -97,7 +97,7 @@ def start(path, seeds=5):
 
 
 @pytest.mark.parametrize("chunks", [1, 4])
-def test_killed_at_any_moment_it_goes_on(tmp_path, small_chunks, chunks):
+def test_a_killed_sweep_resumes(tmp_path, small_chunks, chunks):
     path = tmp_path / "study.db"
     many: dict[str, Any] = {"seeds": 300, "episodes": 40}
     process = start(path, seeds=300)
@@ -115,7 +115,7 @@ def test_killed_at_any_moment_it_goes_on(tmp_path, small_chunks, chunks):
     assert_equal(study, qtab.sweep(CAR, GRID, **many))
 
 
-def test_ctrl_c_keeps_the_finished_runs_and_lets_go_of_the_others(tmp_path, small_chunks):
+def test_ctrl_c_keeps_the_finished_runs_and_releases_the_others(tmp_path, small_chunks):
     path = tmp_path / "study.db"
 
     def interrupt(progress):

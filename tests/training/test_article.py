@@ -45,7 +45,7 @@ CALLS = {
 
 
 @pytest.mark.parametrize(("seed", "call"), CALLS.values(), ids=CALLS)
-def test_the_articles_function_under_np_random_seed_gives_our_table_and_averages(seed, call):
+def test_the_articles_code_gives_our_table_and_averages(seed, call):
     averages, table = the_articles(seed, **call)
     run = ours(seed, **call)
     assert run.q_table.tobytes() == table.tobytes()

@@ -23,7 +23,7 @@ def walk_id():
 
 
 @pytest.mark.parametrize("env", ["MountainCar-v0", "qtab/MountainCar-v0", "qtab:qtab/MountainCar-v0"])
-def test_auto_takes_rust_for_an_id_that_it_knows(env):
+def test_auto_uses_rust_for_known_ids(env):
     run = qtab.train(env, **SHORT)
     assert run.config.backend == "rust"
     assert run.config.env == env
@@ -31,13 +31,13 @@ def test_auto_takes_rust_for_an_id_that_it_knows(env):
     assert_same_run(run, qtab.train(env, backend="gymnasium", **SHORT))
 
 
-def test_auto_takes_rust_for_a_spec_that_it_knows():
+def test_auto_uses_rust_for_known_specs():
     run = qtab.train(gym.spec("MountainCar-v0"), **SHORT)
     assert run.config.backend == "rust"
     assert_same_run(run, qtab.train("MountainCar-v0", **SHORT))
 
 
-def test_a_specs_own_limit_and_keywords_are_the_runs():
+def test_a_run_uses_the_time_limit_and_keyword_arguments_of_its_spec():
     spec = copy.deepcopy(gym.spec("MountainCar-v0"))
     spec.max_episode_steps = 40
     spec.kwargs["goal_velocity"] = 0.02
@@ -59,27 +59,27 @@ def test_a_spec_of_a_wrapped_environment_is_stepped_in_gymnasium_with_its_wrappe
 
 
 @pytest.mark.parametrize("env_kwargs", [{"render_mode": "rgb_array"}, {"goal_velocity": np.float32(0.01)}])
-def test_auto_leaves_keywords_that_rust_does_not_know_to_gymnasium(env_kwargs):
+def test_auto_uses_gymnasium_for_keyword_arguments_that_rust_does_not_know(env_kwargs):
     run = qtab.train("MountainCar-v0", env_kwargs=env_kwargs, **SHORT)
     assert run.config.backend == "gymnasium"
     with pytest.raises(ValueError, match="backend must be 'auto' or 'gymnasium' for this environment, got 'rust'"):
         qtab.train("MountainCar-v0", env_kwargs=env_kwargs, backend="rust", **SHORT)
 
 
-def test_keywords_that_say_nothing_do_not_keep_rust_away():
+def test_auto_uses_rust_for_keyword_arguments_with_default_values():
     run = qtab.train("MountainCar-v0", env_kwargs={"render_mode": None, "goal_velocity": 0}, **SHORT)
     assert run.config.backend == "rust"
     assert_same_run(run, qtab.train("MountainCar-v0", **SHORT))
 
 
-def test_auto_leaves_an_id_that_rust_does_not_know_to_gymnasium(walk_id):
+def test_auto_uses_gymnasium_for_unknown_ids(walk_id):
     run = qtab.train(walk_id, scale=(2, 2), **SHORT)
     assert run.config.backend == "gymnasium"
     with pytest.raises(ValueError, match=r"got 'rust': Rust does not implement QtabTests/Walk-v0"):
         qtab.train(walk_id, scale=(2, 2), backend="rust", **SHORT)
 
 
-def test_a_known_id_that_someone_registered_anew_is_left_to_gymnasium():
+def test_auto_uses_gymnasium_for_a_known_id_that_was_registered_again():
     original = gym.registry["MountainCar-v0"]
     try:
         with pytest.warns(UserWarning, match="Overriding"):
@@ -97,7 +97,7 @@ def test_an_environment_without_a_limit_trains_with_ten_thousand_steps_recorded(
 
 
 @pytest.mark.parametrize("env", ["MountainCar-v0", "qtab/MountainCar-v0"])
-def test_rust_stands_in_for_a_plain_object(env):
+def test_rust_replaces_an_unedited_object(env):
     made = gym.make(env, goal_velocity=0.01, max_episode_steps=60)
     run = qtab.train(made, backend="rust", seed=2, episodes=6)
     assert run.config.backend == "rust"
@@ -106,7 +106,7 @@ def test_rust_stands_in_for_a_plain_object(env):
     assert_same_run(run, qtab.train(theirs, seed=2, episodes=6))
 
 
-def test_rust_stands_in_for_an_object_without_its_wrappers():
+def test_rust_replaces_an_object_without_wrappers():
     run = qtab.train(gym.make("MountainCar-v0").unwrapped, backend="rust", **SHORT)
     assert_same_run(run, qtab.train("MountainCar-v0", **SHORT))
 
@@ -147,7 +147,7 @@ def test_rust_refuses_an_edited_attribute_by_name_and_value(env, name, value):
     assert repr(value) in str(caught.value)
 
 
-def test_rust_refuses_another_environment_and_a_subclass_by_name():
+def test_rust_refuses_unknown_environments_and_subclasses_by_name():
     class Steeper(MountainCarEnv):
         pass
 

@@ -24,7 +24,7 @@ def train(**settings):
     ("every", "calls"),
     [(1, list(range(1, 11))), (3, [3, 6, 9, 10]), (5, [5, 10]), (10, [10]), (99, [10]), (10**30, [10])],
 )
-def test_it_is_called_every_so_many_episodes_and_after_the_last(backend, every, calls):
+def test_a_callback_is_called_every_so_many_episodes_and_after_the_last(backend, every, calls):
     seen: list[qtab.Progress] = []
     run = train(backend=backend, callback=seen.append, callback_every=every)
     assert [progress.episodes for progress in seen] == calls
@@ -34,20 +34,20 @@ def test_it_is_called_every_so_many_episodes_and_after_the_last(backend, every, 
         assert progress.lengths.tobytes() == run.episode_lengths[: progress.episodes].tobytes()
 
 
-def test_it_is_called_every_hundred_episodes_by_default():
+def test_a_callback_is_called_every_hundred_episodes_by_default():
     seen = []
     train(episodes=250, callback=lambda progress: seen.append(progress.episodes))
     assert seen == [100, 200, 250]
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
-def test_watching_changes_nothing(backend):
+def test_a_callback_does_not_change_the_run(backend):
     assert_same_run(train(backend=backend), train(backend=backend, callback=lambda progress: True, callback_every=1))
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("no", [False, np.False_, 0])
-def test_returning_false_stops_the_run_and_its_prefix_comes_back(backend, no):
+def test_returning_false_stops_the_run_and_returns_its_prefix(backend, no):
     run = train(backend=backend, callback=lambda progress: no if progress.episodes == 6 else None, callback_every=2)
     assert run.completed is False
     assert len(run.episode_returns) == 6
@@ -60,7 +60,7 @@ def test_returning_false_stops_the_run_and_its_prefix_comes_back(backend, no):
 
 
 @pytest.mark.parametrize("yes", [True, None, np.True_, 1])
-def test_anything_but_false_goes_on(yes):
+def test_any_other_value_continues_the_run(yes):
     assert train(callback=lambda progress: yes, callback_every=1).completed is True
 
 
@@ -70,7 +70,7 @@ def test_false_after_the_last_episode_is_too_late_to_stop():
 
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("raised", [RuntimeError("enough"), KeyboardInterrupt(), SystemExit(3), StopIteration()])
-def test_what_a_callback_raises_comes_out_with_the_run_so_far(backend, raised):
+def test_an_exception_in_a_callback_carries_the_run_so_far(backend, raised):
     def fail(progress):
         if progress.episodes == 4:
             raise raised
@@ -83,7 +83,7 @@ def test_what_a_callback_raises_comes_out_with_the_run_so_far(backend, raised):
     assert_same_run(run, train(backend=backend, callback=lambda progress: progress.episodes < 4, callback_every=2))
 
 
-def test_what_a_callback_does_to_its_arrays_does_not_reach_the_run():
+def test_writing_to_a_callbacks_arrays_does_not_change_the_run():
     def scribble(progress):
         progress.returns[:] = 0.0
         progress.lengths[:] = 0
@@ -98,14 +98,14 @@ def test_a_callback_may_train():
     assert_same_run(inner[0], inner[1])
 
 
-def test_a_look_brings_what_is_new_and_keeps_the_rest_in_place():
+def test_progress_reads_only_new_episodes_and_seldom_moves_the_others():
     seen: list[qtab.Progress] = []
     train(episodes=64, callback=seen.append, callback_every=1)
     moves = sum(not np.shares_memory(after.returns, before.returns) for before, after in pairwise(seen))
     assert moves == 6  # at 2, 3, 5, 9, 17 and 33 episodes: the room doubles
 
 
-def test_a_trainer_lists_the_episodes_since_any_other():
+def test_a_trainer_lists_the_episodes_since_a_given_one():
     resolved = resolve("MountainCar-v0", {"seed": 6, "episodes": 10, "max_episode_steps": 30})
     trainer = _core.Trainer(resolved.spec(), resolved.seed)
     trainer.advance(10)

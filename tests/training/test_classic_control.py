@@ -50,7 +50,7 @@ def test_every_learner_and_discretizer_makes_the_table_of_gymnasium(env: str) ->
 
 @pytest.mark.parametrize("env", OTHERS)
 @pytest.mark.parametrize("kind", ["bins", "tiles"])
-def test_many_runs_are_the_lone_ones(env: str, kind: str) -> None:
+def test_many_runs_equal_single_runs(env: str, kind: str) -> None:
     chosen: dict[str, Any] = {**settings_of(env, kind), "episodes": 20, "max_episode_steps": 60}
     runs = qtab.train_many(env, seeds=6, threads=3, tables=True, **chosen)
     assert runs.tables is not None
@@ -61,7 +61,7 @@ def test_many_runs_are_the_lone_ones(env: str, kind: str) -> None:
 
 
 @pytest.mark.parametrize("env", OTHERS)
-def test_every_way_to_name_it_is_the_same(env: str) -> None:
+def test_all_ways_of_naming_an_environment_give_the_same_run(env: str) -> None:
     chosen: dict[str, Any] = {**settings_of(env, "bins"), "seed": 4, "episodes": 5, "max_episode_steps": 50}
     run = qtab.train(env, **chosen)
     assert run.config.backend == "rust"
@@ -89,7 +89,7 @@ def test_keyword_arguments_reach_rust(env: str) -> None:
         ("CartPole-v1", {"render_mode": "rgb_array"}),
     ],
 )
-def test_what_rust_does_not_stand_for_steps_in_gymnasium(env: str, keywords: dict[str, Any]) -> None:
+def test_unsupported_keyword_arguments_are_stepped_in_gymnasium(env: str, keywords: dict[str, Any]) -> None:
     chosen: dict[str, Any] = {
         **settings_of(env, "bins"),
         "seed": 4,
@@ -112,7 +112,7 @@ def test_what_rust_does_not_stand_for_steps_in_gymnasium(env: str, keywords: dic
         ("Pendulum-v1", "max_speed", 9),
     ],
 )
-def test_an_edited_object_is_refused_in_rust_by_the_name_of_its_attribute(env: str, attribute: str, value: Any) -> None:
+def test_rust_refuses_an_edited_object_with_the_name_of_the_attribute(env: str, attribute: str, value: Any) -> None:
     made = gym.make(env)
     setattr(made.unwrapped, attribute, value)
     with pytest.raises(ValueError, match=f"its attribute {attribute} was changed from"):
@@ -120,7 +120,7 @@ def test_an_edited_object_is_refused_in_rust_by_the_name_of_its_attribute(env: s
 
 
 @pytest.mark.parametrize("env", ["CartPole-v1", "Acrobot-v1", "Pendulum-v1"])
-def test_where_numpys_functions_are_its_own_gymnasium_steps(env: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_gymnasium_steps_where_numpy_does_not_use_libm(env: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_core, "matches_numpy", lambda model: False)
     chosen: dict[str, Any] = {**settings_of(env, "bins"), "seed": 4, "episodes": 1, "max_episode_steps": 3}
     assert qtab.train(env, **chosen).config.backend == "gymnasium"
@@ -135,7 +135,7 @@ def test_rust_trains_where_numpy_uses_libm() -> None:
 
 
 @pytest.mark.parametrize("name", [env for env in TRAINED if env.values == ("Acrobot-v1",)])
-def test_acrobots_first_observations_are_numpys_single_precision(name: str) -> None:
+def test_first_observations_of_acrobot_equal_numpys_single_precision(name: str) -> None:
     """Bins that part next to each first observation of Gymnasium find it again."""
     env = gym.make(name)
     for seed in range(300):

@@ -55,7 +55,7 @@ def test_every_algorithm_learns_the_same(name, algorithm):
         ("qtab:qtab/FrozenLake8x8-v1", {}),
     ],
 )
-def test_every_constructor_argument_counts(name, env_kwargs):
+def test_every_constructor_argument_has_its_effect(name, env_kwargs):
     same_everywhere(name, env_kwargs=env_kwargs, episodes=200, max_episode_steps=100, epsilon=0.9)
 
 
@@ -74,13 +74,13 @@ def taxi_table():
         ("qtab/Taxi-v4", {"fickle_passenger": True}),
     ],
 )
-def test_every_taxi_is_trained_the_same(name, env_kwargs, taxi_table):
+def test_every_variant_of_the_taxi_is_trained_the_same(name, env_kwargs, taxi_table):
     run = same_everywhere(name, env_kwargs=env_kwargs, episodes=100, epsilon=0.3, initial_q=taxi_table)
     assert run.terminated.sum() > 50
 
 
 @pytest.mark.parametrize("rate", [1.5, np.float32(0.7)])
-def test_a_table_that_rust_would_not_add_up_steps_in_gymnasium(rate):
+def test_a_table_whose_probabilities_do_not_sum_to_1_is_stepped_in_gymnasium(rate):
     kwargs = {"success_rate": rate}
     run = qtab.train("FrozenLake-v1", env_kwargs=kwargs, **SETTINGS)
     assert run.config.backend == "gymnasium"
@@ -104,7 +104,7 @@ def test_the_books_cliff_is_a_preset():
     assert qtab.train("CliffWalking-v1", preset="book", episodes=20, seed=0).config.epsilon_schedule == "constant"
 
 
-def test_who_has_no_time_limit_gets_one_in_training():
+def test_an_environment_without_a_time_limit_gets_one_in_training():
     run = qtab.train("CliffWalking-v1", epsilon=0.0, learning_rate=0.0, initial_q=0.0, episodes=2, seed=0)
     assert run.config.max_episode_steps == 10_000
     assert run.episode_lengths.tolist() == [10_000, 10_000]
@@ -147,7 +147,7 @@ SPACES = [
 
 
 @pytest.mark.parametrize("space", SPACES, ids=str)
-def test_any_discrete_space_is_learned_and_its_start_subtracted(space, tmp_path):
+def test_every_discrete_space_is_supported_and_its_start_subtracted(space, tmp_path):
     env = Steps(space)
     run = qtab.train(env, **SETTINGS)
     assert (run.config.discretizer, run.config.backend) == ("identity", "gymnasium")
@@ -186,7 +186,7 @@ def test_an_observation_outside_the_space_is_refused(space, shown, text):
         qtab.train(Steps(space, shown), **SETTINGS)
 
 
-def test_a_run_refuses_observations_that_are_none():
+def test_a_run_refuses_invalid_observations():
     run = qtab.train("FrozenLake-v1", **SETTINGS)
     with pytest.raises(ValueError, match=r"observation\[0\] is 16, outside the observation space"):
         run.predict(16)
@@ -208,13 +208,13 @@ def test_a_run_refuses_observations_that_are_none():
     ],
     ids=str,
 )
-def test_what_does_not_fit_is_refused(env, settings, text):
+def test_settings_that_do_not_fit_are_refused(env, settings, text):
     with pytest.raises(ValueError, match=text):
         qtab.train(env, episodes=1, seed=0, **settings)
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_recorded_episodes_can_be_played_again(name):
+def test_recorded_episodes_can_be_replayed(name):
     from qtab.rendering.replay import make_render_env, replay_all
 
     run = qtab.train(name, record=40, **SETTINGS)
@@ -225,12 +225,12 @@ def test_recorded_episodes_can_be_played_again(name):
     env.close()
 
 
-def test_the_articles_rule_may_be_asked_for():
+def test_the_articles_terminal_update_can_be_chosen():
     same_everywhere("FrozenLake-v1", terminal_update="assign")
 
 
 @pytest.mark.parametrize("name", ["FrozenLake-v1", "Taxi-v4", "Blackjack-v1"])
-def test_many_runs_are_the_lone_ones(name):
+def test_many_runs_equal_single_runs(name):
     settings: dict[str, Any] = {**SETTINGS, "episodes": 60}
     del settings["seed"]
     runs = qtab.train_many(name, seeds=5, tables=True, **settings)

@@ -47,7 +47,7 @@ def test_wrappers_are_stepped_through():
     assert list(env.return_queue) == [-600.0] * 4
 
 
-def test_the_objects_own_limit_is_the_runs_unless_a_shorter_one_is_given():
+def test_a_run_has_the_time_limit_of_its_object_unless_a_shorter_one_is_given():
     assert qtab.train(TimeLimit(Walk(), 7), scale=(1, 1), seed=0, episodes=3).config.max_episode_steps == 7
     run = qtab.train(gym.make("MountainCar-v0"), seed=0, episodes=3, max_episode_steps=9)
     assert run.episode_lengths.tolist() == [9, 9, 9]
@@ -116,13 +116,13 @@ def test_both_flags_at_once_count_as_terminated():
 @pytest.mark.parametrize(
     "observation", [[1.0], np.array([1]), np.array([1, 2, 3, 4], np.float32)[::4], (np.float64(1),)]
 )
-def test_what_numpy_reads_as_an_observation_is_one(observation):
+def test_whatever_numpy_converts_is_an_observation(observation):
     run = qtab.train(ScriptedEnv([observation]), scale=(1,), seed=0, episodes=3)
     assert_same_run(run, qtab.train(ScriptedEnv([ONE]), scale=(1,), seed=0, episodes=3))
 
 
 @pytest.mark.parametrize("reward", [-1, np.float32(-1), np.float64(-1), np.array(-1.0), np.int8(-1)])
-def test_what_python_reads_as_a_float_is_a_reward(reward):
+def test_whatever_python_converts_to_float_is_a_reward(reward):
     run = qtab.train(ScriptedEnv([ONE], rewards=[reward]), scale=(1,), seed=0, episodes=3)
     assert_same_run(run, qtab.train(ScriptedEnv([ONE]), scale=(1,), seed=0, episodes=3))
 
@@ -141,7 +141,7 @@ def test_a_box_of_many_axes_gives_the_references_table(dtype):
     assert_same_as_reference(run, env())
 
 
-def test_recordings_hold_the_last_episodes_and_change_no_number():
+def test_recordings_hold_the_last_episodes_and_do_not_change_the_run():
     run = qtab.train("MountainCar-v0", seed=1, episodes=12, record=5)
     assert [recording.episode for recording in run.recordings] == [7, 8, 9, 10, 11]
     assert [len(recording.actions) for recording in run.recordings] == run.episode_lengths[-5:].tolist()

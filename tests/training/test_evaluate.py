@@ -43,7 +43,7 @@ def test_another_time_limit_and_other_keyword_arguments_can_be_given(learned):
 
 
 @pytest.mark.parametrize("seed", [0, 17, 2**70])
-def test_it_is_a_greedy_rollout_on_gymnasiums_environment(learned, seed):
+def test_evaluate_plays_the_greedy_policy_in_gymnasium(learned, seed):
     found = qtab.evaluate(learned, episodes=20, seed=seed)
     returns, lengths, ends = rollout(gym.make("MountainCar-v0"), learned, 20, seed)
     assert found.returns.tolist() == returns
@@ -53,7 +53,7 @@ def test_it_is_a_greedy_rollout_on_gymnasiums_environment(learned, seed):
     assert found.seed == seed
 
 
-def test_its_fields_are_what_they_say(learned):
+def test_the_fields_of_an_evaluation_are_computed_as_documented(learned):
     found = qtab.evaluate(learned, episodes=50, seed=1)
     returns = found.returns.tolist()
     mean = sum(returns) / 50
@@ -84,14 +84,14 @@ def test_an_environment_without_a_threshold_has_no_success_rate():
     assert found.returns.tolist() == rollout(gym.wrappers.TimeLimit(Walk(), 30), run, 5, 1)[0]
 
 
-def test_actions_and_limits_are_those_of_the_run():
+def test_evaluation_uses_the_actions_and_time_limit_of_the_run():
     run = qtab.train(Walk(np.float64, start=5), scale=(2, 3), seed=0, episodes=30, max_episode_steps=25)
     found = qtab.evaluate(run, episodes=5, seed=1, env=Walk(np.float64, start=5))
     env = gym.wrappers.TimeLimit(Walk(np.float64, start=5), 25)
     assert (found.returns.tolist(), found.lengths.tolist(), found.terminated.tolist()) == rollout(env, run, 5, 1)
 
 
-def test_the_environments_keywords_are_those_of_the_run():
+def test_evaluation_uses_the_keyword_arguments_of_the_run():
     never: dict[str, Any] = {"goal_velocity": 0.08}
     run = qtab.train("MountainCar-v0", seed=0, env_kwargs=never, max_episode_steps=300)
     found = qtab.evaluate(run, episodes=5, seed=0)
@@ -101,7 +101,7 @@ def test_the_environments_keywords_are_those_of_the_run():
     assert found.lengths.tolist() == rollout(gym.make("MountainCar-v0", max_episode_steps=300, **never), run, 5, 0)[1]
 
 
-def test_a_saved_run_evaluates_the_same(learned, tmp_path):
+def test_a_loaded_run_evaluates_like_the_saved_one(learned, tmp_path):
     learned.save(tmp_path / "run.npz")
     loaded = qtab.load(tmp_path / "run.npz")
     assert qtab.evaluate(loaded, 9, seed=3).returns.tolist() == qtab.evaluate(learned, 9, seed=3).returns.tolist()
@@ -113,13 +113,13 @@ def test_both_backends_evaluate_the_same():
     assert qtab.evaluate(fast, 9, seed=3).returns.tolist() == qtab.evaluate(slow, 9, seed=3).returns.tolist()
 
 
-def test_evaluating_leaves_the_run_as_it_was(learned):
+def test_evaluation_does_not_change_the_run(learned):
     before = learned.tables.tobytes()
     qtab.evaluate(learned, episodes=5, seed=0)
     assert learned.tables.tobytes() == before
 
 
-def test_a_seed_that_is_left_open_is_drawn_and_recorded(learned):
+def test_a_seed_that_is_not_given_is_drawn_and_recorded(learned):
     found = qtab.evaluate(learned, episodes=5)
     assert qtab.evaluate(learned, episodes=5, seed=found.seed).returns.tolist() == found.returns.tolist()
     assert found.seed != qtab.evaluate(learned, episodes=5).seed
@@ -134,7 +134,7 @@ def test_a_seed_that_is_left_open_is_drawn_and_recorded(learned):
         ({"seed": 1.0}, TypeError),
     ],
 )
-def test_a_bad_argument_is_named(learned, argument, error):
+def test_a_bad_argument_is_refused_by_name(learned, argument, error):
     ((name, value),) = argument.items()
     with pytest.raises(error, match=f"{name} must be .* got {value!r}"):
         qtab.evaluate(learned, **argument)

@@ -33,7 +33,7 @@ def train(env, **settings):
 @pytest.mark.parametrize(
     "error", [BrokenError("axle"), KeyboardInterrupt(), SystemExit(1), StopIteration(), OSError(5, "x")]
 )
-def test_an_exception_in_mid_episode_comes_through_with_the_finished_episodes(error):
+def test_an_exception_during_an_episode_carries_the_finished_episodes(error):
     with pytest.raises(type(error)) as caught:
         train(Calls(ScriptedEnv([ONE]), raising_at(2 * 8 + 3, error)))
     assert caught.value is error
@@ -57,7 +57,7 @@ def test_what_was_learned_in_the_unfinished_episode_is_kept():
 
 
 @pytest.mark.parametrize("at", [0, 3])
-def test_an_exception_in_a_reset_comes_through(at):
+def test_an_exception_in_a_reset_carries_the_run(at):
     error = BrokenError("no start")
 
     class NoStart(ScriptedEnv):
@@ -72,7 +72,7 @@ def test_an_exception_in_a_reset_comes_through(at):
     assert len(run_of(error).episode_returns) == at
 
 
-def test_an_exception_that_has_a_run_of_its_own_comes_through_as_it_is():
+def test_an_exception_with_an_attribute_run_is_left_unchanged():
     class OwnRunError(Exception):
         @property
         def run(self):
@@ -85,7 +85,7 @@ def test_an_exception_that_has_a_run_of_its_own_comes_through_as_it_is():
     assert error.run == 7
 
 
-def test_a_traceback_leads_into_the_environment():
+def test_the_traceback_shows_the_environment():
     with pytest.raises(BrokenError) as caught:
         train(Calls(ScriptedEnv([ONE]), raising_at(3, BrokenError())))
     assert any(entry.name == "fail" for entry in caught.traceback)
@@ -101,7 +101,7 @@ def test_a_reward_that_is_not_finite_is_refused(dtype, reward):
 
 
 @pytest.mark.parametrize("reward", [None, "much", [1.0], np.ones(2)])
-def test_a_reward_that_is_no_number_is_a_type_error(reward):
+def test_a_reward_that_is_not_a_number_raises_a_type_error(reward):
     with pytest.raises(TypeError):
         train(ScriptedEnv([ONE], rewards=[reward]))
 
@@ -110,18 +110,18 @@ def test_a_reward_that_is_no_number_is_a_type_error(reward):
     ("observation", "shape"),
     [(np.ones(2, np.float32), r"\(2,\)"), (np.ones((1, 1), np.float32), r"\(1, 1\)"), (1.0, r"\(\)"), ([], r"\(0,\)")],
 )
-def test_an_observation_of_another_shape_is_refused_and_its_shape_shown(observation, shape):
+def test_an_observation_of_another_shape_is_refused_with_its_shape(observation, shape):
     with pytest.raises(ValueError, match=rf"observation must have shape \(1,\).* got {shape}$"):
         train(ScriptedEnv([ONE, ONE, observation]))
 
 
 @pytest.mark.parametrize("observation", ["left", {"x": 1.0}, object()])
-def test_an_observation_of_no_numbers_is_refused(observation):
+def test_an_observation_without_numbers_is_refused(observation):
     with pytest.raises((TypeError, ValueError)):
         train(ScriptedEnv([ONE, observation]))
 
 
-def test_the_old_apis_step_of_four_values_is_refused():
+def test_a_step_of_four_values_is_refused():
     class Old(ScriptedEnv):
         def step(self, action):
             return super().step(action)[:4]
@@ -137,7 +137,7 @@ def test_an_environment_can_be_trained_on_again_after_it_failed():
     assert_same_run(train(env), train(ScriptedEnv([ONE])))
 
 
-def test_an_environment_may_train_in_its_own_step():
+def test_an_environment_may_train_inside_its_step():
     inner = []
 
     def train_inside(count):
@@ -148,7 +148,7 @@ def test_an_environment_may_train_in_its_own_step():
     assert_same_run(outer, inner[0])
 
 
-def test_an_assertion_of_gymnasiums_wrappers_comes_through():
+def test_an_assertion_of_gymnasiums_wrappers_is_raised():
     env: Any = gym.wrappers.OrderEnforcing(ScriptedEnv([ONE]))
     env.reset = lambda **kwargs: (ONE, {})
     with pytest.raises(gym.error.ResetNeeded) as caught:

@@ -10,7 +10,7 @@ from support.interrupts import PRELUDE, in_a_process
 
 
 @pytest.mark.parametrize("backend", ["rust", "gymnasium"])
-def test_ctrl_c_stops_an_endless_episode_and_carries_the_run(backend):
+def test_ctrl_c_stops_an_endless_episode_and_keeps_the_run(backend):
     done = in_a_process(f"""
 once_it_trains(ctrl_c)
 try:
@@ -28,7 +28,7 @@ except KeyboardInterrupt as interrupt:
 @pytest.mark.parametrize(
     "settings", ["", "bit_generator='MT19937'", "record=3", "callback=print, callback_every=10**8"]
 )
-def test_ctrl_c_between_episodes_carries_the_finished_ones(settings):
+def test_ctrl_c_between_episodes_keeps_the_finished_ones(settings):
     done = in_a_process(f"""
 once_it_trains(ctrl_c)
 try:
@@ -57,7 +57,7 @@ def test_an_uncaught_ctrl_c_ends_the_process_as_python_does():
     assert done.stderr.rstrip().endswith("KeyboardInterrupt")
 
 
-def test_a_signal_handlers_own_exception_comes_through_with_the_run():
+def test_an_exception_in_a_signal_handler_carries_the_run():
     done = in_a_process("""
 class Enough(Exception): pass
 def handler(number, frame):

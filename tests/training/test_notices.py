@@ -21,7 +21,7 @@ def said(caplog, monkeypatch):
     return lambda: caplog.messages
 
 
-def test_a_limit_of_ours_is_said_once_for_each_environment(said):
+def test_the_default_time_limit_is_logged_once_per_environment(said):
     for _ in range(2):
         run = qtab.train("CliffWalking-v1", episodes=2, seed=0)
     assert run.config.max_episode_steps == 10_000
@@ -30,13 +30,13 @@ def test_a_limit_of_ours_is_said_once_for_each_environment(said):
     assert [line.split()[0] for line in said()] == ["CliffWalking-v1", "ScriptedEnv"]
 
 
-def test_many_runs_say_it_once_too(said):
+def test_train_many_logs_the_default_time_limit_once(said):
     qtab.train_many("CliffWalking-v1", seeds=3, episodes=2)
     qtab.sweep("CliffWalking-v1", {"learning_rate": [0.1, 0.2]}, seeds=2, episodes=2)
     assert said() == [f"{UNLIMITED}; max_episode_steps= sets another"]
 
 
-def test_a_limit_that_is_given_or_the_environments_own_is_not_said(said):
+def test_a_given_time_limit_is_not_logged(said):
     run = qtab.train("CliffWalking-v1", episodes=2, max_episode_steps=50, seed=0)
     qtab.train("MountainCar-v0", episodes=1)
     qtab.train(gym.wrappers.TimeLimit(gym.make("CliffWalking-v1"), 50), episodes=1)
@@ -52,7 +52,7 @@ def warning_of(call):
 
 
 @pytest.mark.parametrize("env", ["MountainCar", "qtab/MountainCar", "qtab:qtab/MountainCar"])
-def test_an_id_without_a_version_is_the_newest_with_gymnasiums_warning(env):
+def test_an_id_without_a_version_means_the_newest_with_gymnasiums_warning(env):
     theirs, _ = warning_of(lambda: gym.make(env))
     ours, run = warning_of(lambda: qtab.train(env, episodes=2, seed=0))
     assert ours == theirs
@@ -60,7 +60,7 @@ def test_an_id_without_a_version_is_the_newest_with_gymnasiums_warning(env):
     assert run.q_table.tobytes() == qtab.train("MountainCar-v0", episodes=2, seed=0).q_table.tobytes()
 
 
-def test_many_runs_take_the_newest_version_too():
+def test_train_many_uses_the_newest_version():
     _, runs = warning_of(lambda: qtab.train_many("Taxi", seeds=2, episodes=2))
     assert runs.config.env == "Taxi-v4"
     _, table = warning_of(lambda: qtab.sweep("Taxi", {"learning_rate": [0.1]}, seeds=2, episodes=2))
@@ -73,7 +73,7 @@ def test_the_newest_version_has_its_preset():
 
 
 @pytest.mark.parametrize("env", ["NoSuchThing", "NoSuchThing-v0", "nowhere/MountainCar", "Mountain Car"])
-def test_an_unknown_id_is_gymnasiums_error(env):
+def test_an_unknown_id_raises_gymnasiums_error(env):
     with pytest.raises(gym.error.Error) as theirs:
         gym.spec(env)
     with pytest.raises(type(theirs.value)) as ours:

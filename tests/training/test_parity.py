@@ -57,13 +57,13 @@ def settings_of_runs(draw):
 
 
 @given(settings=settings_of_runs())
-def test_any_settings_give_one_table(settings):
+def test_all_three_implementations_agree_for_any_settings(settings):
     assert_three_ways_equal(**settings)
 
 
 @pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
 @pytest.mark.parametrize("terminal_update", ["assign", "target"])
-def test_runs_that_reach_the_goal_and_the_limit_give_one_table(bit_generator, terminal_update):
+def test_all_three_implementations_agree_at_the_goal_and_at_the_time_limit(bit_generator, terminal_update):
     run = assert_three_ways_equal(
         seed=3,
         episodes=30,
@@ -77,7 +77,7 @@ def test_runs_that_reach_the_goal_and_the_limit_give_one_table(bit_generator, te
     assert (run.episode_lengths[~run.terminated] == 200).all()
 
 
-def test_long_episodes_from_nothing_reach_the_goal_and_give_one_table():
+def test_all_three_implementations_agree_on_long_episodes():
     run = assert_three_ways_equal(seed=1, episodes=4, max_episode_steps=5000)
     assert run.terminated.any()
     assert run.episode_lengths.max() > 200
@@ -93,7 +93,7 @@ def test_the_last_step_allowed_can_reach_the_goal():
 
 
 @pytest.mark.parametrize(("epsilon", "min_epsilon"), [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.3, 0.3), (0.8, 0.1)])
-def test_schedules_from_end_to_end_give_one_table(epsilon, min_epsilon):
+def test_all_three_implementations_agree_on_whole_schedules(epsilon, min_epsilon):
     # More episodes than the schedule's reductions sum up to exactly: it is not clamped.
     assert_three_ways_equal(seed=5, episodes=23, max_episode_steps=40, epsilon=epsilon, min_epsilon=min_epsilon)
 
@@ -102,7 +102,7 @@ def test_schedules_from_end_to_end_give_one_table(epsilon, min_epsilon):
 @pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize(("start", "actions"), [(0, 3), (5, 3), (-2, 4), (7, 1)])
-def test_a_users_own_environment_gives_the_references_table(terminal_update, bit_generator, dtype, start, actions):
+def test_an_environment_of_a_user_gives_the_references_table(terminal_update, bit_generator, dtype, start, actions):
     run = qtab.train(
         Walk(dtype, start, actions),
         seed=8,
@@ -118,7 +118,7 @@ def test_a_users_own_environment_gives_the_references_table(terminal_update, bit
 
 @pytest.mark.parametrize("shown", [np.float64, np.float16, np.float32])
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
-def test_observations_of_another_dtype_than_the_space_are_read_as_the_spaces(dtype, shown):
+def test_observations_are_converted_to_the_dtype_of_the_space(dtype, shown):
     run = qtab.train(Walk(dtype, shown=shown), seed=2, episodes=12, scale=(40.0, 70.0), max_episode_steps=60)
     assert_same_as_reference(run, TimeLimit(Walk(dtype, shown=shown), 60))
 
@@ -140,7 +140,7 @@ def test_float64_observations_of_a_float32_space_are_rounded_as_float32():
     assert_same_as_reference(run, env())
 
 
-def test_an_initial_table_is_gone_on_from_and_left_alone():
+def test_training_continues_from_an_initial_table_and_does_not_change_it():
     before = LEARNED.copy()
     run = qtab.train("MountainCar-v0", seed=0, episodes=1, learning_rate=0.0, initial_q=LEARNED)
     assert run.q_table.tobytes() == before.tobytes()
@@ -159,13 +159,13 @@ def test_a_table_in_another_memory_order_or_dtype_is_the_same_table():
     assert_same_run(run, qtab.train("MountainCar-v0", initial_q=zeros.astype(int), **settings))
 
 
-def test_same_seed_same_table_and_another_seed_another():
+def test_same_seed_same_table_another_seed_another_table():
     one, same, other = (qtab.train("MountainCar-v0", seed=seed, episodes=20) for seed in (4, 4, 5))
     assert_same_run(one, same)
     assert one.tables.tobytes() != other.tables.tobytes()
 
 
-def test_numpys_numbers_are_numbers():
+def test_numpy_scalars_are_accepted_as_settings():
     plain = qtab.train("MountainCar-v0", seed=4, episodes=3, learning_rate=0.5, max_episode_steps=20)
     numpys = qtab.train(
         "MountainCar-v0",
@@ -179,7 +179,7 @@ def test_numpys_numbers_are_numbers():
     assert type(numpys.config.learning_rate) is float
 
 
-def test_the_default_is_the_article():
+def test_the_defaults_are_the_articles():
     run = qtab.train("MountainCar-v0", seed=0, episodes=10)
     config = run.config
     assert config.preset == "article"
@@ -188,7 +188,7 @@ def test_the_default_is_the_article():
     assert (config.max_episode_steps, config.bit_generator, qtab.Config().episodes) == (200, "PCG64", 5000)
 
 
-def test_a_seed_that_is_left_open_is_drawn_and_recorded():
+def test_a_seed_that_is_not_given_is_drawn_and_recorded():
     one, other = (qtab.train("MountainCar-v0", episodes=3) for _ in range(2))
     assert one.config.seed != other.config.seed
     assert one.config.seed is not None

@@ -17,7 +17,7 @@ def lake():
     return qtab.TabularEnv(env.P, env.initial_state_distrib)
 
 
-def test_it_trains_in_rust_as_it_steps_in_python():
+def test_rust_trains_on_a_tabular_env_as_python_does():
     env = lake()
     run = qtab.train(env, **SETTINGS)
     assert (run.config.backend, run.config.max_episode_steps) == ("rust", 10_000)
@@ -27,14 +27,14 @@ def test_it_trains_in_rust_as_it_steps_in_python():
     assert qtab.evaluate(run, episodes=50, seed=0, env=env).lengths.sum() > 50
 
 
-def test_it_learns_what_gymnasiums_own_lake_teaches():
+def test_a_tabular_env_of_the_lakes_table_trains_like_the_lake():
     one = qtab.train(TimeLimit(lake(), 100), **SETTINGS)
     other = qtab.train("FrozenLake-v1", initial_q=(-1.0, 1.0), **SETTINGS)
     assert (one.config.backend, other.config.backend) == ("rust", "rust")
     assert_same_run(one, other)
 
 
-def test_its_table_is_taken_as_it_stands():
+def test_an_edited_table_is_trained_as_edited():
     env = lake()
     env.P[0] = {action: [(1.0, 5, 3.0, True)] for action in range(4)}
     run = qtab.train(env, **SETTINGS)
@@ -44,7 +44,7 @@ def test_its_table_is_taken_as_it_stands():
         qtab.train(env, backend="rust", **SETTINGS)
 
 
-def test_a_subclass_or_a_wrapper_steps_in_python():
+def test_a_subclass_or_a_wrapper_is_stepped_in_python():
     class Mine(qtab.TabularEnv):
         def step(self, action):
             observation, reward, *rest = super().step(action)
@@ -69,13 +69,13 @@ def test_tables_of_any_number_of_actions_train(actions):
     assert qtab.verify(run, env=env).equal
 
 
-def test_an_object_of_gymnasiums_trains_in_rust_where_asked():
+def test_an_environment_of_gymnasium_trains_in_rust_when_requested():
     env = gym.make("Taxi-v4", fickle_passenger=True)
     rust = qtab.train(env, backend="rust", **SETTINGS)
     assert_same_run(rust, qtab.train(env, **SETTINGS))
 
 
-def test_many_runs_of_it_are_the_lone_ones():
+def test_many_runs_on_a_tabular_env_equal_single_runs():
     settings: dict[str, Any] = {**SETTINGS, "episodes": 40}
     del settings["seed"]
     runs = qtab.train_many(lake, seeds=4, tables=True, **settings)

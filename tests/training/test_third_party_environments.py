@@ -17,7 +17,7 @@ ROOM |= {"seed": 0, "ties": "random"}
 
 
 @pytest.mark.parametrize("multi", [False, True])
-def test_a_room_is_walked_through_the_shortest_way(multi: bool) -> None:
+def test_the_shortest_path_through_a_room_is_learned(multi: bool) -> None:
     run = qtab.train("qtab-tests/Room-v0", env_kwargs={"multi": multi}, **ROOM)
     assert run.q_table.shape == (5, 5, 4, 3)
     assert run.config.max_episode_steps == 100
@@ -44,7 +44,7 @@ def test_a_slippery_room_is_learned_saved_loaded_and_verified(algorithm: Any, tm
     assert loaded.predict((1, 1, 0)) == run.predict(np.array([1, 1, 0]))
 
 
-def test_the_last_episodes_in_the_room_are_played_again() -> None:
+def test_the_last_episodes_in_the_room_are_replayed() -> None:
     run = qtab.train("qtab-tests/Room-v0", env_kwargs={"slip": 0.1}, record=5, **ROOM)
     env = gym.make("qtab-tests/Room-v0", slip=0.1, render_mode="ansi")
     returns = [replay_episode(env, recording) for recording in run.recordings]
@@ -76,7 +76,7 @@ def lander() -> str:
     return "LunarLander-v3"
 
 
-def test_the_lander_learns_to_come_down_more_gently(lander: str) -> None:
+def test_the_lander_learns_to_land_more_gently(lander: str) -> None:
     run = qtab.train(lander, episodes=200, hashed_rows=2**16, **LANDER)
     first, second = run.mean_returns(100)
     assert first < -50 < 0 < second
@@ -84,7 +84,7 @@ def test_the_lander_learns_to_come_down_more_gently(lander: str) -> None:
 
 @pytest.mark.parametrize("hashed_rows", [None, 5000])
 @pytest.mark.parametrize("algorithm", ["q_learning", "sarsa_lambda"])
-def test_the_lander_is_verified(lander: str, algorithm: Any, hashed_rows: int | None) -> None:
+def test_runs_on_the_lander_verify(lander: str, algorithm: Any, hashed_rows: int | None) -> None:
     settings: dict[str, Any] = {**LANDER, "algorithm": algorithm, "hashed_rows": hashed_rows}
     if algorithm == "q_learning":
         settings = {name: value for name, value in settings.items() if not name.startswith("trace_")}
@@ -122,7 +122,7 @@ WRAPPED: dict[str, tuple[Any, dict[str, Any]]] = {
 
 
 @pytest.mark.parametrize("name", WRAPPED)
-def test_a_wrapped_environment_trains_as_it_stands(name: str) -> None:
+def test_a_wrapped_environment_is_trained_with_its_wrappers(name: str) -> None:
     wrap, settings = WRAPPED[name]
     settings = {**settings, "episodes": 4, "seed": 3}
     ours, theirs = (qtab.train(wrap(gym.make(env)), **settings) for env in ("qtab/MountainCar-v0", "MountainCar-v0"))
@@ -131,7 +131,7 @@ def test_a_wrapped_environment_trains_as_it_stands(name: str) -> None:
     assert qtab.verify(ours, env=wrap(gym.make("MountainCar-v0"))).equal
 
 
-def test_bounds_the_wrong_way_round_are_refused() -> None:
+def test_low_above_high_is_refused() -> None:
     env: Any = gym.make("MountainCar-v0").unwrapped
     env.observation_space.low[1] = 5.0
     with pytest.raises(ValueError, match=r"^the observation space must have low <= high, got Box\("):
@@ -147,7 +147,7 @@ def test_infinite_bounds_without_limits_are_refused(settings: dict[str, Any]) ->
 
 
 @pytest.mark.parametrize("hashed_rows", [None, 100])
-def test_an_observation_of_nan_is_refused_by_its_component(hashed_rows: int | None) -> None:
+def test_nan_in_an_observation_is_refused_with_its_component(hashed_rows: int | None) -> None:
     def spoil(observation: Any) -> Any:
         return np.array([observation[0], np.nan], np.float32)
 

@@ -17,7 +17,7 @@ SETTINGS = {
 
 
 @pytest.mark.parametrize("settings", SETTINGS.values(), ids=SETTINGS)
-def test_two_runs_at_once_give_the_tables_of_one_after_the_other(settings):
+def test_concurrent_runs_equal_sequential_ones(settings):
     together = Barrier(2)
 
     def train(seed):
@@ -30,7 +30,7 @@ def test_two_runs_at_once_give_the_tables_of_one_after_the_other(settings):
         assert_same_run(run, qtab.train("MountainCar-v0", seed=seed, **settings))
 
 
-def test_a_run_in_rust_and_one_in_python_at_once_disturb_neither():
+def test_concurrent_runs_in_rust_and_python_do_not_affect_each_other():
     with ThreadPoolExecutor(2) as threads:
         fast = threads.submit(qtab.train, "MountainCar-v0", seed=1, episodes=3000)
         slow = threads.submit(qtab.train, gym.make("MountainCar-v0"), seed=1, episodes=20)

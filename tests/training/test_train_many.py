@@ -17,7 +17,7 @@ SHORT: dict[str, Any] = {"episodes": 30}
 
 
 @pytest.mark.parametrize("threads", [1, 2, 7, 64])
-def test_each_run_is_the_lone_one_for_any_number_of_threads(threads):
+def test_each_run_equals_the_single_run_for_any_number_of_threads(threads):
     runs = qtab.train_many(CAR, seeds=range(20), threads=threads, tables=True, episodes=200)
     assert runs.completed
     assert runs.seeds == tuple(range(20))
@@ -43,7 +43,7 @@ def test_each_run_is_the_lone_one_for_any_number_of_threads(threads):
         }
     ),
 )
-def test_each_run_is_the_lone_one_for_any_config(seeds, threads, episodes, config):
+def test_each_run_equals_the_single_run_for_any_config(seeds, threads, episodes, config):
     runs = qtab.train_many(CAR, seeds, threads=threads, tables=True, episodes=episodes, **config)
     assert_same_as_single_runs(runs, episodes=episodes, **config)
 
@@ -64,13 +64,13 @@ def test_each_run_is_the_lone_one_for_any_config(seeds, threads, episodes, confi
         }
     ),
 )
-def test_each_run_of_poles_is_the_lone_one_for_any_config(seeds, episodes, config):
+def test_each_run_of_cart_pole_equals_the_single_run_for_any_config(seeds, episodes, config):
     runs = qtab.train_many(POLE, seeds, threads=1, tables=True, episodes=episodes, **config)
     assert runs.config.learning_rate_schedule == "linear"
     assert_same_as_single_runs(runs, env=POLE, episodes=episodes, **config)
 
 
-def test_runs_of_poles_are_gymnasiums():
+def test_runs_of_cart_pole_equal_gymnasiums():
     runs = qtab.train_many(POLE, 9, threads=1, tables=True, episodes=40)
     assert runs.config.backend == "rust"
     assert_same_as_single_runs(runs, env=POLE, episodes=40, backend="gymnasium")
@@ -86,7 +86,7 @@ def test_runs_of_poles_are_gymnasiums():
     ],
 )
 @pytest.mark.parametrize("backend", ["rust", "gymnasium"])
-def test_each_run_is_the_lone_one_for_every_learner(config, backend):
+def test_each_run_equals_the_single_run_for_every_learner(config, backend):
     episodes = 12 if backend == "rust" else 2
     config = {**config, "episodes": episodes, "backend": backend}
     runs = qtab.train_many(CAR, 3, threads=2, tables=True, **config)
@@ -103,7 +103,7 @@ STEEP: dict[str, Any] = {
 STEEP |= {"learning_rate": 1.5, "discount": 1.0, "epsilon": 0.8, "min_epsilon": 0.8, "episodes": 4}
 
 
-def test_a_failing_run_names_its_seed_and_leaves_the_finished_ones():
+def test_a_failing_run_is_reported_with_its_seed_and_keeps_the_finished_ones():
     with pytest.raises(OverflowError) as lone:
         qtab.train(CAR, seed=0, **STEEP)
     with pytest.raises(OverflowError) as caught:
@@ -123,7 +123,7 @@ def test_a_number_of_seeds_counts_from_zero():
     assert qtab.train_many(CAR, [2**70], **SHORT).seeds == (2**70,)
 
 
-def test_a_single_run_of_them_is_a_run(tmp_path):
+def test_a_run_can_be_taken_out_of_many(tmp_path):
     runs = qtab.train_many(CAR, [4, 9], tables=True, **SHORT)
     run = runs[-1]
     assert run.config.seed == 9
@@ -136,7 +136,7 @@ def test_a_single_run_of_them_is_a_run(tmp_path):
         qtab.train_many(CAR, 1, **SHORT)[0]
 
 
-def test_summaries_have_a_number_a_run():
+def test_summaries_have_a_number_per_run():
     runs = qtab.train_many(CAR, 3, episodes=250)
     columns = runs.summaries()
     assert columns["seed"].tolist() == [0, 1, 2]
@@ -178,7 +178,7 @@ def test_bad_input_is_refused_before_anything_starts(arguments, error, message):
         qtab.train_many(**{"env": CAR, "memory_limit": 2**30, **arguments})
 
 
-def test_the_limit_can_be_raised():
+def test_the_memory_limit_can_be_raised():
     with pytest.raises(MemoryError):
         qtab.train_many(CAR, 10, memory_limit=15_000, **SHORT)
     assert len(qtab.train_many(CAR, 10, memory_limit=40_000, threads=1, **SHORT)) == 10

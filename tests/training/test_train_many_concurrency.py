@@ -24,7 +24,7 @@ def _in_a_child(queue):
 
 
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
-def test_it_works_after_a_fork():
+def test_train_many_works_after_a_fork():
     before = qtab.train_many(CAR, 4, threads=2, **SHORT).episode_returns
     context = multiprocessing.get_context("fork")
     queue = context.Queue()
@@ -36,7 +36,7 @@ def test_it_works_after_a_fork():
     assert before.tobytes() == after.tobytes()
 
 
-def test_other_python_threads_go_on_meanwhile():
+def test_other_python_threads_run_during_train_many():
     ticks = []
     over = threading.Event()
 
@@ -52,7 +52,7 @@ def test_other_python_threads_go_on_meanwhile():
     assert len(ticks) > 3
 
 
-def test_threads_may_call_it_at_the_same_time():
+def test_threads_may_call_train_many_at_the_same_time():
     results = {}
 
     def work(name):
@@ -103,13 +103,13 @@ def test_ctrl_c_keeps_the_finished_runs():
     assert said[2] == "True"
 
 
-def test_python_environments_run_in_processes_and_are_the_lone_runs():
+def test_runs_on_python_environments_use_processes_and_equal_single_runs():
     runs = qtab.train_many(CAR, [3, 5, 8], threads=2, tables=True, backend="gymnasium", episodes=3)
     assert_same_as_single_runs(runs, episodes=3, backend="gymnasium")
     assert runs.config.backend == "gymnasium"
 
 
-def test_a_failing_process_names_its_seed_and_leaves_the_finished_runs():
+def test_a_failing_process_is_reported_with_its_seed_and_keeps_the_finished_runs():
     with pytest.raises(RuntimeError, match="out of order") as caught:
         qtab.train_many(make_brittle, [0, 4, 2], threads=1, scale=(10, 100), episodes=2)
     assert run_of(caught.value).seeds == (0, 4)

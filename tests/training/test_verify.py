@@ -44,7 +44,7 @@ def test_a_run_verifies(settings):
 
 
 @pytest.mark.parametrize("env", ["qtab/MountainCar-v0", "qtab:qtab/MountainCar-v0", gym.spec("MountainCar-v0")])
-def test_a_run_of_our_id_or_of_a_spec_verifies_against_gymnasiums(env):
+def test_runs_of_our_ids_and_of_specs_verify(env):
     assert qtab.verify(qtab.train(env, seed=0, episodes=3)).equal
 
 
@@ -56,7 +56,7 @@ def test_a_saved_run_verifies(tmp_path):
 @pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
 @pytest.mark.parametrize("backend", ["rust", "gymnasium"])
 @pytest.mark.parametrize("episodes", [1, 5, 12])
-def test_a_prefix_verifies_with_the_schedule_of_the_whole(bit_generator, backend, episodes):
+def test_a_prefix_verifies_with_the_schedule_of_the_full_run(bit_generator, backend, episodes):
     report = qtab.verify(train(bit_generator=bit_generator, backend=backend), episodes=episodes)
     assert report.equal is True
     assert report.episodes == episodes
@@ -70,12 +70,12 @@ def stopped():
     return train(callback=lambda progress: progress.episodes < 6, callback_every=3)
 
 
-def test_a_run_that_was_stopped_verifies_by_a_prefix():
+def test_a_stopped_run_verifies_on_a_prefix():
     assert qtab.verify(stopped(), episodes=6).equal
     assert qtab.verify(stopped(), episodes=4).equal
 
 
-def test_a_run_that_was_stopped_is_refused_without_one():
+def test_a_stopped_run_is_refused_without_a_prefix():
     with pytest.raises(ValueError, match="episodes must be given for a run that was stopped early, at most 6"):
         qtab.verify(stopped())
 
@@ -92,7 +92,7 @@ def tampered(run, name, index, change):
     return dataclasses.replace(run, **{name: values})
 
 
-def test_a_changed_return_is_found_in_its_episode():
+def test_a_changed_return_is_reported_with_its_episode():
     report = qtab.verify(tampered(train(), "episode_returns", 4, lambda value: np.nextafter(value, 0)))
     assert report.equal is False
     assert (report.returns_equal, report.lengths_equal, report.table_equal) == (False, True, True)
@@ -100,14 +100,14 @@ def test_a_changed_return_is_found_in_its_episode():
 
 
 @pytest.mark.parametrize(("change", "step"), [(-20, 40), (+3, 60)])
-def test_a_changed_length_is_found_in_its_episode_and_step(change, step):
+def test_a_changed_length_is_reported_with_its_episode_and_step(change, step):
     report = qtab.verify(tampered(train(), "episode_lengths", 7, lambda value: value + change))
     assert (report.returns_equal, report.lengths_equal, report.table_equal) == (True, False, True)
     assert (report.episode, report.step) == (7, step)
 
 
 @pytest.mark.parametrize("cell", [0, 400, -1])
-def test_a_table_that_differs_by_one_bit_is_found(cell):
+def test_a_table_that_differs_by_one_bit_is_reported(cell):
     run = tampered(train(), "tables", cell, lambda value: np.nextafter(value, 9))
     report = qtab.verify(run)
     assert report.equal is False
@@ -122,14 +122,14 @@ def test_the_sign_of_a_zero_is_a_difference():
     assert not qtab.verify(tampered(run, "tables", untouched, lambda value: -0.0)).equal
 
 
-def test_a_table_is_compared_whatever_its_memory_order():
+def test_tables_are_compared_in_any_memory_order():
     run = train()
     flipped = np.asfortranarray(run.tables)
     assert qtab.verify(dataclasses.replace(run, tables=flipped)).equal
 
 
 @pytest.mark.parametrize("episodes", [None, 10])
-def test_another_seed_in_the_config_is_found_in_the_first_episode_that_differs(episodes):
+def test_a_changed_seed_is_reported_with_the_first_episode_that_differs(episodes):
     run = train(initial_q=LEARNED, max_episode_steps=1000)
     other = train(initial_q=LEARNED, max_episode_steps=1000, seed=4)
     claimed = dataclasses.replace(run, config=run.config.replace(seed=4))
@@ -139,7 +139,7 @@ def test_another_seed_in_the_config_is_found_in_the_first_episode_that_differs(e
 
 
 @pytest.mark.parametrize("setting", [{"learning_rate": 0.21}, {"discount": 0.91}, {"terminal_update": "target"}])
-def test_another_setting_in_the_config_is_found(setting):
+def test_a_changed_setting_is_reported(setting):
     run = train(initial_q=LEARNED, max_episode_steps=1000, epsilon=0.1)
     assert run.terminated.any()
     assert not qtab.verify(dataclasses.replace(run, config=run.config.replace(**setting))).equal
@@ -152,7 +152,7 @@ def test_a_run_on_an_object_verifies_against_that_object():
     assert qtab.verify(tampered(run, "episode_lengths", 2, lambda value: value + 1), env=Walk(start=5)).episode == 2
 
 
-def test_an_edited_object_verifies_against_itself_alone():
+def test_an_edited_object_verifies_only_against_itself():
     env: Any = gym.make("MountainCar-v0")
     env.unwrapped.force = 0.002
     run = qtab.train(env, seed=0, episodes=10)
@@ -161,14 +161,14 @@ def test_an_edited_object_verifies_against_itself_alone():
     assert report.equal is False
 
 
-def test_progress_is_told_after_every_episode():
+def test_progress_is_reported_after_every_episode():
     told = []
     qtab.verify(train(episodes=4), progress=lambda done, total: told.append((done, total)))
     assert [total for _, total in told] == [4] * len(told)
     assert [done for done, _ in told] == [1, 2, 3, 4]
 
 
-def test_the_report_reads_as_one():
+def test_a_verification_prints_a_readable_report():
     run = tampered(train(), "episode_lengths", 7, lambda value: value - 1)
     text = str(qtab.verify(run))
     assert "MountainCar-v0, seed 3, 12 episodes" in text

@@ -52,7 +52,7 @@ BAD_ACTIONS = [
 
 @pytest.mark.parametrize(("actions", "error", "match"), BAD_ACTIONS)
 @pytest.mark.parametrize("name", DISCRETE)
-def test_bad_actions_move_nobody(name, actions, error, match):
+def test_bad_actions_change_no_state(name, actions, error, match):
     env = ours(name, 3)
     env.reset(seed=1)
     env.step(np.array([0, 1, 1]))
@@ -61,7 +61,7 @@ def test_bad_actions_move_nobody(name, actions, error, match):
 
 
 @pytest.mark.parametrize("name", ["CartPole-v1", "Taxi-v4"])
-def test_bad_actions_move_nobody_in_python_either(name):
+def test_bad_actions_change_no_state_in_python(name):
     env = ours(name, 3, autoreset_mode="Disabled", max_episode_steps=3)
     env.reset(seed=1)
     env.step(np.zeros(3, np.int64))
@@ -104,7 +104,7 @@ BAD_FORCES = [
 
 @pytest.mark.parametrize(("actions", "error", "match"), BAD_FORCES)
 @pytest.mark.parametrize("name", classic_control.CONTINUOUS)
-def test_bad_forces_move_nobody(name, actions, error, match):
+def test_bad_forces_change_no_state(name, actions, error, match):
     env = ours(name, 3)
     env.reset(seed=1)
     env.step(np.zeros((3, 1), np.float32))
@@ -112,7 +112,7 @@ def test_bad_forces_move_nobody(name, actions, error, match):
 
 
 @pytest.mark.parametrize("name", classic_control.CONTINUOUS)
-def test_forces_that_gymnasium_takes_are_taken(name):
+def test_forces_that_gymnasium_accepts_are_accepted(name):
     from support.vector import LockstepVectorEnv
 
     vectors = LockstepVectorEnv(name, 3)
@@ -131,7 +131,7 @@ def test_forces_that_gymnasium_takes_are_taken(name):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_who_awaits_a_reset_may_be_told_anything(name):
+def test_actions_of_finished_sub_environments_are_ignored(name):
     env = ours(name, 3, max_episode_steps=1)
     env.reset(seed=0)
     good = np.zeros((3, 1), np.float32) if name in classic_control.CONTINUOUS else np.zeros(3, np.int64)
@@ -143,7 +143,7 @@ def test_who_awaits_a_reset_may_be_told_anything(name):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_no_step_before_a_reset(name):
+def test_a_step_before_a_reset_is_refused(name):
     env = ours(name, 3)
     with pytest.raises(gym.error.ResetNeeded, match="sub-environment 0"):
         env.step(env.action_space.sample())
@@ -192,7 +192,7 @@ def test_bad_resets_change_nothing(name, arguments, error, match):
         ("CartPole-v1", {"low": float("-inf")}, OverflowError),
     ],
 )
-def test_bad_options_are_gymnasiums_to_refuse(name, options, error):
+def test_bad_options_raise_gymnasiums_error(name, options, error):
     with pytest.raises(error) as gymnasiums:
         gym.make(name).reset(options=options)
     env = ours(name, 2)
@@ -217,12 +217,12 @@ def test_bad_options_are_gymnasiums_to_refuse(name, options, error):
         ({"num_envs": 2, "wrappers": [gym.wrappers.TimeAwareObservation]}, gym.error.Error, "wrappers"),
     ],
 )
-def test_bad_arguments_are_named(arguments, error, match):
+def test_bad_arguments_are_refused_by_name(arguments, error, match):
     with pytest.raises(error, match=match):
         gym.make_vec("qtab/MountainCar-v0", **arguments)
 
 
-def test_the_longest_limit_is_none():
+def test_the_longest_time_limit_is_no_limit():
     env = ours("CartPole-v1", 2, max_episode_steps=2**70)
     env.reset(seed=0)
     assert env.unwrapped.is_native
@@ -263,7 +263,7 @@ def test_two_threads_cannot_step_the_same_sub_environments_at_once():
     assert set(raised) == {"another thread is stepping these sub-environments"}
 
 
-def test_there_are_no_others_than_the_sub_environments():
+def test_indices_beyond_the_sub_environments_are_refused():
     env = ours("CartPole-v1", 2).unwrapped
     env.reset(seed=0)
     for call in (

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_make_vec_chooses_the_one_in_rust(name):
+def test_make_vec_makes_the_vector_environment_in_rust(name):
     env = ours(name, 3)
     assert type(env.unwrapped).__module__ == "qtab.envs.vector"
     assert env.is_native
@@ -50,7 +50,7 @@ def test_gymnasiums_own_vectorization_modes_work_too():
 
 
 @pytest.mark.parametrize("name", ["MountainCar-v0", "FrozenLake-v1", "Blackjack-v1"])
-def test_copies_stay_and_the_one_buffer_changes(name):
+def test_observations_are_copied_unless_copy_is_false(name):
     def arrays(observations):
         return observations if isinstance(observations, tuple) else (observations,)
 
@@ -68,7 +68,7 @@ def test_copies_stay_and_the_one_buffer_changes(name):
     assert data_equivalence(kept, before, exact=True)
 
 
-def test_rewards_and_flags_are_the_callers_own():
+def test_rewards_and_flags_are_new_arrays():
     env = ours("CartPole-v1", 3, copy=False)
     env.reset(seed=0)
     _, *first, _ = env.step(np.array([0, 1, 0]))
@@ -77,7 +77,7 @@ def test_rewards_and_flags_are_the_callers_own():
 
 
 @pytest.mark.parametrize("name", ["MountainCar-v0", "Taxi-v4", "Pendulum-v1"])
-def test_seeds_are_gymnasiums(name):
+def test_seeds_equal_gymnasiums(name):
     vectors = LockstepVectorEnv(name, 3)
     for seed in (0, 12, [5, 6, 2**80], (1, 2, 3), [7, None, 2**32], True, None):
         if seed is None or None in (seed if isinstance(seed, list) else []):
@@ -89,7 +89,7 @@ def test_seeds_are_gymnasiums(name):
         vectors.same_streams()
 
 
-def test_without_a_seed_no_two_are_alike():
+def test_without_a_seed_no_two_vector_environments_are_equal():
     env, other = ours("Taxi-v4", 50), ours("Taxi-v4", 50)
     seeds = {*env.np_random_seed, *other.np_random_seed}
     assert len(seeds) == 100
@@ -100,7 +100,7 @@ def test_without_a_seed_no_two_are_alike():
 
 @pytest.mark.parametrize("name", ["MountainCar-v0", "FrozenLake-v1", "Blackjack-v1", "Taxi-v4"])
 @pytest.mark.parametrize("mode", MODES)
-def test_generators_that_were_handed_out_are_drawn_from(name, mode):
+def test_generators_that_were_accessed_are_drawn_from(name, mode):
     vectors = LockstepVectorEnv(name, 4, mode, max_episode_steps=5)
     vectors.reset(seed=3)
     vectors.run(7)
@@ -121,7 +121,7 @@ def test_generators_that_were_handed_out_are_drawn_from(name, mode):
         vectors.ours.np_random = mine
 
 
-def test_threads_draw_from_handed_out_generators_too():
+def test_threads_draw_from_accessed_generators():
     vectors = LockstepVectorEnv("Acrobot-v1", 9, AutoresetMode.SAME_STEP, {"threads": 3}, max_episode_steps=4)
     vectors.reset(seed=3)
     assert len(vectors.ours.np_random) == 9
@@ -145,7 +145,7 @@ def test_any_number_of_threads_gives_the_same(name):
     assert all(data_equivalence(reset, resets[0], exact=True) for reset in resets)
 
 
-def test_a_limit_and_an_end_at_once_are_both_said():
+def test_termination_at_the_time_limit_sets_both_flags():
     vectors = LockstepVectorEnv("MountainCar-v0", 6, max_episode_steps=1)
     vectors.reset(seed=0, options={"low": 0.49, "high": 0.499})
     _, _, terminated, truncated, _ = vectors.step(np.full(6, 2))
@@ -158,7 +158,7 @@ def test_a_limit_and_an_end_at_once_are_both_said():
     assert truncated.all()
 
 
-def test_limits_are_gymnasiums():
+def test_time_limits_equal_gymnasiums():
     assert ours("CartPole-v0", 1).get_attr("_max_episode_steps") == (200,)
     assert ours("CartPole-v1", 1, max_episode_steps=3).get_attr("_max_episode_steps") == (3,)
     for name, limit in (("CartPole-v1", -1), ("CliffWalking-v1", None)):
@@ -169,7 +169,7 @@ def test_limits_are_gymnasiums():
         ours("CartPole-v1", 1, max_episode_steps=0)
 
 
-def test_a_finished_one_must_be_reset_where_autoreset_is_disabled():
+def test_a_finished_sub_environment_must_be_reset_where_autoreset_is_disabled():
     vectors = LockstepVectorEnv("CartPole-v1", 3, AutoresetMode.DISABLED)
     vectors.reset(seed=0)
     vectors.reset(options={"reset_mask": np.array([False, True, False]), "low": 0.3, "high": 0.4})
@@ -188,7 +188,7 @@ def _steps_of_a_child(env, queue):
     queue.put(env.step(np.zeros(40, np.int64))[0].tobytes())
 
 
-def test_a_forked_child_steps_on():
+def test_a_forked_child_continues_stepping():
     env = ours("CartPole-v1", 40, threads=2)
     env.reset(seed=0)
     env.step(np.zeros(40, np.int64))
@@ -201,7 +201,7 @@ def test_a_forked_child_steps_on():
     assert child.exitcode == 0
 
 
-def test_it_says_that_it_cannot_be_copied():
+def test_copying_is_refused():
     env = ours("CartPole-v1", 2)
     for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
         with pytest.raises(TypeError, match="can neither be copied nor pickled"):

@@ -89,7 +89,7 @@ def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("name", ["Taxi-v4", "CliffWalking-v1"])
-def test_those_who_know_the_way_arrive_in_lock_step(name: str, mode: Any) -> None:
+def test_optimal_policies_reach_the_goal_in_lock_step(name: str, mode: Any) -> None:
     policy = qtab.optimum(name).policy
     vectors = LockstepVectorEnv(name, 9, mode)
     observations, _ = vectors.reset(seed=3)

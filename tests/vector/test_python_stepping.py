@@ -17,7 +17,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("name", IDS)
-def test_sub_environments_go_on_where_they_stood(name, mode):
+def test_sub_environments_continue_from_their_current_state(name, mode):
     vectors = LockstepVectorEnv(name, 5, mode, max_episode_steps=6)
     vectors.reset(seed=2)
     vectors.run(8)
@@ -43,7 +43,7 @@ def test_sub_environments_go_on_where_they_stood(name, mode):
         vectors.run(9)
 
 
-def test_what_is_assigned_counts():
+def test_assigned_attributes_are_used():
     vectors = LockstepVectorEnv("MountainCar-v0", 3)
     vectors.reset(seed=0)
     for env in (vectors.ours, vectors.theirs):
@@ -65,7 +65,7 @@ def test_what_is_assigned_counts():
     assert data_equivalence(mine, gymnasiums, exact=True)
 
 
-def test_sub_environments_that_were_asked_for_before_the_first_reset_are_reset_like_others():
+def test_sub_environments_accessed_before_the_first_reset_are_reset_like_others():
     vectors = LockstepVectorEnv("CartPole-v1", 3, AutoresetMode.SAME_STEP)
     for env in (vectors.ours, vectors.theirs):
         env.set_attr("force_mag", 5.0)
@@ -109,14 +109,14 @@ def test_a_constant_that_rust_does_not_know_is_stepped_in_python():
     ("options", "name"), [({"low": -3e7, "high": 3e7}, "MountainCar-v0"), ({"high": 9e6}, "CartPole-v1")]
 )
 @pytest.mark.filterwarnings("ignore:.*:UserWarning")
-def test_far_out_is_gymnasiums_to_compute(options, name):
+def test_extreme_states_have_gymnasiums_result(options, name):
     vectors = LockstepVectorEnv(name, 2)
     vectors.reset(seed=0, options=options)
     assert not vectors.ours.is_native
     vectors.run(10)
 
 
-def test_on_another_numpys_sine_they_step_in_gymnasiums_code():
+def test_sub_environments_step_in_python_where_numpy_does_not_use_libm():
     done = subprocess.run([sys.executable, "-c", PATCHED], check=True, capture_output=True, text=True)
     assert done.stdout.split() == ["True", "False", "equal"]
 

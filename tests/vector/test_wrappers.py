@@ -20,7 +20,7 @@ FRAMES = [
 
 
 @pytest.mark.parametrize(("name", "mode"), [*FRAMES, *((name, "ansi") for name in TEXTS)])
-def test_frames_are_gymnasiums(name, mode):
+def test_frames_equal_gymnasiums(name, mode):
     vectors = LockstepVectorEnv(name, 2, render_mode=mode, max_episode_steps=4)
     assert vectors.ours.render_mode == mode
     assert vectors.ours.is_native == (mode != "rgb_array_list" and name != "Taxi-v4")
@@ -37,7 +37,7 @@ def test_frames_are_gymnasiums(name, mode):
 
 
 @pytest.mark.filterwarnings("ignore:.*human.*")
-def test_a_window_is_gymnasiums_too():
+def test_human_mode_renders_like_gymnasium():
     vectors = LockstepVectorEnv("FrozenLake-v1", 1, render_mode="human")
     assert not vectors.ours.is_native
     vectors.reset(seed=0)
