@@ -31,12 +31,12 @@ class Search:
     """(velocities,): the second axis of the grid of values."""
 
 
-def search_routes(valley: _core.MountainCarSearch, max_episode_steps: int) -> Search:
+def search_routes(search: _core.MountainCarSearch, max_episode_steps: int) -> Search:
     """Searches a route from each start position."""
-    starts, routes = valley.routes()
+    starts, routes = search.routes()
     steps = np.array([max_episode_steps if route is None else len(route) for route in routes], dtype=np.int64)
-    predict_return = -float(valley.rollout_lengths().mean())
-    return Search(starts, steps, tuple(routes), predict_return, *valley.axes())
+    predict_return = -float(search.rollout_lengths().mean())
+    return Search(starts, steps, tuple(routes), predict_return, *search.axes())
 
 
 class MountainCarSolver:
@@ -44,8 +44,8 @@ class MountainCarSolver:
 
     needs_step_count = False
 
-    def __init__(self, valley: _core.MountainCarSearch) -> None:
-        self._valley = valley
+    def __init__(self, search: _core.MountainCarSearch) -> None:
+        self._search = search
 
     def action(self, observation: ArrayLike, steps_taken: int) -> int:  # noqa: ARG002 - see needs_step_count
         """Returns the action with the smallest cost-to-go.
@@ -56,7 +56,7 @@ class MountainCarSolver:
         numbers = np.asarray(observation, dtype=np.float64)
         if numbers.shape != (2,) or not np.isfinite(numbers).all():
             raise ValueError(f"observation must be a position and a velocity, got {observation!r}")
-        return self._valley.action(*numbers.tolist())
+        return self._search.action(*numbers.tolist())
 
     def greedy_return(self, run: Run) -> tuple[float, float]:
         """Returns the mean return of a run's greedy policy over 1,000 episodes, and its standard error."""

@@ -187,11 +187,11 @@ def _search_mountain_car(env: Any, discount: float, max_episode_steps: int) -> _
     if discount != 1.0:
         raise ValueError(f"discount must be 1 for method 'search', which counts steps, got {discount!r}")
     names = _core.parameter_names("MountainCar")
-    valley = _core.MountainCarSearch(
+    mountain_car = _core.MountainCarSearch(
         [(name, checks.finite(name, getattr(env, name))) for name in names], max_episode_steps
     )
-    search = search_routes(valley, max_episode_steps)
-    cost_to_go, action_costs_to_go = valley.steps()
+    search = search_routes(mountain_car, max_episode_steps)
+    cost_to_go, action_costs_to_go = mountain_car.steps()
     shape = (len(search.positions), len(search.velocities))
     q_values = -action_costs_to_go.reshape(*shape, -1)
     return _Best(
@@ -199,6 +199,6 @@ def _search_mountain_car(env: Any, discount: float, max_episode_steps: int) -> _
         q_values=q_values,
         policy=np.argmax(q_values, axis=-1),
         expected_return=-float(search.steps.mean()),
-        solver=MountainCarSolver(valley),
+        solver=MountainCarSolver(mountain_car),
         search=search,
     )
