@@ -118,11 +118,13 @@ def listed(words: Sequence[str]) -> str:
 
 def defaults(fields: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the defaults of the options that apply and are not set."""
-    filled: dict[str, Any] = {}
+    complete, filled = dict(fields), {}
     for name, option in OPTIONS.items():
-        if not is_set(fields[name]) and _effective(option.choice, {**fields, **filled}) in option.values:
-            filled[name] = option.default
-    return {name: value for name, value in filled.items() if value is not None}
+        if option.default is None or is_set(complete[name]):
+            continue
+        if _effective(option.choice, complete) in option.values:
+            complete[name] = filled[name] = option.default
+    return filled
 
 
 def is_set(value: Any) -> bool:

@@ -73,7 +73,7 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: 
             on_exit.callback(request.env.close)
         else:
             raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {env!r}")
-        run = _complete(request, owns_env)
+        run = _fill_defaults(request, owns_env)
         if not run.is_native:
             on_exit.pop_all()  # the run steps the environment, and closes it
     return run
@@ -107,7 +107,7 @@ def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:
     return _Request(env, entry, config, asked, time_limit(env))
 
 
-def _complete(request: _Request, owns_env: bool) -> ResolvedRun:
+def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     env = request.env
     config = _infer_discretizer(env, request.config, request.asked)
     config = replace_checked(config, **defaults(vars(config)))
