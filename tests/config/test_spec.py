@@ -7,6 +7,7 @@ import pytest
 import qtab
 from qtab import _core, _spec
 from qtab.config import choices
+from qtab.discretizers import DISCRETIZERS
 from qtab.training.resolve import resolve
 
 
@@ -21,7 +22,7 @@ def test_the_algorithms_are_the_same_everywhere() -> None:
 
 def test_the_discretizers_are_the_same_but_for_edges_which_are_sent_as_bins() -> None:
     assert set(_core.DISCRETIZERS) == words(_spec.DiscretizerSpec)
-    assert set(get_args(choices.DiscretizerName)) == {*_core.DISCRETIZERS, "edges"}
+    assert set(DISCRETIZERS) == set(get_args(choices.DiscretizerName)) == {*_core.DISCRETIZERS, "edges"}
 
 
 def test_the_schedules_are_the_same_and_epsilon_has_none_by_visits() -> None:

@@ -64,7 +64,7 @@ def parse_arguments(arguments: list[str]) -> tuple[Arguments, str, dict[str, Any
             raise
         asked = _read([], DEFAULTS)
     with usage_errors():
-        env, settings = _given(asked)
+        env, settings = _env_and_settings(asked)
     if help_wanted:
         with usage_errors():
             shown = _effective_defaults(env, settings)
@@ -81,7 +81,7 @@ def _read(words: list[str], shown: Mapping[str, Any]) -> Arguments:
     return parse(with_settings, COMMAND, words, known=DEFAULTS)
 
 
-def _given(asked: Arguments) -> tuple[str, dict[str, Any]]:
+def _env_and_settings(asked: Arguments) -> tuple[str, dict[str, Any]]:
     settings = {} if asked.config is None else read_config(asked.config)
     for title in groups(DEFAULTS):
         settings |= getattr(asked, title.lower())

@@ -8,12 +8,15 @@ from qtab.reference.task import Result, Task, values
 
 
 def q_learning(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
-    """Trains on ``env`` as a resolved config says, and returns the Q table and each episode's return and length.
+    """Trains on ``env`` with a complete config; returns the Q table and the return and length of each episode.
 
     Args:
-        env: The environment, its time limit included.
-        config: The run's config, its seed resolved.
-        stop_after: Stop after so many episodes, with the schedule of the full run.
+        env: The environment, with its time limit.
+        config: The config of a run, in which no setting that applies is None.
+        stop_after: Stop after this many episodes, with the schedules of the full run.
+
+    Raises:
+        ValueError: if a setting that applies is None.
     """
     task = Task(env, config, stop_after)
     Q = task.table()

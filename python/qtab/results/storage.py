@@ -21,7 +21,8 @@ def load(path: "str | os.PathLike[str]") -> Run:
 
     Raises:
         OSError: if the file is missing or cannot be read.
-        ValueError: if it is not a run file, is damaged, or comes from another version of the format; it says which.
+        ValueError: if it is not a run file, is damaged, or comes from another version of the format; the
+            message says why.
     """
     path = Path(path)
     with path.open("rb") as file:
@@ -54,7 +55,7 @@ def _run(header: Mapping[str, Any], stored: Mapping[str, NDArray[Any]]) -> Run:
     with np.errstate(all="raise"):
         _check(run)
     if header["completed"] is not run.completed:
-        raise ValueError("its episodes are not as many as its header says")
+        raise ValueError("its header does not agree with the number of its episodes")
     return run
 
 

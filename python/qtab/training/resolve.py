@@ -2,6 +2,8 @@
 
 import logging
 from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
 from typing import Any
 
 import gymnasium as gym
@@ -31,6 +33,21 @@ UNLIMITED_MAX_EPISODE_STEPS = 10_000
 """The time limit in training for environments that have none."""
 
 
+@dataclass(frozen=True)
+class _Request:
+    """An environment, and what is asked for in it."""
+
+    env: gym.Env
+    entry: EnvEntry | None
+    """The registry entry of the environment that Rust may step instead."""
+    config: Config
+    """What is asked for over the preset: checked, and not yet complete."""
+    asked: Mapping[str, Any]
+    """What is asked for without the preset."""
+    time_limit: int | None
+    """That of the environment."""
+
+
 def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: bool = False) -> ResolvedRun:
     """Finds the environment and fills in everything that is left open.
 
@@ -41,18 +58,28 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: 
             that is made here always is.
 
     Raises:
-        gymnasium.error.Error: Gymnasium's own, for an id that it does not know.
+        gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
         TypeError: if ``env`` is something else, or a setting is unknown or has the wrong type.
         ValueError: if a setting is out of range, or the backend or a space does not fit.
     """
-    if isinstance(env, str | EnvSpec):
-        return _from_spec(env, layers)
-    if isinstance(env, gym.Env):
-        return _from_env(env, layers, owns_env)
-    raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {env!r}")
+    with ExitStack() as on_exit:
+        if isinstance(env, gym.Env):
+            if owns_env:
+                on_exit.callback(env.close)
+            request = _from_env(env, layers)
+        elif isinstance(env, str | EnvSpec):
+            request = _from_spec(env, layers)
+            owns_env = True
+            on_exit.callback(request.env.close)
+        else:
+            raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {env!r}")
+        run = _complete(request, owns_env)
+        if not run.is_native:
+            on_exit.pop_all()  # the run steps the environment, and closes it
+    return run
 
 
-def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> ResolvedRun:
+def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Request:
     # An id keeps the package that it names, so that the config makes the environment anywhere.
     if isinstance(env, str):
         env = versioned(env)
@@ -62,67 +89,39 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> Res
     entry = entry_for_spec(spec, config.env_kwargs)
     if entry is None and config.backend == "rust":
         raise rust_unavailable(f"Rust does not implement {spec.id} with these keyword arguments and wrappers")
-    limit: dict[str, Any] = {} if config.max_episode_steps is None else {"max_episode_steps": config.max_episode_steps}
+    limit: dict[str, Any] = {}
+    if config.max_episode_steps is not None:
+        limit["max_episode_steps"] = config.max_episode_steps
     made = gym.make(spec, **config.env_kwargs, **limit)
-    return _resolve(made, entry, config, asked, spec.max_episode_steps, owns_env=True)
+    return _Request(made, entry, config, asked, spec.max_episode_steps)
 
 
-def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...], owns_env: bool) -> ResolvedRun:
+def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:
     name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
     kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
-    try:
-        asked = merge_layers({"env_kwargs": kwargs}, *layers)
-        config = config_of(name, asked)
-        native = is_tabular_env(env) if config.backend == "auto" else config.backend == "rust"
-        entry = entry_for_env(env) if native else None
-        config = replace_checked(config, backend="rust" if native else "gymnasium")
-    except BaseException:
-        if owns_env:
-            env.close()
-        raise
-    return _resolve(env, entry, config, asked, time_limit(env), owns_env)
+    asked = merge_layers({"env_kwargs": kwargs}, *layers)
+    config = config_of(name, asked)
+    native = is_tabular_env(env) if config.backend == "auto" else config.backend == "rust"
+    entry = entry_for_env(env) if native else None
+    config = replace_checked(config, backend="rust" if native else "gymnasium")
+    return _Request(env, entry, config, asked, time_limit(env))
 
 
-def _resolve(
-    env: gym.Env,
-    entry: EnvEntry | None,
-    config: Config,
-    asked: Mapping[str, Any],
-    own_limit: int | None,
-    owns_env: bool,
-) -> ResolvedRun:
-    """Resolves a checked config for an environment; closes one that is owned and not needed."""
-    try:
-        run = _fill(env, entry, config, asked, own_limit, owns_env)
-    except BaseException:
-        if owns_env:
-            env.close()
-        raise
-    if owns_env and run.is_native:
-        env.close()
-    return run
-
-
-def _fill(
-    env: gym.Env,
-    entry: EnvEntry | None,
-    config: Config,
-    asked: Mapping[str, Any],
-    own_limit: int | None,
-    owns_env: bool,
-) -> ResolvedRun:
-    config = _infer_discretizer(env, config, asked)
+def _complete(request: _Request, owns_env: bool) -> ResolvedRun:
+    env = request.env
+    config = _infer_discretizer(env, request.config, request.asked)
     config = replace_checked(config, **defaults(vars(config)))
     actions = choose_actions(env.action_space, config.actions)
-    environment = _environment(env, entry, config, actions, owns_env)
+    environment = _environment(request, actions, owns_env)
     discretizer = discretizers.build(env.observation_space, config, len(actions))
-    limit = config.max_episode_steps or own_limit
+    own_limit = config.max_episode_steps or request.time_limit
+    max_episode_steps = own_limit or UNLIMITED_MAX_EPISODE_STEPS
     seed = int(np.random.SeedSequence().generate_state(1)[0]) if config.seed is None else config.seed
     config = replace_checked(
         config,
         **discretizer.settings(),
         initial_q=_fit_initial_q(config, discretizer, len(actions)),
-        max_episode_steps=limit or UNLIMITED_MAX_EPISODE_STEPS,
+        max_episode_steps=max_episode_steps,
         seed=seed,
         backend="rust" if isinstance(environment, NativeEnvironment) else "gymnasium",
     )
@@ -135,8 +134,8 @@ def _fill(
         policy=policy(config),
         learning_rate=learning_rate(config),
         seed=seed,
-        max_episode_steps=limit or UNLIMITED_MAX_EPISODE_STEPS,
-        default_time_limit=limit is None,
+        max_episode_steps=max_episode_steps,
+        default_time_limit=own_limit is None,
     )
 
 
@@ -153,15 +152,16 @@ def _infer_discretizer(env: gym.Env, config: Config, asked: Mapping[str, Any]) -
     return replace_checked(identity, scale=())
 
 
-def _environment(env: gym.Env, entry: EnvEntry | None, config: Config, actions: Actions, owns_env: bool) -> Environment:
-    """Rust's environment, where there is one that equals ``env`` and the backend allows it; else ``env`` itself."""
-    if entry is not None and config.backend != "gymnasium":
+def _environment(request: _Request, actions: Actions, owns_env: bool) -> Environment:
+    """The environment as Rust steps it, where Rust can and the backend allows it; else the environment itself."""
+    entry, backend = request.entry, request.config.backend
+    if entry is not None and backend != "gymnasium":
         try:
-            return NativeEnvironment(entry, native_env(entry.name, env.unwrapped, actions))
+            return NativeEnvironment(entry, native_env(entry.name, request.env.unwrapped, actions))
         except (TypeError, ValueError) as error:
-            if config.backend == "rust":
+            if backend == "rust":
                 raise rust_unavailable(str(error)) from None
-    return PythonEnvironment(env, actions, owns_env)
+    return PythonEnvironment(request.env, actions, owns_env)
 
 
 def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> Any:

@@ -22,7 +22,7 @@ pub(crate) struct PyDiscretizer {
 enum AnyFeatures {
     F32(Box<dyn DynFeatures<f32>>),
     F64(Box<dyn DynFeatures<f64>>),
-    Integers(DiscreteReader),
+    Discrete(DiscreteReader),
 }
 
 #[pymethods]
@@ -33,7 +33,7 @@ impl PyDiscretizer {
         let n_active = spec.n_active();
         if let DiscretizerSpec::Identity(reader) = spec {
             let dimensions = (!reader.is_scalar()).then(|| reader.dimensions());
-            return Ok(Self { features: AnyFeatures::Integers(reader), dimensions, n_active });
+            return Ok(Self { features: AnyFeatures::Discrete(reader), dimensions, n_active });
         }
         let (dtype, dimensions) = spec.box_space()?;
         let features = match dtype {
@@ -49,7 +49,7 @@ impl PyDiscretizer {
         match &self.features {
             AnyFeatures::F32(features) => features.n_rows(),
             AnyFeatures::F64(features) => features.n_rows(),
-            AnyFeatures::Integers(reader) => reader.n_rows(),
+            AnyFeatures::Discrete(reader) => reader.n_rows(),
         }
     }
 
@@ -69,7 +69,7 @@ impl PyDiscretizer {
         let rows = match &self.features {
             AnyFeatures::F32(features) => self.rows_of_floats(&**features, &array, batch)?,
             AnyFeatures::F64(features) => self.rows_of_floats(&**features, &array, batch)?,
-            AnyFeatures::Integers(reader) => self.rows_of_integers(reader, &array, batch)?,
+            AnyFeatures::Discrete(reader) => self.rows_of_integers(reader, &array, batch)?,
         };
         let rows = PyArray1::from_vec(py, rows);
         match batch {

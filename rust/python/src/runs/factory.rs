@@ -91,7 +91,7 @@ where
 {
     fn build(&self, seed: &Seed) -> PyResult<BuiltRun> {
         let (run, recordings) = (self.build)(seed)?;
-        Ok(BuiltRun { run: Box::new(run), recordings, attached: false })
+        Ok(BuiltRun { run: Box::new(run), recordings, steps_python: false })
     }
 
     fn batch(&self) -> Box<dyn RunBatch + '_> {

@@ -94,7 +94,7 @@ impl TaskBuilder<'_> {
         let (max_episode_steps, shape) = (spec.max_episode_steps, (n_rows, spec.discretizer.n_active()));
         let task = PythonTask { env, first_seed, seeded: false, max_episode_steps, reader };
         let (run, recordings) = boxed_run(task, shape, seed, spec, record, AnyRecordings::Python)?;
-        Ok(BuiltRun { run, recordings, attached: true })
+        Ok(BuiltRun { run, recordings, steps_python: true })
     }
 }
 

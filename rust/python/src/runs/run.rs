@@ -74,6 +74,6 @@ pub(crate) enum AnyRecordings {
 pub(crate) struct BuiltRun {
     pub(crate) run: Box<dyn Run>,
     pub(crate) recordings: AnyRecordings,
-    /// Whether it steps Python, and so stays on the calling thread, attached to the interpreter.
-    pub(crate) attached: bool,
+    /// Whether it steps a Python environment, and so needs the calling thread and the interpreter.
+    pub(crate) steps_python: bool,
 }

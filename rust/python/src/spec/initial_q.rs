@@ -13,7 +13,7 @@ use crate::error::invalid;
 #[derive(Clone, Debug)]
 pub(crate) enum InitialQSpec {
     /// The values of all tables, in C order. Shared, since many runs may start from them.
-    Table(Arc<[f64]>),
+    Given(Arc<[f64]>),
     Uniform {
         low: f64,
         high: f64,
@@ -26,7 +26,7 @@ pub(crate) enum InitialQSpec {
 const INITIAL_QS: &[Variant<InitialQSpec>] = &[
     ("table", |fields| {
         let values: PyReadonlyArrayDyn<'_, f64> = fields.get("values")?;
-        Ok(InitialQSpec::Table(values.as_array().iter().copied().collect()))
+        Ok(InitialQSpec::Given(values.as_array().iter().copied().collect()))
     }),
     ("uniform", |fields| Ok(InitialQSpec::Uniform { low: fields.get("low")?, high: fields.get("high")? })),
     ("constant", |fields| Ok(InitialQSpec::Constant { value: fields.get("value")? })),
@@ -39,7 +39,7 @@ impl InitialQSpec {
 
     /// Whether some states lack actions, which a first value of -∞ says.
     pub(crate) fn has_masked_actions(&self) -> bool {
-        matches!(self, Self::Table(values) if values.contains(&f64::NEG_INFINITY))
+        matches!(self, Self::Given(values) if values.contains(&f64::NEG_INFINITY))
     }
 
     /// Table number `index` of `n_tables`, as it is before the first episode.
@@ -51,7 +51,7 @@ impl InitialQSpec {
     ) -> PyResult<QTable<N>> {
         let size = n_rows * num_actions;
         let values = match self {
-            Self::Table(values) => {
+            Self::Given(values) => {
                 if values.len() != n_tables * size {
                     let expected = format!("{n_tables} tables of {n_rows} rows of {num_actions} values");
                     return Err(invalid("initial_q", expected, format!("{} values", values.len())));

@@ -47,8 +47,8 @@ impl PyTrainer {
     /// learned so far stays, and a further call resumes the run.
     fn advance(&self, py: Python<'_>, episodes: usize) -> PyResult<()> {
         let mut guard = self.lock()?;
-        let BuiltRun { run, attached, .. } = &mut *guard;
-        if *attached {
+        let BuiltRun { run, steps_python, .. } = &mut *guard;
+        if *steps_python {
             let budget = Budget { episodes, steps: PYTHON_STEPS_BETWEEN_CHECKS };
             while run.episodes().returns.len() < episodes {
                 run.advance(budget)?;
