@@ -1,4 +1,4 @@
-"""Stable-Baselines3 on our environments. It needs PyTorch, so it runs on request only: pytest -m sb3, with the extra sb3."""
+"""Stable-Baselines3 on our environments. It needs PyTorch, so it runs only when asked for: pytest -m sb3."""
 
 import warnings
 from importlib.util import find_spec
