@@ -1,4 +1,4 @@
-"""Importing is light, every name is there, and a missing extra is named with the command that brings it."""
+"""Importing is light, all public names resolve, and errors about missing extras name the command to install them."""
 
 import ast
 import subprocess

@@ -18,7 +18,7 @@ Graph = dict[str, set[str]]
 
 
 def modules() -> dict[str, Path]:
-    """Every module of the package by its full name; a package goes by the name of its folder."""
+    """Every module of the package by its full name; a package has the name of its folder."""
     named = {}
     for path in PACKAGE.rglob("*.py"):
         parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
@@ -27,7 +27,7 @@ def modules() -> dict[str, Path]:
 
 
 def import_statements(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]]:
-    """Every import below a node, and whether it stands inside a function. Imports for type checkers are left out."""
+    """Every import below a node, and whether it is inside a function. Imports for type checkers are left out."""
     for child in ast.iter_child_nodes(node):
         if isinstance(child, ast.Import | ast.ImportFrom):
             yield child, in_function
@@ -60,7 +60,7 @@ def import_graph(with_functions: bool) -> Graph:
 
 
 def cycle(graph: Graph) -> list[str]:
-    """One circle of imports, or nothing."""
+    """A circle of imports, or an empty list."""
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:

@@ -1,4 +1,4 @@
-"""The bench measures what it says, and prints it; no test looks at how fast anything is."""
+"""The benchmarks count their steps and print their tables; no test asserts a time."""
 
 import sys
 from pathlib import Path
@@ -105,8 +105,8 @@ def test_every_benchmark_counts_its_steps() -> None:
     assert 1900 <= training[mountain_car.ARTICLE](0) <= 2000
     assert training[mountain_car.TRAIN](0) == package.train("MountainCar-v0", seed=0).episode_lengths.sum()
     assert all(step(0) == mountain_car.STEPS for step in mountain_car.stepping().values())
-    lone = f"Taxi, {environments.METHODS[1]}"
-    assert environments.training()[lone](0) == package.train("Taxi-v4", seed=0).episode_lengths.sum()
+    single = f"Taxi, {environments.METHODS[1]}"
+    assert environments.training()[single](0) == package.train("Taxi-v4", seed=0).episode_lengths.sum()
     cut = package.train("MountainCar-v0", seed=0, **learners.SETTINGS[learners.CUT])
     assert learners.training()[learners.CUT](0) == cut.episode_lengths.sum()
     idle = overhead.EPISODES * overhead.EPISODE_STEPS
@@ -134,7 +134,7 @@ def test_vector_benchmarks_count_all_steps_and_are_compared_within_their_environ
 
 @pytest.fixture
 def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A round of every benchmark takes a moment: few episodes, seeds and sub-environments, and nothing is compiled."""
+    """Makes a round of every benchmark short: few episodes, seeds and sub-environments, and nothing is compiled."""
 
     def train(env: Any, **settings: Any) -> package.Run:
         return package.train(env, **{**settings, "episodes": 20})

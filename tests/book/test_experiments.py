@@ -1,4 +1,4 @@
-"""The book's experiments: their facts, their claims with fewer runs, and what they are trained with."""
+"""The book's experiments: their environments, their claims with fewer runs, and their training."""
 
 import csv
 from collections import deque
@@ -33,12 +33,12 @@ def shortest(env):
     reached, queue = {start: 0}, deque([start])
     while queue:
         state = queue.popleft()
-        for [(_, there, _, terminated)] in env.P[state].values():
+        for [(_, next_state, _, terminated)] in env.P[state].values():
             if terminated:
                 return reached[state] + 1
-            if there not in reached:
-                reached[there] = reached[state] + 1
-                queue.append(there)
+            if next_state not in reached:
+                reached[next_state] = reached[state] + 1
+                queue.append(next_state)
     raise AssertionError("no way")
 
 
@@ -47,10 +47,10 @@ def test_the_shortest_path_through_the_windy_grid_world_takes_fifteen_steps():
     assert shortest(env) == 15
     assert {reward for row in env.P.values() for [(_, _, reward, _)] in row.values()} == {-1.0}
     up, right, down, left = range(4)
-    assert env.P[33][right] == [(1.0, 24, -1.0, False)]  # the wind of the column that is left: one up
+    assert env.P[33][right] == [(1.0, 24, -1.0, False)]  # the wind of the column that it leaves: one up
     assert env.P[56][left] == [(1.0, 35, -1.0, False)]  # two up
     assert env.P[6][up] == [(1.0, 6, -1.0, False)]
-    assert env.P[47][down] == [(1.0, 37, -1.0, True)]  # back by the wind: into the goal
+    assert env.P[47][down] == [(1.0, 37, -1.0, True)]  # blown back, into the goal
 
 
 def test_the_shortest_path_through_the_maze_takes_fourteen_steps():

@@ -1,4 +1,4 @@
-"""The settings as flags: explained and checked as in the API, and only those that are given count."""
+"""The settings as flags: explained and checked as in the API; flags that are not given have no effect."""
 
 from pathlib import Path
 

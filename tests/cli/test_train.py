@@ -114,7 +114,7 @@ def test_an_id_without_a_version_means_the_newest_with_its_preset(tmp_path: Path
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("CliffWalking-v1 in Rust, preset tuned, 2 episodes, seed ")
     assert "Using the latest versioned environment `CliffWalking-v1`" in done.stderr
-    # The header has said it.
+    # The header has reported it.
     assert "no time limit" not in done.stderr
 
 
@@ -216,7 +216,7 @@ def test_without_tyro_the_command_names_the_extra(tmp_path: Path) -> None:
 
 
 def heed_ctrl_c() -> None:
-    """What a shell starts in the background ignores it, and so would its children."""
+    """Background jobs of a shell ignore Ctrl-C, and so would their children."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
@@ -248,7 +248,7 @@ def test_ctrl_c_saves_and_plots_what_was_learned_so_far(tmp_path: Path) -> None:
     assert f"Episode {finished // 10_000 * 10_000} Average Reward" in out
     assert out.endswith("Saved the run to part.npz\nSaved the plot to part.png\n")
     assert (tmp_path / "part.png").read_bytes().startswith(b"\x89PNG")
-    # The schedule of the full run: its first episodes again, and no others.
+    # The first episodes follow the schedule of the full run.
     again = package.train(
         "MountainCar-v0",
         episodes=1_000_000,

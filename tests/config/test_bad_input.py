@@ -1,4 +1,4 @@
-"""Bad input is refused at the door: the error names the argument and shows the value."""
+"""Bad input is refused before training starts: the error names the argument and shows the value."""
 
 import re
 import subprocess
@@ -23,7 +23,7 @@ RATES = "learning_rate", "discount", "epsilon", "min_epsilon"
 
 
 def refused(error, name, value, **settings):
-    """Training refuses the value before anything is run, by its name, and shows it."""
+    """Training refuses the value before anything runs; the error names the argument and shows the value."""
     with pytest.raises(error) as caught:
         qtab.train("MountainCar-v0", **{name: value} | settings)
     message = str(caught.value)

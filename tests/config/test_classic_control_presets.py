@@ -1,4 +1,4 @@
-"""The presets that solve classic control, by Gymnasium's thresholds."""
+"""The presets solve classic control by Gymnasium's thresholds."""
 
 import gymnasium as gym
 import numpy as np
@@ -12,11 +12,11 @@ SOLVED = {
     "Acrobot-v1": ("solved", 3, -100.0),
     "MountainCarContinuous-v0": ("solved", 5, 90.0),
 }
-"""For each environment the preset, how many seeds are tried, and what their last 100 episodes come to on average."""
+"""For each environment: the preset, the number of seeds, and the least mean return of their last 100 episodes."""
 
 
 def best_average(run: qtab.Run) -> float:
-    """Over 100 consecutive episodes of the training."""
+    """The best mean return of 100 consecutive episodes."""
     return float(np.convolve(run.episode_returns, np.full(100, 0.01), "valid").max())
 
 
@@ -33,7 +33,7 @@ def test_every_seed_solves_its_environment_and_the_mean_ends_above_the_threshold
 
 
 def test_pendulum_learns_to_balance() -> None:
-    # Upright in time costs some 140; hanging down costs 1,200 and more.
+    # Balancing costs about 140; hanging down costs 1,200 and more.
     for seed in range(3):
         assert qtab.train("Pendulum-v1", seed=seed).mean_returns(100)[-1] > -200
 

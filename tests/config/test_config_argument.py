@@ -69,7 +69,7 @@ def test_keywords_override_the_config_and_the_config_overrides_the_preset() -> N
     config = qtab.Config(CAR, episodes=7, learning_rate=0.3)
     run = qtab.train(config=config, learning_rate=0.4)
     assert (run.config.learning_rate, run.config.episodes) == (0.4, 7)
-    # What the config leaves open comes from the preset, what it has does not.
+    # The preset fills in only what the config does not have.
     assert (run.config.scale, run.config.terminal_update) == ((10.0, 100.0), "target")
     named = qtab.train(config={"env": CAR, "episodes": 7, "discount": 0.95}, preset="solved", tilings=4).config
     assert (named.episodes, named.discount, named.tilings, named.algorithm) == (7, 0.95, 4, "sarsa_lambda")

@@ -1,4 +1,4 @@
-"""The presets that solve: over seeds, as Gymnasium's thresholds say, and on tables by exact evaluation."""
+"""The presets named ``solved``: over many seeds by Gymnasium's thresholds, and on tables by exact evaluation."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 import qtab
 
 HORIZON = 1_000
-"""Where there is no time limit: an episode of a good policy is over long before."""
+"""Steps evaluated where there is no time limit; an episode of a good policy ends long before."""
 
 
 def training(env: str, seeds: int = 100) -> qtab.Runs:
@@ -59,14 +59,14 @@ def test_every_seed_reaches_the_threshold_and_the_mean_ends_above_it(env, seeds,
 
 
 def test_every_seed_finds_the_best_policy_of_the_small_lake_without_a_time_limit():
-    # Under the limit that policy has 0.7402; the best of all, which looks at the clock, 0.7442.
+    # Under the time limit that policy returns 0.7402; the best time-dependent policy returns 0.7442.
     assert greedy_returns("FrozenLake-v1", training("FrozenLake-v1")) == pytest.approx(0.740165, abs=1e-6)
 
 
 def test_every_seed_learns_an_optimal_policy_for_the_taxi():
     runs = training("Taxi-v4")
     assert greedy_returns("Taxi-v4", runs) == pytest.approx(7.93, abs=1e-9)
-    # Gymnasium's threshold of 8 is above the optimum: some 100 episodes reach it by luck, all of them do not.
+    # Gymnasium's threshold of 8 is above the optimum: 100 episodes may reach it by luck, the mean of all does not.
     assert best_hundreds(runs).min() >= 8
     assert runs.final_returns(100).mean() > 7.83
 

@@ -1,4 +1,4 @@
-"""The words of a run's description stand once in Python and once in Rust: the lists are the same."""
+"""The spec of a run has the same choices in Python and in Rust."""
 
 from typing import Any, get_args, get_type_hints
 

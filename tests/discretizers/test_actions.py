@@ -1,4 +1,4 @@
-"""A few actions of a continuous space: what the environment is handed, and the numbers that come of it."""
+"""Discrete actions of a continuous space: what the environment gets, and what training makes of it."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ BINS: dict[str, Any] = {"discretizer": "bins", "bins": 6}
 
 
 class Push(gym.Env[Any, Any]):
-    """A point in a box, pushed by what it is handed, which it writes to."""
+    """A point in a box, pushed by its action; it writes to the action that it gets."""
 
     def __init__(self, space: gym.spaces.Box) -> None:
         self.action_space = space

@@ -1,4 +1,4 @@
-"""Active rows in batches, by the features that training uses."""
+"""Active rows of batches of observations equal those that training uses."""
 
 from typing import Any
 

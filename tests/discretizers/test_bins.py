@@ -1,4 +1,4 @@
-"""Bins: the rows of Gymnasium's DiscretizeObservation where that works, and of np.digitize everywhere."""
+"""Bins give the rows of Gymnasium's DiscretizeObservation where it works, and of np.digitize everywhere."""
 
 from typing import Any
 

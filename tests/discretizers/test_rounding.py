@@ -1,4 +1,4 @@
-"""The article's grid: cells as NumPy rounds them, in the dtype of the space, and nothing wraps round."""
+"""The article's grid: cells as NumPy rounds them, in the dtype of the space, without wrapping around."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ DTYPES = [np.float32, np.float64]
 
 
 def numpys_cell(space, scale, observation):
-    """The article's line: round((observation - low) * scale)."""
+    """The article's formula: round((observation - low) * scale)."""
     return tuple(np.round((observation - space.low) * np.array(scale), 0).astype(int))
 
 

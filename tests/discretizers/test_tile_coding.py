@@ -1,4 +1,4 @@
-"""Tile coding: the rows that an observation lights, by the formula; and what has no meaning with it."""
+"""Tile coding: active rows equal the formula, and options that do not apply are refused."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ from qtab.reference.discretizers import TileCoding
 
 
 class Shown(gym.Env[Any, Any]):
-    """Shows one observation."""
+    """Always shows the same observation."""
 
     action_space = gym.spaces.Discrete(1)
 
@@ -32,7 +32,7 @@ class Shown(gym.Env[Any, Any]):
 def formula(
     observation: Any, low: Any, high: Any, tiles: Any, tilings: int, hashed_rows: int | None = None
 ) -> list[int]:
-    """Row = the tiling, then the coordinates, in C order; or hashed."""
+    """Each row is the tiling and the coordinates in C order, or their hash."""
     rows = []
     for t in range(tilings):
         row, numbers = t, [t]
@@ -46,7 +46,7 @@ def formula(
 
 
 def splitmix(numbers: list[int], rows: int) -> int:
-    """In NumPy's 64-bit integers, which wrap round."""
+    """The hash in NumPy's 64-bit integers, which wrap around."""
     word = np.zeros(1, np.uint64)
     for number in numbers:
         word = word + np.uint64(number) + np.uint64(0x9E3779B97F4A7C15)

@@ -1,4 +1,4 @@
-"""The classes around the steps: registration, rendering, copies, wrappers, and machines with another sine."""
+"""The classes of classic control: registration, rendering, copies, wrappers, and machines with another sine."""
 
 import copy
 import os
@@ -23,7 +23,7 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 @pytest.mark.parametrize("name", IDS)
 def test_gymnasiums_checker_passes(name):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what it says of Gymnasium's own spaces
+        warnings.simplefilter("ignore")  # the checker also warns of Gymnasium's own spaces
         check_env(gym.make(f"qtab/{name}", render_mode="rgb_array").unwrapped)
 
 
@@ -100,7 +100,7 @@ def test_an_id_with_a_module_imports_it():
 
 
 def test_steps_equal_gymnasiums_where_numpy_does_not_use_libm():
-    """As on a CPU for which NumPy has vector code of its own: patched before anything asks for it."""
+    """Runs as on a CPU for which NumPy has its own vector code, in a fresh process."""
     assert fresh(PATCHED).split() == ["False", "1", "equal"]
 
 

@@ -1,4 +1,4 @@
-"""A reset of classic control is Gymnasium's, whatever it draws from and whatever it is told."""
+"""Resets of classic control equal Gymnasium's, for any generator and any options."""
 
 import copy
 from typing import Any
@@ -14,7 +14,7 @@ ATTRIBUTES = ["state", "steps_beyond_terminated", "last_u"]
 
 
 def same(pair: LockstepClassicControl) -> None:
-    """The attributes that a reset leaves, and the generators."""
+    """Asserts that the attributes after a reset and the generators are the same."""
     for name in ATTRIBUTES:
         assert hasattr(pair.ours, name) == hasattr(pair.theirs, name), name
         if hasattr(pair.ours, name):

@@ -1,4 +1,4 @@
-"""The steps of qtab's classic control are Gymnasium's."""
+"""Steps of qtab's classic control equal Gymnasium's."""
 
 import gymnasium as gym
 import numpy as np
@@ -12,7 +12,7 @@ from support.classic_control import CONTINUOUS, EDITS, IDS, LockstepClassicContr
 from support.machine import MACHINE
 
 STEPS = 50_000
-"""At random, and as many by a policy that reaches the goal."""
+"""Random steps; as many are taken by a policy that reaches the goal."""
 
 
 @pytest.mark.parametrize("name", IDS)
@@ -74,7 +74,7 @@ def test_every_assigned_attribute_is_used_from_the_next_step(name, attribute, va
     pair.run(500, None)
     pair.run(500, heuristic_policy)
     if isinstance(value, float):
-        for width in (np.float32, np.float64):  # which promote otherwise
+        for width in (np.float32, np.float64):  # NumPy scalars promote differently
             pair.set(**{attribute: width(value)})
             pair.run(100)
 
@@ -185,7 +185,7 @@ ODD += [np.int64(1), np.uint8(0), np.int8(-1), True, 1.0, 2**70, np.array([1, 0]
 @pytest.mark.parametrize("action", ODD, ids=repr)
 def test_odd_actions_have_gymnasiums_result(name, action):
     if name == "MountainCar-v0" and type(action) is np.uint8:
-        return  # where Gymnasium's own arithmetic wraps round
+        return  # here Gymnasium's own arithmetic wraps around
     pair = LockstepClassicControl(name)
     pair.reset(seed=6)
     pair.both(lambda env: env.step(action))
@@ -219,7 +219,7 @@ def test_overflow_raises_what_python_raises(name):
     for huge in (1e155, 1e308, np.inf, np.nan):
         pair = LockstepClassicControl(name)
         pair.reset(seed=0)
-        if name != "Acrobot-v1":  # Gymnasium would take turns off for ever
+        if name != "Acrobot-v1":  # Gymnasium would subtract turns forever
             pair.set(state=np.full(len(pair.theirs.state), huge))
             action = pair.theirs.action_space.sample()
             pair.both(lambda env, action=action: env.step(action))

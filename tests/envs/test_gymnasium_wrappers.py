@@ -1,4 +1,4 @@
-"""Gymnasium's wrappers and its checker on our environments: in lock-step with the same wrappers on Gymnasium's own."""
+"""Gymnasium's wrappers and checker work on our environments, and return the same as on Gymnasium's."""
 
 import warnings
 from collections.abc import Callable
@@ -21,7 +21,7 @@ STEPS = 150
 
 
 def comparable(value: Any) -> Any:
-    """Types and bytes of anything that a wrapper returns, but for the seconds that an episode took."""
+    """Types and bytes of whatever a wrapper returns, except the seconds that an episode took."""
     if isinstance(value, tuple | list):
         return type(value), [comparable(item) for item in value]
     if isinstance(value, dict):
@@ -30,7 +30,7 @@ def comparable(value: Any) -> Any:
 
 
 def made(name: str, wrap: Callable[[gym.Env], gym.Env], **kwargs: Any) -> Any:
-    """A wrapped environment, or what Gymnasium says against it."""
+    """A wrapped environment, or the error that Gymnasium raises."""
     env = gym.make(name, **kwargs)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -81,7 +81,7 @@ FIT_ALL = {
     "TimeLimit",
     "TransformReward",
 }
-"""The wrappers that ask nothing of the spaces."""
+"""The wrappers that work with any spaces."""
 
 
 @pytest.mark.parametrize("wrapper", WRAPPERS)
@@ -94,7 +94,7 @@ def test_a_wrapper_returns_the_same_around_ours(wrapper: str) -> None:
             continue
         fitting.add(name)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what Gymnasium's wrappers warn of is theirs
+            warnings.simplefilter("ignore")  # Gymnasium's wrappers warn
             assert (ours.observation_space, ours.action_space) == (theirs.observation_space, theirs.action_space)
             assert walk(ours) == walk(theirs), name
     assert fitting == set(IDS) if wrapper in FIT_ALL else fitting
@@ -137,10 +137,10 @@ def test_a_recorded_video_holds_gymnasiums_frames(name: str, tmp_path: Path) -> 
 @pytest.mark.parametrize("name", REGISTERED)
 def test_every_environment_passes_gymnasiums_checker(name: str) -> None:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # CartPole-v0 is said to be out of date
+        warnings.simplefilter("ignore", DeprecationWarning)  # CartPole-v0 is out of date
         env = gym.make(name)
     with warnings.catch_warnings():
-        # It recommends other bounds than Gymnasium's own environments have.
+        # The checker recommends other bounds than Gymnasium's own environments have.
         warnings.filterwarnings("ignore", message=".*(action|observation) space|.*maximum value|.*minimum value")
         check_env(env.unwrapped, skip_render_check=True)
 

@@ -1,4 +1,4 @@
-"""What Gymnasium lets a user assign is honoured, and copies go on where the original stood."""
+"""Attributes that Gymnasium lets a user assign are used, and copies continue from the state of the original."""
 
 import copy
 import pickle
@@ -25,7 +25,7 @@ def pair(seed=0):
 
 
 def walk(ours, theirs, steps=150):
-    """Steps both, and compares everything."""
+    """Steps both environments and compares everything."""
     for step in range(steps):
         action = energy_policy(np.array(theirs.state, dtype=np.float64)) if step % 7 else step % 3
         assert_identical(ours.step(action), theirs.step(action))

@@ -1,4 +1,4 @@
-"""What Gymnasium expects of an environment: spec, spaces, errors, checks, wrappers, vectors."""
+"""What Gymnasium expects of an environment: spec, spaces, errors, checks, wrappers, vector environments."""
 
 import subprocess
 import sys
@@ -34,8 +34,7 @@ def test_spec_spaces_and_metadata_equal_gymnasiums(pair):
     assert isinstance(ours.unwrapped, type(theirs.unwrapped))
 
 
-# A space of two numbers is no image, and ours is made with the defaults that Gymnasium's checker wants to see.
-@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.filterwarnings("ignore::UserWarning")  # advice that Gymnasium's own environment does not follow either
 def test_gymnasiums_own_check_passes():
     check_env(gym.make("qtab/MountainCar-v0", render_mode="rgb_array").unwrapped)
 

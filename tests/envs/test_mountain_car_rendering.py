@@ -1,4 +1,4 @@
-"""Rendering is Gymnasium's own, pixel for pixel."""
+"""Rendering equals Gymnasium's, pixel by pixel."""
 
 import gymnasium as gym
 import numpy as np

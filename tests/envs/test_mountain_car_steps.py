@@ -81,7 +81,7 @@ def test_the_goal_velocity_decides_as_in_gymnasium():
 
 
 def around(value, spread):
-    """Any number near, and the ones that comparisons turn on."""
+    """Any number nearby, and those at which comparisons change."""
     edges = [value, math.nextafter(value, -1.0), math.nextafter(value, 1.0)]
     return st.sampled_from(edges) | st.floats(value - spread, value + spread)
 

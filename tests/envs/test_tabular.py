@@ -1,4 +1,4 @@
-"""A user's own table: checked where it is made, and walked as Gymnasium walks its own."""
+"""TabularEnv: a user's transition table is checked when it is made, and stepped as Gymnasium steps its own."""
 
 import copy
 import pickle
@@ -32,7 +32,7 @@ def test_a_tabular_env_of_gymnasiums_table_steps_like_gymnasiums_environment(nam
 
 
 def chain(**changes):
-    """Two states: action 0 stays, action 1 goes to the other, most of the time."""
+    """A table of two states: action 0 stays, action 1 usually moves to the other."""
     table = {
         0: {0: [(1.0, 0, -1.0, False)], 1: [(0.9, 1, 5.0, True), (0.1, 0, 0.0, False)]},
         1: {0: [(1.0, 1, 0.0, True)], 1: [(1.0, 1, 0.0, True)]},
@@ -69,7 +69,7 @@ def test_a_tabular_env_copies_its_table_and_lets_it_be_edited():
     assert env.step(0) == (0, -1.0, False, False, {"prob": 1.0})
     env.P[0][0] = [(1.0, 1, 9.0, True)]
     assert env.step(0) == (1, 9.0, True, False, {"prob": 1.0})
-    env.P[1][0] = [[1.0, 0, 2.0, False]]  # a list steps in Gymnasium's code
+    env.P[1][0] = [[1.0, 0, 2.0, False]]  # an entry that is a list is stepped in Gymnasium's code
     assert env.step(0) == (0, 2.0, False, False, {"prob": 1.0})
 
 

@@ -1,4 +1,4 @@
-"""The classes around the steps: spaces, pictures, copies, wrappers, hands and masks that a user touches."""
+"""The classes of toy text: spaces, rendering, copies, wrappers, hands and action masks."""
 
 import copy
 import pickle
@@ -19,7 +19,7 @@ from support.toy_text import IDS, TABLES, LockstepToyText
 @pytest.mark.parametrize("name", IDS)
 def test_gymnasiums_checker_passes(name):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what it says of Gymnasium's own spaces
+        warnings.simplefilter("ignore")  # the checker also warns of Gymnasium's own spaces
         check_env(gym.make(f"qtab/{name}", render_mode="rgb_array").unwrapped)
 
 

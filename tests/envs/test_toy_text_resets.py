@@ -1,4 +1,4 @@
-"""A reset of toy text is Gymnasium's, whatever it draws from."""
+"""Resets of toy text equal Gymnasium's, for any initial distribution."""
 
 from typing import Any
 
@@ -97,7 +97,7 @@ def test_reset_takes_keyword_arguments_only():
         for call in (lambda env: env.reset(seed="x"), lambda env: env.reset(seed=-1), lambda env: env.reset(7)):
             ours, theirs = (raised(call, env) for env in (pair.ours, pair.theirs))
             assert ours[0] is theirs[0]
-            # A positional seed is refused by each function in its own name.
+            # The error for a positional seed names the function, which differs.
             assert ours == theirs or ours[0] is TypeError
 
 

@@ -1,4 +1,4 @@
-"""The steps of qtab's toy text are Gymnasium's: observations, rewards, flags, info and the generator's state."""
+"""Steps of qtab's toy text equal Gymnasium's: observations, rewards, flags, info and the state of the generator."""
 
 from typing import Any
 
@@ -14,14 +14,14 @@ STEPS = 40_000
 
 
 def optimal_policy(name: str) -> list[int]:
-    """For each state an action that leads to the goal sooner than random ones."""
+    """An optimal action for each state: it leads to the goal, which random actions seldom reach."""
     return qtab.optimum(name).policy.tolist()
 
 
 @pytest.mark.parametrize("name", IDS)
 def test_random_steps_equal_gymnasiums(name):
     terminated = LockstepToyText(name).run(STEPS, seed=3)
-    assert terminated > 5 or name == "Taxi-v4"  # at random a taxi seldom arrives
+    assert terminated > 5 or name == "Taxi-v4"  # a random taxi seldom arrives
 
 
 @pytest.mark.parametrize("name", [name for name in TABLES if "Taxi" not in name])
@@ -96,7 +96,7 @@ def test_a_bad_map_has_gymnasiums_result(desc):
 
 
 def edited(env):
-    """Everything in the table, here and there."""
+    """Edits entries of the table in different ways."""
     env.P[env.s][0] = [(0.25, 3, 7, False), (0.25, 3, 7, False), (0.5, 9, -0.5, True)]
     env.P[3][1].insert(0, (0.5, 5, np.float64(2.5), False))
     env.P[9] = dict(env.P[9])

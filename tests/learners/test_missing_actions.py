@@ -1,4 +1,4 @@
-"""States that have fewer actions than others: -inf in the first table says so."""
+"""States with fewer actions than others, marked by -inf in the initial table."""
 
 import math
 from typing import Any
@@ -27,10 +27,10 @@ def some_of_a(missing=8):
 @st.composite
 def settings(draw):
     algorithm = draw(st.sampled_from(ALGORITHMS))
-    there = st.floats(-1, 1)
-    rows = [draw(st.lists(there | st.just(-math.inf), min_size=10, max_size=10)) for _ in range(3)]
+    values = st.floats(-1, 1)
+    rows = [draw(st.lists(values | st.just(-math.inf), min_size=10, max_size=10)) for _ in range(3)]
     for row in rows:
-        row[draw(st.integers(0, 9))] = draw(there)
+        row[draw(st.integers(0, 9))] = draw(values)
     return {
         **draw(learning_rates(1.0, by_visits=algorithm != "true_online_sarsa_lambda")),
         **draw(own_options(algorithm)),
@@ -57,7 +57,7 @@ def test_runs_with_missing_actions_equal_the_reference(config):
 def test_a_missing_action_is_never_taken():
     env = qtab.book.windy_grid_world()
     first = np.zeros((70, 4))
-    first[:, 3] = -np.inf  # nobody goes left
+    first[:, 3] = -np.inf  # left is missing everywhere
     settings: dict[str, Any] = {"epsilon": 1.0, "epsilon_schedule": "constant", "episodes": 3, "max_episode_steps": 500}
     run = qtab.train(env, initial_q=first, **settings, seed=0, record=3)
     taken = [action for recording in run.recordings for action in recording.actions]

@@ -1,4 +1,4 @@
-"""Options that have no meaning beside the others, values out of range, and divergence."""
+"""Options that do not apply, values out of range, and divergence."""
 
 from typing import Any
 
@@ -39,7 +39,7 @@ VALUES: dict[str, Any] = {
 
 
 def strangers() -> list[tuple[str, dict[str, Any]]]:
-    """Each option beside each choice that it does not belong to."""
+    """Each option with each choice that it does not apply to."""
     choices = {
         "algorithm": ["q_learning", "sarsa_lambda", "n_step_sarsa", "dyna_q", "true_online_sarsa_lambda"],
         "learning_rate_schedule": ["constant", "linear", "visits"],

@@ -1,4 +1,4 @@
-"""The streams draw what NumPy draws, for any seed and in any order."""
+"""The agent's random generators draw what NumPy's draw, for any seed and in any order."""
 
 from typing import Any
 
@@ -59,7 +59,7 @@ def draw(stream, request):
             return stream.uniform(low, high)
 
 
-# Every kind of draw, twice, so that a buffered half or a rejected word left behind shows.
+# Every kind of draw, twice: a buffered half or a rejected word that is left over would show.
 TAIL = 2 * [("integers", 7), ("random",), ("integers", 3), ("uniform", (-1.0, 1.0)), ("integers", 20), ("integers", 2)]
 
 

@@ -1,4 +1,4 @@
-"""Every learner in Rust gives the table of its plain NumPy version, byte for byte."""
+"""Every learner in Rust gives the table of its NumPy reference, byte for byte."""
 
 from typing import Any, get_args
 
@@ -72,7 +72,7 @@ def test_a_prefix_is_verified_with_the_full_runs_schedules(algorithm: Any) -> No
 
 
 class Chain(gym.Env[Any, Any]):
-    """A state of one float64 number; its own rewards; an action space that starts at 5."""
+    """A state of one float64 number, varying rewards, and an action space that starts at 5."""
 
     observation_space = gym.spaces.Box(-2.0, 2.0, (1,), np.float64)
     action_space = gym.spaces.Discrete(3, start=5)

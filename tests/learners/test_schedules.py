@@ -1,4 +1,4 @@
-"""How rates fall: seen through the table, which each schedule must leave as the reference does."""
+"""Schedules: how learning rates and exploration rates decay."""
 
 from functools import partial
 from typing import Any
@@ -38,7 +38,7 @@ def fewer_episodes_than(count: int, progress: qtab.Progress) -> bool:
 
 
 def test_the_learning_rate_follows_its_schedule() -> None:
-    # One action in one cell, and always the target -1: the value after each episode tells its rate.
+    # One action in one cell, and always the target -1: the value after each episode shows its learning rate.
     table = np.full((1, 1, 3), -9.0)
     table[0, 0, 0] = 0.0
     value, values = 0.0, []
@@ -81,7 +81,7 @@ def test_the_visits_schedule_averages_the_targets(algorithm: Any) -> None:
         discount=0.0,
         initial_q=5.0,
     )
-    # Every reward is -1, and the first visit forgets the first value.
+    # Every reward is -1, and the first visit replaces the initial value.
     assert set(run.tables.ravel().tolist()) <= {-1.0, 5.0}
 
 

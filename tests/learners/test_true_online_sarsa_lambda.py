@@ -11,12 +11,12 @@ STEPS = 25
 
 
 def online_lambda_return(features, rewards, alpha, discount, decay):
-    """The forward view, worked out anew from the first step for each horizon."""
+    """The forward view, computed again from the first step for each horizon."""
     weights = [np.zeros(features.shape[1])]
     for horizon in range(1, len(rewards) + 1):
         w = np.zeros(features.shape[1])
         for t in range(horizon):
-            # G(t:h): the λ-return cut off at the horizon, each value with the weights of the time before.
+            # G(t:h): the λ-return truncated at the horizon, each value with the weights of the step before.
             target, share = 0.0, 1.0
             for n in range(1, horizon - t + 1):
                 partial = sum(discount**k * rewards[t + k] for k in range(n))
@@ -31,7 +31,7 @@ def online_lambda_return(features, rewards, alpha, discount, decay):
 
 @pytest.mark.parametrize(("decay", "discount"), [(0.0, 1.0), (0.8, 0.9), (0.95, 1.0), (1.0, 0.99)])
 def test_true_online_sarsa_lambda_equals_the_forward_view(decay, discount):
-    # It explores always, so that what it does does not depend on what it has learned.
+    # It always explores, so that its actions do not depend on what it has learned.
     run = qtab.train(
         "MountainCar-v0",
         algorithm="true_online_sarsa_lambda",
@@ -49,19 +49,19 @@ def test_true_online_sarsa_lambda_equals_the_forward_view(decay, discount):
         seed=5,
         record=1,
     )
-    # The action drawn at the time-out is not taken: of the three that it may have been, one fits.
+    # The action drawn at the time limit is not recorded: one of the three possible actions fits.
     env = gym.make("MountainCar-v0", max_episode_steps=STEPS)
     observation, _ = env.reset(seed=5)
-    lit, rewards = [], []
+    visited, rewards = [], []
     rows = discretizer(env, run.config)
     for action in run.recordings[0].actions:
-        lit.append((rows.rows(observation), action))
+        visited.append((rows.rows(observation), action))
         observation, reward, *_ = env.step(action)
         rewards.append(float(reward))
     errors = []
     for last in range(3):
         features = np.zeros((STEPS + 1, run.tables[0].size))
-        for t, (active, action) in enumerate([*lit, (rows.rows(observation), last)]):
+        for t, (active, action) in enumerate([*visited, (rows.rows(observation), last)]):
             features[t, [row * 3 + action for row in active]] = 1.0
         weights = online_lambda_return(features, rewards, 0.6 / 4, discount, decay)
         errors.append(np.abs(weights - run.tables[0].ravel()).max())

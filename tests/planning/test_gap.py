@@ -33,7 +33,7 @@ def test_the_fickle_passenger_is_modelled_exactly():
     assert abs(played.mean_return - gap.greedy_return) <= 3.5 * played.standard_error
     steady = qtab.optimum("Taxi-v4")
     assert found.expected_return != steady.expected_return
-    # Who carries a passenger does not see whether they have changed their mind yet.
+    # While the passenger is in the taxi, the observation does not show whether the destination has changed.
     env: Any = gym.make("Taxi-v4").unwrapped
     aboard = [env.encode(row, column, 4, wish) for row, column, wish in np.ndindex(5, 5, 4)]
     refused = 0

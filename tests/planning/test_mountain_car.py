@@ -1,4 +1,4 @@
-"""The best known of MountainCar-v0: every claimed step is driven in Gymnasium; and what a user sees of any optimum."""
+"""The best known policy of MountainCar-v0, driven in Gymnasium, and how optima are shown to users."""
 
 import json
 from pathlib import Path

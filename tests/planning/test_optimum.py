@@ -1,4 +1,4 @@
-"""The optimum of environments with a table: exact, against plain NumPy, by hand, and as it is played."""
+"""The optimum of environments with a transition table: compared with NumPy, with known values, and as played."""
 
 from typing import Any
 
@@ -57,7 +57,7 @@ def test_known_optima_are_found():
     assert qtab.optimum("CliffWalking-v1").expected_return == -13
     assert qtab.optimum("Taxi-v4").expected_return == pytest.approx(7.93, abs=1e-12)
     assert qtab.optimum("FrozenLake-v1", env_kwargs={"is_slippery": False}).expected_return == 1
-    # The slippery lake without a limit: the well-known 0.8235.
+    # The slippery lake without a time limit has the well-known value 0.8235.
     lake = qtab.optimum("FrozenLake-v1", method="policy_iteration")
     assert lake.values[0] == pytest.approx(14 / 17, abs=1e-12)
     assert lake.expected_return < qtab.optimum("FrozenLake-v1").expected_return < 14 / 17
@@ -121,7 +121,7 @@ def test_no_policy_earns_more_than_the_finite_horizon_optimum(table, steps):
 
 
 def test_predict_depends_on_the_remaining_steps():
-    # 1 now, or 3 at the third step: with two steps left it is too late to wait.
+    # A reward of 1 now, or of 3 at the third step: with two steps left it is too late to wait.
     wait, take, slow = [(1.0, 1, 0.0, False)], [(1.0, 0, 1.0, True)], [(1.0, 2, 0.0, False)]
     env = qtab.TabularEnv(
         {0: {0: take, 1: wait}, 1: {0: slow, 1: slow}, 2: {0: [(1.0, 2, 3.0, True)]} | {1: slow}}, [1, 0, 0]

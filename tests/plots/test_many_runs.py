@@ -1,4 +1,4 @@
-"""Pictures of many runs: what they show is what the numbers are."""
+"""Plots of many runs show the numbers that they are made from."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The learning curve and the progress bar: what a person sees of a run."""
+"""The learning curve of a run, and its progress bar."""
 
 import sys
 from pathlib import Path
@@ -117,7 +117,7 @@ def test_progress_bar_and_printed_lines_do_not_overlap_on_a_terminal(tmp_path: P
 
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
-    # Each step sleeps, so that the run outlasts the second after which the bar appears.
+    # Each step sleeps, so that the run takes longer than the second after which the bar appears.
     arguments = ["train", "toys:Walk-v0", "--scale", "1", "--episodes", "200", "--env-kwargs", "pause", "0.002"]
     variables = environment(tmp_path, TERM="xterm")
     process = subprocess.Popen([*QTAB, *arguments], cwd=tmp_path, env=variables, stdout=theirs, stderr=theirs)
@@ -126,7 +126,7 @@ def test_progress_bar_and_printed_lines_do_not_overlap_on_a_terminal(tmp_path: P
     try:
         while chunk := os.read(ours, 65536):
             screen += chunk
-    except OSError:  # how Linux says that the other side is closed
+    except OSError:  # on Linux, the other side is closed
         pass
     os.close(ours)
     assert process.wait() == 0

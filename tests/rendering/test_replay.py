@@ -1,4 +1,4 @@
-"""The last episodes are played again after the training: the same episodes, and the table knows nothing of it."""
+"""The last episodes are replayed after training: the same episodes, without an effect on the table."""
 
 from pathlib import Path
 from typing import Any
@@ -80,7 +80,7 @@ def test_record_writes_the_last_episodes_as_videos_and_does_not_change_the_run(t
     videos = sorted((tmp_path / "deep" / "videos").iterdir())
     assert [video.name for video in videos] == [f"MountainCar-v0-episode-{number}.mp4" for number in range(31, 51)]
     frames, _ = imageio_ffmpeg.count_frames_and_secs(str(videos[0]))
-    assert frames == 21  # the reset's, and one for each step
+    assert frames == 21  # one for the reset, and one for each step
 
 
 def test_watch_is_refused_before_training_without_a_display(tmp_path: Path) -> None:

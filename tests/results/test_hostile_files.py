@@ -1,4 +1,4 @@
-"""Nothing is ever unpickled from a file, and anything but a run file is refused in one clear error."""
+"""Nothing is ever unpickled from a file, and a file that is not a run is refused with a clear error."""
 
 import json
 import pickle
@@ -29,7 +29,7 @@ def members(saved):
 
 
 class Marker:
-    """Unpickled, it would leave a file behind."""
+    """Creates a file when it is unpickled."""
 
     def __init__(self, path):
         self.path = path

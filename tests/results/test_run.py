@@ -1,4 +1,4 @@
-"""What a run says of itself."""
+"""The attributes and methods of a run."""
 
 import copy
 import pickle

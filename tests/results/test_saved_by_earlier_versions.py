@@ -17,7 +17,7 @@ import qtab
 SAVED = Path(__file__).with_name("saved")
 RUNS = sorted(path.stem for path in SAVED.glob("*.npz"))
 TOY_TEXT = ("blackjack", "double", "dyna", "frozen_lake", "softmax")
-"""Their numbers are the same on every machine: none of their steps computes a sine or cosine."""
+"""Environments whose numbers are the same on every machine: their steps compute no sine or cosine."""
 
 GRID: dict[str, list[Any]] = {"learning_rate": [0.1, 0.2], "algorithm": ["sarsa", "q_learning"]}
 

@@ -1,4 +1,4 @@
-"""A saved run is the run, byte for byte, and a failed save leaves what was there."""
+"""A loaded run equals the saved one byte for byte, and a failed save leaves the old file."""
 
 import dataclasses
 import json
@@ -20,7 +20,7 @@ def fields(value):
 
 
 def assert_equal_runs(one, other):
-    """Every field of both, types and dtypes included; recordings are not saved."""
+    """Asserts that all fields are equal, types and dtypes included; recordings are not saved."""
     mine, theirs = fields(one), fields(other)
     for name in ("config", "discretizer", "actions"):
         np.testing.assert_equal(fields(theirs.pop(name)), fields(mine.pop(name)))
@@ -111,7 +111,7 @@ def test_a_save_replaces_the_file_that_was_there(tmp_path):
 
 
 def test_a_failed_save_leaves_the_old_file_and_nothing_else(tmp_path):
-    # In a process of its own that may write no file of more than 8000 bytes.
+    # In a process that may not write files of more than 8000 bytes.
     path = tmp_path / "run.npz"
     qtab.train("MountainCar-v0", seed=0, episodes=1).save(path)
     before = path.read_bytes()

@@ -1,4 +1,4 @@
-"""Statistics: against closed forms, against scipy's pieces, and against rliable."""
+"""Statistics, compared with closed forms, with SciPy and with rliable."""
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def test_a_constant_sample_has_the_interval_of_its_one_value(values):
 
 
 def test_where_bca_is_not_finite_the_percentile_interval_is_used_and_reported():
-    # Nearly every resample's median is the sample's: there is no bias to estimate from.
+    # Nearly every resample has the median of the sample, so that the bias cannot be estimated.
     found = stats.median([0.0] * 99 + [1.0])
     assert found.method == "percentile"
     assert (found.low, found.high) == (0.0, 0.0)
@@ -136,7 +136,7 @@ def test_a_constant_difference_is_an_infinite_effect():
     assert stats.compare([1.0, 2.0, 3.0], [2.0, 3.0, 4.0]).effect_size == -np.inf
 
 
-@pytest.mark.filterwarnings("ignore")  # rliable's own imports
+@pytest.mark.filterwarnings("ignore")  # rliable's imports warn
 @pytest.mark.parametrize("statistic", ["mean", "median", "iqm"])
 def test_aggregates_match_rliable(statistic):
     from rliable import library, metrics

@@ -1,7 +1,7 @@
-"""The article's own function.
+"""The article's code.
 
 After G. Hayes, "Getting Started with Reinforcement Learning and Open AI Gym" (2019): the argument names, the order of
-the draws and the updates are the article's. It knows the API of gym before 0.26: ``reset()`` returns the state alone,
+the draws and the updates are the article's. It uses the API of gym before 0.26: ``reset()`` returns the state alone,
 ``step()`` four values.
 """
 
@@ -21,7 +21,7 @@ def QLearning(env, learning, discount, epsilon, min_eps, episodes):  # noqa: N80
     reward_list = []
     ave_reward_list = []
 
-    # What epsilon loses with every episode
+    # The decrease of epsilon per episode
     reduction = (epsilon - min_eps) / episodes
 
     for i in range(episodes):
@@ -47,7 +47,7 @@ def QLearning(env, learning, discount, epsilon, min_eps, episodes):  # noqa: N80
             # A terminal state
             if done and state2[0] >= 0.5:
                 Q[state_adj[0], state_adj[1], action] = reward
-            # Any other
+            # A non-terminal state
             else:
                 delta = learning * (
                     reward + discount * np.max(Q[state2_adj[0], state2_adj[1]]) - Q[state_adj[0], state_adj[1], action]
@@ -70,7 +70,7 @@ def QLearning(env, learning, discount, epsilon, min_eps, episodes):  # noqa: N80
 
 
 class OldApi:
-    """Gymnasium's environment with the API that the article knows; the first reset gets the seed, later ones none."""
+    """Gymnasium's environment with the API that the article uses; only the first reset gets the seed."""
 
     def __init__(self, env: gym.Env, seed: int) -> None:
         self.env = env

@@ -47,7 +47,7 @@ class LockstepClassicControl(Lockstep):
 
 
 def heuristic_policy(env: Any) -> Any:
-    """A policy that gets somewhere."""
+    """A simple policy that reaches the goal, or balances."""
     if "MountainCar" in type(env).__name__ and "Continuous" not in type(env).__name__:
         return 2 if env.state[1] >= 0 else 0
     if "CartPole" in type(env).__name__:
@@ -74,4 +74,4 @@ EDITS: dict[str, dict[str, Any]] = {
     | {"book_or_nips": "nips", "AVAIL_TORQUE": [-2, 0.5, 2.0]},
     "Pendulum-v1": {"max_speed": 3, "max_torque": 0.5, "dt": 0.1, "g": 5.0, "m": 2.0, "l": 0.7},
 }
-"""For each environment, attributes that its step reads, with another value than their own."""
+"""For each environment, attributes that its step reads, with values other than the defaults."""

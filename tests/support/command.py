@@ -49,7 +49,7 @@ gym.register("Walk-v0", entry_point=Walk)
 
 
 def environment(folder: Path | None = None, **changes: str | None) -> dict[str, str]:
-    """The process's environment: no display, no surprises; with a folder, ``toys:Walk-v0`` can be found."""
+    """The environment variables of the process: no display; with a folder, ``toys:Walk-v0`` can be imported from it."""
     variables = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
     variables |= {"MPLBACKEND": "Agg", "COLUMNS": "80"}
     if folder is not None:
@@ -86,7 +86,7 @@ def qtab_here(*arguments: str, cwd: Path, **variables: str) -> subprocess.Comple
 
 
 def refused(*arguments: str, cwd: Path, run: Callable[..., Any] = qtab_here, **variables: str) -> str:
-    """Runs what must be refused: exit code 2, nothing on standard output, no file, one line, which it returns."""
+    """Runs a command that must be refused, with exit code 2, no output and no file, and returns its line of error."""
     before = sorted(cwd.iterdir())
     done = run(*arguments, cwd=cwd, **variables)
     assert done.returncode == 2, done

@@ -1,4 +1,4 @@
-"""Small environments of our own, each built to show one thing."""
+"""Small environments, each made to test one thing."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -8,7 +8,7 @@ import numpy as np
 
 
 class ScriptedEnv(gym.Env):
-    """Shows the observations it was told to, one after the other and round again, whatever is done."""
+    """Shows the given observations in turn, whatever the actions are."""
 
     def __init__(
         self,
@@ -54,7 +54,7 @@ class ScriptedEnv(gym.Env):
 
 
 class Walk(gym.Env):
-    """A walk on [0, 4] with a drifting float and rewards of many digits: draws in reset and in every step."""
+    """A random walk on [0, 4] with rewards of many digits; it draws at resets and at every step."""
 
     def __init__(self, dtype: Any = np.float32, start: int = 0, actions: int = 3, shown: Any = None) -> None:
         self.observation_space = gym.spaces.Box(0.0, 4.0, (2,), dtype)

@@ -1,4 +1,4 @@
-"""A room to walk through, in the manner of MiniGrid: a place, a direction, three actions."""
+"""A grid world like those of MiniGrid: a position, a direction, three actions."""
 
 from typing import Any
 
@@ -17,11 +17,11 @@ MAP = [
 LEFT, RIGHT, FORWARD = range(3)
 MOVES = [(0, 1), (1, 0), (0, -1), (-1, 0)]
 SHORTEST = 11
-"""Steps from the first corner to the goal: a turn, two down, a turn, four through the door, a turn, two down."""
+"""Steps on the shortest path: a turn, two down, a turn, four through the door, a turn, two down."""
 
 
 class Room(gym.Env[Any, Any]):
-    """Turn left, turn right, go forward; a wall stops, sometimes a foot slips, and the goal pays the less the later.
+    """Turn left, turn right or move forward; walls block, moves may slip, and the goal pays less the later.
 
     An observation is a row and a column, from 1 on, and a direction: a tuple, or an array where ``multi``.
     """
@@ -56,7 +56,7 @@ class Room(gym.Env[Any, Any]):
         if self.slip and self.np_random.random() < self.slip:
             action = FORWARD
         if action == FORWARD:
-            row, column = (here + move for here, move in zip(self.place, MOVES[self.direction], strict=True))
+            row, column = (position + move for position, move in zip(self.place, MOVES[self.direction], strict=True))
             if MAP[row][column] != "#":
                 self.place = row, column
         else:

@@ -1,4 +1,4 @@
-"""Code that interrupts itself, run in a Python process of its own."""
+"""Runs code that interrupts itself, in a separate Python process."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""Random settings of every algorithm, for the tests that hold Rust against plain NumPy."""
+"""Random settings of every algorithm, for the tests that compare Rust with NumPy."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ LIMITS: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "Acrobot-v1": ((-1.0, -1.0, -1.0, -1.0, -12.0, -28.0), (1.0, 1.0, 1.0, 1.0, 12.0, 28.0)),
     "Pendulum-v1": ((-1.0, -1.0, -8.0), (1.0, 1.0, 8.0)),
 }
-"""For each environment limits of its observations."""
+"""For each environment, limits of its observations."""
 SCALES: dict[str, list[Any]] = {
     CAR: [(10, 100), (3, 20.5), (0.1, 0.1)],
     "Acrobot-v1": [(1, 2, 1, 1, 0.1, 0.07)],
@@ -78,11 +78,11 @@ def explorations(draw: st.DrawFn) -> dict[str, Any]:
 
 @st.composite
 def features(draw: st.DrawFn, algorithm: str, env: str = CAR) -> dict[str, Any]:
-    """A discretizer with its options; few cells along each of many components."""
+    """A discretizer with its options; the more components, the fewer cells along each."""
     low, high = LIMITS[env]
     number = st.integers(1, {2: 9, 3: 5, 4: 4}.get(len(low), 2))
     counts = st.tuples(*[number] * len(low))
-    # CartPole's space has no bounds of its own.
+    # CartPole's space is unbounded.
     spanned = {"low": low, "high": draw(st.sampled_from([high, tuple(0.8 * number for number in high)]))}
     limits = st.sampled_from([spanned] if env == "CartPole-v1" else [spanned, {}])
     kinds = ["round"] * (env in SCALES) + ["bins", "edges"] + ["tiles"] * (algorithm not in TABLES_ONLY)
@@ -106,7 +106,7 @@ def features(draw: st.DrawFn, algorithm: str, env: str = CAR) -> dict[str, Any]:
 
 @st.composite
 def environments(draw: st.DrawFn, env: str) -> dict[str, Any]:
-    """Keyword arguments of the environment, and a few actions where they are continuous."""
+    """Keyword arguments of the environment, and discrete actions where its actions are continuous."""
     settings: dict[str, Any] = {}
     if env in KEYWORDS:
         name, choices = KEYWORDS[env]
@@ -135,7 +135,7 @@ def own_options(algorithm: str) -> st.SearchStrategy[dict[str, Any]]:
 def run_settings(draw: st.DrawFn, algorithm: str, env: str = CAR) -> dict[str, Any]:
     """Settings of a short run."""
     settings: dict[str, Any] = {**draw(features(algorithm, env)), **draw(environments(env))}
-    # Full steps of tile coding may diverge, which is another test's.
+    # Full steps of tile coding may diverge; another test covers that.
     most = 0.5 if "tiles" in settings else 1.0
     return {
         **settings,

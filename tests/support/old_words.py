@@ -269,6 +269,12 @@ VARIABLES: dict[str, dict[str, str]] = {
         "truth": "optimum",
         "valley": "mountain_car or solver",
     },
+    "tests": {
+        "here": "state",
+        "lit": "active_rows",
+        "lone": "single",
+        "there": "next_state",
+    },
 }
 """Usual words, refused as the name of anything, a parameter or a local variable included."""
 

@@ -1,4 +1,4 @@
-"""Where things stand in the repository, for tests that read its files."""
+"""Paths of the repository, for tests that read its files."""
 
 import subprocess
 from pathlib import Path
@@ -8,7 +8,7 @@ PACKAGE = ROOT / "python" / "qtab"
 
 
 def tracked_files(*suffixes: str) -> list[Path]:
-    """The files that git knows, new ones included that it does not ignore."""
+    """The files with these endings that git tracks, and new ones that it does not ignore."""
     listed = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
         cwd=ROOT,

@@ -1,4 +1,4 @@
-"""What the tests of sweeps share."""
+"""A small sweep, and the comparison of two."""
 
 from typing import Any
 

@@ -22,7 +22,7 @@ ATTRIBUTES = [
     *("s", "lastaction", "fickle_step", "taxi_orientation"),
     *("player", "dealer", "dealer_top_card_suit", "dealer_top_card_value_str"),
 ]
-"""What the environments keep between steps."""
+"""The state that the environments keep between steps."""
 
 
 class LockstepToyText(Lockstep):
@@ -34,7 +34,7 @@ class LockstepToyText(Lockstep):
         return found
 
     def assert_same_state(self) -> None:
-        """The attributes are the same, and the next draws will be."""
+        """Asserts that attributes and generators are the same."""
         for name in ATTRIBUTES:
             assert hasattr(self.ours, name) == hasattr(self.theirs, name), name
             if hasattr(self.ours, name):

@@ -24,7 +24,7 @@ def theirs(name: str, num_envs: int, mode: AutoresetMode = AutoresetMode.NEXT_ST
 
 
 def assert_equal(one: Any, other: Any) -> None:
-    """Exactly equal, types included, but for the one fault of Gymnasium's that is not copied."""
+    """Asserts exact equality, types included, except for one bug of Gymnasium's that is not copied."""
     if len(one) == 5:  # a step
         mended = (*other[:4], mend(other[4], one[4]))
         assert data_equivalence(one, mended, exact=True), (one, other, MACHINE)
@@ -33,7 +33,7 @@ def assert_equal(one: Any, other: Any) -> None:
 
 
 def mend(infos: dict[str, Any], right: dict[str, Any]) -> dict[str, Any]:
-    """After an autoreset of FrozenLake the probabilities turn to integers; right ones, cut, are the same integers."""
+    """Replaces probabilities that Gymnasium casts to integers after an autoreset of FrozenLake by the right ones."""
     infos = {**infos}
     if "prob" in infos:
         assert right["prob"].dtype == np.float64
@@ -45,13 +45,13 @@ def mend(infos: dict[str, Any], right: dict[str, Any]) -> dict[str, Any]:
 
 
 def position(generator: np.random.Generator) -> Any:
-    """Where a generator stands: a half that is used up is no part of it."""
+    """The state of a generator, without the buffered half when it has been used."""
     state = dict(generator.bit_generator.state)
     return {**state, "uinteger": state["uinteger"] * state["has_uint32"]}
 
 
 class LockstepVectorEnv:
-    """A vector environment of ours beside Gymnasium's; what is done to one is done to both, and must come out equal."""
+    """Our vector environment beside Gymnasium's: what is done to one is done to both, and the results must be equal."""
 
     def __init__(
         self,
@@ -82,7 +82,7 @@ class LockstepVectorEnv:
         return one
 
     def run(self, steps: int, seed: int = 0, dtype: Any = None) -> tuple[int, int]:
-        """Takes random steps, returns how many episodes terminated and how many were cut."""
+        """Takes random steps and returns how many episodes terminated and how many were truncated."""
         rng = np.random.default_rng(seed)
         terminated = truncated = 0
         for _ in range(steps):
@@ -96,11 +96,11 @@ class LockstepVectorEnv:
         space: Any = self.theirs.single_action_space
         if isinstance(space, gym.spaces.Discrete):
             return rng.integers(0, space.n, self.num_envs).astype(dtype or np.int64)
-        # Beyond the bounds, too, where Gymnasium clips.
+        # Some are beyond the bounds, where Gymnasium clips.
         return (space.high * rng.uniform(-1.5, 1.5, (self.num_envs, 1))).astype(dtype or np.float32)
 
     def same_streams(self) -> None:
-        """The generators stand alike, and were seeded alike."""
+        """Asserts that the generators have the same state and the same seeds."""
         for one, other in zip(self.ours.np_random, self.theirs.np_random, strict=True):
             assert position(one) == position(other)
         assert self.ours.np_random_seed == self.theirs.np_random_seed

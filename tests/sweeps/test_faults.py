@@ -90,8 +90,8 @@ def test_a_failing_run_is_recorded_and_the_others_continue(tmp_path):
     assert study.columns["error"].tolist() == [None, None, "RuntimeError: out of order"] * 2
     assert np.isnan(study.columns["mean_return"][[2, 5]]).all()
     assert study.values("seed", 1).tolist() == [0, 1]
-    lone = qtab.train(make_brittle(), seed=1, learning_rate=0.5, episodes=2, scale=(10, 100))
-    assert study.values("mean_return", 1)[1] == lone.episode_returns.mean()
+    single = qtab.train(make_brittle(), seed=1, learning_rate=0.5, episodes=2, scale=(10, 100))
+    assert study.values("mean_return", 1)[1] == single.episode_returns.mean()
 
 
 def test_a_run_that_diverges_is_recorded():
@@ -109,7 +109,7 @@ def test_a_run_that_diverges_is_recorded():
     assert said[3].startswith("OverflowError: the action values overflowed")
 
 
-@pytest.mark.filterwarnings("ignore")  # distributed's own
+@pytest.mark.filterwarnings("ignore")  # distributed warns
 def test_dask_with_a_worker_killed_gives_the_same_table(tmp_path, small_chunks):
     from distributed import Client, LocalCluster
 

@@ -1,4 +1,4 @@
-"""Sweeps: a tidy table, whatever was killed on the way to it."""
+"""Sweeps give the same tidy table, whether interrupted or not."""
 
 import multiprocessing
 import signal

@@ -1,4 +1,4 @@
-"""The article's own function and ours: the same averages, the same table."""
+"""The article's code and ours give the same averages and the same table."""
 
 from typing import Any
 
@@ -59,7 +59,7 @@ def test_the_long_episodes_above_reach_the_goal():
 
 
 def test_the_articles_settings_do_not_solve_the_task():
-    # What the README says of them: better than -200, far from the -110 that counts as solved.
+    # As the README says: better than -200, far from the -110 at which the task counts as solved.
     means = qtab.train("MountainCar-v0", seed=0).mean_returns(100)
     assert len(means) == 50
     assert means[0] == -200.0

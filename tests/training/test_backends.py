@@ -1,4 +1,4 @@
-"""Who steps the environment: what "auto" picks, and what "rust" refuses by name."""
+"""Backends: what "auto" chooses, and what "rust" refuses by name."""
 
 import copy
 from typing import Any

@@ -1,4 +1,4 @@
-"""A callback sees the progress, may stop the run, and may fail without losing what was learned."""
+"""A callback receives the progress, can stop the run, and can fail without losing what was learned."""
 
 from itertools import pairwise
 
@@ -51,7 +51,7 @@ def test_returning_false_stops_the_run_and_returns_its_prefix(backend, no):
     run = train(backend=backend, callback=lambda progress: no if progress.episodes == 6 else None, callback_every=2)
     assert run.completed is False
     assert len(run.episode_returns) == 6
-    # The schedule is that of the ten episodes asked for.
+    # The schedule is that of the full ten episodes.
     table, returns, lengths = q_learning(gym.make("MountainCar-v0", max_episode_steps=30), run.config, stop_after=6)
     assert run.config.episodes == 10
     assert run.q_table.tobytes() == table.tobytes()
@@ -102,7 +102,7 @@ def test_progress_reads_only_new_episodes_and_seldom_moves_the_others():
     seen: list[qtab.Progress] = []
     train(episodes=64, callback=seen.append, callback_every=1)
     moves = sum(not np.shares_memory(after.returns, before.returns) for before, after in pairwise(seen))
-    assert moves == 6  # at 2, 3, 5, 9, 17 and 33 episodes: the room doubles
+    assert moves == 6  # at 2, 3, 5, 9, 17 and 33 episodes: the capacity doubles
 
 
 def test_a_trainer_lists_the_episodes_since_a_given_one():

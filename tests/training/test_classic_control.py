@@ -55,9 +55,9 @@ def test_many_runs_equal_single_runs(env: str, kind: str) -> None:
     runs = qtab.train_many(env, seeds=6, threads=3, tables=True, **chosen)
     assert runs.tables is not None
     for seed in range(6):
-        lone = qtab.train(env, seed=seed, **chosen)
-        assert runs.tables[seed].tobytes() == lone.tables.tobytes()
-        assert runs.episode_returns[seed].tobytes() == lone.episode_returns.tobytes()
+        single = qtab.train(env, seed=seed, **chosen)
+        assert runs.tables[seed].tobytes() == single.tables.tobytes()
+        assert runs.episode_returns[seed].tobytes() == single.episode_returns.tobytes()
 
 
 @pytest.mark.parametrize("env", OTHERS)
@@ -136,7 +136,7 @@ def test_rust_trains_where_numpy_uses_libm() -> None:
 
 @pytest.mark.parametrize("name", [env for env in TRAINED if env.values == ("Acrobot-v1",)])
 def test_first_observations_of_acrobot_equal_numpys_single_precision(name: str) -> None:
-    """Bins that part next to each first observation of Gymnasium find it again."""
+    """Edges right below and at each first observation of Gymnasium put it in the cell between them."""
     env = gym.make(name)
     for seed in range(300):
         observation, _ = env.reset(seed=seed)

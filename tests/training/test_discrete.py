@@ -1,4 +1,4 @@
-"""Training where observations are whole numbers: toy text in Rust, any other environment in Python."""
+"""Training on discrete observations: toy text in Rust, other environments in Python."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ SETTINGS: dict[str, Any] = {"episodes": 150, "seed": 5, "epsilon": 0.5, "learnin
 
 
 def same_everywhere(env: str, **settings: Any) -> qtab.Run:
-    """Rust, Gymnasium under the Rust learner, and plain NumPy."""
+    """Asserts that Rust, Gymnasium with the learner in Rust, and NumPy agree."""
     settings = {**SETTINGS, **settings}
     rust = qtab.train(env, backend="rust", **settings)
     assert rust.config.backend == "rust"
@@ -94,7 +94,7 @@ def test_a_table_whose_probabilities_do_not_sum_to_1_is_stepped_in_gymnasium(rat
 def test_every_preset_learns(name):
     runs = [qtab.train(name, seed=seed) for seed in range(3)]
     played = [qtab.evaluate(run, episodes=1000, seed=9).mean_return for run in runs]
-    # FrozenLake's thresholds; the cliff's shortest way; a taxi and a game well played.
+    # FrozenLake's thresholds, the shortest path along the cliff, and near the optimum of the others.
     least = {"FrozenLake-v1": 0.7, "FrozenLake8x8-v1": 0.85, "CliffWalking-v1": -13, "Taxi-v4": 7.5}
     assert min(played) >= least.get(name, -0.1)
 
@@ -114,7 +114,7 @@ def test_an_environment_without_a_time_limit_gets_one_in_training():
 
 
 class Steps(gym.Env):
-    """Walks about in a discrete space, by chance and by the action; shows what it is told to."""
+    """Shows random observations of a discrete space, or a given one; rewards depend on the action."""
 
     def __init__(self, space: gym.Space[Any], shown: Any = None) -> None:
         self.observation_space, self.action_space = space, Discrete(3, start=2)

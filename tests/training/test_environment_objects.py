@@ -1,4 +1,4 @@
-"""An environment that is handed over is stepped as it stands, and stays its owner's."""
+"""An environment that is passed in is stepped as it is, and not closed."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""evaluate plays the greedy policy in the environment: what a plain Python rollout brings."""
+"""evaluate plays the greedy policy in the environment, as a Python rollout does."""
 
 import math
 from typing import Any
@@ -17,7 +17,7 @@ def learned():
 
 
 def rollout(env, run, episodes, seed):
-    """Gymnasium's own loop: act greedily, learn nothing."""
+    """Gymnasium's usual loop with greedy actions, without learning."""
     returns, lengths, ends = [], [], []
     for episode in range(episodes):
         observation, _ = env.reset(seed=seed if episode == 0 else None)

@@ -1,4 +1,4 @@
-"""An environment that fails takes nothing along: its own exception comes through, with the run so far."""
+"""An exception in an environment is raised unchanged, and carries the run so far."""
 
 from typing import Any
 

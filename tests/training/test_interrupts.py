@@ -1,4 +1,4 @@
-"""Ctrl-C stops a run of any length, in a process of its own, and what was learned comes along."""
+"""Ctrl-C stops a run of any length, and the exception carries what was learned."""
 
 import json
 import subprocess
@@ -91,7 +91,7 @@ except KeyboardInterrupt as interrupt:
 
 
 def test_other_python_threads_run_while_a_run_trains():
-    # Only the other thread can end this run, after a million turns of a Python loop.
+    # Only the other thread can end this run, after a million iterations of a Python loop.
     done = in_a_process("""
 def count_and_stop():
     turns = 0

@@ -1,4 +1,4 @@
-"""What is said once: a time limit that is ours, and a version that was not named."""
+"""What is logged once: a default time limit, and the version of an id that has none."""
 
 import logging
 
@@ -15,7 +15,7 @@ UNLIMITED = "CliffWalking-v1 has no time limit of its own: an episode ends after
 
 @pytest.fixture
 def said(caplog, monkeypatch):
-    """What the logger ``qtab`` says, in a process that has said nothing yet."""
+    """The messages of the logger ``qtab``, as in a process that has logged nothing yet."""
     monkeypatch.setattr(resolve, "_logged", set())
     caplog.set_level(logging.DEBUG, logger="qtab")
     return lambda: caplog.messages

@@ -1,4 +1,4 @@
-"""One run, three ways: physics in Rust, Gymnasium under the Rust learner, the plain NumPy loop. All byte for byte."""
+"""Three implementations agree byte for byte: all in Rust, Gymnasium with the learner in Rust, and NumPy."""
 
 from typing import Any
 
@@ -124,7 +124,7 @@ def test_observations_are_converted_to_the_dtype_of_the_space(dtype, shown):
 
 
 def test_float64_observations_of_a_float32_space_are_rounded_as_float32():
-    # Just off the half between two cells in f64, just on its other side in f32.
+    # In float64 just beside the boundary of two cells, in float32 on its other side.
     low, scale = np.float32(-1.2), 250.0
     halves = np.float64(low) + (np.arange(440) + 0.5) / scale
     shown = np.concatenate([halves - 1e-9, halves + 1e-9])

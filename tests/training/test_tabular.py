@@ -1,4 +1,4 @@
-"""A table of one's own trains in Rust."""
+"""Training on TabularEnv in Rust."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Training on environments of other people: LunarLander, a room in the manner of MiniGrid, wrappers of any kind."""
+"""Training on other environments: LunarLander, a room like those of MiniGrid, and wrappers of many kinds."""
 
 from typing import Any
 
@@ -67,7 +67,7 @@ LANDER: dict[str, Any] = {
     "max_episode_steps": 300,
     "seed": 0,
 }
-"""Settings of LunarLander that learn something in little time; its own bounds are wider than where it flies."""
+"""Settings for LunarLander that learn something quickly; the bounds of its space are wider than its usual states."""
 
 
 @pytest.fixture(scope="module")

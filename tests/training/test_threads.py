@@ -1,4 +1,4 @@
-"""Runs in threads are the runs that they would have been alone."""
+"""Runs in concurrent threads equal those that run separately."""
 
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier

@@ -104,11 +104,11 @@ STEEP |= {"learning_rate": 1.5, "discount": 1.0, "epsilon": 0.8, "min_epsilon": 
 
 
 def test_a_failing_run_is_reported_with_its_seed_and_keeps_the_finished_ones():
-    with pytest.raises(OverflowError) as lone:
+    with pytest.raises(OverflowError) as single:
         qtab.train(CAR, seed=0, **STEEP)
     with pytest.raises(OverflowError) as caught:
         qtab.train_many(CAR, [1, 0, 2], threads=1, tables=True, **STEEP)
-    assert str(caught.value) == str(lone.value)
+    assert str(caught.value) == str(single.value)
     assert "seed 0" in getattr(caught.value, "__notes__", ["seed 0"])[0]
     runs = run_of(caught.value)
     assert runs.seeds == (1,)

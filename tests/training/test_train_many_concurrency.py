@@ -1,4 +1,4 @@
-"""Many runs beside threads, in processes, and interrupted."""
+"""train_many with threads, processes and interrupts."""
 
 import multiprocessing
 import os
@@ -68,7 +68,7 @@ def test_threads_may_call_train_many_at_the_same_time():
 
 
 def run_until_ready_then_interrupt(script):
-    """Runs a script that prints a line when it is under way, interrupts it, and returns what it said."""
+    """Runs a script until it prints a line, interrupts it, and returns the words that it prints then."""
     process = subprocess.Popen(
         [sys.executable, "-c", textwrap.dedent(script)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -81,7 +81,7 @@ def run_until_ready_then_interrupt(script):
 
 
 def test_ctrl_c_keeps_the_finished_runs():
-    # The first run is short work, the others are not: the interrupt comes between.
+    # The first runs finish before the interrupt, the others do not.
     said = run_until_ready_then_interrupt(
         """
         import threading, time, qtab
@@ -95,8 +95,8 @@ def test_ctrl_c_keeps_the_finished_runs():
         except KeyboardInterrupt as error:
             runs = error.run
             assert error.runs is runs and not runs.completed
-            lone = qtab.train("MountainCar-v0", seed=runs.seeds[0], episodes=200)
-            print(len(runs), len(runs.episode_returns), (runs.episode_returns[0] == lone.episode_returns).all())
+            single = qtab.train("MountainCar-v0", seed=runs.seeds[0], episodes=200)
+            print(len(runs), len(runs.episode_returns), (runs.episode_returns[0] == single.episode_returns).all())
         """
     )
     assert 0 < int(said[0]) == int(said[1]) < 100_000
@@ -113,8 +113,8 @@ def test_a_failing_process_is_reported_with_its_seed_and_keeps_the_finished_runs
     with pytest.raises(RuntimeError, match="out of order") as caught:
         qtab.train_many(make_brittle, [0, 4, 2], threads=1, scale=(10, 100), episodes=2)
     assert run_of(caught.value).seeds == (0, 4)
-    lone = qtab.train(make_brittle(), seed=0, scale=(10, 100), episodes=2)
-    assert run_of(caught.value).episode_returns[0].tobytes() == lone.episode_returns.tobytes()
+    single = qtab.train(make_brittle(), seed=0, scale=(10, 100), episodes=2)
+    assert run_of(caught.value).episode_returns[0].tobytes() == single.episode_returns.tobytes()
 
 
 def test_ctrl_c_stops_the_processes_too():

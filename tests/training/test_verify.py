@@ -1,4 +1,4 @@
-"""verify replays a run through Gymnasium and NumPy, and says where the two part."""
+"""verify repeats a run in Gymnasium and NumPy, and reports the first difference."""
 
 import dataclasses
 from typing import Any

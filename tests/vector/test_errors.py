@@ -1,4 +1,4 @@
-"""What a vector environment refuses, with which words, and that it then stands where it stood."""
+"""Errors of vector environments: their messages, and that they change no state."""
 
 import copy
 import threading
@@ -21,7 +21,7 @@ def standing(env: Any) -> Any:
 
 
 def refused(env: Any, call: Any, error: type[Exception], match: str) -> None:
-    """It raises, nothing has changed, and it goes on as one that was never asked."""
+    """Asserts that a call raises and changes nothing: the environment continues like an untouched one."""
     before = standing(env)
     with pytest.raises(error, match=match):
         call(env)

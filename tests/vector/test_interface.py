@@ -1,4 +1,4 @@
-"""The contract of Gymnasium's vector environments, and what its users do with them."""
+"""The interface of Gymnasium's vector environments, and how users use it."""
 
 import copy
 import multiprocessing
@@ -106,13 +106,13 @@ def test_generators_that_were_accessed_are_drawn_from(name, mode):
     vectors.run(7)
     mine, gymnasiums = vectors.ours.np_random, vectors.theirs.np_random
     assert all(one is other for one, other in zip(mine, vectors.ours.np_random, strict=True))
-    for lane in (0, 2):  # the user draws from them, too
+    for lane in (0, 2):  # the user draws from them as well
         assert mine[lane].random() == gymnasiums[lane].random()
         assert mine[lane].integers(3) == gymnasiums[lane].integers(3)
     vectors.run(20)
     vectors.same_streams()
     assert vectors.ours.is_native
-    # A seed makes new ones; those that were handed out are nobody's any more.
+    # A seed makes new generators; those accessed before are no longer used.
     vectors.reset(seed=[1, 2, 3, 4])
     vectors.run(9)
     vectors.same_streams()

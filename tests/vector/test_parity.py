@@ -1,4 +1,4 @@
-"""Each vector environment is a SyncVectorEnv of Gymnasium's own environments, to the bit, in every autoreset mode."""
+"""Each vector environment equals a SyncVectorEnv of Gymnasium's environments, to the bit, in every autoreset mode."""
 
 from typing import Any
 
@@ -78,12 +78,12 @@ def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
         seen[:] += vectors.run(3)
 
     run()
-    # Blackjack is over before most limits, and no example need draw the one that it meets.
+    # Blackjack ends before most time limits, and the examples may not include the shortest.
     cut = LockstepVectorEnv(name, 3, mode, max_episode_steps=1)
     cut.reset(seed=0)
     seen[:] += cut.run(3)
     assert seen[1] > 0
-    # At random a taxi and a walker by the cliff seldom arrive.
+    # Random policies seldom reach the goals of the taxi and the cliff.
     assert seen[0] > 0 or name in ("Pendulum-v1", "Taxi-v4", "CliffWalking-v1", "CliffWalkingSlippery-v1")
 
 

@@ -1,4 +1,4 @@
-"""The sub-environments themselves: as they stand, and stepped in Python from then on."""
+"""Accessing the sub-environments gives them in their current state, and switches to Python stepping."""
 
 import subprocess
 import sys
@@ -30,7 +30,7 @@ def test_sub_environments_continue_from_their_current_state(name, mode):
         if attribute == "state":  # at the left wall Gymnasium's MountainCar has a velocity of integer 0
             assert list(map(type, mine)) == list(map(type, gymnasiums))
             mine, gymnasiums = (tuple(np.asarray(state) for state in states) for states in (mine, gymnasiums))
-        if attribute == "s":  # now an integer of Python's, now one of NumPy's
+        if attribute == "s":  # sometimes an integer of Python, sometimes of NumPy
             mine, gymnasiums = (list(map(int, states)) for states in (mine, gymnasiums))
         if attribute != "spec":
             assert data_equivalence(mine, gymnasiums, exact=True), attribute
@@ -54,7 +54,7 @@ def test_assigned_attributes_are_used():
             env.set_attr("force", [0.1])
     vectors.run(30)
     vectors = LockstepVectorEnv("CartPole-v1", 2)
-    for env in (vectors.ours, vectors.theirs):  # before the first reset, too
+    for env in (vectors.ours, vectors.theirs):  # also before the first reset
         env.set_attr("gravity", 20.0)
     vectors.reset(seed=0)
     vectors.run(30)

@@ -1,4 +1,4 @@
-"""Gymnasium's wrappers and pictures on vector environments."""
+"""Gymnasium's wrappers, and rendering, on vector environments."""
 
 from typing import Any
 
