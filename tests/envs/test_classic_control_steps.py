@@ -11,7 +11,7 @@ from qtab.envs.classic_control import AcrobotEnv
 from support.classic_control import CONTINUOUS, EDITS, IDS, LockstepClassicControl, heuristic_policy
 from support.machine import MACHINE
 
-STEPS = 50_000
+STEPS = 30_000
 """Random steps; as many are taken by a policy that reaches the goal."""
 
 
@@ -164,7 +164,7 @@ FORCES = st.floats(-3, 3) | st.floats(width=32) | st.sampled_from([0.0, -0.0, 1.
 
 
 @pytest.mark.parametrize("name", CONTINUOUS)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(forces=st.lists(st.tuples(FORCES, WIDTHS), max_size=8), seed=st.integers(0, 99))
 def test_forces_of_any_size_and_dtype_equal_gymnasiums(name, forces, seed):
     pair = LockstepClassicControl(name)

@@ -10,7 +10,7 @@ from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 import qtab
 from support.toy_text import IDS, TABLES, LockstepToyText
 
-STEPS = 40_000
+STEPS = 25_000
 
 
 def optimal_policy(name: str) -> list[int]:
@@ -21,12 +21,13 @@ def optimal_policy(name: str) -> list[int]:
 @pytest.mark.parametrize("name", IDS)
 def test_random_steps_equal_gymnasiums(name):
     terminated = LockstepToyText(name).run(STEPS, seed=3)
-    assert terminated > 5 or name == "Taxi-v4"  # a random taxi seldom arrives
+    if "FrozenLake" in name or "Blackjack" in name:  # random steps seldom reach the other goals
+        assert terminated > 100
 
 
 @pytest.mark.parametrize("name", [name for name in TABLES if "Taxi" not in name])
 def test_steps_to_the_goal_equal_gymnasiums(name):
-    assert LockstepToyText(name).run(STEPS // 2, optimal_policy(name), seed=3) > 100
+    assert LockstepToyText(name).run(STEPS, optimal_policy(name), seed=3) > 100
 
 
 @pytest.mark.parametrize(
@@ -35,7 +36,7 @@ def test_steps_to_the_goal_equal_gymnasiums(name):
     ids=repr,
 )
 def test_rides_of_every_taxi_equal_gymnasiums(kwargs):
-    assert LockstepToyText("Taxi-v4", **kwargs).run(STEPS // 2, optimal_policy("Taxi-v4"), seed=4) > 300
+    assert LockstepToyText("Taxi-v4", **kwargs).run(STEPS, optimal_policy("Taxi-v4"), seed=4) > 300
 
 
 LAKE = ["SFFHF", "FHFSF", "FFFFG"]
@@ -73,7 +74,7 @@ LAKE = ["SFFHF", "FHFSF", "FFFFG"]
     ids=repr,
 )
 def test_every_constructor_argument_has_its_effect(name, kwargs):
-    LockstepToyText(name, **kwargs).run(5_000, seed=5)
+    LockstepToyText(name, **kwargs).run(2_000, seed=5)
 
 
 def test_a_random_map_can_be_generated():

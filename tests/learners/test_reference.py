@@ -44,7 +44,7 @@ def test_a_long_episode_gives_the_identical_table(algorithm: Any, seed: int) -> 
         algorithm=algorithm,
         seed=seed,
         episodes=1,
-        max_episode_steps=1500,
+        max_episode_steps=1000,
         learning_rate=0.3,
         discount=1.0,
         epsilon=0.1,

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import qtab
-from support.command import qtab as command
 from support.command import qtab_here, refused
 from support.interrupts import in_a_process
 
@@ -29,7 +28,7 @@ def drive(env: gym.Env, position: float, actions: Any) -> list[bool]:
 
 
 def test_every_route_reaches_the_goal_in_gymnasium_with_its_last_action(found):
-    env = gym.make("MountainCar-v0")
+    env = gym.make("MountainCar-v0", disable_env_checker=True)
     search = found.search
     for position, steps, route in zip(search.starts, search.steps, search.routes, strict=True):
         ended = drive(env, float(position), route)
@@ -193,7 +192,7 @@ def test_the_command_prints_a_small_table(tmp_path: Path):
 
 
 def test_training_reports_the_gap_to_the_optimum(tmp_path: Path):
-    done = command("train", "CliffWalking-v1", "--seed", "0", "--plot", "curve.png", cwd=tmp_path)
+    done = qtab_here("train", "CliffWalking-v1", "--seed", "0", "--plot", "curve.png", cwd=tmp_path)
     assert "Greedy policy -13, optimum -13, gap 0" in done.stdout.splitlines()
     assert (tmp_path / "curve.png").exists()
     done = qtab_here("train", "FrozenLake-v1", "--seed", "0", "--env-kwargs", "is_slippery", "false", cwd=tmp_path)

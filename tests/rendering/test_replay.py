@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import qtab as package
+from qtab.cli import outputs
 from qtab.rendering.replay import make_render_env, replay_all, replay_episode
 from support.command import qtab, qtab_here, refused
 
@@ -66,11 +67,15 @@ def test_an_environment_that_cannot_be_rendered_is_refused_before_training(tmp_p
     assert "cannot be rendered" in line
 
 
-def test_record_writes_the_last_episodes_as_videos_and_does_not_change_the_run(tmp_path: Path) -> None:
+def test_record_writes_the_last_episodes_as_videos_and_does_not_change_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     import imageio_ffmpeg  # type: ignore[import-untyped]
 
+    assert outputs.DEFAULT_SHOWN == 20
+    monkeypatch.setattr(outputs, "DEFAULT_SHOWN", 4)
     common = ["train", "--seed", "1", "--episodes", "50", "--max-episode-steps", "20"]
-    done = qtab(*common, "--save", "with.npz", "--record", "deep/videos", cwd=tmp_path)
+    done = qtab_here(*common, "--save", "with.npz", "--record", "deep/videos", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
     assert qtab_here(*common, "--save", "without.npz", cwd=tmp_path).returncode == 0
@@ -78,7 +83,7 @@ def test_record_writes_the_last_episodes_as_videos_and_does_not_change_the_run(t
     assert one.q_table.tobytes() == other.q_table.tobytes()
     assert one.episode_returns.tobytes() == other.episode_returns.tobytes()
     videos = sorted((tmp_path / "deep" / "videos").iterdir())
-    assert [video.name for video in videos] == [f"MountainCar-v0-episode-{number}.mp4" for number in range(31, 51)]
+    assert [video.name for video in videos] == [f"MountainCar-v0-episode-{number}.mp4" for number in range(47, 51)]
     frames, _ = imageio_ffmpeg.count_frames_and_secs(str(videos[0]))
     assert frames == 21  # one for the reset, and one for each step
 

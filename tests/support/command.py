@@ -54,7 +54,7 @@ def environment(folder: Path | None = None, **changes: str | None) -> dict[str, 
     variables |= {"MPLBACKEND": "Agg", "COLUMNS": "80"}
     if folder is not None:
         (folder / "toys.py").write_text(TOYS)
-        variables["PYTHONPATH"] = str(folder)
+        variables["PYTHONPATH"] = os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])])
     return variables | {name: value for name, value in changes.items() if value is not None}
 
 

@@ -30,7 +30,7 @@ def ours(seed, *, max_episode_steps=200, learning, discount, epsilon, min_eps, e
     )
 
 
-THE_ARTICLES_CALL: dict[str, Any] = {"learning": 0.2, "discount": 0.9, "epsilon": 0.8, "min_eps": 0, "episodes": 300}
+THE_ARTICLES_CALL: dict[str, Any] = {"learning": 0.2, "discount": 0.9, "epsilon": 0.8, "min_eps": 0, "episodes": 200}
 CALLS = {
     "the article's settings": (0, THE_ARTICLES_CALL),
     "a later seed, other rates": (

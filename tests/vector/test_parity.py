@@ -13,10 +13,10 @@ from support import classic_control
 from support.machine import MACHINE
 from support.vector import IDS, MODES, LockstepVectorEnv
 
-STEPS = 1_600
+STEPS = 1_000
 """Steps of all sub-environments together, in each of eight examples of each of three modes."""
-MAX_VECTOR_STEPS = 550
-"""Steps of the vector environment in an example: more than the longest time limit, 500."""
+MAX_VECTOR_STEPS = 210
+"""Steps of the vector environment in an example: more than the usual time limits, 100 and 200."""
 
 SETTINGS: dict[str, dict[str, Any]] = {
     "MountainCar-v0": {"goal_velocity": [0, 0.01, 0.03]},
