@@ -85,7 +85,9 @@ else:
 
             return version("qtab")
         if name not in _MODULES:
-            raise AttributeError(f"module 'qtab' has no attribute {name!r}")
+            from qtab._utils.suggestions import did_you_mean
+
+            raise AttributeError(f"module 'qtab' has no attribute {name!r}{did_you_mean(name, _MODULES)}")
         module = _importlib.import_module(_MODULES[name])
         value = globals()[name] = getattr(module, name, module)
         return value

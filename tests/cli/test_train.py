@@ -143,7 +143,7 @@ def test_plots_are_written_in_the_format_of_their_extension(tmp_path: Path, name
         (["--preset", "novel"], "preset must be one of 'article', 'solved' for MountainCar-v0, got 'novel'$"),
         (["NoSuchCar-v0"], "NoSuchCar"),
         (["MountainCar-v0", "Taxi-v4"], "Taxi-v4"),
-        (["MountainCar-v0", "--actions", "3"], "actions must be left out"),
+        (["MountainCar-v0", "--actions", "3"], "actions applies to Box action spaces only"),
         (["Pendulum-v1", "--actions", "all"], "a count or the actions themselves, got 'all'"),
         (["--discretizer", "edges", "--edges", "0", "1"], r"a row such as \[-0.5,0,0.5\]"),
         (["--env-kwargs", "goal_velocity"], "'goal_velocity' has no value"),

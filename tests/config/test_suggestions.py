@@ -53,7 +53,7 @@ def test_steps_are_not_episodes() -> None:
 
 
 def test_nothing_is_suggested_where_nothing_is_similar() -> None:
-    message = "unknown setting 'colour'; help(qtab.train) lists them all"
+    message = "unknown setting 'colour'; help(qtab.train) and qtab train --help list the settings"
     with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
         qtab.Config().replace(colour="red")  # type: ignore[call-arg]
 

@@ -70,7 +70,11 @@ def test_listed_actions_are_used_unchanged() -> None:
 @pytest.mark.parametrize(
     ("space", "actions", "error"),
     [
-        (gym.spaces.Discrete(2), 3, r"^actions must be left out where the action space is Discrete, got 3"),
+        (
+            gym.spaces.Discrete(2),
+            3,
+            r"^actions applies to Box action spaces only, and this one is Discrete\(2\)",
+        ),
         (
             gym.spaces.Box(-1, 1, (1,)),
             None,

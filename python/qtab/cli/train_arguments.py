@@ -30,11 +30,11 @@ class Arguments:
         tyro.conf.Positional,
         tyro.conf.arg(metavar="[ENV]", help_behavior_hint=f"(default: {Config.env})"),
     ] = None
-    """The environment's id in Gymnasium; --env ENV does as well."""
+    """The environment's id in Gymnasium; --env ENV is equivalent."""
     env_flag: Annotated[str | None, tyro.conf.arg(name="env", metavar="ENV")] = None
     """The environment's id in Gymnasium."""
     config: _File = None
-    """A TOML file of settings. Those given on the command line win over it."""
+    """A TOML file of settings. Flags override it."""
     plot: _File = None
     """Draw the learning curve to this file. Its ending gives the format."""
     save: _File = None
@@ -44,7 +44,7 @@ class Arguments:
     record: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER")] = None
     """Write the last training episodes, 20 or the number given by --watch, to videos in this folder."""
     optimum: bool = False
-    """Report how far the run is from the optimum, and draw it. Small tables do this anyway."""
+    """Report how far the run is from the optimum, and draw it. Always done for small tables."""
 
 
 def parse_arguments(arguments: list[str]) -> tuple[Arguments, str, dict[str, Any]]:

@@ -71,6 +71,6 @@ def meant(name: str, known: Collection[str]) -> str | None:
 def _suggestion(name: str, known: Collection[str]) -> str:
     found = meant(name, known)
     if found is None:
-        return "; help(qtab.train) lists them all"
+        return "; help(qtab.train) and qtab train --help list the settings"
     counted = " qtab counts episodes, not steps" if name in _STEPS else ""
     return f" (did you mean {found!r}?{counted})"

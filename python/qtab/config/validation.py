@@ -71,7 +71,7 @@ def _real(low: float, high: float) -> Callable[[str, Any], float]:
 def _above_zero(name: str, value: Any) -> float:
     number = checks.finite(name, value)
     if number <= 0:
-        raise ValueError(f"{name} must be above zero, got {value!r}")
+        raise ValueError(f"{name} must be above 0, got {value!r}")
     return number
 
 
@@ -178,9 +178,9 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "env": _text,
     "env_kwargs": _keywords,
     "episodes": _count,
-    "learning_rate": _real(0, 2),
+    "learning_rate": checks.finite,  # its range depends on the discretizer
     "discount": _real(0, 1),
-    "min_learning_rate": _real(0, 2),
+    "min_learning_rate": _not_negative,
     "learning_rate_decay": _real(0, 1),
     "learning_rate_warm_up": _integer(0, checks.LARGEST_COUNT),
     "epsilon": _real(0, 1),

@@ -65,7 +65,7 @@ def choose_actions(space: Any, wanted: Any) -> Actions:
     """
     if isinstance(space, spaces.Discrete):
         if wanted is not None:
-            raise ValueError(f"actions must be left out where the action space is Discrete, got {wanted!r}")
+            raise ValueError(f"actions applies to Box action spaces only, and this one is {space}; got {wanted!r}")
         return Actions(int(space.n), int(space.start))
     if not isinstance(space, spaces.Box) or len(space.shape) != 1 or space.dtype not in FLOATS:
         raise ValueError(f"the action space must be Discrete or a Box of one float axis, got {space}")

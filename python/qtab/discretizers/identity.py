@@ -32,7 +32,8 @@ class Identity(Discretizer):
         bounds = integer_bounds(space)
         if bounds is None:
             raise ValueError(
-                f"the observation space must be Discrete, or a row of them, for discretizer 'identity', got {space}"
+                "the observation space must be Discrete, MultiDiscrete or a Tuple of Discrete spaces for discretizer "
+                f"'identity', got {space}"
             )
         low, high = bounds
         values = float(np.prod((high - low + 1).astype(np.float64))) * n_actions

@@ -38,7 +38,7 @@ class Rounding(BoxDiscretizer):
         if len(scale) != len(box.low):
             raise ValueError(
                 f"scale must hold {len(box.low)} numbers for this observation space, the cells per unit of each "
-                f"component, got {scale!r}; or discretizer 'bins' or 'tiles' instead"
+                f"component, got {scale!r}. Without them choose discretizer 'bins' or 'tiles'"
             )
         grid = cls(box.low, box.high, np.array(scale, dtype=np.float64))
         with np.errstate(over="ignore"):

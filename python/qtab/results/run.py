@@ -66,11 +66,7 @@ class Run:
         Raises:
             ValueError: with tile coding, which has no cells.
         """
-        if not self.discretizer.has_cells:
-            raise ValueError(
-                f"q_table needs cells, which discretizer {self.config.discretizer!r} does not have; "
-                "run.q_values(observation) works"
-            )
+        self._require_cells("q_table", "q_values")
         return _sum(self.tables).reshape(*self.discretizer.shape, len(self.actions))
 
     @property
@@ -80,7 +76,15 @@ class Run:
         Raises:
             ValueError: with tile coding, which has no cells; :meth:`predict` works.
         """
+        self._require_cells("policy", "predict")
         return self.actions.take(np.argmax(self.q_table, axis=-1))
+
+    def _require_cells(self, attribute: str, method: str) -> None:
+        if not self.discretizer.has_cells:
+            raise ValueError(
+                f"{attribute} needs cells, which discretizer {self.config.discretizer!r} does not have; "
+                f"run.{method}(observation) works"
+            )
 
     def q_values(self, observation: ArrayLike) -> NDArray[np.float64]:
         """Returns the (actions,) values of an observation, or the (n, actions) values of n observations.

@@ -30,7 +30,9 @@ def load(path: "str | os.PathLike[str]") -> Run:
             with run_file.reading(file) as (header, arrays):
                 return _run(header, arrays)
         except Exception as error:  # a damaged file can raise almost anything
-            reason = f"it has no {error}" if isinstance(error, KeyError) else str(error)
+            reason = str(error)
+            if isinstance(error, KeyError):
+                reason = f"it has no {str(error.args[0]).removesuffix(' is not a file in the archive')!r}"
             raise ValueError(f"{str(path)!r} is not a run file that this version of qtab can read: {reason}") from None
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sweep:
     """The finished runs of all settings. The same sweep gives the same table, whether or not it was interrupted."""
 
@@ -36,6 +36,10 @@ class Sweep:
     block: int
     """The number of episodes that each point of a learning curve averages."""
     _curves: Sequence[bytes]
+
+    def __repr__(self) -> str:
+        settings = f"{len(self.settings)} setting{'' if len(self.settings) == 1 else 's'}"
+        return f"<Sweep of {self.env}: {settings}, {len(self):,} runs, {self.failed} failed>"
 
     def __len__(self) -> int:
         return len(self.columns["seed"])

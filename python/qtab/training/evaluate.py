@@ -9,16 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
+from qtab.config.options import OPTIONS
 from qtab.envs.registry import spec_of
 from qtab.results.run import Run
 from qtab.training.resolve import resolve
 from qtab.training.train import train_resolved
 
-TABLE_SETTINGS = ("discretizer", "scale", "tilings", "tiles", "hashed_rows", "bins", "edges", "low", "high", "actions")
+TABLE_SETTINGS = (
+    "discretizer",
+    *(name for name, option in OPTIONS.items() if option.choice == "discretizer"),
+    "actions",
+)
 """The settings that say what the rows and columns of a table stand for."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Evaluation:
     """Episodes played by a greedy policy, without learning."""
 
@@ -32,6 +37,12 @@ class Evaluation:
     """The seed of the environment."""
     reward_threshold: float | None
     """The return at which Gymnasium considers the environment solved; None where it gives none."""
+
+    def __repr__(self) -> str:
+        return (
+            f"<Evaluation of {len(self.returns):,} episodes: mean return {self.mean_return:.2f} "
+            f"± {self.standard_error:.2f}, seed {self.seed}>"
+        )
 
     @property
     def mean_return(self) -> float:
@@ -81,6 +92,8 @@ def evaluate(
         ValueError: for an argument out of range.
     """
     checks.instance("run", run, Run)
+    if env is not None and not isinstance(env, gym.Env):
+        raise TypeError(f"env must be an environment, got {env!r}")
     config = run.config
     # With a learning rate and an exploration rate of 0, training is evaluation.
     settings: dict[str, Any] = {
