@@ -15,6 +15,7 @@ STEPS = 30_000
 """Random steps; as many are taken by a policy that reaches the goal."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("policy", [None, heuristic_policy], ids=["random", "heuristic"])
 def test_long_walks_equal_gymnasiums(name, policy, record_property):

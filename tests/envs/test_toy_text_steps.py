@@ -18,6 +18,7 @@ def optimal_policy(name: str) -> list[int]:
     return qtab.optimum(name).policy.tolist()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", IDS)
 def test_random_steps_equal_gymnasiums(name):
     terminated = LockstepToyText(name).run(STEPS, seed=3)

@@ -36,6 +36,7 @@ def test_random_settings_give_the_identical_table(algorithm: Any, env: str) -> N
     check()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_long_episode_gives_the_identical_table(algorithm: Any, seed: int) -> None:

@@ -39,6 +39,7 @@ NEAR_THE_END = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("name", IDS)
