@@ -26,7 +26,7 @@ from qtab.bench import (
     vector_envs,
 )
 from qtab.bench.timing import Benchmark, Timings
-from support.command import qtab, refused
+from support.command import qtab_here, refused
 
 
 def test_the_numba_loop_equals_the_articles_loop_to_the_bit() -> None:
@@ -174,8 +174,8 @@ def test_the_bench_prints_its_tables_with_versions_and_build(small_rounds: None)
     assert f"build {versions()['build']}" in printed
 
 
-def test_a_part_can_be_timed_separately(tmp_path: Path) -> None:
-    done = qtab("bench", "--rounds", "1", "--part", "stepping", cwd=tmp_path)
+def test_a_part_can_be_timed_separately(small_rounds: None, tmp_path: Path) -> None:
+    done = qtab_here("bench", "--rounds", "1", "--part", "stepping", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert f"\n{mountain_car.QTAB_STEP}  " in done.stdout
     assert "import qtab adds" in done.stdout

@@ -20,6 +20,7 @@ def best_average(run: qtab.Run) -> float:
     return float(np.convolve(run.episode_returns, np.full(100, 0.01), "valid").max())
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*out of date")
 @pytest.mark.parametrize("env", SOLVED)
 def test_every_seed_solves_its_environment_and_the_mean_ends_above_the_threshold(env: str) -> None:

@@ -47,6 +47,7 @@ def greedy_returns(env: str, runs: qtab.Runs) -> NDArray[np.float64]:
     return np.array(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("env", "seeds", "mean"),
     [("MountainCar-v0", 20, -106), ("FrozenLake-v1", 100, 0.7), ("FrozenLake8x8-v1", 100, 0.85)],
@@ -58,11 +59,13 @@ def test_every_seed_reaches_the_threshold_and_the_mean_ends_above_it(env, seeds,
     assert runs.final_returns(100).mean() > mean >= threshold
 
 
+@pytest.mark.slow
 def test_every_seed_finds_the_best_policy_of_the_small_lake_without_a_time_limit():
     # Under the time limit that policy returns 0.7402; the best time-dependent policy returns 0.7442.
     assert greedy_returns("FrozenLake-v1", training("FrozenLake-v1")) == pytest.approx(0.740165, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_every_seed_learns_an_optimal_policy_for_the_taxi():
     runs = training("Taxi-v4")
     assert greedy_returns("Taxi-v4", runs) == pytest.approx(7.93, abs=1e-9)
@@ -71,12 +74,14 @@ def test_every_seed_learns_an_optimal_policy_for_the_taxi():
     assert runs.final_returns(100).mean() > 7.83
 
 
+@pytest.mark.slow
 def test_every_seed_learns_the_shortest_path_along_the_cliff():
     runs = training("CliffWalking-v1")
     assert (runs.episode_returns[:, -100:] == -13).all()
     assert (greedy_returns("CliffWalking-v1", runs) == -13).all()
 
 
+@pytest.mark.slow
 def test_on_the_slippery_cliff_every_seed_comes_close_to_the_optimum():
     returns = greedy_returns("CliffWalkingSlippery-v1", training("CliffWalkingSlippery-v1", 20))
     assert returns.mean() > -64.9

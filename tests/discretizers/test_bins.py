@@ -39,7 +39,7 @@ def boxes(draw: st.DrawFn) -> tuple[Any, ...]:
     return low, high, bins
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(box=boxes(), data=st.data())
 def test_rows_equal_gymnasiums_discretize_observation(box: tuple[Any, ...], data: st.DataObject) -> None:
     low, high, bins = box
@@ -61,7 +61,7 @@ def test_rows_equal_gymnasiums_discretize_observation(box: tuple[Any, ...], data
     assert qtab.verify(run, env=env).equal
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(
     edges=st.lists(st.floats(-1e300, 1e300), unique=True, max_size=90).map(sorted),
     value=st.floats(allow_nan=False),

@@ -10,7 +10,7 @@ from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 import qtab
 from support.toy_text import IDS, TABLES, LockstepToyText
 
-STEPS = 25_000
+STEPS = 15_000
 
 
 def optimal_policy(name: str) -> list[int]:
@@ -18,6 +18,7 @@ def optimal_policy(name: str) -> list[int]:
     return qtab.optimum(name).policy.tolist()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", IDS)
 def test_random_steps_equal_gymnasiums(name):
     terminated = LockstepToyText(name).run(STEPS, seed=3)

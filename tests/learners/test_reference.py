@@ -23,7 +23,7 @@ def test_every_algorithm_has_a_reference() -> None:
 @pytest.mark.parametrize("env", TRAINED)
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_random_settings_give_the_identical_table(algorithm: Any, env: str) -> None:
-    @settings(max_examples=40 if env == CAR else 8, deadline=None)
+    @settings(max_examples=30 if env == CAR else 6, deadline=None)
     @given(run_settings(algorithm, env))
     def check(chosen: dict[str, Any]) -> None:
         try:
@@ -36,6 +36,7 @@ def test_random_settings_give_the_identical_table(algorithm: Any, env: str) -> N
     check()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_long_episode_gives_the_identical_table(algorithm: Any, seed: int) -> None:

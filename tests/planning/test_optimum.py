@@ -63,6 +63,7 @@ def test_known_optima_are_found():
     assert lake.expected_return < qtab.optimum("FrozenLake-v1").expected_return < 14 / 17
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", IDS)
 def test_the_optimal_policy_earns_the_optimum_in_gymnasium(name):
     found = qtab.optimum(name)

@@ -67,6 +67,7 @@ def test_an_environment_that_cannot_be_rendered_is_refused_before_training(tmp_p
     assert "cannot be rendered" in line
 
 
+@pytest.mark.slow
 def test_record_writes_the_last_episodes_as_videos_and_does_not_change_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -136,6 +136,7 @@ def test_a_constant_difference_is_an_infinite_effect():
     assert stats.compare([1.0, 2.0, 3.0], [2.0, 3.0, 4.0]).effect_size == -np.inf
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")  # rliable's imports warn
 @pytest.mark.parametrize("statistic", ["mean", "median", "iqm"])
 def test_aggregates_match_rliable(statistic):

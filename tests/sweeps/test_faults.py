@@ -62,6 +62,7 @@ def test_a_store_that_cannot_be_written_raises_an_os_error(tmp_path):
         qtab.sweep(CAR, GRID, store=tmp_path / "no" / "study.db", **SMALL)
 
 
+@pytest.mark.slow
 def test_a_full_disk_raises_an_error_and_the_sweep_can_be_resumed(tmp_path, small_chunks, monkeypatch):
     path = tmp_path / "study.db"
     connect = stores.connect  # type: ignore[attr-defined]
@@ -109,6 +110,7 @@ def test_a_run_that_diverges_is_recorded():
     assert said[3].startswith("OverflowError: the action values overflowed")
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")  # distributed warns
 def test_dask_with_a_worker_killed_gives_the_same_table(tmp_path, small_chunks):
     from distributed import Client, LocalCluster

@@ -96,6 +96,7 @@ def start(path, seeds=5):
     return subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE, text=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chunks", [1, 4])
 def test_a_killed_sweep_resumes(tmp_path, small_chunks, chunks):
     path = tmp_path / "study.db"

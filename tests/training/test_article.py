@@ -44,6 +44,7 @@ CALLS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "call"), CALLS.values(), ids=CALLS)
 def test_the_articles_code_gives_our_table_and_averages(seed, call):
     averages, table = the_articles(seed, **call)

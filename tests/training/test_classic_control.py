@@ -30,6 +30,7 @@ def settings_of(env: str, discretizer: str) -> dict[str, Any]:
     return {"discretizer": discretizer, "learning_rate": 0.1, **own[discretizer], **few}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("env", OTHERS)
 def test_every_learner_and_discretizer_makes_the_table_of_gymnasium(env: str) -> None:
     kinds = ("bins", "edges", "tiles") if env == "CartPole-v1" else ("bins", "edges", "tiles", "round")

@@ -76,6 +76,7 @@ def lander() -> str:
     return "LunarLander-v3"
 
 
+@pytest.mark.slow
 def test_the_lander_learns_to_land_more_gently(lander: str) -> None:
     run = qtab.train(lander, episodes=200, hashed_rows=2**16, **LANDER)
     first, second = run.mean_returns(100)
