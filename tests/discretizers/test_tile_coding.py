@@ -171,8 +171,8 @@ def run() -> qtab.Run:
 
 
 def test_tile_coding_has_no_cells_and_suggests_alternatives(run: qtab.Run) -> None:
-    for name in ("q_table", "policy"):
-        with pytest.raises(ValueError, match=r"run\.q_values\(observation\)"):
+    for name, method in (("q_table", "q_values"), ("policy", "predict")):
+        with pytest.raises(ValueError, match=rf"^{name} needs cells, .*; run\.{method}\(observation\) works$"):
             getattr(run, name)
 
 
