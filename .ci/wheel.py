@@ -22,6 +22,6 @@ env.step(env.action_space.sample())
 try:
     qtab.plot(run)
 except ModuleNotFoundError as error:
-    assert "pip install 'qtab[plot]'" in str(error)
+    assert "pip install 'matplotlib" in str(error)
 else:
     raise AssertionError("qtab.plot ran without matplotlib")
