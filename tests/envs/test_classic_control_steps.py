@@ -11,7 +11,7 @@ from qtab.envs.classic_control import AcrobotEnv
 from support.classic_control import CONTINUOUS, EDITS, IDS, LockstepClassicControl, heuristic_policy
 from support.machine import MACHINE
 
-STEPS = 20_000
+STEPS = 50_000
 """Random steps; as many are taken by a policy that reaches the goal."""
 
 
@@ -24,7 +24,7 @@ def test_long_walks_equal_gymnasiums(name, policy, record_property):
     pair.reset(seed=7)
     episodes = pair.run(STEPS, policy, seed=11)
     if policy is heuristic_policy and name not in ("CartPole-v1", "Pendulum-v1"):
-        assert episodes > 50  # the goal was met, not only the slope below
+        assert episodes > 100  # the goal was met, not only the slope below
 
 
 def test_rust_steps_where_numpy_uses_libm(monkeypatch):

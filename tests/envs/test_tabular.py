@@ -22,7 +22,7 @@ def test_a_tabular_env_of_gymnasiums_table_steps_like_gymnasiums_environment(nam
     assert (ours.observation_space, ours.action_space) == (theirs.observation_space, theirs.action_space)
     assert bitwise(ours.reset(seed=3)) == bitwise(theirs.reset(seed=3))
     rng = np.random.default_rng(0)
-    for step in range(15_000):
+    for step in range(30_000):
         action = int(rng.integers(4))
         one, other = ours.step(action), theirs.step(action)
         assert bitwise(one) == bitwise(other)

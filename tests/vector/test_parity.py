@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
@@ -14,7 +15,7 @@ from support.machine import MACHINE
 from support.vector import IDS, MODES, LockstepVectorEnv
 
 STEPS = 600
-"""Steps of all sub-environments together, in each of six examples of each of three modes."""
+"""Steps of all sub-environments together, in each of eight examples of each of three modes."""
 MAX_VECTOR_STEPS = 210
 """Steps of the vector environment in an example: more than the usual time limits, 100 and 200."""
 
@@ -46,7 +47,7 @@ NEAR_THE_END = {
 def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
     seen = np.zeros(2, np.int64)
 
-    @settings(max_examples=6)
+    @settings(max_examples=8)
     @given(
         num_envs=st.integers(1, 40),
         seed=st.integers(0, 2**70) | st.none(),
@@ -86,6 +87,39 @@ def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
     assert seen[1] > 0
     # Random policies seldom reach the goals of the taxi and the cliff.
     assert seen[0] > 0 or name in ("Pendulum-v1", "Taxi-v4", "CliffWalking-v1", "CliffWalkingSlippery-v1")
+
+
+LIMITS = {name: limit for name in IDS if (limit := gym.spec(name).max_episode_steps)}
+"""The time limits, 100 to 999 steps, that environments are registered with; Blackjack and CliffWalking have none."""
+
+
+@pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("name", LIMITS)
+def test_an_episode_is_truncated_at_the_registered_time_limit(name: str, mode: Any) -> None:
+    kwargs = {"is_slippery": False} if "FrozenLake" in name else {}
+    vectors = LockstepVectorEnv(name, 2, mode, **kwargs)
+    vectors.reset(seed=5)
+    truncated = 0
+    for step in range(LIMITS[name] + 20):
+        action = lasting_action(name, vectors.theirs.envs[0].unwrapped, step)
+        _, _, _, cut, _ = vectors.step(np.array([action] * 2))
+        truncated += int(cut[0])
+        if mode is AutoresetMode.DISABLED and vectors.over.any():
+            vectors.reset(options={"reset_mask": vectors.over.copy()})
+    assert truncated == 1
+
+
+def lasting_action(name: str, env: Any, step: int) -> Any:
+    """An action under which the first sub-environment does not terminate."""
+    if name in classic_control.CONTINUOUS:
+        return np.zeros(1, np.float32)
+    if "CartPole" in name:  # pushes towards the centre, and the pole upright
+        position, velocity, angle, turning = env.state
+        return int(0.1 * position + 0.3 * velocity + 4 * angle + turning > 0)
+    if "FrozenLake" in name:
+        return 0  # into the wall
+    return 1 if "Acrobot" in name or "MountainCar" in name else step % 2  # no force; the taxi drives to and fro
 
 
 @pytest.mark.parametrize("mode", MODES)
