@@ -12,6 +12,7 @@ from hypothesis import settings
 
 settings.register_profile("local", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True)
+settings.register_profile("fuzz", deadline=None, max_examples=1000, print_blob=True)  # --hypothesis-profile fuzz
 settings.load_profile("ci" if os.environ.get("CI") else "local")
 
 
