@@ -7,17 +7,32 @@ import pytest
 import qtab
 from qtab import _core, _spec
 from qtab.config import choices
+from qtab.config.algorithms import ALGORITHMS
 from qtab.discretizers import DISCRETIZERS
 from qtab.training.resolve import resolve
 
 
 def words(union: Any) -> set[str]:
     """Returns the tags of a union of typed dictionaries."""
-    return {word for member in get_args(union) for word in get_args(get_type_hints(member)["type"])}
+    return {word for member in get_args(union) for word in tags(member)}
+
+
+def tags(member: Any) -> tuple[str, ...]:
+    """Returns the tags of one typed dictionary."""
+    return get_args(get_type_hints(member)["type"])
 
 
 def test_the_algorithms_are_the_same_everywhere() -> None:
     assert set(_core.ALGORITHMS) == set(get_args(choices.Algorithm)) == words(_spec.AlgorithmSpec)
+    assert tuple(ALGORITHMS) == get_args(choices.Algorithm)
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_the_options_of_an_algorithm_are_those_of_its_spec(algorithm: choices.Algorithm) -> None:
+    spec = resolve("FrozenLake-v1", {"algorithm": algorithm, "discretizer": "identity"}).spec()["algorithm"]
+    (typed,) = [member for member in get_args(_spec.AlgorithmSpec) if algorithm in tags(member)]
+    assert set(spec) == set(get_type_hints(typed))
+    assert spec["type"] == algorithm
 
 
 def test_the_discretizers_are_the_same_but_for_edges_which_are_sent_as_bins() -> None:

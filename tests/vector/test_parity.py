@@ -97,7 +97,7 @@ LIMITS = {name: limit for name in IDS if (limit := gym.spec(name).max_episode_st
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("name", LIMITS)
 def test_an_episode_is_truncated_at_the_registered_time_limit(name: str, mode: Any) -> None:
-    kwargs = {"is_slippery": False} if "FrozenLake" in name else {}
+    kwargs: dict[str, Any] = {"is_slippery": False} if "FrozenLake" in name else {}
     vectors = LockstepVectorEnv(name, 2, mode, **kwargs)
     vectors.reset(seed=5)
     truncated = 0

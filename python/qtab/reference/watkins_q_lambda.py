@@ -12,7 +12,7 @@ from qtab.reference.traces import apply_td_error, decay, mark
 def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    options = EligibilityTraces.of("watkins_q_lambda", config)
+    options = EligibilityTraces.of(config)
     Q = task.table()
 
     for _ in task.episodes():
