@@ -32,11 +32,11 @@ def test_ctrl_c_between_episodes_keeps_the_finished_ones(settings):
     done = in_a_process(f"""
 once_it_trains(ctrl_c)
 try:
-    qtab.train("MountainCar-v0", episodes=10**9, seed=0, {settings})
+    qtab.train("MountainCar-v0", episodes=10**8, seed=0, {settings})
 except KeyboardInterrupt as interrupt:
     run = interrupt.run
     count = len(run.episode_returns)
-    again = qtab.train("MountainCar-v0", episodes=10**9, seed=0, callback=lambda progress: False,
+    again = qtab.train("MountainCar-v0", episodes=10**8, seed=0, callback=lambda progress: False,
                        callback_every=count, bit_generator=run.config.bit_generator)
     report(run, same=again.episode_returns.tobytes() == run.episode_returns.tobytes())
 """)

@@ -9,6 +9,8 @@ DEFAULT_LIMIT = 4 * 2**30
 """The limit in bytes where the memory of the machine is unknown."""
 BYTES_PER_EPISODE = 8 + 8 + 1
 """The size of an episode's return, length and termination flag."""
+BYTES_PER_RUN = 256
+"""About the size of what is kept of a run beside its episodes and tables, such as its seed in Python and in Rust."""
 
 
 def memory_limit(value: int | None) -> int:

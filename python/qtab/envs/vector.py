@@ -61,7 +61,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         **kwargs: Any,
     ) -> None:
         self.num_envs = checks.integer("num_envs", num_envs, least=1)
-        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self._autoreset_mode = AutoresetMode(autoreset_mode)
         self.copy = bool(copy)
         # A spec instead of an id: Gymnasium would warn of an old version a second time.
         spec = gym.spec(PREFIX + name)
@@ -145,6 +145,18 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         if max(abs(low), abs(high)) > _MAX_RESET_BOUND:
             self._fall_back_to_python()
         return low, high
+
+    @property
+    def autoreset_mode(self) -> AutoresetMode:
+        """What happens after the end of an episode. It is chosen when the vector environment is made."""
+        return self._autoreset_mode
+
+    @autoreset_mode.setter
+    def autoreset_mode(self, mode: AutoresetMode | str) -> None:
+        raise AttributeError(
+            "autoreset_mode cannot be assigned: it is chosen when the vector environment is made, with "
+            f"make_vec(..., vector_kwargs={{'autoreset_mode': {getattr(mode, 'value', mode)!r}}})"
+        )
 
     @property  # type: ignore[misc]
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]

@@ -5,7 +5,7 @@ import os
 import pickle
 import signal
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -24,7 +24,7 @@ POLL_SECONDS = 0.2
 
 
 def train_in_processes(
-    env: Any, settings: Mapping[str, Any], seeds: tuple[int, ...], results: Results, workers: int
+    env: Any, settings: Mapping[str, Any], seeds: Sequence[int], results: Results, workers: int
 ) -> list[tuple[int, Exception]]:
     """Trains each seed in a worker process and fills in the results; returns the runs that failed first, if any."""
     # cloudpickle also takes functions of the main script, as in Gymnasium's vector environments.
@@ -136,7 +136,8 @@ def _train(seed: int, keep_tables: bool) -> Any:
         try:
             trainer = _core.Trainer(resolved.spec(), resolved.seed)
             train_unless_stopped(trainer, resolved.config.episodes)
-            return *trainer.episodes(), trainer.tables() if keep_tables else None
+            tables = trainer.tables() if keep_tables else None
+            return *trainer.take_episodes(), tables
         finally:
             resolved.close()
     except Exception as error:

@@ -1,5 +1,6 @@
 """A run that is completely described: what training takes."""
 
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -16,6 +17,7 @@ from qtab.config.schedules import LearningRate
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.envs.registry import EnvEntry
+from qtab.training.exclusive import exclusively
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,10 @@ class NativeEnvironment:
     def spec(self) -> NativeEnvSpec:
         """Returns the environment as the extension takes it."""
         return {"type": "native", "env": self.parameters}
+
+    def exclusively(self) -> AbstractContextManager[None]:
+        """Each run has an environment of its own."""
+        return nullcontext()
 
     def close(self) -> None:
         """There is nothing to close."""
@@ -50,6 +56,10 @@ class PythonEnvironment:
             "first_action": self.actions.first,
             "actions": self.actions.arrays(),
         }
+
+    def exclusively(self) -> AbstractContextManager[None]:
+        """Keeps other threads from training in the same environment."""
+        return exclusively(self.env)
 
     def close(self) -> None:
         """Closes the environment, unless it is the user's."""

@@ -12,6 +12,7 @@ from typing_extensions import Unpack
 
 from qtab import _core
 from qtab._utils import checks
+from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
@@ -23,6 +24,7 @@ from qtab.results.run import Recording, Run
 from qtab.training.callbacks import Callback, EpisodeReader
 from qtab.training.resolve import log_default_limit, resolve
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.run_memory import check_run
 
 CALLBACK_EVERY = 100
 
@@ -36,6 +38,7 @@ def train(
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
     progress: bool | None = None,
+    memory_limit: int | None = None,
     **settings: Unpack[Settings],
 ) -> Run:
     """Trains a tabular agent. The same seed gives the table that Gymnasium and NumPy would give, bit for bit.
@@ -54,6 +57,7 @@ def train(
         callback_every: The number of episodes between two calls.
         record: The number of last episodes to keep for replay, in ``run.recordings``.
         progress: Whether to show a progress bar. None shows one on a terminal if the run takes more than a second.
+        memory_limit: The number of bytes that the run may take; None means half of the machine's memory.
         **settings: The settings of the run, explained below.
 
     Returns:
@@ -61,6 +65,8 @@ def train(
 
     Raises:
         gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
+        MemoryError: before the first episode, if the run would take more than ``memory_limit``; during the run, if its
+            recordings do, or if there is not that much memory.
         TypeError: for an argument of the wrong type, or an unknown one.
         ValueError: for an argument out of range, or spaces that do not fit.
         OverflowError: if the values diverge; it names the episode and the likely cause.
@@ -75,7 +81,7 @@ def train(
     resolved = resolve(env, over(base, settings))
     log_default_limit(resolved)
     try:
-        return train_resolved(resolved, callback, callback_every, record, progress)
+        return train_resolved(resolved, callback, callback_every, record, progress, memory_limit)
     finally:
         resolved.close()
 
@@ -86,15 +92,17 @@ def train_resolved(
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
     progress: bool | None = None,
+    memory_limit: int | None = None,
 ) -> Run:
     """Trains a run that is already resolved; see :func:`train`."""
     total = resolved.config.episodes
+    room = check_run(resolved, record, bytes_limit(memory_limit))
     began = time.perf_counter()
-    trainer = _core.Trainer(resolved.spec(), resolved.seed, record)
+    trainer = _core.Trainer(resolved.spec(), resolved.seed, record, min(room, checks.LARGEST_COUNT))
     reader = EpisodeReader(trainer, total)
     done = 0
     try:
-        with ProgressBar(total, "episode", progress) as bar:
+        with resolved.environment.exclusively(), ProgressBar(total, "episode", progress) as bar:
             while done < total:
                 target = min(done + callback_every, total) if callback is not None else total
                 for until in bar.chunks(done, target):
@@ -105,7 +113,8 @@ def train_resolved(
                     if proceed is not None and not proceed:  # NumPy's False stops, too
                         break
     except BaseException as error:
-        _attach(error, _run(resolved, trainer, began))
+        with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
+            _attach(error, _run(resolved, trainer, began))
         raise
     run = _run(resolved, trainer, began)
     overflow = _overflow(run)
@@ -134,17 +143,18 @@ def _overflow(run: Run) -> OverflowError | None:
 
 
 def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float) -> Run:
-    returns, lengths, terminated = trainer.episodes()
-    kept: list[tuple[Any, list[int]]] = trainer.recordings()
+    tables = trainer.tables()
+    returns, lengths, terminated = trainer.take_episodes()
+    kept = trainer.take_recordings()
     first = len(returns) - len(kept)
     generators = generator_states(resolved.config, [start for start, _ in kept])
     recordings = tuple(
-        Recording(first + index, generator, tuple(resolved.actions[column] for column in columns))
+        Recording(first + index, generator, tuple(resolved.actions[column] for column in columns.tolist()))
         for index, (generator, (_, columns)) in enumerate(zip(generators, kept, strict=True))
     )
     return Run(
         config=resolved.config,
-        tables=trainer.tables().reshape(-1, resolved.discretizer.n_rows, len(resolved.actions)),
+        tables=tables.reshape(-1, resolved.discretizer.n_rows, len(resolved.actions)),
         episode_returns=returns,
         episode_lengths=lengths,
         terminated=terminated,

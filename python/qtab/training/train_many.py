@@ -14,17 +14,17 @@ from typing_extensions import Unpack
 from qtab import _core
 from qtab._spec import Results
 from qtab._utils import checks
-from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
+from qtab._utils.memory import BYTES_PER_EPISODE, BYTES_PER_RUN, check_memory
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
-from qtab.config.options import n_tables
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
 from qtab.results.runs import Runs
 from qtab.training.resolve import log_default_limit, resolve
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.run_memory import bytes_in_progress, tables_shape
 
 MakeEnv: TypeAlias = Callable[[], gym.Env]
 
@@ -61,14 +61,15 @@ def train_many(
         ValueError: for an argument out of range, or a repeated seed.
         KeyboardInterrupt: on Ctrl-C. Like any exception that a run raises, it carries the finished runs as ``.run``.
     """
-    numbers = seed_numbers(seeds)
+    limit = bytes_limit(memory_limit)
+    numbers = seed_sequence(seeds, limit)
     workers = thread_count(threads)
     env, base = collect(train_many, env, config, settings)
     overrides = over(base, settings)
     # The largest seed is the one that the bit generator may refuse.
-    resolved = resolve_template(env, {**overrides, "seed": max(numbers)}).with_seed(numbers[0])
+    largest = numbers[-1] if isinstance(numbers, range) else max(numbers)
+    resolved = resolve_template(env, {**overrides, "seed": largest}).with_seed(numbers[0])
     log_default_limit(resolved)
-    limit = bytes_limit(memory_limit)
     began = time.perf_counter()
     results = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
     try:
@@ -88,24 +89,39 @@ def train_many(
     return _runs(resolved, numbers, results, tables, began)
 
 
-def seed_numbers(seeds: Any) -> tuple[int, ...]:
-    """Returns the seeds as Python integers; an integer N means 0 to N - 1.
+def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
+    """Returns the seeds as Python integers; an integer N means 0 to N - 1, and is not made a list.
+
+    Args:
+        seeds: The seeds, as the user gave them.
+        limit: How many bytes all runs may take.
 
     Raises:
+        MemoryError: if there are so many that their runs would take more, however short.
         TypeError: if they are not integers.
         ValueError: if there is none, one is negative, or one appears twice.
     """
     if hasattr(seeds, "__index__") and not np.ndim(seeds):  # an array has an __index__ too
-        return tuple(range(checks.integer("seeds", seeds, least=1)))
+        count = checks.integer("seeds", seeds, least=1)
+        check_memory(f"{count} runs", count * BYTES_PER_RUN, limit)
+        return range(count)
     if isinstance(seeds, (str, bytes)) or not hasattr(seeds, "__iter__"):
         raise TypeError(f"seeds must be an integer or a sequence of integers, got {seeds!r}")
-    numbers = tuple(checks.integer("seeds", seed, least=0) for seed in seeds)
+    numbers: dict[int, None] = {}
+    for seed in seeds:
+        number = checks.integer("seeds", seed, least=0)
+        if number in numbers:
+            raise ValueError(f"seeds must differ from each other, got {number} twice")
+        numbers[number] = None
+        check_memory(f"more than {len(numbers) - 1} runs", len(numbers) * BYTES_PER_RUN, limit)
     if not numbers:
         raise ValueError("seeds must hold at least one seed, got none")
-    if len(set(numbers)) < len(numbers):
-        twice = next(seed for index, seed in enumerate(numbers) if seed in numbers[:index])
-        raise ValueError(f"seeds must differ from each other, got {twice} twice")
-    return numbers
+    return tuple(numbers)
+
+
+def seed_numbers(seeds: Any) -> tuple[int, ...]:
+    """Returns a tuple of the seeds; see :func:`seed_sequence`."""
+    return tuple(seed_sequence(seeds, bytes_limit(None)))
 
 
 def thread_count(threads: int | None) -> int:
@@ -156,10 +172,10 @@ def allocate_results(resolved: ResolvedRun, runs: int, at_once: int, keep_tables
         MemoryError: if they would take more.
     """
     episodes = resolved.config.episodes
-    values = math.prod(_tables_shape(resolved, 1))
-    stored = episodes * BYTES_PER_EPISODE + (8 * values if keep_tables else 0)
-    in_progress = episodes * BYTES_PER_EPISODE + 8 * values
-    check_memory(f"{runs} runs of {episodes} episodes", runs * stored + at_once * in_progress, limit)
+    values = math.prod(tables_shape(resolved, 1))
+    stored = BYTES_PER_RUN + episodes * BYTES_PER_EPISODE + (8 * values if keep_tables else 0)
+    needed = runs * stored + at_once * bytes_in_progress(resolved)
+    check_memory(f"{runs} runs of {episodes} episodes", needed, limit)
     return {
         "returns": np.zeros((runs, episodes)),
         "lengths": np.zeros((runs, episodes), dtype=np.int64),
@@ -190,16 +206,10 @@ def _runs(resolved: ResolvedRun, seeds: Sequence[int], results: Results, keep_ta
         episode_returns=results["returns"][rows],
         episode_lengths=results["lengths"][rows],
         terminated=results["terminated"][rows],
-        tables=tables.reshape(_tables_shape(resolved, len(tables))) if keep_tables else None,
+        tables=tables.reshape(tables_shape(resolved, len(tables))) if keep_tables else None,
         discretizer=resolved.discretizer,
         actions=resolved.actions,
         completed=completed,
         seconds=time.perf_counter() - began,
         versions=versions(),
     )
-
-
-def _tables_shape(resolved: ResolvedRun, runs: int) -> tuple[int, int, int, int]:
-    """The shape of the Q tables of so many runs: (runs, k, rows, actions)."""
-    k = n_tables(resolved.config.algorithm)
-    return runs, k, resolved.discretizer.n_rows, len(resolved.actions)

@@ -124,8 +124,8 @@ def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[
     try:
         trainer = _core.Trainer(resolved.spec(), resolved.seed, record=1)
         trainer.advance(episodes)
-        (_, columns) = trainer.recordings()[-1]
-        return trainer.tables(), [resolved.actions[column] for column in columns]
+        (_, columns) = trainer.take_recordings()[-1]
+        return trainer.tables(), [resolved.actions[column] for column in columns.tolist()]
     finally:
         resolved.close()
 

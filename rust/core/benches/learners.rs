@@ -18,7 +18,10 @@ use qtab_core::learners::{
 use qtab_core::policies::{AnyPolicy, TieBreaking};
 use qtab_core::q_table::TerminalUpdate;
 use qtab_core::schedules::{LearningRate, Schedule};
-use qtab_core::{Budget, Learner, QTable, Task, Trainer};
+use qtab_core::{Budget, Learner, QTable, StopFlag, Task, Trainer};
+
+/// What the benchmarks store is small.
+const FITS: &str = "it fits into memory";
 
 const EPISODES: usize = 100;
 const ACTIONS: usize = 3;
@@ -60,7 +63,7 @@ where
         let run = || {
             let learner = learner(agent(features.len(), n_active));
             let mut trainer = Trainer::new(task(features.clone()), learner, mountain_car_task::agent_rng());
-            trainer.advance(Budget { episodes: EPISODES, steps: u64::MAX }).expect(IN_BOUNDS);
+            trainer.advance(Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
             trainer.episodes().lengths.iter().sum::<i64>() as u64
         };
         self.group.throughput(Throughput::Elements(run()));
@@ -69,7 +72,7 @@ where
 
     /// Benchmarks all learners that work with any features.
     fn all(&mut self) {
-        let traces = |agent: &Agent, cutoff| Traces::new(agent.table.values().len(), cutoff);
+        let traces = |agent: &Agent, cutoff| Traces::new(agent.table.values().len(), cutoff, &StopFlag::new()).expect(FITS);
         let (kind, trace_decay) = (TraceKind::Replacing, TRACE_DECAY);
         self.rule("Q-learning", |_| QLearning);
         self.rule("Sarsa", |_| Sarsa);
@@ -89,9 +92,9 @@ where
 fn grid(criterion: &mut Criterion) {
     let mut grid = Bench { group: criterion.benchmark_group("grid"), features: rounding(), n_active: 1 };
     grid.all();
-    let model = |agent: &Agent| Model::new(agent.table.values().len() / ACTIONS, ACTIONS);
-    grid.rule("Dyna-Q, 10 steps planned", |agent| DynaQ { model: model(agent), planning_steps: 10 });
-    grid.rule("Dyna-Q+, 10 steps planned", |agent| DynaQPlus::new(model(agent), 10, 1e-3));
+    let model = |agent: &Agent| Model::new(agent.table.values().len() / ACTIONS, ACTIONS, &StopFlag::new()).expect(FITS);
+    grid.rule("Dyna-Q, 10 steps planned", |agent| DynaQ::new(model(agent), 10));
+    grid.rule("Dyna-Q+, 10 steps planned", |agent| DynaQPlus::new(model(agent), 10, 1e-3, &StopFlag::new()).expect(FITS));
     grid.group.finish();
 }
 

@@ -109,7 +109,7 @@ fn trainer<R: Rng + Clone>(mut rng: R) -> QLearningRun<R> {
 
 /// Trains to the end and returns the number of steps.
 fn train<R: Rng + Clone>(mut trainer: QLearningRun<R>) -> u64 {
-    trainer.advance(Budget { episodes: EPISODES, steps: u64::MAX }).expect(IN_BOUNDS);
+    trainer.advance(Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
     trainer.episodes().lengths.iter().sum::<i64>() as u64
 }
 
@@ -123,7 +123,7 @@ fn batch_of_runs() -> [QLearningRun<Pcg64>; LANES] {
 
 /// Trains until the first run is finished and returns the number of steps of all.
 fn train_batch(runs: &mut [QLearningRun<Pcg64>; LANES]) -> u64 {
-    QLearningRun::advance_all(runs, Budget { episodes: EPISODES, steps: u64::MAX }).expect(IN_BOUNDS);
+    QLearningRun::advance_all(runs, Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
     runs.iter().flat_map(|run| &run.episodes().lengths).sum::<i64>() as u64
 }
 

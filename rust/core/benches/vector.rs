@@ -17,7 +17,7 @@ where
 {
     let mut rngs: Vec<_> = (0..NUM_ENVS as u32).map(|seed| Pcg64::new(&SeedSequence::new(&[seed]))).collect();
     let actions: Vec<_> = rngs.iter_mut().map(|rng| rng.integers(env.num_actions() as u32) as usize).collect();
-    let mut vector = VectorEnv::new(env, NUM_ENVS, Some(LIMIT), Autoreset::SameStep, 1);
+    let mut vector = VectorEnv::new(env, NUM_ENVS, Some(LIMIT), Autoreset::SameStep, 1).expect("it fits");
     rngs.iter_mut().enumerate().for_each(|(index, rng)| vector.reset(index, None, rng));
     let (mut observations, mut rewards) = (vec![E::Observation::default(); NUM_ENVS], vec![0.0; NUM_ENVS]);
     let (mut terminated, mut truncated) = (vec![false; NUM_ENVS], vec![false; NUM_ENVS]);

@@ -30,7 +30,7 @@
 //!     terminal_update: TerminalUpdate::Assign,
 //! };
 //! let mut trainer = Trainer::new(task, TdLearner { agent, rule: QLearning }, rng);
-//! trainer.advance(Budget { episodes: 100, steps: u64::MAX }).unwrap();
+//! trainer.advance(Budget { episodes: 100, work: u64::MAX }).unwrap();
 //! assert_eq!(trainer.episodes().returns.len(), 100);
 //! ```
 
@@ -40,6 +40,7 @@ pub mod batch;
 pub mod envs;
 pub mod features;
 pub mod learners;
+pub mod memory;
 pub mod numeric;
 pub mod planning;
 pub mod policies;
@@ -47,13 +48,17 @@ pub mod q_table;
 pub mod random;
 pub mod schedules;
 pub mod tasks;
+mod stop_flag;
 mod trainer;
+mod training_error;
 pub mod vector;
 
 pub use envs::Env;
 pub use features::Features;
 pub use learners::Learner;
 pub use q_table::QTable;
+pub use stop_flag::StopFlag;
 pub use tasks::Task;
 pub use trainer::{Budget, EpisodeLog, Trainer};
+pub use training_error::TrainingError;
 pub use vector::VectorEnv;

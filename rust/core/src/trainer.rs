@@ -1,16 +1,19 @@
 //! A training run as a value, and the only training loop.
 
 use crate::learners::Learner;
+use crate::memory::{AllocationError, reserve};
 use crate::random::Rng;
 use crate::tasks::{Next, Task};
+use crate::training_error::TrainingError;
 
 /// How far `advance` goes: it stops at whichever limit it reaches first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
     /// The number of finished episodes, counted from the start of the run.
     pub episodes: usize,
-    /// The number of steps, counted from the call.
-    pub steps: u64,
+    /// The work, counted from the call. A step of a one-step learner on a grid counts as 1, and other steps as much more
+    /// as they cost; see [`Learner::work`]. A call ends after the step that uses up its work.
+    pub work: u64,
 }
 
 /// The results of the finished episodes.
@@ -24,6 +27,17 @@ pub struct EpisodeLog {
     pub terminated: Vec<bool>,
 }
 
+impl EpisodeLog {
+    /// Makes room for all episodes that can finish within a budget, as each takes a step: the loop then cannot fail.
+    fn reserve(&mut self, budget: Budget) -> Result<(), AllocationError> {
+        let missing = budget.episodes.saturating_sub(self.returns.len()) as u64;
+        let count = missing.min(budget.work) as usize;
+        reserve(&mut self.returns, count)?;
+        reserve(&mut self.lengths, count)?;
+        reserve(&mut self.terminated, count)
+    }
+}
+
 /// An unfinished episode.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EpisodeState<S, R> {
@@ -34,6 +48,8 @@ pub(crate) struct EpisodeState<S, R> {
     pub(crate) action: usize,
     pub(crate) episode_return: f64,
     pub(crate) length: i64,
+    /// What followed the last step, if the learner has not finished learning from it.
+    pub(crate) unfinished: Option<Next<R>>,
 }
 
 /// A task, a learner and the agent's random generator.
@@ -73,34 +89,60 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         if self.episode.is_some() { finished } else { finished.saturating_sub(1) }
     }
 
+    /// Takes the finished episodes out. The run cannot be continued.
+    pub fn take_episodes(&mut self) -> EpisodeLog {
+        std::mem::take(&mut self.episodes)
+    }
+
     /// Trains until the budget is used up. The next call resumes exactly where this one stopped. A learner that has
     /// diverged stops after that episode.
     ///
     /// # Errors
-    /// The task's error. What was learned before is kept; the episode in which it happened is not counted.
-    pub fn advance(&mut self, budget: Budget) -> Result<(), T::Error> {
+    /// The task's error; `Allocation` if the results do not fit into memory. What was learned before is kept; the episode
+    /// in which it happened is not counted.
+    pub fn advance(&mut self, budget: Budget) -> Result<(), TrainingError<T::Error>> {
+        self.reserve(budget)?;
         // The generator and the episode are local variables: behind `self` each step would load and store them.
         let mut rng = self.rng.clone();
         let result = self.advance_with(&mut rng, budget);
         self.rng = rng;
-        result
+        result.map_err(TrainingError::Task)
+    }
+
+    /// Makes room for what the run stores within a budget.
+    pub(crate) fn reserve(&mut self, budget: Budget) -> Result<(), AllocationError> {
+        self.episodes.reserve(budget)?;
+        self.learner.reserve(budget.work)
     }
 
     #[inline]
     fn advance_with(&mut self, rng: &mut R, budget: Budget) -> Result<(), T::Error> {
-        let mut steps = budget.steps;
-        while steps > 0 && self.episodes.returns.len() < budget.episodes && !self.learner.diverged() {
+        let mut work = i64::try_from(budget.work).unwrap_or(i64::MAX);
+        while work > 0
+            && self.episodes.returns.len() < budget.episodes
+            && (self.learner.is_unfinished() || !self.learner.diverged())
+        {
             let episode = match self.episode.take() {
+                Some(episode @ EpisodeState { unfinished: Some(next), .. }) => {
+                    self.finish_step(episode, next, rng);
+                    work -= self.learner.work().cast_signed();
+                    continue;
+                }
                 Some(episode) => episode,
                 None => self.begin_episode(rng)?,
             };
-            let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length } = episode;
+            let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length, .. } = episode;
             loop {
                 let transition = self.task.step(&mut state, action)?;
                 episode_return += transition.reward;
                 length += 1;
-                steps -= 1;
                 action = self.learner.learn(active, action, transition.reward, transition.next, rng);
+                work -= (self.learner.work() + self.task.step_work()).cast_signed();
+                if self.learner.is_unfinished() {
+                    let unfinished = Some(transition.next);
+                    self.episode = Some(EpisodeState { state, active, action, episode_return, length, unfinished });
+                    break;
+                }
                 match transition.next {
                     Next::NonTerminal(next_active) => active = next_active,
                     Next::Truncated(_) => {
@@ -112,8 +154,9 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
                         break;
                     }
                 }
-                if steps == 0 {
-                    self.episode = Some(EpisodeState { state, active, action, episode_return, length });
+                if work <= 0 {
+                    let unfinished = None;
+                    self.episode = Some(EpisodeState { state, active, action, episode_return, length, unfinished });
                     break;
                 }
             }
@@ -121,10 +164,30 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         Ok(())
     }
 
+    /// Goes on learning from a step that the learner left unfinished.
+    #[cold]
+    fn finish_step(
+        &mut self,
+        mut episode: EpisodeState<T::State, T::Active>,
+        next: Next<T::Active>,
+        rng: &mut R,
+    ) {
+        episode.action = self.learner.resume(next, rng);
+        if self.learner.is_unfinished() {
+            self.episode = Some(episode);
+            return;
+        }
+        match next {
+            Next::NonTerminal(active) => self.episode = Some(EpisodeState { active, unfinished: None, ..episode }),
+            Next::Truncated(_) => self.finish_episode(episode.episode_return, episode.length, false),
+            Next::Terminal => self.finish_episode(episode.episode_return, episode.length, true),
+        }
+    }
+
     pub(crate) fn begin_episode(&mut self, rng: &mut impl Rng) -> Result<EpisodeState<T::State, T::Active>, T::Error> {
         let (state, active) = self.task.reset()?;
         let action = self.learner.first_action(active, rng);
-        Ok(EpisodeState { state, active, action, episode_return: 0.0, length: 0 })
+        Ok(EpisodeState { state, active, action, episode_return: 0.0, length: 0, unfinished: None })
     }
 
     pub(crate) fn finish_episode(&mut self, episode_return: f64, length: i64, terminated: bool) {
@@ -132,5 +195,83 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         self.episodes.returns.push(episode_return);
         self.episodes.lengths.push(length);
         self.episodes.terminated.push(terminated);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::envs::classic_control::MountainCar;
+    use crate::features::{Axis, Rounding};
+    use crate::learners::{Agent, DynaQ, DynaQPlus, Model, NStepSarsa, TdLearner, TruncationHandling, UpdateRule};
+    use crate::policies::{AnyPolicy, TieBreaking};
+    use crate::q_table::{QTable, TerminalUpdate};
+    use crate::random::{Pcg64, SeedSequence};
+    use crate::schedules::{LearningRate, Schedule};
+    use crate::stop_flag::StopFlag;
+    use crate::tasks::NativeTask;
+
+    const ROWS: usize = 19 * 15;
+    const ACTIONS: usize = 3;
+
+    /// Two episodes with a rule whose steps are more work than a learner does in one call, in one part and in the
+    /// smallest parts.
+    fn check_parts<U>(rule: &U, steps: u64, terminate: bool)
+    where
+        U: UpdateRule<[u32; 1], Agent> + Clone,
+    {
+        let seed = SeedSequence::new(&[3]);
+        let rounding = Rounding::new([Axis::new(-1.2_f32, 0.6, 10.0), Axis::new(-0.07_f32, 0.07, 100.0)]);
+        let task = NativeTask::new(MountainCar::default(), rounding, Some(steps), Pcg64::new(&seed));
+        let agent = Agent {
+            table: QTable::new(vec![0.0; ROWS * ACTIONS], ACTIONS),
+            policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.3), ties: TieBreaking::Random },
+            learning_rate: LearningRate::scheduled(Schedule::constant(0.1), 1),
+            discount: 0.9,
+            terminal_update: TerminalUpdate::Target,
+        };
+        let learner = TruncationHandling { learner: TdLearner { agent, rule: rule.clone() }, terminate };
+        let mut whole = Trainer::new(task, learner, Pcg64::new(&seed));
+        let mut in_parts = whole.clone();
+        whole.advance(Budget { episodes: 2, work: u64::MAX }).expect("no bounds are left");
+        let mut parts = 0;
+        while in_parts.episodes().returns.len() < 2 {
+            in_parts.advance(Budget { episodes: 2, work: 1 }).expect("no bounds are left");
+            parts += 1;
+        }
+        assert!(parts > 2 * steps, "every step was done in one part");
+        assert_eq!(in_parts.episodes(), whole.episodes());
+        assert_eq!(in_parts.learner().tables(), whole.learner().tables());
+        assert_eq!(in_parts.rng, whole.rng);
+    }
+
+    #[test]
+    fn a_step_in_parts_is_the_same_step() {
+        let stop = StopFlag::new();
+        let model = || Model::new(ROWS, ACTIONS, &stop).expect("a small model");
+        for terminate in [false, true] {
+            check_parts(&DynaQ::new(model(), 20_000), 4, terminate);
+            check_parts(&DynaQPlus::new(model(), 20_000, 1e-3, &stop).expect("a small model"), 4, terminate);
+            check_parts(&NStepSarsa::new(5000), 2000, terminate);
+        }
+    }
+
+    #[test]
+    fn the_work_of_long_steps_is_counted() {
+        let stop = StopFlag::new();
+        let seed = SeedSequence::new(&[3]);
+        let rounding = Rounding::new([Axis::new(-1.2_f32, 0.6, 10.0), Axis::new(-0.07_f32, 0.07, 100.0)]);
+        let task = NativeTask::new(MountainCar::default(), rounding, None, Pcg64::new(&seed));
+        let agent = Agent {
+            table: QTable::new(vec![0.0; ROWS * ACTIONS], ACTIONS),
+            policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(1.0), ties: TieBreaking::First },
+            learning_rate: LearningRate::scheduled(Schedule::constant(0.1), 1),
+            discount: 0.9,
+            terminal_update: TerminalUpdate::Target,
+        };
+        let rule = DynaQ::new(Model::new(ROWS, ACTIONS, &stop).expect("a small model"), 99);
+        let mut trainer = Trainer::new(task, TdLearner { agent, rule }, Pcg64::new(&seed));
+        trainer.advance(Budget { episodes: 1, work: 1000 }).expect("no bounds are left");
+        assert_eq!(trainer.episode.map(|episode| episode.length), Some(10));
     }
 }

@@ -3,8 +3,10 @@
 use std::fmt::Display;
 
 use pyo3::PyErr;
-use pyo3::exceptions::{PyOverflowError, PyValueError};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError, PyOverflowError, PyValueError};
+use qtab_core::TrainingError;
 use qtab_core::features::OutOfBounds;
+use qtab_core::memory::AllocationError;
 
 /// Why a run ended before its last episode.
 pub(crate) enum RunError {
@@ -12,6 +14,8 @@ pub(crate) enum RunError {
     OutOfBounds(OutOfBounds),
     /// An exception that Python code raised, such as a Python environment's.
     Python(PyErr),
+    /// What the run stores does not fit into memory, or its making was stopped.
+    Allocation(AllocationError),
     /// The action values overflowed in this episode, counted from 0.
     Diverged { episode: usize },
 }
@@ -28,17 +32,53 @@ impl From<PyErr> for RunError {
     }
 }
 
+impl From<AllocationError> for RunError {
+    fn from(error: AllocationError) -> Self {
+        Self::Allocation(error)
+    }
+}
+
+impl<E> From<TrainingError<E>> for RunError
+where
+    RunError: From<E>,
+{
+    fn from(error: TrainingError<E>) -> Self {
+        match error {
+            TrainingError::Task(error) => error.into(),
+            TrainingError::Allocation(error) => error.into(),
+        }
+    }
+}
+
 impl From<RunError> for PyErr {
     fn from(error: RunError) -> Self {
         match error {
             RunError::OutOfBounds(error) => PyValueError::new_err(error.to_string()),
             RunError::Python(error) => error,
+            RunError::Allocation(AllocationError::Stopped) => PyKeyboardInterrupt::new_err(()),
+            RunError::Allocation(AllocationError::OutOfMemory { bytes }) => out_of_memory(bytes),
             RunError::Diverged { episode } => PyOverflowError::new_err(format!(
                 "the action values overflowed in episode {episode} (counted from 0): the updates grow instead of \
                  settling; most likely learning_rate is too large, or trace_decay or discount with these traces"
             )),
         }
     }
+}
+
+/// A `MemoryError`: so many bytes more could not be had.
+pub(crate) fn out_of_memory(bytes: usize) -> PyErr {
+    let size = match bytes {
+        0..1024 => format!("{bytes} bytes"),
+        1024..1_048_576 => format!("{} KiB", bytes >> 10),
+        1_048_576..1_073_741_824 => format!("{} MiB", bytes >> 20),
+        _ => format!("{} GiB", bytes >> 30),
+    };
+    PyMemoryError::new_err(format!("out of memory: {size} more are needed, and there is no room for them"))
+}
+
+/// A failed allocation as a Python exception.
+pub(crate) fn allocation(error: AllocationError) -> PyErr {
+    RunError::from(error).into()
 }
 
 /// A `ValueError` that names the argument, what would fit, and what was given.

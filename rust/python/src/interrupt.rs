@@ -1,37 +1,68 @@
-//! Long calls of pure Rust: detached from the interpreter, interruptible by signals. Every such call goes through here.
+//! Long calls release the interpreter's lock and listen for Ctrl-C.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 use pyo3::prelude::*;
+use qtab_core::StopFlag;
 
-/// How often signals are checked. Ctrl-C takes effect within this time plus the time between two checks of the flag.
-const POLL: Duration = Duration::from_millis(50);
+/// How often signals are checked. Ctrl-C takes effect within this time plus the time between two looks at the flag.
+const POLL: Duration = Duration::from_millis(10);
 
-/// Runs `work` on a thread of its own, while this thread handles signals and other Python threads run. `work` must check
-/// the flag every few thousand steps and return early when it is set; the signal's exception is then raised.
-pub(crate) fn run_interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&AtomicBool) -> T + Send) -> PyResult<T> {
-    let stop = AtomicBool::new(false);
-    let done = AtomicBool::new(false);
-    let caller = thread::current();
-    thread::scope(|scope| {
-        let worker = scope.spawn(|| {
+/// Runs `work` on a thread of its own, while this thread handles signals and other Python threads run. `work` must look
+/// at the flag at least every few milliseconds and return early when it is set; the signal's exception is then raised.
+///
+/// Where no thread can be started, this one does the work, and the flag asks for signals.
+pub(crate) fn run_interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&StopFlag<'_>) -> T + Send) -> PyResult<T> {
+    let (stop, done, caller) = (StopFlag::new(), AtomicBool::new(false), thread::current());
+    // Where the thread can take it, and this one can take it back.
+    let work = Mutex::new(Some(work));
+    let take = || work.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let finished = thread::scope(|scope| {
+        let worker = thread::Builder::new().spawn_scoped(scope, || {
             let _wake = WakeOnDrop { done: &done, caller };
-            work(&stop)
+            take().map(|work| work(&stop))
         });
+        let Ok(worker) = worker else { return Ok(None) };
         let mut signal = Ok(());
         while !done.load(Ordering::Acquire) {
             py.detach(|| thread::park_timeout(POLL));
             if signal.is_ok() {
                 signal = py.check_signals();
-                stop.store(signal.is_err(), Ordering::Release);
+                if signal.is_err() {
+                    stop.set();
+                }
             }
         }
         let result = py.detach(|| worker.join());
         signal.map(|()| result.unwrap_or_else(|panic| resume_unwind(panic)))
-    })
+    })?;
+    match (finished, take()) {
+        (Some(result), _) => Ok(result),
+        (None, Some(work)) => run_polling(|stop| py.detach(|| work(stop))),
+        (None, None) => unreachable!("the work is either done or still to do"),
+    }
+}
+
+/// Runs `work` on this thread. The flag asks for signals whenever `work` looks at it.
+pub(crate) fn run_polling<T>(work: impl FnOnce(&StopFlag<'_>) -> T) -> PyResult<T> {
+    let raised = Mutex::new(None);
+    let poll = || {
+        let signal = Python::attach(|py| py.check_signals());
+        let stopped = signal.is_err();
+        if let Err(error) = signal {
+            *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+        }
+        stopped
+    };
+    let result = work(&StopFlag::polling(&poll));
+    match raised.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        None => Ok(result),
+        Some(error) => Err(error),
+    }
 }
 
 /// Wakes the calling thread when it is dropped, also when `work` panics.

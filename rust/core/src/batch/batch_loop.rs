@@ -30,7 +30,7 @@ where
     A: StepSize,
 {
     /// How many steps the runs must take one by one, because the next step leads one of them to an observation without
-    /// a row; usually 0.
+    /// a row; usually 0. A step is one unit of work.
     type Output = Result<u64, (usize, OutOfBounds)>;
 
     #[inline(always)]
@@ -63,7 +63,7 @@ where
     let Agent { discount, terminal_update, .. } = runs[0].learner.agent;
     let mut result = Ok(0);
     let mut running = true;
-    let mut steps = budget.steps;
+    let mut steps = budget.work;
     while running && steps > 0 {
         let before = lanes.fields;
         let terminal = env.step_soa(&mut lanes.fields, &lanes.action);

@@ -6,6 +6,7 @@ use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, Features, OutOfBounds};
 use crate::schedules::StepSize;
 use crate::trainer::Budget;
+use crate::training_error::TrainingError;
 
 /// With rewards of at most 1 per step, values below this bound cannot reach infinity, so a batch need not check for
 /// divergence.
@@ -13,7 +14,7 @@ const FAR_FROM_OVERFLOW: f64 = 1e300;
 
 /// A run that can be trained together with others of its type.
 pub trait BatchedRun: Sized {
-    /// Advances every run by up to `budget.steps` steps, until one of them has finished `budget.episodes` episodes.
+    /// Advances every run by up to `budget.work` steps, until one of them has finished `budget.episodes` episodes.
     /// Afterwards each run is in the state that it would have after as many steps alone. It can be continued alone or in
     /// any batch.
     ///
@@ -23,7 +24,10 @@ pub trait BatchedRun: Sized {
     /// # Errors
     /// As [`Trainer::advance`](crate::Trainer::advance), with the index of the run that failed. The others can be
     /// continued.
-    fn advance_all<const K: usize>(runs: &mut [Self; K], budget: Budget) -> Result<(), (usize, OutOfBounds)>;
+    fn advance_all<const K: usize>(
+        runs: &mut [Self; K],
+        budget: Budget,
+    ) -> Result<(), (usize, TrainingError<OutOfBounds>)>;
 }
 
 impl<E, F, A, const N: usize, const M: usize> BatchedRun for SimdTrainer<E, F, N, A>
@@ -32,16 +36,23 @@ where
     F: BatchFeatures<M>,
     A: StepSize,
 {
-    fn advance_all<const K: usize>(runs: &mut [Self; K], budget: Budget) -> Result<(), (usize, OutOfBounds)> {
+    fn advance_all<const K: usize>(
+        runs: &mut [Self; K],
+        budget: Budget,
+    ) -> Result<(), (usize, TrainingError<OutOfBounds>)> {
         if runs.iter().any(|run| run.episodes.returns.len() >= budget.episodes) {
             return Ok(());
         }
-        let mut steps = budget.steps;
+        for (lane, run) in runs.iter_mut().enumerate() {
+            run.reserve(budget).map_err(|error| (lane, error.into()))?;
+        }
+        let mut work = budget.work;
         if runs[0].task.env.is_exact() && runs.iter().all(|run| compatible(run, &runs[0])) {
-            steps = pulp::Arch::new().dispatch(BatchLoop { runs, budget })?;
+            let advanced = pulp::Arch::new().dispatch(BatchLoop { runs, budget });
+            work = advanced.map_err(|(lane, error)| (lane, TrainingError::Task(error)))?;
         }
         let mut lanes = runs.iter_mut().enumerate();
-        lanes.try_for_each(|(lane, run)| run.advance(Budget { steps, ..budget }).map_err(|error| (lane, error)))
+        lanes.try_for_each(|(lane, run)| run.advance(Budget { work, ..budget }).map_err(|error| (lane, error)))
     }
 }
 

@@ -85,6 +85,7 @@ impl<const M: usize, const K: usize> EpisodeLanes<M, K> {
             action: self.action[lane],
             episode_return: self.episode_return[lane],
             length: self.elapsed[lane].cast_signed(),
+            unfinished: None,
         })
     }
 }

@@ -89,8 +89,8 @@ fn check<E, F, A, const N: usize, const M: usize, const K: usize>(
     A: StepSize,
 {
     let mut runs = seeds.map(&make);
-    let failed = chunks.iter().find_map(|&steps| SimdTrainer::advance_all(&mut runs, Budget { episodes, steps }).err());
-    let end = Budget { episodes, steps: u64::MAX };
+    let failed = chunks.iter().find_map(|&work| SimdTrainer::advance_all(&mut runs, Budget { episodes, work }).err());
+    let end = Budget { episodes, work: u64::MAX };
     for (lane, (mut run, seed)) in runs.into_iter().zip(seeds).enumerate() {
         let result = match failed {
             Some((failed, error)) if failed == lane => Err(error),
@@ -138,10 +138,10 @@ fn each_run_keeps_its_learning_rate() {
 fn an_observation_without_a_row_fails_as_in_a_single_run() {
     let fast = MountainCar { max_speed: 1.0, force: 0.1, ..MountainCar::default() };
     let settings = Settings { epsilon: 0.0, ..DEFAULT };
-    assert!(mountain_car(fast, settings, 0).advance(Budget { episodes: 20, steps: u64::MAX }).is_err());
+    assert!(mountain_car(fast, settings, 0).advance(Budget { episodes: 20, work: u64::MAX }).is_err());
     check([0, 1, 2, 3], |seed| mountain_car(fast, settings, seed), 20, &[9, u64::MAX]);
     let weightless = CartPole { total_mass: 0.0, ..CartPole::default() };
-    assert!(cart_pole(weightless, settings, 0).advance(Budget { episodes: 20, steps: u64::MAX }).is_err());
+    assert!(cart_pole(weightless, settings, 0).advance(Budget { episodes: 20, work: u64::MAX }).is_err());
     check([0, 1, 2, 3], |seed| cart_pole(weightless, settings, seed), 20, &[9, u64::MAX]);
 }
 

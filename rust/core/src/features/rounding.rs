@@ -21,7 +21,7 @@ impl<T: Float> Axis<T> {
     /// Cells from `low` to `high`, both included, with `scale` cells per unit.
     pub fn new(low: T, high: T, scale: f64) -> Self {
         let last = ((high - low).into() * scale).round_ties_even();
-        Self { low, scale, size: last as u32 + 1 }
+        Self { low, scale, size: (last as u32).saturating_add(1) }
     }
 
     /// The number of cells.

@@ -70,6 +70,11 @@ impl<R: Copy + AsRef<[u32]>> Learner<R> for DoubleQLearning {
         if let Next::NonTerminal(next_state) = next { self.choose(next_state.as_ref(), rng) } else { 0 }
     }
 
+    #[inline]
+    fn work(&self) -> u64 {
+        self.agent.work()
+    }
+
     fn end_episode(&mut self) {
         self.agent.end_episode();
         self.second_learning_rate.end_episode();

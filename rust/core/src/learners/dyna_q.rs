@@ -1,6 +1,6 @@
 //! Dyna-Q: Q-learning that also learns from a model (R. Sutton, 1990; Sutton & Barto, the box in section 8.2).
 
-use super::common::{Agent, Model, ModelEntry, UpdateRule, single_row};
+use super::common::{Agent, Model, ModelEntry, PlanningProgress, UpdateRule, single_row};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -17,6 +17,15 @@ pub struct DynaQ {
     pub model: Model,
     /// The number of planning updates per step, n.
     pub planning_steps: u32,
+    /// The planning of the last step.
+    progress: PlanningProgress,
+}
+
+impl DynaQ {
+    /// An update rule before the first step.
+    pub fn new(model: Model, planning_steps: u32) -> Self {
+        Self { model, planning_steps, progress: PlanningProgress::default() }
+    }
 }
 
 impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
@@ -33,26 +42,41 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
         let (row, entry) = (single_row(&state), ModelEntry::new(reward, &next));
         agent.update_from_entry(row, action, entry);
         self.model.record(row, action, entry);
-        for _ in 0..self.planning_steps {
+        self.progress.begin(self.planning_steps);
+        self.resume(agent, next, rng)
+    }
+
+    fn work(&self, agent: &Agent) -> u64 {
+        self.progress.work(agent)
+    }
+
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.progress.is_unfinished()
+    }
+
+    fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
+        for _ in 0..self.progress.take(agent) {
             let row = self.model.sample_state(rng);
             let action = self.model.sample_action(row, rng);
             if let Some(entry) = self.model.entry(row, action) {
                 agent.update_from_entry(row, action, entry);
             }
         }
-        agent.next_action(next, rng)
+        if self.progress.is_unfinished() { 0 } else { agent.next_action(next, rng) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::StopFlag;
     use crate::learners::common::test_support::{agent, rng};
     use crate::learners::common::{Learner, TdLearner};
 
     #[test]
     fn planning_repeats_the_only_transition() {
-        let rule = DynaQ { model: Model::new(2, 2), planning_steps: 2 };
+        let rule = DynaQ::new(Model::new(2, 2, &StopFlag::new()).expect("a few pairs"), 2);
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng());
         // Three updates with α = 0.5 towards -1 + 0.5 · 3: 0.75, 0.625, 0.5625

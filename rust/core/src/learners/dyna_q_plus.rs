@@ -1,6 +1,8 @@
 //! Dyna-Q+: Dyna-Q with an exploration bonus (R. Sutton, 1990; Sutton & Barto, section 8.3).
 
-use super::common::{Agent, Model, ModelEntry, UpdateRule, single_row};
+use super::common::{Agent, Model, ModelEntry, PlanningProgress, UpdateRule, single_row};
+use crate::StopFlag;
+use crate::memory::{AllocationError, filled};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -19,13 +21,23 @@ pub struct DynaQPlus {
     now: u64,
     /// The step at which each pair was last tried.
     last_tried: Vec<u64>,
+    /// The planning of the last step.
+    progress: PlanningProgress,
 }
 
 impl DynaQPlus {
     /// An update rule before the first step.
-    pub fn new(model: Model, planning_steps: u32, time_weight: f64) -> Self {
-        let last_tried = vec![0; model.num_pairs()];
-        Self { model, planning_steps, time_weight, now: 0, last_tried }
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn new(
+        model: Model,
+        planning_steps: u32,
+        time_weight: f64,
+        stop: &StopFlag<'_>,
+    ) -> Result<Self, AllocationError> {
+        let last_tried = filled(&0, model.num_pairs(), stop)?;
+        Ok(Self { model, planning_steps, time_weight, now: 0, last_tried, progress: PlanningProgress::default() })
     }
 }
 
@@ -45,7 +57,21 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
         self.last_tried[agent.table.weight_index(row, action)] = self.now;
         agent.update_from_entry(row, action, entry);
         self.model.record(row, action, entry);
-        for _ in 0..self.planning_steps {
+        self.progress.begin(self.planning_steps);
+        self.resume(agent, next, rng)
+    }
+
+    fn work(&self, agent: &Agent) -> u64 {
+        self.progress.work(agent)
+    }
+
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.progress.is_unfinished()
+    }
+
+    fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
+        for _ in 0..self.progress.take(agent) {
             let row = self.model.sample_state(rng);
             let action = rng.integers(agent.table.num_actions() as u32) as usize;
             let ModelEntry { reward, next } =
@@ -54,7 +80,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
             let reward = reward + self.time_weight * elapsed.sqrt();
             agent.update_from_entry(row, action, ModelEntry { reward, next });
         }
-        agent.next_action(next, rng)
+        if self.progress.is_unfinished() { 0 } else { agent.next_action(next, rng) }
     }
 }
 
@@ -66,7 +92,7 @@ mod tests {
 
     #[test]
     fn an_action_that_was_not_tried_for_long_gains_value() {
-        let rule = DynaQPlus::new(Model::new(1, 2), 64, 1.0);
+        let rule = DynaQPlus::new(Model::new(1, 2, &StopFlag::new()).expect("a few pairs"), 64, 1.0, &StopFlag::new()).expect("a few pairs");
         let mut learner = TdLearner { agent: agent(&[0.0, 0.0]), rule };
         learner.learn([0], 0, 0.0, Next::Terminal, &mut rng());
         // Action 1 was never tried: it is assumed to lead back with κ √1, so its value tends to v = 1 + 0.5 v = 2.

@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-use super::common::{Agent, UpdateRule};
+use super::common::{Agent, MAX_WORK_PER_CALL, UpdateRule, VALUES_PER_WORK};
+use crate::memory::{AllocationError, out_of_memory};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -24,6 +25,13 @@ pub struct NStepSarsa<R> {
     n: usize,
     /// The last visits, oldest first, at most n.
     visits: VecDeque<Visit<R>>,
+    /// What the returns of the last pairs of a finished episode end with: the pair after the newest reward, or `None`
+    /// after a terminal state.
+    bootstrap: Option<(R, usize)>,
+    /// Whether the episode is finished and pairs still await their updates.
+    finishing: bool,
+    /// The work of the last call.
+    work: u64,
 }
 
 impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
@@ -33,10 +41,16 @@ impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
     /// If `n` is 0.
     pub fn new(n: usize) -> Self {
         assert!(n > 0, "n_steps must be at least 1, got 0");
-        Self { n, visits: VecDeque::with_capacity(n) }
+        Self { n, visits: VecDeque::new(), bootstrap: None, finishing: false, work: 1 }
+    }
+
+    /// The work of an update.
+    fn update_work(&self, agent: &Agent) -> u64 {
+        agent.work() + self.visits.len() as u64 / VALUES_PER_WORK
     }
 
     /// Updates the oldest pair. `bootstrap` is the pair after the newest reward, or `None` after a terminal state.
+    #[inline]
     fn update_oldest(&mut self, agent: &mut Agent, bootstrap: Option<(R, usize)>) {
         let (mut target, mut power) = (0.0, 1.0);
         for visit in &self.visits {
@@ -51,10 +65,14 @@ impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
         }
     }
 
-    fn update_all(&mut self, agent: &mut Agent, bootstrap: Option<(R, usize)>) {
-        while !self.visits.is_empty() {
-            self.update_oldest(agent, bootstrap);
+    /// Updates the last pairs of an episode, or a part of them where they are many.
+    fn finish(&mut self, agent: &mut Agent) {
+        self.work = 1;
+        while !self.visits.is_empty() && self.work < MAX_WORK_PER_CALL {
+            self.work += self.update_work(agent);
+            self.update_oldest(agent, self.bootstrap);
         }
+        self.finishing = !self.visits.is_empty();
     }
 }
 
@@ -72,11 +90,36 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for NStepSarsa<R> {
         self.visits.push_back(Visit { rows: state, action, reward });
         let bootstrap = agent.sample_next(next, rng);
         if !matches!(next, Next::NonTerminal(_)) {
-            self.update_all(agent, bootstrap);
+            self.bootstrap = bootstrap;
+            self.finish(agent);
         } else if self.visits.len() == self.n {
+            self.work = self.update_work(agent);
             self.update_oldest(agent, bootstrap);
+        } else {
+            self.work = 1;
         }
         bootstrap.map_or(0, |(_, next_action)| next_action)
+    }
+
+    #[inline]
+    fn work(&self, _agent: &Agent) -> u64 {
+        self.work
+    }
+
+    /// An episode has as many pairs as steps, and at most n of them wait.
+    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
+        let count = ((self.n - self.visits.len()) as u64).min(work) as usize;
+        self.visits.try_reserve(count).map_err(out_of_memory::<Visit<R>>(count))
+    }
+
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.finishing
+    }
+
+    fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
+        self.finish(agent);
+        self.bootstrap.map_or(0, |(_, next_action)| next_action)
     }
 }
 

@@ -45,6 +45,11 @@ where
             }
         }
     }
+
+    #[inline]
+    fn work(&self, agent: &Agent<N, P, A>) -> u64 {
+        agent.work()
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Sarsa(λ) (G. Rummery and M. Niranjan, 1994; Sutton & Barto, the box in section 12.7).
 
-use super::common::{Agent, TraceKind, Traces, UpdateRule};
+use super::common::{Agent, TraceKind, Traces, UpdateRule, VALUES_PER_WORK};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -46,6 +46,11 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for SarsaLambda {
         next_action
     }
 
+    #[inline]
+    fn work(&self, agent: &Agent) -> u64 {
+        agent.work() + self.traces.len() as u64 / VALUES_PER_WORK
+    }
+
     fn end_episode(&mut self) {
         self.traces.clear();
     }
@@ -54,12 +59,13 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for SarsaLambda {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::StopFlag;
     use crate::learners::common::test_support::{agent, rng};
     use crate::learners::common::{Learner, TdLearner};
 
     #[test]
     fn an_error_updates_earlier_pairs_along_the_traces() {
-        let rule = SarsaLambda { traces: Traces::new(4, 0.0), kind: TraceKind::Accumulating, trace_decay: 0.5 };
+        let rule = SarsaLambda { traces: Traces::new(4, 0.0, &StopFlag::new()).expect("a few weights"), kind: TraceKind::Accumulating, trace_decay: 0.5 };
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         // δ = -1 + 0.5 · 3 - 1
         assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);

@@ -1,6 +1,6 @@
 //! True online Sarsa(λ), with dutch traces (H. van Seijen et al., 2016; Sutton & Barto, the box in section 12.7).
 
-use super::common::{Agent, Traces, UpdateRule};
+use super::common::{Agent, Traces, UpdateRule, VALUES_PER_WORK};
 use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
@@ -66,6 +66,11 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
         next_action
     }
 
+    #[inline]
+    fn work(&self, agent: &Agent) -> u64 {
+        agent.work() + self.traces.len() as u64 / VALUES_PER_WORK
+    }
+
     fn end_episode(&mut self) {
         self.q_old = 0.0;
         self.traces.clear();
@@ -75,11 +80,12 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::StopFlag;
     use crate::learners::common::test_support::{agent, rng};
     use crate::learners::common::{Learner, TdLearner};
 
     fn learner(values: &[f64]) -> TdLearner<TrueOnlineSarsaLambda> {
-        TdLearner { agent: agent(values), rule: TrueOnlineSarsaLambda::new(Traces::new(values.len(), 0.0), 0.5) }
+        TdLearner { agent: agent(values), rule: TrueOnlineSarsaLambda::new(Traces::new(values.len(), 0.0, &StopFlag::new()).expect("a few weights"), 0.5) }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Watkins's Q(λ) (C. Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
 
-use super::common::{Agent, TraceKind, Traces, UpdateRule};
+use super::common::{Agent, TraceKind, Traces, UpdateRule, VALUES_PER_WORK};
 use crate::numeric::maximum;
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -54,6 +54,11 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
         next_action
     }
 
+    #[inline]
+    fn work(&self, agent: &Agent) -> u64 {
+        agent.work() + self.traces.len() as u64 / VALUES_PER_WORK
+    }
+
     fn end_episode(&mut self) {
         self.traces.clear();
     }
@@ -62,6 +67,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::StopFlag;
     use crate::learners::common::test_support::{agent, rng};
     use crate::learners::common::{Learner, TdLearner};
     use crate::policies::{AnyPolicy, TieBreaking};
@@ -70,7 +76,7 @@ mod tests {
     fn learner(epsilon: f64) -> TdLearner<WatkinsQLambda> {
         let mut agent = agent(&[1.0, 0.0, 2.0, 3.0]);
         agent.policy = AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(epsilon), ties: TieBreaking::First };
-        let rule = WatkinsQLambda { traces: Traces::new(4, 0.0), kind: TraceKind::Replacing, trace_decay: 0.5 };
+        let rule = WatkinsQLambda { traces: Traces::new(4, 0.0, &StopFlag::new()).expect("a few weights"), kind: TraceKind::Replacing, trace_decay: 0.5 };
         TdLearner { agent, rule }
     }
 

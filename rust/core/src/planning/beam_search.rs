@@ -4,10 +4,11 @@
 //! The first step that reaches the goal completes a route, which can be driven. The route is not proven to be shortest.
 
 use std::mem::swap;
-use std::sync::atomic::{AtomicBool, Ordering};
+use crate::StopFlag;
 
 use super::{CostToGo, PlanningError};
 use crate::envs::Env;
+use crate::memory::{collect, reserve};
 use crate::envs::classic_control::{MOUNTAIN_CAR_RESET_BOUNDS, MountainCar, MountainCarState};
 
 /// The default number of initial positions, which represent the uniform distribution.
@@ -33,7 +34,7 @@ pub fn beam_search(
     position: f64,
     max_steps: u64,
     beam: usize,
-    stop: &AtomicBool,
+    stop: &StopFlag<'_>,
 ) -> Result<Option<Vec<u8>>, PlanningError> {
     let car = heuristic.car();
     let start = MountainCarState { position, velocity: 0.0 };
@@ -43,7 +44,7 @@ pub fn beam_search(
     let mut parents: Vec<Vec<Parent>> = Vec::new();
     let max_steps = if heuristic.is_reachable(start) { max_steps } else { 0 };
     for _ in 0..max_steps {
-        if stop.load(Ordering::Acquire) {
+        if stop.is_set() {
             return Err(PlanningError::Stopped);
         }
         next_layer.clear();
@@ -64,7 +65,8 @@ pub fn beam_search(
         next_layer.sort_by(|a, b| a.steps_to_go.total_cmp(&b.steps_to_go));
         next_layer.truncate(beam);
         swap(&mut layer, &mut next_layer);
-        parents.push(layer.iter().map(|node| node.parent).collect());
+        reserve(&mut parents, 1)?;
+        parents.push(collect(layer.iter().map(|node| node.parent))?);
     }
     Ok(None)
 }
@@ -78,13 +80,13 @@ pub fn greedy_rollout(
     heuristic: &CostToGo,
     position: f64,
     max_steps: u64,
-    stop: &AtomicBool,
+    stop: &StopFlag<'_>,
 ) -> Result<u64, PlanningError> {
     let car = heuristic.car();
     let mut state = MountainCarState { position, velocity: 0.0 };
     let steps = if heuristic.is_reachable(state) { max_steps } else { 0 };
     for taken in 1..=steps {
-        if stop.load(Ordering::Acquire) {
+        if stop.is_set() {
             return Err(PlanningError::Stopped);
         }
         let [position, velocity] = car.observe(&state).map(f64::from);
@@ -133,7 +135,7 @@ fn backtrack(parents: &[Vec<Parent>], (mut index, last): Parent) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    static NO_STOP: AtomicBool = AtomicBool::new(false);
+    static NO_STOP: StopFlag<'static> = StopFlag::new();
 
     fn cost_to_go(car: MountainCar) -> CostToGo {
         CostToGo::new(car, 200, &NO_STOP).expect("not stopped")
@@ -205,7 +207,8 @@ mod tests {
 
     #[test]
     fn the_stop_flag_stops_the_search() {
-        let stop = AtomicBool::new(true);
+        let stop = StopFlag::new();
+    stop.set();
         assert_eq!(CostToGo::new(MountainCar::default(), 200, &stop), Err(PlanningError::Stopped));
         let heuristic = cost_to_go(MountainCar::default());
         assert_eq!(beam_search(&heuristic, -0.5, 200, BEAM, &stop), Err(PlanningError::Stopped));

@@ -1,10 +1,12 @@
 //! The Bellman equations for a transition table, which all methods here share.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use crate::StopFlag;
 
+use super::stop_checks::StopChecks;
 use super::{MAX_SWEEPS, PlanningError};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
+use crate::memory::with_capacity;
 
 /// Values may have converged when a sweep changes none by more than this fraction of the largest: their last bits.
 const CONVERGED: f64 = 4.0 * f64::EPSILON;
@@ -33,10 +35,19 @@ pub(super) fn best_value(mdp: &TabularMdp, state: usize, discount: f64, values: 
 }
 
 /// q(s, a) of all states and actions, the actions of state 0 first.
-pub(super) fn action_values(mdp: &TabularMdp, discount: f64, values: &[f64]) -> Vec<f64> {
-    (0..mdp.num_states())
-        .flat_map(|state| (0..mdp.num_actions()).map(move |action| action_value(mdp, state, action, discount, values)))
-        .collect()
+pub(super) fn action_values(
+    mdp: &TabularMdp,
+    discount: f64,
+    values: &[f64],
+    stop: &StopFlag<'_>,
+) -> Result<Vec<f64>, PlanningError> {
+    let mut checks = StopChecks::new(mdp, stop);
+    let mut q_values = with_capacity(mdp.num_states() * mdp.num_actions())?;
+    for state in 0..mdp.num_states() {
+        q_values.extend((0..mdp.num_actions()).map(|action| action_value(mdp, state, action, discount, values)));
+        checks.state()?;
+    }
+    Ok(q_values)
 }
 
 /// The difference up to which the values of two actions count as equal.
@@ -48,9 +59,11 @@ pub(super) fn tie_tolerance(values: &[f64]) -> f64 {
 /// bits and no longer shrink. Returns the number of sweeps.
 pub(super) fn converge(
     values: &mut [f64],
-    stop: &AtomicBool,
+    mdp: &TabularMdp,
+    stop: &StopFlag<'_>,
     mut backup: impl FnMut(usize, &[f64]) -> f64,
 ) -> Result<u64, PlanningError> {
+    let mut checks = StopChecks::new(mdp, stop);
     let mut previous_change = f64::INFINITY;
     for sweeps in 1..=MAX_SWEEPS {
         let (mut change, mut largest) = (0.0_f64, 0.0_f64);
@@ -59,14 +72,13 @@ pub(super) fn converge(
             change = change.max((value - values[state]).abs());
             largest = largest.max(value.abs());
             values[state] = value;
+            checks.state()?;
         }
         if change == 0.0 || (change <= CONVERGED * largest && change >= previous_change) {
             return Ok(sweeps);
         }
         previous_change = change;
-        if stop.load(Ordering::Acquire) {
-            return Err(PlanningError::Stopped);
-        }
+        checks.now()?;
     }
     Err(PlanningError::NotConverged)
 }

@@ -3,7 +3,7 @@
 //!
 //! Interpolation blurs the edges where one more swing is needed, so the result is a heuristic, not exact.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use crate::StopFlag;
 
 use super::PlanningError;
 use crate::envs::classic_control::{MountainCar, MountainCarState};
@@ -47,7 +47,7 @@ impl CostToGo {
     ///
     /// # Errors
     /// `Stopped` after `stop` was set.
-    pub fn new(car: MountainCar, max_steps: u64, stop: &AtomicBool) -> Result<Self, PlanningError> {
+    pub fn new(car: MountainCar, max_steps: u64, stop: &StopFlag<'_>) -> Result<Self, PlanningError> {
         let horizon = (max_steps as f64).clamp(HORIZON_BOUNDS.0, HORIZON_BOUNDS.1);
         let mut coarser = Self { car, points: [2, 2], steps: vec![0.0; 4], horizon };
         let mut stride = COARSEST_STRIDE;
@@ -64,7 +64,7 @@ impl CostToGo {
     }
 
     /// Value iteration in place: steps(s) ← minₐ 1 + steps(s′).
-    fn converge(&mut self, stop: &AtomicBool) -> Result<(), PlanningError> {
+    fn converge(&mut self, stop: &StopFlag<'_>) -> Result<(), PlanningError> {
         let next_positions: Vec<[GridPosition; NUM_ACTIONS]> = (0..self.steps.len())
             .map(|point| {
                 std::array::from_fn(|action| {
@@ -86,7 +86,7 @@ impl CostToGo {
             if change < CONVERGED {
                 return Ok(());
             }
-            if stop.load(Ordering::Acquire) {
+            if stop.is_set() {
                 return Err(PlanningError::Stopped);
             }
         }

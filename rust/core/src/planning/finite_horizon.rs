@@ -3,12 +3,14 @@
 //! Vₖ(s) = maxₐ Σ p (r + γ Vₖ₋₁(s′)) with V₀ = 0 (M. Puterman, *Markov Decision Processes*, 1994, section 4.5).
 
 use std::mem::swap;
-use std::sync::atomic::{AtomicBool, Ordering};
+use crate::StopFlag;
 
 use super::PlanningError;
+use super::stop_checks::StopChecks;
 use super::bellman::{action_value, action_values};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
+use crate::memory::{filled, reserve};
 use crate::numeric::argmax;
 
 /// The optimal policy under a time limit. It depends on the number of steps to go.
@@ -48,20 +50,18 @@ pub fn finite_horizon(
     mdp: &TabularMdp,
     discount: f64,
     steps: u64,
-    stop: &AtomicBool,
+    stop: &StopFlag<'_>,
 ) -> Result<FiniteHorizon, PlanningError> {
-    let mut values = vec![0.0; mdp.num_states()];
-    let mut returns = values.clone();
-    let (mut next_values, mut next_returns) = (values.clone(), values.clone());
-    let mut row = vec![0.0; mdp.num_actions()];
-    let mut policy = vec![usize::MAX; mdp.num_states()];
+    let zeros = || filled(&0.0, mdp.num_states(), stop);
+    let (mut values, mut returns, mut next_values, mut next_returns) = (zeros()?, zeros()?, zeros()?, zeros()?);
+    let mut row = filled(&0.0, mdp.num_actions(), stop)?;
+    let mut policy = filled(&usize::MAX, mdp.num_states(), stop)?;
+    let mut checks = StopChecks::new(mdp, stop);
     let mut changes = Vec::new();
     let mut sweeps = 0;
     let mut converged = false;
     while sweeps < steps && !converged {
-        if stop.load(Ordering::Acquire) {
-            return Err(PlanningError::Stopped);
-        }
+        checks.now()?;
         sweeps += 1;
         for (state, kept) in policy.iter_mut().enumerate() {
             for (action, value) in row.iter_mut().enumerate() {
@@ -70,10 +70,12 @@ pub fn finite_horizon(
             let best = argmax(&row);
             if row.get(*kept).is_none_or(|&value| value < row[best]) {
                 *kept = best;
+                reserve(&mut changes, 1)?;
                 changes.push(PolicyChange { steps_to_go: sweeps, state, action: best });
             }
             next_values[state] = row[best];
             next_returns[state] = action_value(mdp, state, *kept, 1.0, &returns);
+            checks.state()?;
         }
         swap(&mut values, &mut next_values);
         swap(&mut returns, &mut next_returns);
@@ -81,7 +83,7 @@ pub fn finite_horizon(
         converged = values == next_values && returns == next_returns;
     }
     // With all steps to go, the next state has one step fewer.
-    let q_values = action_values(mdp, discount, &next_values);
+    let q_values = action_values(mdp, discount, &next_values, stop)?;
     let expected_return = expected_value(mdp, &returns);
     Ok(FiniteHorizon { values, q_values, policy, changes, expected_return, sweeps })
 }
@@ -93,16 +95,16 @@ pub fn finite_horizon(
 ///
 /// # Panics
 /// If the policy does not have one action per state, or an action is out of range.
-pub fn policy_return(mdp: &TabularMdp, policy: &[usize], steps: u64, stop: &AtomicBool) -> Result<f64, PlanningError> {
+pub fn policy_return(mdp: &TabularMdp, policy: &[usize], steps: u64, stop: &StopFlag<'_>) -> Result<f64, PlanningError> {
     assert_eq!(policy.len(), mdp.num_states(), "a policy must have one action per state");
-    let mut returns = vec![0.0; mdp.num_states()];
-    let mut next_returns = returns.clone();
+    let (mut returns, mut next_returns) =
+        (filled(&0.0, mdp.num_states(), stop)?, filled(&0.0, mdp.num_states(), stop)?);
+    let mut checks = StopChecks::new(mdp, stop);
     for _ in 0..steps {
-        if stop.load(Ordering::Acquire) {
-            return Err(PlanningError::Stopped);
-        }
+        checks.now()?;
         for (state, &action) in policy.iter().enumerate() {
             next_returns[state] = action_value(mdp, state, action, 1.0, &returns);
+            checks.state()?;
         }
         swap(&mut returns, &mut next_returns);
         if returns == next_returns {

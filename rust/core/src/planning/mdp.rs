@@ -127,14 +127,14 @@ fn outcome(probability: f64, state: usize, reward: f64, terminated: bool) -> Out
 
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::AtomicBool;
+    use crate::StopFlag;
 
     use super::*;
     use crate::envs::toy_text::TaxiState;
     use crate::planning::{finite_horizon, policy_return};
     use crate::random::{Pcg64, SeedSequence};
 
-    static NO_STOP: AtomicBool = AtomicBool::new(false);
+    static NO_STOP: StopFlag<'static> = StopFlag::new();
 
     /// The mean return of a policy over the rows of a Q table, and its standard error, from simulated episodes.
     fn simulated_return<E: Env<Action = usize>>(

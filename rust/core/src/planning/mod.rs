@@ -9,6 +9,7 @@ mod planning_error;
 mod policy_iteration;
 mod proper_policy;
 mod solution;
+mod stop_checks;
 #[cfg(test)]
 mod tests;
 mod value_iteration;

@@ -3,6 +3,8 @@
 use std::error::Error;
 use std::fmt;
 
+use crate::memory::AllocationError;
+
 /// The number of sweeps after which values that still change count as growing without bound.
 pub const MAX_SWEEPS: u64 = 200_000;
 
@@ -11,6 +13,11 @@ pub const MAX_SWEEPS: u64 = 200_000;
 pub enum PlanningError {
     /// The caller set the stop flag.
     Stopped,
+    /// The solution does not fit into memory: so many bytes more could not be allocated.
+    OutOfMemory {
+        /// The number of bytes.
+        bytes: usize,
+    },
     /// The values still change after [`MAX_SWEEPS`] sweeps.
     NotConverged,
     /// No policy is proper: from this state no episode ends, and undiscounted rewards add up without bound.
@@ -23,6 +30,7 @@ impl fmt::Display for PlanningError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stopped => write!(formatter, "planning was stopped"),
+            Self::OutOfMemory { bytes } => write!(formatter, "{bytes} bytes more could not be allocated"),
             Self::NotConverged => write!(formatter, "the values still change after {MAX_SWEEPS} sweeps"),
             Self::NoProperPolicy(state) => write!(formatter, "from state {state} no episode ends"),
             Self::UnboundedReturn(state) => write!(formatter, "from state {state} the return is unbounded"),
@@ -31,3 +39,12 @@ impl fmt::Display for PlanningError {
 }
 
 impl Error for PlanningError {}
+
+impl From<AllocationError> for PlanningError {
+    fn from(error: AllocationError) -> Self {
+        match error {
+            AllocationError::OutOfMemory { bytes } => Self::OutOfMemory { bytes },
+            AllocationError::Stopped => Self::Stopped,
+        }
+    }
+}

@@ -1,11 +1,12 @@
 //! Policy iteration: evaluate and improve a policy until no action is better (Sutton & Barto, section 4.3).
 
-use std::sync::atomic::AtomicBool;
+use crate::StopFlag;
 
 use super::bellman::{action_value, action_values, converge, tie_tolerance};
 use super::{PlanningError, Solution, proper_policy};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
+use crate::memory::{collect, filled};
 use crate::numeric::argmax;
 
 /// An optimal policy and its values. An action is replaced only by one that is better by more than rounding errors, so
@@ -18,19 +19,19 @@ use crate::numeric::argmax;
 ///
 /// # Errors
 /// Without discounting `NoProperPolicy` and `UnboundedReturn`; `NotConverged`; `Stopped` after `stop` was set.
-pub fn policy_iteration(mdp: &TabularMdp, discount: f64, stop: &AtomicBool) -> Result<Solution, PlanningError> {
+pub fn policy_iteration(mdp: &TabularMdp, discount: f64, stop: &StopFlag<'_>) -> Result<Solution, PlanningError> {
     let num_actions = mdp.num_actions();
-    let proper = proper_policy::proper_policy(mdp, |_, _| true);
+    let proper = proper_policy::proper_policy(mdp, stop, |_, _| true)?;
     if let (true, Some(state)) = (discount == 1.0, endless_state(mdp, &proper)) {
         return Err(PlanningError::NoProperPolicy(state));
     }
-    let mut policy: Vec<usize> = proper.iter().map(|action| action.unwrap_or(0)).collect();
-    let mut values = vec![0.0; mdp.num_states()];
+    let mut policy: Vec<usize> = collect(proper.iter().map(|action| action.unwrap_or(0)))?;
+    let mut values = filled(&0.0, mdp.num_states(), stop)?;
     let mut sweeps = 0;
     loop {
         sweeps +=
-            converge(&mut values, stop, |state, values| action_value(mdp, state, policy[state], discount, values))?;
-        let q_values = action_values(mdp, discount, &values);
+            converge(&mut values, mdp, stop, |state, values| action_value(mdp, state, policy[state], discount, values))?;
+        let q_values = action_values(mdp, discount, &values, stop)?;
         let tie_tolerance = tie_tolerance(&values);
         let mut stable = true;
         for (state, row) in q_values.chunks(num_actions).enumerate() {
@@ -47,7 +48,7 @@ pub fn policy_iteration(mdp: &TabularMdp, discount: f64, stop: &AtomicBool) -> R
             return Ok(Solution { values, q_values, policy, sweeps });
         }
         if discount == 1.0 {
-            let ends = proper_policy::proper_policy(mdp, |state, action| policy[state] == action);
+            let ends = proper_policy::proper_policy(mdp, stop, |state, action| policy[state] == action)?;
             if let Some(state) = (0..mdp.num_states()).find(|&state| proper[state].is_some() && ends[state].is_none()) {
                 return Err(PlanningError::UnboundedReturn(state));
             }

@@ -1,11 +1,13 @@
 //! Proper policies, which end every episode. Without discounting only they have finite values.
 
-use std::sync::atomic::AtomicBool;
+use crate::StopFlag;
 
 use super::PlanningError;
 use super::bellman::{converge, tie_tolerance};
+use super::stop_checks::StopChecks;
 use crate::envs::tabular::TabularMdp;
 use crate::envs::{Env, Step};
+use crate::memory::{filled, with_capacity};
 use crate::numeric::argmax;
 
 /// The discount per step on ending an episode, so that ending sooner is better.
@@ -17,7 +19,7 @@ pub(super) fn shortest(
     mdp: &TabularMdp,
     values: &[f64],
     q_values: &[f64],
-    stop: &AtomicBool,
+    stop: &StopFlag<'_>,
 ) -> Result<Vec<usize>, PlanningError> {
     let (num_actions, tie_tolerance) = (mdp.num_actions(), tie_tolerance(values));
     // The discounted probability of ending the episode; -∞ if the action is not optimal.
@@ -30,22 +32,31 @@ pub(super) fn shortest(
         };
         mdp.outcomes(state, action).fold(0.0, |sum, (probability, step)| sum + outcome_value(probability, &step))
     };
-    let mut ending_values = vec![0.0; mdp.num_states()];
-    converge(&mut ending_values, stop, |state, ending_values| {
+    let mut ending_values = filled(&0.0, mdp.num_states(), stop)?;
+    converge(&mut ending_values, mdp, stop, |state, ending_values| {
         (0..num_actions).map(|action| ending_value(state, action, ending_values)).fold(0.0, f64::max)
     })?;
-    let best_action = |state: usize| {
-        let action_values: Vec<f64> =
-            (0..num_actions).map(|action| ending_value(state, action, &ending_values)).collect();
-        argmax(&action_values)
-    };
-    Ok((0..mdp.num_states()).map(best_action).collect())
+    let mut checks = StopChecks::new(mdp, stop);
+    let (mut policy, mut row) = (with_capacity(mdp.num_states())?, filled(&0.0, num_actions, stop)?);
+    for state in 0..mdp.num_states() {
+        for (action, value) in row.iter_mut().enumerate() {
+            *value = ending_value(state, action, &ending_values);
+        }
+        policy.push(argmax(&row));
+        checks.state()?;
+    }
+    Ok(policy)
 }
 
 /// For each state an allowed action that may end the episode or lead to a state that has such an action; `None` if no
 /// allowed action does. Following it ends the episode with probability 1, or reaches a state from which nothing ends it.
-pub(super) fn proper_policy(mdp: &TabularMdp, allowed: impl Fn(usize, usize) -> bool) -> Vec<Option<usize>> {
-    let mut policy: Vec<Option<usize>> = vec![None; mdp.num_states()];
+pub(super) fn proper_policy(
+    mdp: &TabularMdp,
+    stop: &StopFlag<'_>,
+    allowed: impl Fn(usize, usize) -> bool,
+) -> Result<Vec<Option<usize>>, PlanningError> {
+    let mut checks = StopChecks::new(mdp, stop);
+    let mut policy: Vec<Option<usize>> = filled(&None, mdp.num_states(), stop)?;
     let last = mdp.num_states() - 1;
     loop {
         let mut changed = false;
@@ -61,9 +72,10 @@ pub(super) fn proper_policy(mdp: &TabularMdp, allowed: impl Fn(usize, usize) -> 
                 policy[state] = (0..mdp.num_actions()).find(may_end);
                 changed |= policy[state].is_some();
             }
+            checks.state()?;
         }
         if !changed {
-            return policy;
+            return Ok(policy);
         }
     }
 }

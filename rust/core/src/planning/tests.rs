@@ -1,6 +1,6 @@
 //! The methods on tables with known solutions, and compared with each other.
 
-use std::sync::atomic::AtomicBool;
+use crate::StopFlag;
 
 use proptest::prelude::*;
 
@@ -8,7 +8,7 @@ use super::*;
 use crate::envs::tabular::{Outcome, TabularMdp};
 use crate::envs::{Env, Step};
 
-static NO_STOP: AtomicBool = AtomicBool::new(false);
+static NO_STOP: StopFlag<'static> = StopFlag::new();
 
 fn deterministic(state: i64, reward: f64, terminated: bool) -> Vec<Outcome> {
     vec![Outcome { probability: 1.0, state, reward, terminated }]
@@ -144,7 +144,8 @@ fn the_expected_return_is_undiscounted() {
 
 #[test]
 fn the_stop_flag_stops_every_method() {
-    let stop = AtomicBool::new(true);
+    let stop = StopFlag::new();
+    stop.set();
     let slow = table(1, &[stochastic(&[(0.999, 0, 1.0, false), (0.001, 0, 1.0, true)])]);
     assert_eq!(value_iteration(&slow, 1.0, &stop), Err(PlanningError::Stopped));
     assert_eq!(policy_iteration(&slow, 1.0, &stop), Err(PlanningError::Stopped));

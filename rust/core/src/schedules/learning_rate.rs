@@ -1,6 +1,8 @@
 //! The learning rate α, chosen at run time.
 
 use super::{Schedule, StepSize};
+use crate::StopFlag;
+use crate::memory::{AllocationError, filled};
 
 /// A learning rate that follows a schedule, or falls with the number of visits of each weight.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,8 +25,18 @@ impl LearningRate {
 
     /// `initial / n` at the n-th visit of a weight, but at least `min`. With `initial = 1` and `min = 0` a value is the
     /// average of its targets (Sutton & Barto, equation 2.3).
-    pub fn by_visit_count(initial: f64, min: f64, weights: usize, n_active: usize) -> Self {
-        Self { visits: vec![0; weights], min, ..Self::scheduled(Schedule::constant(initial), n_active) }
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn by_visit_count(
+        initial: f64,
+        min: f64,
+        weights: usize,
+        n_active: usize,
+        stop: &StopFlag<'_>,
+    ) -> Result<Self, AllocationError> {
+        let visits = filled(&0, weights, stop)?;
+        Ok(Self { visits, min, ..Self::scheduled(Schedule::constant(initial), n_active) })
     }
 
     /// The step size, if it is the same for every weight.
@@ -67,7 +79,7 @@ mod tests {
 
     #[test]
     fn each_weight_counts_its_visits() {
-        let mut rate = LearningRate::by_visit_count(1.0, 0.3, 2, 1);
+        let mut rate = LearningRate::by_visit_count(1.0, 0.3, 2, 1, &StopFlag::new()).expect("two weights");
         rate.visit(0);
         rate.visit(1);
         rate.visit(1);

@@ -30,6 +30,7 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
 /// A boxed task with active rows `R` and errors `X`: generic code is compiled once for all tasks behind it.
 pub struct BoxedTask<R, X> {
     task: Box<dyn DynTask<R, X> + Send>,
+    step_work: u64,
 }
 
 impl<R: Copy + AsRef<[u32]> + 'static, X: 'static> BoxedTask<R, X> {
@@ -39,7 +40,7 @@ impl<R: Copy + AsRef<[u32]> + 'static, X: 'static> BoxedTask<R, X> {
         T: Task<Active = R, State: Send> + Send + 'static,
         X: From<T::Error>,
     {
-        Self { task: Box::new(StatefulTask { task, state: None }) }
+        Self { step_work: task.step_work(), task: Box::new(StatefulTask { task, state: None }) }
     }
 }
 
@@ -54,5 +55,10 @@ impl<R: Copy + AsRef<[u32]>, X> Task for BoxedTask<R, X> {
 
     fn step(&mut self, (): &mut (), action: usize) -> Result<Transition<R>, X> {
         self.task.step(action)
+    }
+
+    #[inline]
+    fn step_work(&self) -> u64 {
+        self.step_work
     }
 }

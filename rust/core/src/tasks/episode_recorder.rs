@@ -4,6 +4,8 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::{Next, RngSnapshot, Task, Transition};
+use crate::TrainingError;
+use crate::memory::{AllocationError, out_of_memory, reserve};
 
 /// A finished episode that can be replayed.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,46 +24,62 @@ pub type Recordings<S> = Arc<Mutex<VecDeque<Recording<S>>>>;
 pub struct EpisodeRecorder<T: RngSnapshot> {
     task: T,
     capacity: usize,
+    /// How many more actions may be recorded.
+    room: u64,
     current: Option<Recording<T::Snapshot>>,
     finished: Recordings<T::Snapshot>,
 }
 
 impl<T: RngSnapshot> EpisodeRecorder<T> {
-    /// Records the last `capacity` finished episodes of `task`. Returns the recorder and the recordings.
-    pub fn new(task: T, capacity: usize) -> (Self, Recordings<T::Snapshot>) {
+    /// Records the last `capacity` finished episodes of `task`, as long as they and the unfinished one have at most
+    /// `max_actions` actions. Returns the recorder and the recordings.
+    pub fn new(task: T, capacity: usize, max_actions: u64) -> (Self, Recordings<T::Snapshot>) {
         let finished = Arc::default();
-        (Self { task, capacity, current: None, finished: Arc::clone(&finished) }, finished)
+        (Self { task, capacity, room: max_actions, current: None, finished: Arc::clone(&finished) }, finished)
     }
 
-    fn finish(&mut self) {
+    fn record(&mut self, action: usize) -> Result<(), AllocationError> {
+        let Some(recording) = &mut self.current else { return Ok(()) };
+        self.room = self.room.checked_sub(1).ok_or(AllocationError::OutOfMemory { bytes: size_of::<u32>() })?;
+        reserve(&mut recording.actions, 1)?;
+        recording.actions.push(action as u32);
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), AllocationError> {
         if let Some(recording) = self.current.take() {
             let mut finished = self.finished.lock().unwrap_or_else(PoisonError::into_inner);
+            finished.try_reserve(1).map_err(out_of_memory::<Recording<T::Snapshot>>(1))?;
             finished.push_back(recording);
             while finished.len() > self.capacity {
-                finished.pop_front();
+                self.room += finished.pop_front().map_or(0, |oldest| oldest.actions.len() as u64);
             }
         }
+        Ok(())
     }
 }
 
 impl<T: RngSnapshot> Task for EpisodeRecorder<T> {
     type State = T::State;
     type Active = T::Active;
-    type Error = T::Error;
+    type Error = TrainingError<T::Error>;
 
-    fn reset(&mut self) -> Result<(T::State, T::Active), T::Error> {
-        self.current = Some(Recording { snapshot: self.task.rng_snapshot()?, actions: Vec::new() });
-        self.task.reset()
+    fn reset(&mut self) -> Result<(T::State, T::Active), Self::Error> {
+        let snapshot = self.task.rng_snapshot().map_err(TrainingError::Task)?;
+        self.current = Some(Recording { snapshot, actions: Vec::new() });
+        self.task.reset().map_err(TrainingError::Task)
     }
 
-    fn step(&mut self, state: &mut T::State, action: usize) -> Result<Transition<T::Active>, T::Error> {
-        let transition = self.task.step(state, action)?;
-        if let Some(recording) = &mut self.current {
-            recording.actions.push(action as u32);
-        }
+    fn step(&mut self, state: &mut T::State, action: usize) -> Result<Transition<T::Active>, Self::Error> {
+        let transition = self.task.step(state, action).map_err(TrainingError::Task)?;
+        self.record(action)?;
         if !matches!(transition.next, Next::NonTerminal(_)) {
-            self.finish();
+            self.finish()?;
         }
         Ok(transition)
+    }
+
+    fn step_work(&self) -> u64 {
+        self.task.step_work()
     }
 }

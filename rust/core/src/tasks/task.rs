@@ -41,4 +41,11 @@ pub trait Task {
     /// # Errors
     /// As for `reset`.
     fn step(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<Self::Active>, Self::Error>;
+
+    /// The work of a step, as [`Budget`](crate::Budget) counts it, beside the learner's: 0 for the environments of this
+    /// crate.
+    #[inline]
+    fn step_work(&self) -> u64 {
+        0
+    }
 }

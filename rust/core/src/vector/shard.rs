@@ -2,7 +2,9 @@
 
 use super::vector_config::VectorConfig;
 use super::{Autoreset, StepBuffers};
+use crate::StopFlag;
 use crate::envs::Env;
+use crate::memory::{AllocationError, filled, with_capacity};
 use crate::random::Rng;
 
 /// The episodes of the sub-environments that one thread steps, as a structure of arrays.
@@ -20,13 +22,14 @@ pub(super) struct Shard<S> {
 
 impl<S: Copy> Shard<S> {
     /// `size` sub-environments that await their first reset. `placeholder` fills the states until then.
-    pub(super) fn new(placeholder: S, size: usize) -> Self {
-        Self {
-            states: vec![placeholder; size],
-            elapsed: vec![0; size],
-            done: vec![false; size],
-            final_states: Vec::with_capacity(size),
-        }
+    pub(super) fn new(placeholder: S, size: usize) -> Result<Self, AllocationError> {
+        let stop = StopFlag::new();
+        Ok(Self {
+            states: filled(&placeholder, size, &stop)?,
+            elapsed: filled(&0, size, &stop)?,
+            done: filled(&false, size, &stop)?,
+            final_states: with_capacity(size)?,
+        })
     }
 
     pub(super) fn states(&self) -> impl Iterator<Item = &S> + Clone {

@@ -1,11 +1,13 @@
 //! A vector environment.
 
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use super::shard::Shard;
 use super::vector_config::VectorConfig;
 use super::{Autoreset, StepBuffers};
 use crate::envs::Env;
+use crate::memory::AllocationError;
 use crate::random::{NoRng, Rng};
 
 /// Several sub-environments of one kind that step together, each with a random generator and a step count. Their
@@ -23,13 +25,22 @@ pub struct VectorEnv<E: Env> {
 impl<E: Env> VectorEnv<E> {
     /// `size` sub-environments, stepped by `threads` threads, each of which must be reset before the first step. The
     /// number of threads does not change the results. Episodes are truncated after `max_episode_steps` steps.
-    pub fn new(env: E, size: usize, max_episode_steps: Option<u64>, autoreset: Autoreset, threads: usize) -> Self {
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(
+        env: E,
+        size: usize,
+        max_episode_steps: Option<u64>,
+        autoreset: Autoreset,
+        threads: usize,
+    ) -> Result<Self, AllocationError> {
         let shard_len = size.div_ceil(threads.max(1)).max(1);
         let placeholder = env.reset(&mut NoRng);
-        let shards =
-            (0..size).step_by(shard_len).map(|first| Shard::new(placeholder, shard_len.min(size - first))).collect();
+        let new_shard = |first: usize| Shard::new(placeholder, shard_len.min(size - first));
+        let shards = (0..size).step_by(shard_len).map(new_shard).collect::<Result<_, _>>()?;
         let config = VectorConfig { max_episode_steps: max_episode_steps.unwrap_or(u64::MAX), autoreset };
-        Self { env, config, shards, shard_len }
+        Ok(Self { env, config, shards, shard_len })
     }
 
     /// The environment of all sub-environments.
@@ -109,21 +120,30 @@ impl<E: Env> VectorEnv<E> {
             return shard.step(env, config, actions, rngs, buffers);
         }
         let chunks = actions.chunks(shard_len).zip(rngs.chunks_mut(shard_len)).zip(buffers.chunks(shard_len));
+        let jobs: Vec<_> = self
+            .shards
+            .iter_mut()
+            .zip(chunks)
+            .map(|(shard, ((actions, rngs), buffers))| {
+                Mutex::new(Some(move || shard.step(env, config, actions, rngs, buffers)))
+            })
+            .collect();
         thread::scope(|scope| {
-            let mut jobs = self
-                .shards
-                .iter_mut()
-                .zip(chunks)
-                .map(|(shard, ((actions, rngs), buffers))| move || shard.step(env, config, actions, rngs, buffers));
-            let own_job = jobs.next();
-            for job in jobs {
-                scope.spawn(job);
+            let mut refused = false;
+            for job in &jobs[1..] {
+                // Threads may run out. The calling thread then does their share.
+                refused |= thread::Builder::new().spawn_scoped(scope, || run_once(job)).is_err();
             }
-            // The calling thread does its share.
-            if let Some(job) = own_job {
-                job();
-            }
+            jobs[..if refused { jobs.len() } else { 1 }].iter().for_each(run_once);
         });
+    }
+}
+
+/// Runs a job, unless another thread has taken it.
+fn run_once<J: FnOnce()>(job: &Mutex<Option<J>>) {
+    let job = job.lock().unwrap_or_else(PoisonError::into_inner).take();
+    if let Some(job) = job {
+        job();
     }
 }
 
@@ -148,7 +168,7 @@ mod tests {
         E: Env<Action = usize, Observation: Send + Default + Copy + PartialEq + std::fmt::Debug> + Clone + Sync,
         E::State: Send + PartialEq + std::fmt::Debug,
     {
-        let mut vector = VectorEnv::new(env.clone(), size, Some(limit), autoreset, threads);
+        let mut vector = VectorEnv::new(env.clone(), size, Some(limit), autoreset, threads).expect("it fits");
         let (mut rngs, mut reference_rngs) = (generators(size), generators(size));
         let mut states: Vec<_> = reference_rngs.iter_mut().map(|rng| env.reset(rng)).collect();
         let mut elapsed = vec![0; size];
@@ -222,7 +242,7 @@ mod tests {
 
     #[test]
     fn zero_sub_environments_are_allowed() {
-        let mut empty = VectorEnv::new(CartPole::default(), 0, None, Autoreset::NextStep, 2);
+        let mut empty = VectorEnv::new(CartPole::default(), 0, None, Autoreset::NextStep, 2).expect("it fits");
         let buffers = StepBuffers { observations: &mut [], rewards: &mut [], terminated: &mut [], truncated: &mut [] };
         empty.step(&[], &mut [] as &mut [Pcg64], buffers);
         assert_eq!(empty.states().count(), 0);

@@ -1,10 +1,13 @@
 //! Arrays of any numeric dtype, converted as `astype` converts them.
 
-use numpy::{PyArrayDescrMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayDescrMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
+use qtab_core::memory::collect;
 use qtab_core::numeric::Float;
+
+use crate::error::allocation;
 
 /// A dtype of a Box, to which any number converts as `astype` converts it.
 pub(crate) trait FromNumber: Float + numpy::Element {
@@ -41,12 +44,20 @@ impl FromNumber for f64 {
     }
 }
 
+/// A new array of these values. `PyArray1::from_slice` would panic where memory runs out.
+pub(crate) fn array_of<'py, T: numpy::Element + Copy>(
+    py: Python<'py>,
+    values: impl ExactSizeIterator<Item = T>,
+) -> PyResult<Bound<'py, PyArray1<T>>> {
+    Ok(PyArray1::from_vec(py, collect(values).map_err(allocation)?))
+}
+
 /// The numbers of an array in C order, in the dtype `T`.
 pub(crate) fn floats<T: FromNumber>(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<T>> {
     match array.dtype().kind() {
         b'f' => {
             if let Ok(values) = array.extract::<PyReadonlyArrayDyn<'_, T>>() {
-                return Ok(values.as_array().iter().copied().collect());
+                return collect(values.as_array().iter().copied()).map_err(allocation);
             }
             converted(array, "float64", T::from_f64)
         }
@@ -72,5 +83,5 @@ where
 {
     let array = array.call_method1(intern!(array.py(), "astype"), (dtype,))?;
     let values: PyReadonlyArrayDyn<'_, S> = array.extract()?;
-    Ok(values.as_array().iter().map(|&value| convert(value)).collect())
+    collect(values.as_array().iter().map(|&value| convert(value))).map_err(allocation)
 }

@@ -87,6 +87,10 @@ impl DiscreteReader {
         self.axes.iter().map(|&(_, count)| count as usize).product()
     }
 
+    pub(crate) fn counts(&self) -> impl Iterator<Item = u32> + '_ {
+        self.axes.iter().map(|&(_, count)| count)
+    }
+
     pub(crate) fn dimensions(&self) -> usize {
         self.axes.len()
     }

@@ -4,23 +4,36 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyInt};
+use qtab_core::memory::with_capacity;
+
+use crate::error::allocation;
+
+/// How many seeds are read between two checks for signals.
+const SEEDS_BETWEEN_CHECKS: usize = 1 << 16;
 
 /// A non-negative integer as 32-bit words, least significant first; zero is one word.
 #[derive(Clone, Debug)]
-pub(crate) struct Seed(Vec<u32>);
+pub(crate) enum Seed {
+    /// Up to 64 bits, without an allocation, as there may be many millions: the words, and how many there are.
+    Small([u32; 2], u8),
+    Large(Vec<u32>),
+}
 
 impl Seed {
     pub(crate) fn from_words(words: Vec<u32>) -> Self {
-        Self(words)
+        Self::Large(words)
     }
 
     pub(crate) fn words(&self) -> &[u32] {
-        &self.0
+        match self {
+            Self::Small(words, count) => &words[..usize::from(*count)],
+            Self::Large(words) => words,
+        }
     }
 
     /// The seed as a Python `int`.
     pub(crate) fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let bytes: Vec<u8> = self.0.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let bytes: Vec<u8> = self.words().iter().flat_map(|word| word.to_le_bytes()).collect();
         py.get_type::<PyInt>().call_method1(intern!(py, "from_bytes"), (PyBytes::new(py, &bytes), "little"))
     }
 }
@@ -31,7 +44,7 @@ impl<'py> FromPyObject<'_, 'py> for Seed {
     fn extract(seed: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         if let Ok(small) = seed.extract::<u64>() {
             let (low, high) = (small as u32, (small >> 32) as u32);
-            return Ok(Self(if high == 0 { vec![low] } else { vec![low, high] }));
+            return Ok(Self::Small([low, high], if high == 0 { 1 } else { 2 }));
         }
         let py = seed.py();
         if !seed.is_instance_of::<PyInt>() {
@@ -43,6 +56,27 @@ impl<'py> FromPyObject<'_, 'py> for Seed {
         let bits: usize = seed.call_method0(intern!(py, "bit_length"))?.extract()?;
         let bytes: Vec<u8> =
             seed.call_method1(intern!(py, "to_bytes"), (bits.div_ceil(32) * 4, "little"))?.extract()?;
-        Ok(Self(bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect()))
+        Ok(Self::Large(bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect()))
+    }
+}
+
+/// The seeds of many runs.
+pub(crate) struct Seeds(pub(crate) Vec<Seed>);
+
+impl<'py> FromPyObject<'_, 'py> for Seeds {
+    type Error = PyErr;
+
+    fn extract(seeds: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let mut extracted = with_capacity(seeds.len()?).map_err(allocation)?;
+        for seed in seeds.try_iter()? {
+            if extracted.len() == extracted.capacity() {
+                break;
+            }
+            extracted.push(seed?.extract()?);
+            if extracted.len() % SEEDS_BETWEEN_CHECKS == 0 {
+                seeds.py().check_signals()?;
+            }
+        }
+        Ok(Self(extracted))
     }
 }

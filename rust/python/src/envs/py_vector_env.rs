@@ -3,14 +3,18 @@
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
+use qtab_core::StopFlag;
+use qtab_core::memory::{collect, filled};
 use qtab_core::vector::Autoreset;
 
 use super::PyNativeEnv;
 use super::gymnasium::reset_needed;
 use crate::convert::Seed;
-use crate::error::invalid;
+use crate::error::{allocation, invalid};
 use crate::vector::{DynVectorEnv, SubEnvRng, VectorOptions};
+
+const ENTROPY_BYTES: usize = 16;
 
 const AUTORESET_MODES: [(&str, Autoreset); 3] =
     [("NextStep", Autoreset::NextStep), ("SameStep", Autoreset::SameStep), ("Disabled", Autoreset::Disabled)];
@@ -37,8 +41,7 @@ impl PyVectorEnv {
     /// nothing, where Rust has no vector environment of that kind.
     #[expect(clippy::too_many_arguments, reason = "there is one caller, which names them")]
     fn start(
-        &mut self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         env: &PyNativeEnv,
         num_envs: usize,
         max_episode_steps: Option<u64>,
@@ -46,34 +49,31 @@ impl PyVectorEnv {
         copy: bool,
         threads: Option<usize>,
     ) -> PyResult<bool> {
+        let (py, mut this) = (slf.py(), borrow_mut(slf)?);
         let found = AUTORESET_MODES.iter().find(|(mode, _)| *mode == autoreset_mode);
         let &(_, autoreset) = found.ok_or_else(|| {
             invalid("autoreset_mode", "'NextStep', 'SameStep' or 'Disabled'", format!("'{autoreset_mode}'"))
         })?;
         let options = VectorOptions { num_envs, max_episode_steps, autoreset, copy, threads };
         let Some(envs) = env.shared().vector_env(py, options)? else { return Ok(false) };
-        // As many bytes of entropy for each as NumPy takes.
-        let entropy: Vec<u8> = py.import("os")?.call_method1("urandom", (16 * num_envs,))?.extract()?;
-        let word = |bytes: &[u8; 4]| u32::from_le_bytes(*bytes);
-        let seed = |bytes: &[u8]| Seed::from_words(bytes.as_chunks().0.iter().map(word).collect());
-        self.seeds = entropy.chunks(16).map(seed).collect();
-        self.rngs = self.seeds.iter().map(SubEnvRng::new).collect();
-        self.not_reset = vec![true; num_envs];
-        self.envs = Some(envs);
+        let seeds = random_seeds(py, num_envs)?;
+        this.rngs = collect(seeds.iter().map(SubEnvRng::new)).map_err(allocation)?;
+        this.not_reset = filled(&true, num_envs, &StopFlag::new()).map_err(allocation)?;
+        this.seeds = seeds;
+        this.envs = Some(envs);
         Ok(true)
     }
 
     /// Whether Rust steps the sub-environments.
     #[getter]
-    fn is_native(&self) -> bool {
-        self.envs.is_some()
+    fn is_native(slf: &Bound<'_, Self>) -> PyResult<bool> {
+        Ok(borrow(slf)?.envs.is_some())
     }
 
     /// One step of all sub-environments, with the types that Gymnasium returns.
     fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
-        let busy = |_| PyRuntimeError::new_err("another thread is stepping these sub-environments");
-        let mut this = slf.try_borrow_mut().map_err(busy)?;
+        let mut this = borrow_mut(slf)?;
         let Self { envs: Some(envs), rngs, not_reset, .. } = &mut *this else {
             drop(this);
             return slf.call_method1(intern!(py, "step_in_python"), (actions,));
@@ -88,78 +88,108 @@ impl PyVectorEnv {
     /// Starts an episode in each sub-environment of `indices`, with a seed for each; None leaves its generator as it is.
     /// Returns all observations, and the infos of those that were reset.
     fn native_reset<'py>(
-        &mut self,
-        py: Python<'py>,
+        slf: &Bound<'py, Self>,
         indices: Vec<usize>,
         seeds: Vec<Option<Seed>>,
         bounds: Option<[f64; 2]>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyDict>)> {
-        let Some(envs) = &mut self.envs else {
+        let mut this = borrow_mut(slf)?;
+        let Self { envs: Some(envs), rngs, seeds: known_seeds, not_reset } = &mut *this else {
             return Err(PyValueError::new_err("Rust does not step these sub-environments"));
         };
-        if let Some(&index) = indices.iter().find(|&&index| index >= self.rngs.len()) {
+        if let Some(&index) = indices.iter().find(|&&index| index >= rngs.len()) {
             return Err(no_such_env(index));
         }
         for (&index, seed) in indices.iter().zip(seeds) {
             if let Some(seed) = seed {
-                self.rngs[index] = SubEnvRng::new(&seed);
-                self.seeds[index] = seed;
+                rngs[index] = SubEnvRng::new(&seed);
+                known_seeds[index] = seed;
             }
         }
-        envs.reset(&indices, bounds, &mut self.rngs);
-        if !self.not_reset.is_empty() {
+        envs.reset(&indices, bounds, rngs);
+        if !not_reset.is_empty() {
             for &index in &indices {
-                self.not_reset[index] = false;
+                not_reset[index] = false;
             }
-            if !self.not_reset.contains(&true) {
-                self.not_reset.clear();
+            if !not_reset.contains(&true) {
+                not_reset.clear();
             }
         }
-        envs.observe(py, &indices)
+        envs.observe(slf.py(), &indices)
     }
 
     /// The indices of the sub-environments that were never reset.
-    fn not_reset(&self) -> Vec<usize> {
-        (0..self.not_reset.len()).filter(|&index| self.not_reset[index]).collect()
+    fn not_reset(slf: &Bound<'_, Self>) -> PyResult<Vec<usize>> {
+        let this = borrow(slf)?;
+        Ok((0..this.not_reset.len()).filter(|&index| this.not_reset[index]).collect())
     }
 
     /// The reset options that bound initial states, and their defaults; None where there are none.
-    fn reset_bounds(&self) -> Option<[(&'static str, f64); 2]> {
-        self.envs.as_ref().and_then(|envs| envs.reset_bounds())
+    fn reset_bounds(slf: &Bound<'_, Self>) -> PyResult<Option<[(&'static str, f64); 2]>> {
+        Ok(borrow(slf)?.envs.as_ref().and_then(|envs| envs.reset_bounds()))
     }
 
     /// The last seed of a sub-environment.
-    fn seed_of<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
-        self.seeds.get(index).ok_or_else(|| no_such_env(index))?.to_python(py)
+    fn seed_of<'py>(slf: &Bound<'py, Self>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+        borrow(slf)?.seeds.get(index).ok_or_else(|| no_such_env(index))?.to_python(slf.py())
     }
 
     /// The generator of a sub-environment: `NumPy`'s, or of one in Rust how many 64-bit words it has drawn since it was
     /// seeded, and its buffered half-word.
-    fn rng<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
-        match self.rngs.get(index).ok_or_else(|| no_such_env(index))? {
+    fn rng<'py>(slf: &Bound<'py, Self>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        match borrow(slf)?.rngs.get(index).ok_or_else(|| no_such_env(index))? {
             SubEnvRng::Native(rng) => Ok((rng.words_drawn(), rng.buffered_u32()).into_pyobject(py)?.into_any()),
             SubEnvRng::Python(generator) => Ok(generator.bind(py).clone()),
         }
     }
 
     /// Makes a sub-environment draw from a `numpy.random.Generator`.
-    fn set_rng(&mut self, index: usize, generator: Py<PyAny>) -> PyResult<()> {
-        *self.rngs.get_mut(index).ok_or_else(|| no_such_env(index))? = SubEnvRng::Python(generator);
+    fn set_rng(slf: &Bound<'_, Self>, index: usize, generator: Py<PyAny>) -> PyResult<()> {
+        *borrow_mut(slf)?.rngs.get_mut(index).ok_or_else(|| no_such_env(index))? = SubEnvRng::Python(generator);
         Ok(())
     }
 
     /// All that it takes to step each sub-environment in Python: its attributes, the steps of its episode so far, whether
     /// the episode is done, and the observation.
-    fn snapshots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let Some(envs) = &self.envs else { return Ok(PyList::empty(py)) };
-        let snapshots = (0..self.rngs.len()).map(|index| envs.snapshot(py, index));
+    fn snapshots<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyList>> {
+        let (py, this) = (slf.py(), borrow(slf)?);
+        let Some(envs) = &this.envs else { return Ok(PyList::empty(py)) };
+        let snapshots = (0..this.rngs.len()).map(|index| envs.snapshot(py, index));
         PyList::new(py, snapshots.collect::<PyResult<Vec<_>>>()?)
     }
 
     /// Drops the sub-environments in Rust.
-    fn release(&mut self) {
-        self.envs = None;
+    fn release(slf: &Bound<'_, Self>) -> PyResult<()> {
+        borrow_mut(slf)?.envs = None;
+        Ok(())
     }
+}
+
+/// Read access, unless a step is under way.
+fn borrow<'py>(slf: &Bound<'py, PyVectorEnv>) -> PyResult<PyRef<'py, PyVectorEnv>> {
+    slf.try_borrow().map_err(|_| busy())
+}
+
+/// Write access, unless a step is under way.
+fn borrow_mut<'py>(slf: &Bound<'py, PyVectorEnv>) -> PyResult<PyRefMut<'py, PyVectorEnv>> {
+    slf.try_borrow_mut().map_err(|_| busy())
+}
+
+fn busy() -> PyErr {
+    PyRuntimeError::new_err(
+        "this vector environment is busy: another thread is stepping its sub-environments, or one of their generators \
+         calls it",
+    )
+}
+
+/// Seeds from the operating system, each of as many bytes of entropy as NumPy takes.
+fn random_seeds(py: Python<'_>, count: usize) -> PyResult<Vec<Seed>> {
+    let entropy = py.import("os")?.call_method1("urandom", (count.saturating_mul(ENTROPY_BYTES),))?;
+    let entropy = entropy.cast_into::<PyBytes>()?;
+    let word = |bytes: &[u8; 4]| u32::from_le_bytes(*bytes);
+    let seed = |bytes: &[u8]| Seed::from_words(bytes.as_chunks().0.iter().map(word).collect());
+    collect(entropy.as_bytes().chunks_exact(ENTROPY_BYTES).map(seed)).map_err(allocation)
 }
 
 fn no_such_env(index: usize) -> PyErr {

@@ -1,15 +1,13 @@
 //! `MdpSolver`: the optimal policy of an environment with a transition table.
 
-use std::sync::atomic::AtomicBool;
-
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use qtab_core::Env;
 use qtab_core::envs::tabular::TabularMdp;
 use qtab_core::planning::{
     FiniteHorizon, Mdp, PlanningError, Solution, finite_horizon, policy_iteration, policy_return, value_iteration,
 };
+use qtab_core::{Env, StopFlag};
 
 use super::to_py_err;
 use crate::envs::PyNativeEnv;
@@ -21,7 +19,7 @@ type PySolution<'py> = (Array<'py, f64>, Array<'py, f64>, Array<'py, i64>);
 /// From how many remaining steps on, in which state, which action is best.
 type PyPolicyChanges<'py> = (Array<'py, i64>, Array<'py, i64>, Array<'py, i64>);
 
-type Method = fn(&TabularMdp, f64, &AtomicBool) -> Result<Solution, PlanningError>;
+type Method = fn(&TabularMdp, f64, &StopFlag<'_>) -> Result<Solution, PlanningError>;
 
 /// The Markov decision process of an environment.
 #[pyclass(frozen, name = "MdpSolver", module = "qtab._core")]

@@ -1,20 +1,23 @@
 //! The core's agents, as a spec describes them.
 
 use pyo3::prelude::*;
+use qtab_core::StopFlag;
 use qtab_core::learners::Agent;
+use qtab_core::memory::AllocationError;
 use qtab_core::policies::AnyPolicy;
 use qtab_core::random::Rng;
 use qtab_core::schedules::LearningRate;
 
+use crate::error::allocation;
 use crate::spec::{LearningRateSpec, PolicySpec, RunSpec};
 
 /// The agent of any learner, with its first table.
-pub(super) fn generic_agent(spec: &RunSpec, n_rows: usize, n_active: usize, rng: &mut impl Rng) -> PyResult<Agent> {
+pub(super) fn generic_agent(spec: &RunSpec, n_rows: usize, n_active: usize, rng: &mut impl Rng, stop: &StopFlag<'_>) -> PyResult<Agent> {
     let shape = (n_rows, spec.num_actions);
     Ok(Agent {
-        table: spec.initial_q.table((0, spec.algorithm.n_tables()), shape, rng)?,
+        table: spec.initial_q.table((0, spec.algorithm.n_tables()), shape, rng, stop)?,
         policy: policy(spec),
-        learning_rate: learning_rate(spec, n_rows * spec.num_actions, n_active),
+        learning_rate: learning_rate(spec, n_rows * spec.num_actions, n_active, stop).map_err(allocation)?,
         discount: spec.discount,
         terminal_update: spec.terminal_update,
     })
@@ -35,9 +38,16 @@ pub(super) fn policy(spec: &RunSpec) -> AnyPolicy {
     }
 }
 
-fn learning_rate(spec: &RunSpec, weights: usize, n_active: usize) -> LearningRate {
+fn learning_rate(
+    spec: &RunSpec,
+    weights: usize,
+    n_active: usize,
+    stop: &StopFlag<'_>,
+) -> Result<LearningRate, AllocationError> {
     match spec.learning_rate {
-        LearningRateSpec::Schedule(schedule) => LearningRate::scheduled(schedule.build(spec.episodes), n_active),
-        LearningRateSpec::Visits { value, minimum } => LearningRate::by_visit_count(value, minimum, weights, n_active),
+        LearningRateSpec::Schedule(schedule) => Ok(LearningRate::scheduled(schedule.build(spec.episodes), n_active)),
+        LearningRateSpec::Visits { value, minimum } => {
+            LearningRate::by_visit_count(value, minimum, weights, n_active, stop)
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Runs that differ in their seeds alone: one after the other, or several in a batch.
 
 use pyo3::prelude::*;
-use qtab_core::Budget;
+use qtab_core::{Budget, StopFlag};
 use qtab_core::batch::{BatchedRun, LANES};
 
 use super::{AnyRecordings, BuiltRun, Run};
@@ -13,7 +13,8 @@ const HALF: usize = LANES / 2;
 
 /// Builds the runs of one spec in one environment. All of them have one type, which only the factory knows.
 pub(crate) trait RunFactory: Send + Sync {
-    fn build(&self, seed: &Seed) -> PyResult<BuiltRun>;
+    /// Builds a run. What takes long stops when `stop` is set.
+    fn build(&self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<BuiltRun>;
 
     /// A batch without runs.
     fn batch(&self) -> Box<dyn RunBatch + '_>;
@@ -25,7 +26,7 @@ pub(crate) trait RunBatch {
     fn lanes(&self) -> usize;
 
     /// Adds a run at the end.
-    fn push(&mut self, seed: &Seed) -> PyResult<()>;
+    fn push(&mut self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<()>;
 
     /// Advances some of the runs. An error comes with the index of the run that failed; the others may advance further.
     fn advance(&mut self, budget: Budget) -> Result<(), (usize, RunError)>;
@@ -87,10 +88,10 @@ pub(super) struct Factory<R, B> {
 impl<R, B> RunFactory for Factory<R, B>
 where
     R: Run + 'static,
-    B: Fn(&Seed) -> PyResult<(R, AnyRecordings)> + Send + Sync,
+    B: Fn(&Seed, &StopFlag<'_>) -> PyResult<(R, AnyRecordings)> + Send + Sync,
 {
-    fn build(&self, seed: &Seed) -> PyResult<BuiltRun> {
-        let (run, recordings) = (self.build)(seed)?;
+    fn build(&self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<BuiltRun> {
+        let (run, recordings) = (self.build)(seed, stop)?;
         Ok(BuiltRun { run: Box::new(run), recordings, steps_python: false })
     }
 
@@ -107,14 +108,14 @@ struct TypedBatch<'a, R, B> {
 impl<R, B> RunBatch for TypedBatch<'_, R, B>
 where
     R: Run,
-    B: Fn(&Seed) -> PyResult<(R, AnyRecordings)>,
+    B: Fn(&Seed, &StopFlag<'_>) -> PyResult<(R, AnyRecordings)>,
 {
     fn lanes(&self) -> usize {
         self.factory.batching.lanes
     }
 
-    fn push(&mut self, seed: &Seed) -> PyResult<()> {
-        let (run, _) = (self.factory.build)(seed)?;
+    fn push(&mut self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<()> {
+        let (run, _) = (self.factory.build)(seed, stop)?;
         self.runs.push(run);
         Ok(())
     }

@@ -10,13 +10,13 @@ use qtab_core::learners::{
 };
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot};
-use qtab_core::{Env, Features, Learner, Task, Trainer};
+use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer};
 
 use super::agent::generic_agent;
 use super::factory::{Batching, Factory};
 use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
-use crate::error::{RunError, invalid};
+use crate::error::{RunError, allocation, invalid};
 use crate::rng::environment_rng;
 use crate::spec::{AlgorithmSpec, DiscretizerSpec, RunSpec, TraceSpec};
 
@@ -53,9 +53,9 @@ where
         return Err(invalid("num_actions", format!("{}, the environment's", env.num_actions()), spec.num_actions));
     }
     let (spec, shape) = (Arc::clone(spec), (features.len(), spec.discretizer.n_active()));
-    let build = move |seed: &Seed| {
+    let build = move |seed: &Seed, stop: &StopFlag<'_>| {
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
-        boxed_run(task, shape, seed, &spec, record, AnyRecordings::Native)
+        boxed_run(task, shape, seed, &spec, (record, stop), AnyRecordings::Native)
     };
     Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
 }
@@ -66,22 +66,22 @@ pub(super) fn boxed_run<W>(
     shape: (usize, usize),
     seed: &Seed,
     spec: &RunSpec,
-    record: usize,
+    (record, stop): (usize, &StopFlag<'_>),
     keep: impl FnOnce(Recordings<W::Snapshot>) -> AnyRecordings,
 ) -> PyResult<(Box<dyn Run>, AnyRecordings)>
 where
-    W: RngSnapshot + Task<Active: Send, State: Send, Error: Into<RunError>> + Send + 'static,
+    W: RngSnapshot + Task<Active: Send, State: Send> + Send + 'static,
     W::Snapshot: Send,
     RunError: From<W::Error>,
 {
     let (task, recordings) = if record == 0 {
         (BoxedTask::<W::Active, RunError>::new(task), AnyRecordings::None)
     } else {
-        let (task, recordings) = EpisodeRecorder::new(task, record);
+        let (task, recordings) = EpisodeRecorder::new(task, record, spec.max_recorded_actions);
         (BoxedTask::new(task), keep(recordings))
     };
     let rng = spec.bit_generator.agent_rng(seed)?;
-    Ok((build_learner(task, shape, rng, spec)?, recordings))
+    Ok((build_learner(task, shape, rng, spec, stop)?, recordings))
 }
 
 /// Any learner on a boxed task, with a generator chosen at run time: compiled once for each kind of active rows.
@@ -90,37 +90,39 @@ fn build_learner<R>(
     (n_rows, n_active): (usize, usize),
     mut rng: AgentRng,
     spec: &RunSpec,
+    stop: &StopFlag<'_>,
 ) -> PyResult<Box<dyn Run>>
 where
     R: Copy + AsRef<[u32]> + Send + 'static,
 {
-    let agent = generic_agent(spec, n_rows, n_active, &mut rng)?;
+    let agent = generic_agent(spec, n_rows, n_active, &mut rng, stop)?;
     let weights = agent.table.values().len();
-    let new_model = || Model::new(n_rows, spec.num_actions);
-    let new_traces = |cutoff: f64| Traces::new(weights, cutoff);
+    let new_model = || Model::new(n_rows, spec.num_actions, stop).map_err(allocation);
+    let new_traces = |cutoff: f64| Traces::new(weights, cutoff, stop).map_err(allocation);
     Ok(match spec.algorithm {
         AlgorithmSpec::QLearning => with_rule(task, agent, QLearning, rng, spec),
         AlgorithmSpec::Sarsa => with_rule(task, agent, Sarsa, rng, spec),
         AlgorithmSpec::ExpectedSarsa => with_rule(task, agent, ExpectedSarsa, rng, spec),
         AlgorithmSpec::DoubleQLearning => {
-            let second = spec.initial_q.table((1, 2), (n_rows, spec.num_actions), &mut rng)?;
+            let second = spec.initial_q.table((1, 2), (n_rows, spec.num_actions), &mut rng, stop)?;
             into_run(task, DoubleQLearning::new(agent, second), rng, spec)
         }
         AlgorithmSpec::NStepSarsa { n_steps } => with_rule(task, agent, NStepSarsa::new(n_steps), rng, spec),
         AlgorithmSpec::SarsaLambda(TraceSpec { kind, decay, cutoff }) => {
-            with_rule(task, agent, SarsaLambda { traces: new_traces(cutoff), kind, trace_decay: decay }, rng, spec)
+            with_rule(task, agent, SarsaLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, rng, spec)
         }
         AlgorithmSpec::TrueOnlineSarsaLambda { trace_decay, trace_cutoff } => {
-            with_rule(task, agent, TrueOnlineSarsaLambda::new(new_traces(trace_cutoff), trace_decay), rng, spec)
+            with_rule(task, agent, TrueOnlineSarsaLambda::new(new_traces(trace_cutoff)?, trace_decay), rng, spec)
         }
         AlgorithmSpec::WatkinsQLambda(TraceSpec { kind, decay, cutoff }) => {
-            with_rule(task, agent, WatkinsQLambda { traces: new_traces(cutoff), kind, trace_decay: decay }, rng, spec)
+            with_rule(task, agent, WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, rng, spec)
         }
         AlgorithmSpec::DynaQ { planning_steps } => {
-            with_rule(task, agent, DynaQ { model: new_model(), planning_steps }, rng, spec)
+            with_rule(task, agent, DynaQ::new(new_model()?, planning_steps), rng, spec)
         }
         AlgorithmSpec::DynaQPlus { planning_steps, time_weight } => {
-            with_rule(task, agent, DynaQPlus::new(new_model(), planning_steps, time_weight), rng, spec)
+            let rule = DynaQPlus::new(new_model()?, planning_steps, time_weight, stop).map_err(allocation)?;
+            with_rule(task, agent, rule, rng, spec)
         }
     })
 }

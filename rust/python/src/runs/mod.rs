@@ -1,6 +1,7 @@
 //! Training runs of every type behind one interface, and how a run is built from its spec.
 
 mod agent;
+mod answers;
 mod factory;
 mod generic;
 mod python_task;

@@ -1,21 +1,23 @@
 //! A Gymnasium environment that is stepped in Python, as a learner's task.
 
-use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use qtab_core::Features;
-use qtab_core::Task;
 use qtab_core::features::MAX_TILINGS;
 use qtab_core::numeric::Float;
 use qtab_core::tasks::RngSnapshot;
 use qtab_core::tasks::{Next, Transition};
+use qtab_core::{Features, StopFlag, Task};
 
+use super::answers::{self, Answer};
 use super::generic::boxed_run;
 use super::{AnyRecordings, BuiltRun};
 use crate::convert::{BoxReader, ObservationReader, Seed};
 use crate::error::RunError;
 use crate::spec::{DiscretizerSpec, Fields, FloatType, RunSpec};
+
+/// How many steps of Q-learning on a grid a step in Python counts as. It may take a millisecond.
+const STEP_WORK: u64 = 127;
 
 /// A Python environment, and how the learner's actions are passed to it.
 pub(crate) struct PythonEnv {
@@ -50,9 +52,9 @@ pub(crate) fn python_run(
     env: PythonEnv,
     spec: &RunSpec,
     seed: &Seed,
-    record: usize,
+    (record, stop): (usize, &StopFlag<'_>),
 ) -> PyResult<BuiltRun> {
-    let task = TaskBuilder { env, first_seed: seed.to_python(py)?.unbind(), spec, seed, record };
+    let task = TaskBuilder { env, first_seed: seed.to_python(py)?.unbind(), spec, seed, record, stop };
     if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
         return task.run(reader.clone(), reader.n_rows());
     }
@@ -68,6 +70,7 @@ struct TaskBuilder<'a> {
     spec: &'a RunSpec,
     seed: &'a Seed,
     record: usize,
+    stop: &'a StopFlag<'a>,
 }
 
 impl TaskBuilder<'_> {
@@ -90,10 +93,10 @@ impl TaskBuilder<'_> {
     where
         R: ObservationReader<Active: Send> + Send + 'static,
     {
-        let Self { env, first_seed, spec, seed, record } = self;
+        let Self { env, first_seed, spec, seed, record, stop } = self;
         let (max_episode_steps, shape) = (spec.max_episode_steps, (n_rows, spec.discretizer.n_active()));
         let task = PythonTask { env, first_seed, seeded: false, max_episode_steps, reader };
-        let (run, recordings) = boxed_run(task, shape, seed, spec, record, AnyRecordings::Python)?;
+        let (run, recordings) = boxed_run(task, shape, seed, spec, (record, stop), AnyRecordings::Python)?;
         Ok(BuiltRun { run, recordings, steps_python: true })
     }
 }
@@ -122,7 +125,7 @@ impl<R: ObservationReader> Task for PythonTask<R> {
             }
             let answer = env.call_method(intern!(py, "reset"), (), Some(&arguments))?;
             self.seeded = true;
-            Ok((0, self.reader.active_rows(&answer.get_item(0)?)?))
+            Ok((0, self.reader.active_rows(&answers::observation_after_reset(env, &answer)?)?))
         })
     }
 
@@ -130,28 +133,22 @@ impl<R: ObservationReader> Task for PythonTask<R> {
         Python::attach(|py| {
             let env = self.env.env.bind(py);
             let answer = env.call_method1(intern!(py, "step"), (self.env.action(py, action)?,))?;
-            let (observation, reward, terminated, truncated, _info): (
-                Bound<'_, PyAny>,
-                f64,
-                Bound<'_, PyAny>,
-                Bound<'_, PyAny>,
-                Bound<'_, PyAny>,
-            ) = answer.extract()?;
-            if !reward.is_finite() {
-                let message = format!("the environment's reward is {reward}, which no value can be learned from");
-                return Err(PyValueError::new_err(message).into());
-            }
+            let Answer { observation, reward, terminated, truncated } = Answer::of_step(env, &answer)?;
             *elapsed += 1;
             let rows = self.reader.active_rows(&observation)?;
-            let next = if terminated.is_truthy()? {
+            let next = if terminated {
                 Next::Terminal
-            } else if truncated.is_truthy()? || *elapsed >= self.max_episode_steps {
+            } else if truncated || *elapsed >= self.max_episode_steps {
                 Next::Truncated(rows)
             } else {
                 Next::NonTerminal(rows)
             };
             Ok(Transition { reward, next })
         })
+    }
+
+    fn step_work(&self) -> u64 {
+        STEP_WORK
     }
 }
 

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use qtab_core::random::Rng;
 use qtab_core::tasks::Recordings;
-use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer};
+use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer, TrainingError};
 
 use crate::error::RunError;
 
@@ -15,18 +15,22 @@ pub(crate) trait Run: Send {
 
     fn episodes(&self) -> &EpisodeLog;
 
+    /// Takes the finished episodes out. The run cannot be continued.
+    fn take_episodes(&mut self) -> EpisodeLog;
+
     /// The values of each table, rows first.
     fn tables(&self) -> Vec<&[f64]>;
 }
 
 impl<W, L, D> Run for Trainer<W, L, D>
 where
-    W: Task<Error: Into<RunError>, State: Send, Active: Send> + Send,
+    W: Task<State: Send, Active: Send> + Send,
+    RunError: From<W::Error>,
     L: Learner<W::Active> + Send,
     D: Rng + Clone + Send,
 {
     fn advance(&mut self, budget: Budget) -> Result<(), RunError> {
-        Trainer::advance(self, budget).map_err(Into::into)?;
+        Trainer::advance(self, budget).map_err(<RunError as From<TrainingError<W::Error>>>::from)?;
         self.check()
     }
 
@@ -36,6 +40,10 @@ where
 
     fn episodes(&self) -> &EpisodeLog {
         Trainer::episodes(self)
+    }
+
+    fn take_episodes(&mut self) -> EpisodeLog {
+        Trainer::take_episodes(self)
     }
 
     fn tables(&self) -> Vec<&[f64]> {
@@ -54,6 +62,10 @@ impl Run for Box<dyn Run> {
 
     fn episodes(&self) -> &EpisodeLog {
         (**self).episodes()
+    }
+
+    fn take_episodes(&mut self) -> EpisodeLog {
+        (**self).take_episodes()
     }
 
     fn tables(&self) -> Vec<&[f64]> {

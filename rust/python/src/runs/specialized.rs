@@ -9,7 +9,7 @@ use qtab_core::policies::{EpsilonGreedy, Policy, TieBreaking};
 use qtab_core::random::Pcg64;
 use qtab_core::schedules::{Schedule, StepSize};
 use qtab_core::tasks::NativeTask;
-use qtab_core::{Env, Features, Trainer};
+use qtab_core::{Env, Features, StopFlag, Trainer};
 
 use super::agent::policy;
 use super::factory::{Batching, Factory};
@@ -135,10 +135,10 @@ where
         A: StepSize + Clone + Send + Sync + 'static,
     {
         let Self { env, features, spec } = self;
-        let build = move |seed: &Seed| {
+        let build = move |seed: &Seed, stop: &StopFlag<'_>| {
             let mut rng = agent_pcg64(seed);
             let agent = Agent {
-                table: spec.initial_q.table((0, 1), (features.len(), N), &mut rng)?,
+                table: spec.initial_q.table((0, 1), (features.len(), N), &mut rng, stop)?,
                 policy: policy.clone(),
                 learning_rate: learning_rate.clone(),
                 discount: spec.discount,

@@ -60,7 +60,28 @@ pub(crate) const DISCRETIZERS: &[Variant<DiscretizerSpec>] = &[
 
 impl DiscretizerSpec {
     pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
-        fields.tagged(DISCRETIZERS)
+        let spec: Self = fields.tagged(DISCRETIZERS)?;
+        let rows = spec.row_counts().into_iter().try_fold(1_u64, u64::checked_mul);
+        if rows.is_none_or(|rows| rows == 0 || rows > u64::from(u32::MAX)) {
+            let got = rows.map_or_else(|| "more".into(), |rows| rows.to_string());
+            return Err(invalid(fields.name(), "one of 1 to 2**32 - 1 rows", got));
+        }
+        Ok(spec)
+    }
+
+    /// The numbers whose product is the number of rows.
+    fn row_counts(&self) -> Vec<u64> {
+        match self {
+            Self::Round(round) if round.dtype == FloatType::F32 => sizes(&round.axes(|bound| bound as f32)),
+            Self::Round(round) => sizes(&round.axes(|bound| bound)),
+            Self::Bins(bins) => bins.edges.iter().map(|edges| edges.bins() as u64).collect(),
+            Self::Tiles(TilesSpec { hashed_rows: Some(rows), .. }) => vec![u64::from(*rows)],
+            Self::Tiles(tiles) => {
+                let tiles_of_axes = tiles.tiles.iter().map(|&count| u64::from(count) + 1);
+                [u64::from(tiles.tilings)].into_iter().chain(tiles_of_axes).collect()
+            }
+            Self::Identity(reader) => reader.counts().map(u64::from).collect(),
+        }
     }
 
     /// The dtype and the number of components of the observations. It is an error for integers.
@@ -96,6 +117,10 @@ impl DiscretizerSpec {
             Self::Identity(_) => Err(invalid("discretizer", "'round' or 'bins'", "'identity'")),
         }
     }
+}
+
+fn sizes<T: Float>(axes: &[Axis<T>]) -> Vec<u64> {
+    axes.iter().map(|axis| axis.size() as u64).collect()
 }
 
 fn identity(fields: &Fields<'_>) -> PyResult<DiscretizerSpec> {
@@ -167,6 +192,16 @@ impl TilesSpec {
         same_length(fields, "high", spec.high.len(), spec.tiles.len())?;
         if !(1..=MAX_TILINGS).contains(&(spec.tilings as usize)) {
             return Err(invalid(&fields.path("tilings"), format!("from 1 to {MAX_TILINGS}"), spec.tilings));
+        }
+        for ((&low, &high), &tiles) in spec.low.iter().zip(&spec.high).zip(&spec.tiles) {
+            // Beyond these limits a tile's number would overflow.
+            if !(low < high && (f64::from(tiles) / (high - low)).is_normal() && (high - low).is_finite()) {
+                let got = format!("{low} to {high} with {tiles} tiles");
+                return Err(invalid(&fields.path("low"), "less than high, and tiles at least 1", got));
+            }
+            if u64::from(tiles) * u64::from(spec.tilings) >= u64::from(u32::MAX) {
+                return Err(invalid(&fields.path("tiles"), "less than 2**32 - 1, times tilings", tiles));
+            }
         }
         if spec.hashed_rows == Some(0) {
             return Err(invalid(&fields.path("hashed_rows"), "at least 1", 0));

@@ -29,6 +29,11 @@ impl<'py> Fields<'py> {
         Err(PyTypeError::new_err(format!("{name} must be a dict, got {}", value.repr()?)))
     }
 
+    /// What a message calls this dict.
+    pub(crate) fn name(&self) -> &str {
+        if self.path.is_empty() { "spec" } else { &self.path }
+    }
+
     /// The path of a field.
     pub(crate) fn path(&self, name: &str) -> String {
         if self.path.is_empty() { name.into() } else { format!("{}.{name}", self.path) }

@@ -5,15 +5,17 @@ use std::sync::Arc;
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
 use qtab_core::QTable;
+use qtab_core::StopFlag;
+use qtab_core::memory::{collect, filled, from_fn};
 use qtab_core::random::Rng;
 
 use super::fields::{Fields, Variant};
-use crate::error::invalid;
+use crate::error::{allocation, invalid};
 
 #[derive(Clone, Debug)]
 pub(crate) enum InitialQSpec {
     /// The values of all tables, in C order. Shared, since many runs may start from them.
-    Given(Arc<[f64]>),
+    Given(Arc<Vec<f64>>),
     Uniform {
         low: f64,
         high: f64,
@@ -26,7 +28,8 @@ pub(crate) enum InitialQSpec {
 const INITIAL_QS: &[Variant<InitialQSpec>] = &[
     ("table", |fields| {
         let values: PyReadonlyArrayDyn<'_, f64> = fields.get("values")?;
-        Ok(InitialQSpec::Given(values.as_array().iter().copied().collect()))
+        let values = collect(values.as_array().iter().copied()).map_err(allocation)?;
+        Ok(InitialQSpec::Given(Arc::new(values)))
     }),
     ("uniform", |fields| Ok(InitialQSpec::Uniform { low: fields.get("low")?, high: fields.get("high")? })),
     ("constant", |fields| Ok(InitialQSpec::Constant { value: fields.get("value")? })),
@@ -48,6 +51,7 @@ impl InitialQSpec {
         (index, n_tables): (usize, usize),
         (n_rows, num_actions): (usize, usize),
         rng: &mut impl Rng,
+        stop: &StopFlag<'_>,
     ) -> PyResult<QTable<N>> {
         let size = n_rows * num_actions;
         let values = match self {
@@ -56,11 +60,12 @@ impl InitialQSpec {
                     let expected = format!("{n_tables} tables of {n_rows} rows of {num_actions} values");
                     return Err(invalid("initial_q", expected, format!("{} values", values.len())));
                 }
-                values[index * size..][..size].to_vec()
+                let mut values = values[index * size..][..size].iter();
+                from_fn(size, stop, || values.next().copied().unwrap_or_default())
             }
-            Self::Constant { value } => vec![*value; size],
-            Self::Uniform { low, high } => (0..size).map(|_| rng.uniform(*low, *high)).collect(),
+            Self::Constant { value } => filled(value, size, stop),
+            Self::Uniform { low, high } => from_fn(size, stop, || rng.uniform(*low, *high)),
         };
-        Ok(QTable::new(values, num_actions))
+        Ok(QTable::new(values.map_err(allocation)?, num_actions))
     }
 }

@@ -36,6 +36,8 @@ pub(crate) struct RunSpec {
     pub(crate) terminate_on_truncation: bool,
     pub(crate) episodes: u64,
     pub(crate) bit_generator: BitGenerator,
+    /// How many actions all recordings together may hold.
+    pub(crate) max_recorded_actions: u64,
 }
 
 impl RunSpec {
@@ -59,6 +61,7 @@ impl RunSpec {
             terminate_on_truncation: fields.word("on_truncation", &[("bootstrap", false), ("terminate", true)])?,
             episodes,
             bit_generator: fields.word("bit_generator", BitGenerator::WORDS)?,
+            max_recorded_actions: u64::MAX,
         };
         spec.check_tile_coding()?;
         Ok(spec)

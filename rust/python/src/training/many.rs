@@ -3,15 +3,14 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::vec::IntoIter;
 
 use pyo3::prelude::*;
-use qtab_core::Budget;
+use qtab_core::{Budget, StopFlag};
 
-use super::STEPS_BETWEEN_CHECKS;
+use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
-use super::results::{Results, Row};
-use crate::convert::Seed;
+use super::results::{Results, Row, Rows};
+use crate::convert::{Seed, Seeds};
 use crate::error::invalid;
 use crate::interrupt::run_interruptible;
 use crate::runs::{RunBatch, RunFactory};
@@ -28,7 +27,7 @@ type FailedRun = (usize, PyErr);
 pub(crate) fn train_many(
     py: Python<'_>,
     spec: &Bound<'_, PyAny>,
-    seeds: Vec<Seed>,
+    seeds: Seeds,
     mut results: Results<'_>,
     threads: usize,
     keep_going: bool,
@@ -38,17 +37,15 @@ pub(crate) fn train_many(
         return Err(invalid("env", "an environment that Rust steps", "one that is stepped in Python"));
     };
     let factory = env.runs(&Arc::new(RunSpec::parse(&fields)?), 0)?;
-    let rows = results.rows()?;
-    if rows.len() != seeds.len() {
-        return Err(invalid("results", format!("arrays of {} rows, one for each seed", seeds.len()), rows.len()));
-    }
-    let threads = threads.min(rows.len());
+    let Seeds(seeds) = seeds;
+    let rows = results.rows(seeds.len())?;
+    let threads = threads.min(seeds.len());
     // A few runs are divided evenly among the threads first.
-    let share = rows.len().div_ceil(threads.max(1));
+    let share = seeds.len().div_ceil(threads.max(1));
     let queue = WorkQueue {
         factory: &*factory,
         seeds: &seeds,
-        rows: Mutex::new(rows.into_iter()),
+        rows: Mutex::new(rows),
         failed: Mutex::default(),
         keep_going,
         cancelled: AtomicBool::new(false),
@@ -57,7 +54,10 @@ pub(crate) fn train_many(
         thread::scope(|scope| {
             // This thread is one of the workers.
             for _ in 1..threads {
-                scope.spawn(|| queue.run_worker(share, stop));
+                // Threads may run out. Those that there are then do all the work.
+                if thread::Builder::new().spawn_scoped(scope, || queue.run_worker(share, stop)).is_err() {
+                    break;
+                }
             }
             queue.run_worker(share, stop);
         });
@@ -71,7 +71,7 @@ pub(crate) fn train_many(
 struct WorkQueue<'a> {
     factory: &'a dyn RunFactory,
     seeds: &'a [Seed],
-    rows: Mutex<IntoIter<Row<'a>>>,
+    rows: Mutex<Rows<'a>>,
     failed: Mutex<Vec<FailedRun>>,
     keep_going: bool,
     cancelled: AtomicBool,
@@ -79,7 +79,7 @@ struct WorkQueue<'a> {
 
 impl<'a> WorkQueue<'a> {
     /// What one thread does: it keeps a batch of up to `share` runs full until no run is left.
-    fn run_worker(&self, share: usize, stop: &AtomicBool) {
+    fn run_worker(&self, share: usize, stop: &StopFlag<'_>) {
         let mut batch = self.factory.batch();
         let mut rows = Vec::new();
         let lanes = batch.lanes().min(share);
@@ -89,7 +89,7 @@ impl<'a> WorkQueue<'a> {
                 return;
             }
             let episodes = rows[0].episodes();
-            if let Err((index, error)) = batch.advance(Budget { episodes, steps: STEPS_BETWEEN_CHECKS }) {
+            if let Err((index, error)) = batch.advance(Budget { episodes, work: WORK_BETWEEN_CHECKS }) {
                 let mut row = rows.swap_remove(index);
                 row.write_episodes(batch.run(index));
                 batch.swap_remove(index);
@@ -109,11 +109,13 @@ impl<'a> WorkQueue<'a> {
     }
 
     /// Starts runs until the batch has so many `lanes`, or no run is left.
-    fn fill(&self, batch: &mut dyn RunBatch, rows: &mut Vec<Row<'a>>, lanes: usize, stop: &AtomicBool) {
+    fn fill(&self, batch: &mut dyn RunBatch, rows: &mut Vec<Row<'a>>, lanes: usize, stop: &StopFlag<'_>) {
         while rows.len() < lanes && !self.is_cancelled(stop) {
             let Some(row) = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
-            match batch.push(&self.seeds[row.index]) {
+            match batch.push(&self.seeds[row.index], stop) {
                 Ok(()) => rows.push(row),
+                // What a stopped construction says is nobody's failure.
+                Err(_) if stop.is_set() => return,
                 Err(error) => self.fail(row.index, error),
             }
         }
@@ -124,7 +126,7 @@ impl<'a> WorkQueue<'a> {
         self.cancelled.fetch_or(!self.keep_going, Ordering::AcqRel);
     }
 
-    fn is_cancelled(&self, stop: &AtomicBool) -> bool {
-        stop.load(Ordering::Acquire) || self.cancelled.load(Ordering::Acquire)
+    fn is_cancelled(&self, stop: &StopFlag<'_>) -> bool {
+        stop.is_set() || self.cancelled.load(Ordering::Acquire)
     }
 }

@@ -1,5 +1,7 @@
 //! Where the results of many runs are written: straight into `NumPy`'s arrays, a row for each run.
 
+use std::mem::take;
+
 use numpy::{PyReadwriteArray1, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -66,38 +68,73 @@ impl Row<'_> {
     }
 }
 
-impl Results<'_> {
-    pub(super) fn rows(&mut self) -> PyResult<Vec<Row<'_>>> {
-        let runs = self.finished.as_slice_mut()?;
-        let mut returns = split("returns", &mut self.returns, runs.len())?.into_iter();
-        let mut lengths = split("lengths", &mut self.lengths, runs.len())?.into_iter();
-        let mut terminated = split("terminated", &mut self.terminated, runs.len())?.into_iter();
-        let mut tables = split("tables", &mut self.tables, runs.len())?.into_iter();
-        let rows = runs.iter_mut().enumerate().map_while(|(index, finished)| {
-            let (returns, lengths) = (returns.next()?, lengths.next()?);
-            let (terminated, tables) = (terminated.next()?, tables.next()?);
-            Some(Row { index, returns, lengths, terminated, tables, finished })
-        });
-        Ok(rows.collect())
+/// The rows that are still to be handed out, in their order. It holds no list of them: there may be many millions.
+pub(super) struct Rows<'a> {
+    next: usize,
+    /// The numbers of columns: episodes, and values of the tables.
+    widths: [usize; 2],
+    returns: &'a mut [f64],
+    lengths: &'a mut [i64],
+    terminated: &'a mut [bool],
+    tables: &'a mut [f64],
+    finished: &'a mut [bool],
+}
+
+impl<'a> Iterator for Rows<'a> {
+    type Item = Row<'a>;
+
+    fn next(&mut self) -> Option<Row<'a>> {
+        let [episodes, values] = self.widths;
+        let (finished, rest) = take(&mut self.finished).split_first_mut()?;
+        self.finished = rest;
+        let index = self.next;
+        self.next += 1;
+        Some(Row {
+            index,
+            returns: split_off(&mut self.returns, episodes),
+            lengths: split_off(&mut self.lengths, episodes),
+            terminated: split_off(&mut self.terminated, episodes),
+            tables: split_off(&mut self.tables, values),
+            finished,
+        })
     }
 }
 
-/// The rows of an array.
-fn split<'a, T: numpy::Element>(
+fn split_off<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let (row, after) = take(rest).split_at_mut(count);
+    *rest = after;
+    row
+}
+
+impl Results<'_> {
+    /// The rows, one for each of so many runs.
+    pub(super) fn rows(&mut self, runs: usize) -> PyResult<Rows<'_>> {
+        let (episodes, values) = (self.returns.shape()[1], self.tables.shape()[1]);
+        let finished = self.finished.as_slice_mut()?;
+        if finished.len() != runs {
+            return Err(invalid("results['finished']", format!("an array of {runs}, one for each seed"), finished.len()));
+        }
+        Ok(Rows {
+            next: 0,
+            widths: [episodes, values],
+            returns: all("returns", &mut self.returns, [runs, episodes])?,
+            lengths: all("lengths", &mut self.lengths, [runs, episodes])?,
+            terminated: all("terminated", &mut self.terminated, [runs, episodes])?,
+            tables: all("tables", &mut self.tables, [runs, values])?,
+            finished,
+        })
+    }
+}
+
+/// The values of an array, which must have this shape.
+fn all<'a, T: numpy::Element>(
     name: &str,
     array: &'a mut PyReadwriteArray2<'_, T>,
-    rows: usize,
-) -> PyResult<Vec<&'a mut [T]>> {
-    let (count, width) = (array.shape()[0], array.shape()[1]);
-    if count != rows {
-        return Err(invalid(&format!("results['{name}']"), format!("an array of {rows} rows"), count));
+    shape: [usize; 2],
+) -> PyResult<&'a mut [T]> {
+    if array.shape() != shape {
+        let got = format!("{:?}", array.shape());
+        return Err(invalid(&format!("results['{name}']"), format!("an array of shape {shape:?}"), got));
     }
-    let mut rest = array.as_slice_mut()?;
-    let mut parts = Vec::with_capacity(rows);
-    for _ in 0..rows {
-        let (row, after) = rest.split_at_mut(width);
-        parts.push(row);
-        rest = after;
-    }
-    Ok(parts)
+    Ok(array.as_slice_mut()?)
 }

@@ -1,64 +1,73 @@
 //! One run, which Python advances step by step: `Trainer.advance` is its only long call.
 
 use std::collections::VecDeque;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::PyArray1;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use qtab_core::Budget;
+use qtab_core::memory::with_capacity;
 use qtab_core::tasks::{Recording, Recordings};
+use qtab_core::{Budget, EpisodeLog};
 
-use super::STEPS_BETWEEN_CHECKS;
+use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
-use crate::convert::Seed;
-use crate::error::RunError;
-use crate::interrupt::run_interruptible;
+use crate::convert::{Seed, array_of};
+use crate::error::{RunError, allocation};
+use crate::interrupt::{run_interruptible, run_polling};
 use crate::runs::{AnyRecordings, BuiltRun, python_run};
 use crate::spec::{Fields, RunSpec};
-
-/// As `STEPS_BETWEEN_CHECKS`, for steps in Python, each of which may take a millisecond.
-const PYTHON_STEPS_BETWEEN_CHECKS: u64 = 64;
 
 /// Returns, lengths, and whether each episode ended in a terminal state.
 type FinishedEpisodes<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<bool>>);
 
-/// A training run: the spec of `qtab/_spec.py`, a seed (a non-negative integer of any size), and how many of the last
-/// episodes to record.
+/// The generator's state at the start of an episode, and its actions.
+type PyRecording<'py> = (Py<PyAny>, Bound<'py, PyArray1<u32>>);
+
+/// A training run: the spec of `qtab/_spec.py`, a seed (a non-negative integer of any size), how many of the last
+/// episodes to record, and how many actions they may have together.
 #[pyclass(frozen, name = "Trainer", module = "qtab._core")]
-pub(crate) struct PyTrainer(Mutex<BuiltRun>);
+pub(crate) struct PyTrainer {
+    run: Mutex<BuiltRun>,
+    /// Whether the results were taken out.
+    over: AtomicBool,
+}
 
 #[pymethods]
 impl PyTrainer {
     #[new]
-    #[pyo3(signature = (spec, seed, record = 0))]
-    fn new(spec: &Bound<'_, PyAny>, seed: Seed, record: usize) -> PyResult<Self> {
+    #[pyo3(signature = (spec, seed, record = 0, max_recorded_actions = u64::MAX))]
+    fn new(spec: &Bound<'_, PyAny>, seed: Seed, record: usize, max_recorded_actions: u64) -> PyResult<Self> {
         let fields = Fields::new(spec)?;
-        let run_spec = RunSpec::parse(&fields)?;
-        let built = match EnvironmentSpec::parse(&fields.nested("env")?)? {
-            EnvironmentSpec::Native(env) => env.runs(&Arc::new(run_spec), record)?.build(&seed)?,
-            EnvironmentSpec::Python(env) => python_run(spec.py(), env, &run_spec, &seed, record)?,
-        };
-        Ok(Self(Mutex::new(built)))
+        let run_spec = RunSpec { max_recorded_actions, ..RunSpec::parse(&fields)? };
+        let environment = EnvironmentSpec::parse(&fields.nested("env")?)?;
+        // A large table takes seconds to fill.
+        let built = run_polling(|stop| match environment {
+            EnvironmentSpec::Native(env) => env.runs(&Arc::new(run_spec), record)?.build(&seed, stop),
+            EnvironmentSpec::Python(env) => python_run(spec.py(), env, &run_spec, &seed, (record, stop)),
+        })?;
+        Ok(Self { run: Mutex::new(built?), over: AtomicBool::new(false) })
     }
 
     /// Trains until `episodes` episodes are finished, counted from the start of the run. If it is interrupted, what was
     /// learned so far stays, and a further call resumes the run.
     fn advance(&self, py: Python<'_>, episodes: usize) -> PyResult<()> {
         let mut guard = self.lock()?;
+        if self.over.load(Ordering::Acquire) {
+            return Err(PyRuntimeError::new_err("this trainer's results were taken: it cannot train further"));
+        }
         let BuiltRun { run, steps_python, .. } = &mut *guard;
+        let budget = Budget { episodes, work: WORK_BETWEEN_CHECKS };
         if *steps_python {
-            let budget = Budget { episodes, steps: PYTHON_STEPS_BETWEEN_CHECKS };
             while run.episodes().returns.len() < episodes {
                 run.advance(budget)?;
                 py.check_signals()?;
             }
             return Ok(());
         }
-        let budget = Budget { episodes, steps: STEPS_BETWEEN_CHECKS };
         let advanced: Result<(), RunError> = run_interruptible(py, |stop| {
-            while run.episodes().returns.len() < episodes && !stop.load(Ordering::Acquire) {
+            while run.episodes().returns.len() < episodes && !stop.is_set() {
                 run.advance(budget)?;
             }
             Ok(())
@@ -73,43 +82,45 @@ impl PyTrainer {
         let episodes = built.run.episodes();
         let since = since.min(episodes.returns.len());
         Ok((
-            PyArray1::from_slice(py, &episodes.returns[since..]),
-            PyArray1::from_slice(py, &episodes.lengths[since..]),
-            PyArray1::from_slice(py, &episodes.terminated[since..]),
+            array_of(py, episodes.returns[since..].iter().copied())?,
+            array_of(py, episodes.lengths[since..].iter().copied())?,
+            array_of(py, episodes.terminated[since..].iter().copied())?,
         ))
+    }
+
+    /// All finished episodes, taken out without a copy, for which there may be no memory. It ends the training.
+    fn take_episodes<'py>(&self, py: Python<'py>) -> PyResult<FinishedEpisodes<'py>> {
+        let mut built = self.lock()?;
+        self.over.store(true, Ordering::Release);
+        let EpisodeLog { returns, lengths, terminated } = built.run.take_episodes();
+        Ok((PyArray1::from_vec(py, returns), PyArray1::from_vec(py, lengths), PyArray1::from_vec(py, terminated)))
     }
 
     /// The values of all tables, one table after the other, rows first.
     fn tables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let built = self.lock()?;
         let tables = built.run.tables();
-        let array = PyArray1::zeros(py, tables.iter().map(|table| table.len()).sum::<usize>(), false);
-        {
-            let mut values = array.try_readwrite()?;
-            let mut rest = values.as_slice_mut()?;
-            for table in tables {
-                let (values, after) = rest.split_at_mut(table.len());
-                values.copy_from_slice(table);
-                rest = after;
-            }
-        }
-        Ok(array)
+        let size = tables.iter().map(|table| table.len()).sum();
+        let mut values = with_capacity(size).map_err(allocation)?;
+        tables.iter().for_each(|table| values.extend_from_slice(table));
+        Ok(PyArray1::from_vec(py, values))
     }
 
-    /// The recorded episodes, oldest first: the state of the environment's generator at their start, and the actions.
-    fn recordings(&self, py: Python<'_>) -> PyResult<Vec<(Py<PyAny>, Vec<u32>)>> {
+    /// The recorded episodes, oldest first, taken out. It ends the training.
+    fn take_recordings<'py>(&self, py: Python<'py>) -> PyResult<Vec<PyRecording<'py>>> {
         let built = self.lock()?;
+        self.over.store(true, Ordering::Release);
         match &built.recordings {
             AnyRecordings::None => Ok(Vec::new()),
-            AnyRecordings::Native(recordings) => lock(recordings)
-                .iter()
+            AnyRecordings::Native(recordings) => take(recordings)
+                .into_iter()
                 .map(|Recording { snapshot, actions }| {
-                    Ok((snapshot.into_pyobject(py)?.into_any().unbind(), actions.clone()))
+                    Ok((snapshot.into_pyobject(py)?.into_any().unbind(), PyArray1::from_vec(py, actions)))
                 })
                 .collect(),
-            AnyRecordings::Python(recordings) => Ok(lock(recordings)
-                .iter()
-                .map(|Recording { snapshot, actions }| (snapshot.clone_ref(py), actions.clone()))
+            AnyRecordings::Python(recordings) => Ok(take(recordings)
+                .into_iter()
+                .map(|Recording { snapshot, actions }| (snapshot, PyArray1::from_vec(py, actions)))
                 .collect()),
         }
     }
@@ -117,7 +128,7 @@ impl PyTrainer {
 
 impl PyTrainer {
     fn lock(&self) -> PyResult<MutexGuard<'_, BuiltRun>> {
-        match self.0.try_lock() {
+        match self.run.try_lock() {
             Ok(guard) => Ok(guard),
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
@@ -127,6 +138,6 @@ impl PyTrainer {
     }
 }
 
-fn lock<S>(recordings: &Recordings<S>) -> MutexGuard<'_, VecDeque<Recording<S>>> {
-    recordings.lock().unwrap_or_else(PoisonError::into_inner)
+fn take<S>(recordings: &Recordings<S>) -> VecDeque<Recording<S>> {
+    std::mem::take(&mut recordings.lock().unwrap_or_else(PoisonError::into_inner))
 }

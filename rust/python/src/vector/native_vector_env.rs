@@ -4,10 +4,11 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyAssertionError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use qtab_core::Env;
-use qtab_core::VectorEnv;
+use qtab_core::memory::{filled, with_capacity};
 use qtab_core::vector::{Autoreset, StepBuffers};
+use qtab_core::{Env, StopFlag, VectorEnv};
 
+use crate::error::allocation;
 use super::infos::{EnvInfo, Infos};
 use super::{BatchAction, BatchObservation, SubEnvRng};
 
@@ -60,6 +61,10 @@ where
     Ok(Box::new(NativeVectorEnv::new(py, env, info, options)?))
 }
 
+fn repeated<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
+    filled(&value, count, &StopFlag::new()).map_err(allocation)
+}
+
 struct NativeVectorEnv<E: Env> {
     envs: VectorEnv<E>,
     info: EnvInfo<E>,
@@ -84,17 +89,18 @@ where
             let cores = std::thread::available_parallelism().map_or(1, usize::from);
             cores.min(num_envs / info.envs_per_thread)
         });
-        let envs = VectorEnv::new(env, num_envs, max_episode_steps, autoreset, threads);
-        let observations: Vec<_> = envs.states().map(|state| envs.env().observe(state)).collect();
+        let envs = VectorEnv::new(env, num_envs, max_episode_steps, autoreset, threads).map_err(allocation)?;
+        let mut observations = with_capacity(num_envs).map_err(allocation)?;
+        observations.extend(envs.states().map(|state| envs.env().observe(state)));
         let out = if copy { None } else { Some(E::Observation::batched(py, &observations)?.unbind()) };
         Ok(Self {
             envs,
             info,
-            actions: [vec![E::Action::NONE; num_envs], vec![E::Action::NONE; num_envs]],
+            actions: [repeated(E::Action::NONE, num_envs)?, repeated(E::Action::NONE, num_envs)?],
             observations,
-            rewards: vec![0.0; num_envs],
-            terminated: vec![false; num_envs],
-            truncated: vec![false; num_envs],
+            rewards: repeated(0.0, num_envs)?,
+            terminated: repeated(false, num_envs)?,
+            truncated: repeated(false, num_envs)?,
             autoreset,
             out,
         })

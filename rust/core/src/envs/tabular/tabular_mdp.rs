@@ -93,6 +93,11 @@ impl TabularMdp {
         self.initial_distribution.len()
     }
 
+    /// The number of outcomes of all state-action pairs.
+    pub fn num_outcomes(&self) -> usize {
+        self.steps.len()
+    }
+
     /// The probability of each initial state.
     pub fn initial_distribution(&self) -> &[f64] {
         &self.initial_distribution

@@ -6,6 +6,12 @@ use crate::random::Rng;
 use crate::schedules::{LearningRate, StepSize};
 use crate::tasks::Next;
 
+/// How many values of a row, traces or rewards of a return are read in the time that counts as a work of 1.
+pub(crate) const VALUES_PER_WORK: u64 = 16;
+
+/// The most work that a learner does in one call. A step that takes more is left unfinished.
+pub(crate) const MAX_WORK_PER_CALL: u64 = 8192;
+
 /// A table, a policy and the constants of an update.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agent<const N: usize = 0, P = AnyPolicy, A = LearningRate> {
@@ -74,6 +80,13 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[inline]
     pub fn update_terminal(&mut self, rows: impl AsRef<[u32]>, action: usize, reward: f64) {
         self.table.update_terminal(rows.as_ref(), action, reward, self.terminal_update, &mut self.learning_rate);
+    }
+
+    /// The work of an update: 1 with a few actions, more where reading a row takes longer. A number of actions that the
+    /// compiler knows is small.
+    #[inline]
+    pub fn work(&self) -> u64 {
+        if N > 0 { 1 } else { 1 + self.table.num_actions() as u64 / VALUES_PER_WORK }
     }
 
     /// Moves the schedules on to the next episode.

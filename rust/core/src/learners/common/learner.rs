@@ -1,5 +1,6 @@
 //! The trait of all learners.
 
+use crate::memory::AllocationError;
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -11,6 +12,34 @@ pub trait Learner<R> {
 
     /// Learns from one step and returns the next action. The result is ignored at the end of an episode.
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize;
+
+    /// The work of the last step, as [`Budget`](crate::Budget) counts it. At least 1.
+    #[inline]
+    fn work(&self) -> u64 {
+        1
+    }
+
+    /// Makes room for what so much work can store.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
+        let _ = work;
+        Ok(())
+    }
+
+    /// Whether the last step still has work to do, because it is more than a caller may have to wait for. The trainer
+    /// then calls [`resume`](Self::resume) before anything else.
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        false
+    }
+
+    /// Goes on learning from the last step, which led to `next`, and returns the next action once the step is finished.
+    fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
+        let (_, _) = (next, rng);
+        0
+    }
 
     /// Called after the last step of every episode.
     fn end_episode(&mut self);

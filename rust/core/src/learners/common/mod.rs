@@ -3,6 +3,7 @@
 mod agent;
 mod learner;
 mod model;
+mod planning_progress;
 mod td_learner;
 #[cfg(test)]
 pub(super) mod test_support;
@@ -11,9 +12,11 @@ mod truncation_handling;
 mod update_rule;
 
 pub use agent::Agent;
+pub(crate) use agent::{MAX_WORK_PER_CALL, VALUES_PER_WORK};
 pub use learner::Learner;
 pub(super) use model::single_row;
 pub use model::{Model, ModelEntry};
+pub(in crate::learners) use planning_progress::PlanningProgress;
 pub use td_learner::TdLearner;
 pub use traces::{TraceKind, Traces};
 pub use truncation_handling::TruncationHandling;

@@ -1,6 +1,8 @@
 //! The model that Dyna plans with (Sutton & Barto, section 8.2).
 
 use super::Agent;
+use crate::StopFlag;
+use crate::memory::{AllocationError, filled, with_capacity};
 use crate::numeric::maximum;
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -44,15 +46,18 @@ pub struct Model {
 }
 
 impl Model {
-    /// An empty model.
-    pub fn new(rows: usize, num_actions: usize) -> Self {
-        Self {
+    /// An empty model, with room for all pairs.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn new(rows: usize, num_actions: usize, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        Ok(Self {
             num_actions,
-            entries: vec![None; rows * num_actions],
-            visited: Vec::new(),
-            tried: vec![0; rows * num_actions],
-            counts: vec![0; rows],
-        }
+            entries: filled(&None, rows * num_actions, stop)?,
+            visited: with_capacity(rows)?,
+            tried: filled(&0, rows * num_actions, stop)?,
+            counts: filled(&0, rows, stop)?,
+        })
     }
 
     /// The number of state-action pairs.

@@ -1,6 +1,7 @@
 //! A temporal-difference learner with one table.
 
 use super::{Agent, Learner, UpdateRule};
+use crate::memory::AllocationError;
 use crate::policies::Policy;
 use crate::random::Rng;
 use crate::schedules::StepSize;
@@ -30,6 +31,24 @@ where
     #[inline]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
         self.rule.learn(&mut self.agent, state, action, reward, next, rng)
+    }
+
+    #[inline]
+    fn work(&self) -> u64 {
+        self.rule.work(&self.agent)
+    }
+
+    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
+        self.rule.reserve(work)
+    }
+
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.rule.is_unfinished()
+    }
+
+    fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
+        self.rule.resume(&mut self.agent, next, rng)
     }
 
     fn end_episode(&mut self) {

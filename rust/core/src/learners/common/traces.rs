@@ -3,7 +3,9 @@
 
 use std::hint::select_unpredictable;
 
+use crate::memory::{AllocationError, filled, with_capacity};
 use crate::q_table::QTable;
+use crate::StopFlag;
 use crate::schedules::{LearningRate, StepSize};
 
 /// How a visit of a state-action pair changes traces.
@@ -39,9 +41,13 @@ pub struct Traces {
 }
 
 impl Traces {
-    /// Traces of `weights` weights, all 0.
-    pub fn new(weights: usize, cutoff: f64) -> Self {
-        Self { active: Vec::new(), count: 0, positions: vec![0; weights], cutoff }
+    /// Traces of `weights` weights, all 0. There is room for all of them, so that a step cannot run out of memory.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn new(weights: usize, cutoff: f64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        let (active, positions) = (with_capacity(weights)?, filled(&0, weights, stop)?);
+        Ok(Self { active, count: 0, positions, cutoff })
     }
 
     /// The number of active traces.
@@ -203,12 +209,13 @@ impl Traces {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schedules::Schedule;
+    use crate::StopFlag;
+use crate::schedules::Schedule;
 
     /// The traces of two actions after these visits, with γλ = 0.5.
     fn traces_after(kind: TraceKind, actions: &[usize]) -> [f64; 2] {
         let table = QTable::<2>::new(vec![0.0; 2], 2);
-        let mut traces = Traces::new(2, 0.0);
+        let mut traces = Traces::new(2, 0.0, &StopFlag::new()).expect("a few weights");
         for &action in actions {
             traces.decay(0.5);
             traces.visit(kind, &table, &[0], action);
@@ -226,7 +233,7 @@ mod tests {
     #[test]
     fn the_combined_pass_equals_two_passes() {
         let mut tables = [QTable::<2>::new(vec![1.0, 2.0, 3.0, 4.0], 2), QTable::new(vec![1.0, 2.0, 3.0, 4.0], 2)];
-        let mut traces = Traces::new(4, 0.25);
+        let mut traces = Traces::new(4, 0.25, &StopFlag::new()).expect("a few weights");
         (0..4).for_each(|weight_index| traces.update(weight_index, |_| 0.3 * (1 + weight_index) as f64));
         let (learning_rate, mut combined) = (LearningRate::scheduled(Schedule::constant(0.1), 2), traces.clone());
         traces.apply_td_error(&mut tables[0], &learning_rate, -7.0);
@@ -238,7 +245,7 @@ mod tests {
 
     #[test]
     fn a_trace_at_the_cutoff_is_removed_and_the_others_stay() {
-        let mut traces = Traces::new(4, 0.25);
+        let mut traces = Traces::new(4, 0.25, &StopFlag::new()).expect("a few weights");
         for weight_index in 0..4 {
             traces.update(weight_index, |_| if weight_index % 2 == 0 { 0.5 } else { 1.0 });
         }

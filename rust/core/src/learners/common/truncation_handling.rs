@@ -1,6 +1,7 @@
 //! The treatment of truncated episodes (F. Pardo et al., "Time limits in reinforcement learning", 2018).
 
 use super::Learner;
+use crate::memory::AllocationError;
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -14,6 +15,17 @@ pub struct TruncationHandling<L> {
     pub terminate: bool,
 }
 
+impl<L> TruncationHandling<L> {
+    /// What the learner is told.
+    #[inline]
+    fn as_learned<R>(&self, next: Next<R>) -> Next<R> {
+        match next {
+            Next::Truncated(_) if self.terminate => Next::Terminal,
+            next => next,
+        }
+    }
+}
+
 impl<R, L: Learner<R>> Learner<R> for TruncationHandling<L> {
     #[inline]
     fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
@@ -22,11 +34,27 @@ impl<R, L: Learner<R>> Learner<R> for TruncationHandling<L> {
 
     #[inline]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
-        let next = match next {
-            Next::Truncated(_) if self.terminate => Next::Terminal,
-            next => next,
-        };
+        let next = self.as_learned(next);
         self.learner.learn(state, action, reward, next, rng)
+    }
+
+    #[inline]
+    fn work(&self) -> u64 {
+        self.learner.work()
+    }
+
+    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
+        self.learner.reserve(work)
+    }
+
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.learner.is_unfinished()
+    }
+
+    fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
+        let next = self.as_learned(next);
+        self.learner.resume(next, rng)
     }
 
     fn end_episode(&mut self) {

@@ -1,5 +1,6 @@
 //! The trait of all update rules.
 
+use crate::memory::AllocationError;
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -15,6 +16,30 @@ pub trait UpdateRule<R, G> {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize;
+
+    /// As [`Learner::work`](super::Learner::work).
+    fn work(&self, agent: &G) -> u64;
+
+    /// As [`Learner::reserve`](super::Learner::reserve).
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
+        let _ = work;
+        Ok(())
+    }
+
+    /// As [`Learner::is_unfinished`](super::Learner::is_unfinished).
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        false
+    }
+
+    /// As [`Learner::resume`](super::Learner::resume).
+    fn resume(&mut self, agent: &mut G, next: Next<R>, rng: &mut impl Rng) -> usize {
+        let (_, _, _) = (agent, next, rng);
+        0
+    }
 
     /// Called after the last step of every episode.
     fn end_episode(&mut self) {}

@@ -1,0 +1,58 @@
+"""How much memory runs take, which is known before they start."""
+
+import math
+
+from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
+from qtab.config.options import n_tables
+from qtab.training.resolved_run import ResolvedRun
+
+BYTES_PER_VALUE = {
+    "sarsa_lambda": 20,
+    "true_online_sarsa_lambda": 20,
+    "watkins_q_lambda": 20,
+    "dyna_q": 36,
+    "dyna_q_plus": 44,
+}
+"""What an algorithm keeps for each value of its table: traces, or what followed each state-action pair."""
+BYTES_PER_VISIT_COUNT = 4
+BYTES_PER_RECORDING = 512
+"""About the size of a recorded episode without its actions: the state of a generator, as Python keeps it."""
+BYTES_PER_RECORDED_ACTION = 4 + 8 + 8
+"""An action in Rust, in the list that Python reads, and in the recording."""
+
+
+def tables_shape(resolved: ResolvedRun, runs: int) -> tuple[int, int, int, int]:
+    """Returns the shape of the Q tables of so many runs: (runs, k, rows, actions)."""
+    return runs, n_tables(resolved.config.algorithm), resolved.discretizer.n_rows, len(resolved.actions)
+
+
+def bytes_in_progress(resolved: ResolvedRun) -> int:
+    """Returns how many bytes a run takes while it trains, without what its environment takes."""
+    values = math.prod(tables_shape(resolved, 1))
+    per_value = 8 + BYTES_PER_VALUE.get(resolved.config.algorithm, 0)
+    if resolved.learning_rate.spec()["type"] == "visits":
+        per_value += BYTES_PER_VISIT_COUNT
+    return resolved.config.episodes * BYTES_PER_EPISODE + values * per_value
+
+
+def check_run(resolved: ResolvedRun, record: int, limit: int) -> int:
+    """Checks that one run fits into the memory limit.
+
+    Args:
+        resolved: The run.
+        record: How many episodes it records.
+        limit: The limit in bytes.
+
+    Returns:
+        How many actions its recordings may have together.
+
+    Raises:
+        MemoryError: if the run does not fit.
+    """
+    episodes = resolved.config.episodes
+    copies = 8 * math.prod(tables_shape(resolved, 1))
+    recordings = min(record, episodes)
+    needed = bytes_in_progress(resolved) + copies + recordings * BYTES_PER_RECORDING
+    what = f"{episodes} episodes" + (f" with {recordings} recordings" if recordings else "")
+    check_memory(what, needed, limit)
+    return (limit - needed) // BYTES_PER_RECORDED_ACTION

@@ -1,0 +1,110 @@
+//! Allocation that can fail: what a user asks for may be larger than memory, and an infallible `Vec` would abort.
+
+use std::collections::TryReserveError;
+use std::error::Error;
+use std::fmt;
+
+use crate::StopFlag;
+
+/// How many values are written between two looks at the stop flag: a fraction of a millisecond.
+const VALUES_BETWEEN_CHECKS: usize = 1 << 16;
+
+/// Why memory was not allocated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AllocationError {
+    /// So many bytes more could not be allocated.
+    OutOfMemory {
+        /// The number of bytes.
+        bytes: usize,
+    },
+    /// The caller set the stop flag.
+    Stopped,
+}
+
+impl fmt::Display for AllocationError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutOfMemory { bytes } => write!(formatter, "{bytes} bytes more could not be allocated"),
+            Self::Stopped => write!(formatter, "the allocation was stopped"),
+        }
+    }
+}
+
+impl Error for AllocationError {}
+
+/// Fails as an allocation of `additional` values of `T` does.
+pub fn out_of_memory<T>(additional: usize) -> impl FnOnce(TryReserveError) -> AllocationError {
+    move |_| AllocationError::OutOfMemory { bytes: additional.saturating_mul(size_of::<T>()) }
+}
+
+/// Makes room for `additional` more values.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub fn reserve<T>(values: &mut Vec<T>, additional: usize) -> Result<(), AllocationError> {
+    values.try_reserve(additional).map_err(out_of_memory::<T>(additional))
+}
+
+/// An empty vector with room for `capacity` values.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub fn with_capacity<T>(capacity: usize) -> Result<Vec<T>, AllocationError> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(capacity).map_err(out_of_memory::<T>(capacity))?;
+    Ok(values)
+}
+
+/// The values of an iterator of known length.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub fn collect<T>(values: impl ExactSizeIterator<Item = T>) -> Result<Vec<T>, AllocationError> {
+    let mut collected = with_capacity(values.len())?;
+    collected.extend(values);
+    Ok(collected)
+}
+
+/// `len` times the same value.
+///
+/// # Errors
+/// `OutOfMemory`; `Stopped` after `stop` was set.
+pub fn filled<T: Clone>(value: &T, len: usize, stop: &StopFlag<'_>) -> Result<Vec<T>, AllocationError> {
+    from_fn(len, stop, || value.clone())
+}
+
+/// `len` values of a function.
+///
+/// # Errors
+/// `OutOfMemory`; `Stopped` after `stop` was set.
+pub fn from_fn<T>(len: usize, stop: &StopFlag<'_>, mut value: impl FnMut() -> T) -> Result<Vec<T>, AllocationError> {
+    let mut values = with_capacity(len)?;
+    while values.len() < len {
+        let count = VALUES_BETWEEN_CHECKS.min(len - values.len());
+        values.extend((0..count).map(|_| value()));
+        if values.len() < len && stop.is_set() {
+            return Err(AllocationError::Stopped);
+        }
+    }
+    Ok(values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_into_the_address_space_is_an_error() {
+        let stop = StopFlag::new();
+        assert_eq!(filled(&0_u8, usize::MAX, &stop), Err(AllocationError::OutOfMemory { bytes: usize::MAX }));
+        assert_eq!(with_capacity::<f64>(1 << 60).map(|_| ()), Err(AllocationError::OutOfMemory { bytes: 1 << 63 }));
+    }
+
+    #[test]
+    fn filling_stops_when_the_flag_is_set() {
+        let stop = StopFlag::new();
+        stop.set();
+        assert_eq!(filled(&1.0, VALUES_BETWEEN_CHECKS, &stop).map(|values| values.len()), Ok(VALUES_BETWEEN_CHECKS));
+        assert_eq!(filled(&1.0, VALUES_BETWEEN_CHECKS + 1, &stop), Err(AllocationError::Stopped));
+    }
+}

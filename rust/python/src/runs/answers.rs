@@ -1,0 +1,114 @@
+//! What the methods of a Python environment return, checked against Gymnasium's API.
+
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyBytes, PyDict, PyFloat, PyString, PyTuple};
+
+/// What `step` returned.
+pub(super) struct Answer<'py> {
+    pub(super) observation: Bound<'py, PyAny>,
+    pub(super) reward: f64,
+    pub(super) terminated: bool,
+    pub(super) truncated: bool,
+}
+
+impl<'py> Answer<'py> {
+    /// Takes apart what `env.step` returned.
+    pub(super) fn of_step(env: &Bound<'py, PyAny>, answer: &Bound<'py, PyAny>) -> PyResult<Self> {
+        let expected = "a tuple (observation, reward, terminated, truncated, info)";
+        let values = tuple_of(env, "step", expected, 5, answer)?;
+        let reward = values.get_item(1)?;
+        Ok(Self {
+            observation: values.get_item(0)?,
+            reward: finite(env, &reward)?,
+            terminated: flag(env, "terminated", &values.get_item(2)?)?,
+            truncated: flag(env, "truncated", &values.get_item(3)?)?,
+        })
+    }
+}
+
+/// The observation in what `env.reset` returned.
+pub(super) fn observation_after_reset<'py>(
+    env: &Bound<'py, PyAny>,
+    answer: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let expected = "a tuple (observation, info)";
+    let values = tuple_of(env, "reset", expected, 2, answer)?;
+    if !values.get_item(1)?.is_instance_of::<PyDict>() {
+        // Two components of an observation, as `reset` returned it before Gymnasium.
+        return Err(wrong_type(env, "reset", "a dict as the info", &values.get_item(1)?));
+    }
+    values.get_item(0)
+}
+
+fn tuple_of<'a, 'py>(
+    env: &Bound<'py, PyAny>,
+    method: &str,
+    expected: &str,
+    length: usize,
+    answer: &'a Bound<'py, PyAny>,
+) -> PyResult<&'a Bound<'py, PyTuple>> {
+    let Ok(values) = answer.cast::<PyTuple>() else {
+        return Err(wrong_type(env, method, expected, answer));
+    };
+    if values.len() != length {
+        let got = format!("a tuple of {}: {}", values.len(), shortened(answer));
+        return Err(PyValueError::new_err(message(env, method, expected, &got)));
+    }
+    Ok(values)
+}
+
+fn finite(env: &Bound<'_, PyAny>, reward: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let expected = "a finite number as the reward";
+    let number = match reward.cast_exact::<PyFloat>() {
+        Ok(number) => number.value(),
+        // A text has no `__float__`, and an array of several numbers refuses.
+        Err(_) => reward.extract::<f64>().map_err(|error| {
+            if error.is_instance_of::<PyOverflowError>(reward.py()) {
+                return PyValueError::new_err(message(env, "step", expected, &shortened(reward)));
+            }
+            wrong_type(env, "step", expected, reward)
+        })?,
+    };
+    if number.is_finite() {
+        return Ok(number);
+    }
+    Err(PyValueError::new_err(message(env, "step", expected, &shortened(reward))))
+}
+
+/// A bool, of Python's or NumPy's or of an array library without dimensions, or the integers 0 and 1.
+fn flag(env: &Bound<'_, PyAny>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    if let Ok(flag) = value.cast_exact::<PyBool>() {
+        return Ok(flag.is_true());
+    }
+    let py = value.py();
+    let is_number = value.hasattr(intern!(py, "__index__"))? || value.hasattr(intern!(py, "dtype"))?;
+    let is_text = value.is_instance_of::<PyString>() || value.is_instance_of::<PyBytes>();
+    let truth = value.is_truthy();
+    match truth {
+        Ok(truth) if is_number && !is_text && value.eq(truth).unwrap_or(false) => Ok(truth),
+        _ => Err(wrong_type(env, "step", &format!("a bool as {name}"), value)),
+    }
+}
+
+fn wrong_type(env: &Bound<'_, PyAny>, method: &str, expected: &str, got: &Bound<'_, PyAny>) -> PyErr {
+    PyTypeError::new_err(message(env, method, expected, &shortened(got)))
+}
+
+fn message(env: &Bound<'_, PyAny>, method: &str, expected: &str, got: &str) -> String {
+    let name = env.str().map_or_else(|_| "the environment".into(), |name| name.to_string());
+    format!("{method} of {name} must return {expected}, as Gymnasium's API says, got {got}")
+}
+
+/// The longest value that a message shows, in characters.
+const SHOWN: usize = 80;
+
+fn shortened(value: &Bound<'_, PyAny>) -> String {
+    let text = value.repr().map_or_else(|_| "an object without a repr".into(), |text| text.to_string());
+    if text.chars().count() <= SHOWN {
+        return text;
+    }
+    let start: String = text.chars().take(SHOWN).collect();
+    format!("{start}...")
+}
