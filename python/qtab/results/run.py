@@ -167,7 +167,7 @@ class Run:
         return np.random.default_rng(np.random.SeedSequence(self.config.seed).spawn(1)[0])
 
     def mean_returns(self, block: int = 100) -> NDArray[np.float64]:
-        """Returns the average return of each whole block of episodes, as the article plots it.
+        """Returns the average return of each whole block of episodes, as the article plots it; none of a shorter run.
 
         Raises:
             TypeError: if ``block`` is not an integer.
