@@ -20,6 +20,11 @@ _COLORS = ("#3b82c4", "#d1662b", "#2f9f6b", "#a06ac0", "#b0892b", "#c0506a")
 """Colors that can be seen on white and on black."""
 
 
+def color(index: int) -> str:
+    """Returns the color of a line by its index."""
+    return _COLORS[index % len(_COLORS)]
+
+
 def lines(title: str, curves: Mapping[str, ArrayLike], band: tuple[ArrayLike, ArrayLike] | None = None) -> str:
     """Returns a picture of lines of (points,) each, over the same range of x; empty if there are no two points.
 
@@ -39,7 +44,7 @@ def lines(title: str, curves: Mapping[str, ArrayLike], band: tuple[ArrayLike, Ar
         around = f"{scale.path(limits[0])}L{scale.path(limits[1], backwards=True)[1:]}z"
         parts.append(f'<path d="{around}" fill="{_COLORS[0]}" fill-opacity=".25"/>')
     for index, (name, curve) in enumerate(shown.items()):
-        drawn = f'fill="none" stroke="{_COLORS[index % len(_COLORS)]}" stroke-width="1.5"'
+        drawn = f'fill="none" stroke="{color(index)}" stroke-width="1.5"'
         parts.append(f'<path d="{scale.path(curve)}" {drawn}><title>{escape(name)}</title></path>')
     return _picture(title, scale.labels() + "".join(parts))
 
@@ -60,7 +65,7 @@ def bars(title: str, heights: ArrayLike, first: str, last: str) -> str:
 
 
 def field(title: str, values: NDArray[np.float64]) -> str:
-    """Returns a picture of (rows, columns) values, the higher the darker; empty if they are not finite."""
+    """Returns a picture of (rows, columns) values, the higher the stronger; empty if they are not finite."""
     if values.ndim != 2 or not values.size or not np.isfinite(values).all():
         return ""
     small = _averaged(_averaged(values, 0, _MAX_CELLS[0]), 1, _MAX_CELLS[1])
@@ -75,8 +80,8 @@ def field(title: str, values: NDArray[np.float64]) -> str:
         cells = "".join(f"M{column} {row}h1v1h-1z" for row, column in np.argwhere(shades == shade).tolist())
         paths.append(f'<path d="{cells}" fill-opacity="{(shade + 1) / _LEVELS:.1f}"/>')
     scaled = f'<g transform="translate({_MARGIN} {_MARGIN}) scale({width:.3f} {height:.3f})" fill="{_COLORS[0]}">'
-    labels = _text(_MARGIN, HEIGHT + 52, f"lightest {_short(low)}", "start")
-    labels += _text(WIDTH - _MARGIN, HEIGHT + 52, f"darkest {_short(high)}", "end")
+    labels = _text(_MARGIN, HEIGHT + 52, f"faintest: {_short(low)}", "start")
+    labels += _text(WIDTH - _MARGIN, HEIGHT + 52, f"strongest: {_short(high)}", "end")
     return _picture(title, f"{scaled}{''.join(paths)}</g>{labels}", HEIGHT + 58)
 
 

@@ -79,7 +79,9 @@ class Result:
             lowest, highest = (f"{finite.min():.5g}", f"{finite.max():.5g}") if len(finite) else ("-", "-")
             rows.append((line.name, len(line.mean), lowest, highest, line.runs, int(line.diverged.sum())))
         drawn = {line.name: line.mean for line in self.lines if line.drawn}
-        return html.listing(self.experiment.heading, columns, rows, svg.lines(f"{y} by {x}", drawn))
+        numbers = iter(range(len(self.lines)))
+        colors = [svg.color(next(numbers)) if line.drawn else "" for line in self.lines]
+        return html.listing(self.experiment.heading, columns, rows, svg.lines(f"{y} by {x}", drawn), colors)
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns all points of all lines as a data frame, with the columns of :meth:`save`.

@@ -73,7 +73,8 @@ class Sweep:
             heading += f"; the best {len(best)}"
         curves = {f"setting {setting}": self.curves(setting).mean(axis=0) for setting in best}
         label = f"Mean learning curves in blocks of {self.block:,} episodes"
-        return html.listing(heading, columns, rows, svg.lines(label, curves))
+        colors = [svg.color(index) for index in range(len(best))]
+        return html.listing(heading, columns, rows, svg.lines(label, curves), colors)
 
     def __len__(self) -> int:
         return len(self.columns["seed"])

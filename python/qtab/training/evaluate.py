@@ -43,15 +43,21 @@ class Evaluation:
     """The return at which Gymnasium considers the environment solved; None where it gives none."""
 
     def __repr__(self) -> str:
-        return (
-            f"<Evaluation of {len(self.returns):,} episodes: mean return {self.mean_return:.2f} "
-            f"± {self.standard_error:.2f}, seed {self.seed}>"
-        )
+        return f"<Evaluation of {self._episodes}: mean return {self._mean}, seed {self.seed}>"
+
+    @property
+    def _episodes(self) -> str:
+        return "1 episode" if len(self.returns) == 1 else f"{len(self.returns):,} episodes"
+
+    @property
+    def _mean(self) -> str:
+        error = f" ± {self.standard_error:.2f}" if len(self.returns) > 1 else ""
+        return f"{self.mean_return:.2f}{error}"
 
     def _repr_html_(self) -> str:
         """A table and a histogram of the returns, for notebooks."""
         facts: dict[str, object] = {
-            "mean return": f"{self.mean_return:.2f} ± {self.standard_error:.2f} (standard error)",
+            "mean return": self._mean + (" (standard error)" if len(self.returns) > 1 else ""),
             "returns": f"{self.returns.min():.6g} to {self.returns.max():.6g}",
             "mean length": f"{self.lengths.mean():.6g} steps",
             "terminated": f"{self.terminated_rate:.1%}",
@@ -62,7 +68,7 @@ class Evaluation:
         if np.isfinite(self.returns).all() and self.returns.min() < self.returns.max():
             counts, edges = np.histogram(self.returns, bins=min(30, len(self.returns)))
             picture = svg.bars("Histogram of the returns", counts, f"{edges[0]:.4g}", f"{edges[-1]:.4g}")
-        return html.summary(f"Evaluation of {len(self.returns):,} episodes, seed {self.seed}", facts, picture)
+        return html.summary(f"Evaluation of {self._episodes}, seed {self.seed}", facts, picture)
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns a data frame with one row per episode: its number, its return, its length and how it ended.
