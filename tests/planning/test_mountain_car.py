@@ -81,6 +81,23 @@ def test_values_are_negative_costs_to_go_on_the_grid(found):
     assert found.predict(state)[0] == found.policy[position, velocity]
 
 
+def test_many_positions_and_velocities_are_answered_at_once(found):
+    observations = np.array([[-0.5, 0.0], [-1.0, 0.02], [0.3, -0.01]])
+    actions, state = found.predict(observations)
+    assert state is None
+    assert actions.tolist() == [found.predict(row)[0] for row in observations]
+    assert type(found.predict(observations[0])[0]) is int
+
+
+def test_notebooks_show_its_values_in_a_short_picture(found):
+    assert repr(found).startswith("<Optimum of MountainCar-v0: best known expected return -")
+    assert "\n" not in repr(found)
+    shown = found._repr_html_()
+    assert "<svg" in shown
+    assert "not proven optimal" in shown
+    assert len(shown) < 20_000
+
+
 def test_the_goal_velocity_is_used():
     slower: Any = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.04})
     env = gym.make("MountainCar-v0", goal_velocity=0.04)

@@ -1,6 +1,8 @@
-"""Nothing is ever unpickled from a file, and a file that is not a run is refused with a clear error."""
+"""Nothing is ever unpickled from a file, and a file that is not a run is refused with a clear error.
 
-import json
+Most of these files have no digest, so that what they hold is looked at; tests/results/test_digest.py is about digests.
+"""
+
 import pickle
 import zipfile
 from typing import Any
@@ -11,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
+from support.run_files import members_of, with_header, without_digest
 
 REFUSED = "is not a run file that this version of qtab can read: "
 
@@ -24,8 +27,7 @@ def saved(tmp_path_factory):
 
 @pytest.fixture
 def members(saved):
-    with np.load(saved) as file:
-        return dict(file)
+    return without_digest(members_of(saved))
 
 
 class Marker:
@@ -43,12 +45,6 @@ def refused(path, message=""):
         qtab.load(path)
     assert str(path) in str(caught.value)
     assert message in str(caught.value)
-
-
-def changed_header(members, change):
-    header = json.loads(str(members["header"]))
-    change(header)
-    return members | {"header": np.array(json.dumps(header))}
 
 
 def test_a_truncated_file_is_refused(saved, tmp_path):
@@ -206,7 +202,7 @@ WRONG_HEADERS = {
 
 @pytest.mark.parametrize(("change", "message"), WRONG_HEADERS.values(), ids=WRONG_HEADERS)
 def test_a_header_that_does_not_fit_is_refused(members, tmp_path, change, message):
-    np.savez(tmp_path / "run.npz", **changed_header(members, change))
+    np.savez(tmp_path / "run.npz", **with_header(members, change))
     refused(tmp_path / "run.npz", message)
 
 
@@ -215,8 +211,7 @@ def few_actions(tmp_path_factory):
     path = tmp_path_factory.mktemp("saved") / "run.npz"
     chosen: dict[str, Any] = {"discretizer": "bins", "bins": (4, 3, 5), "actions": (-1.0, 0.5)}
     qtab.train("Pendulum-v1", seed=0, episodes=2, max_episode_steps=9, initial_q=0.0, **chosen).save(path)
-    with np.load(path) as file:
-        return dict(file)
+    return without_digest(members_of(path))
 
 
 WRONG_BINS = {
@@ -241,7 +236,7 @@ WRONG_BINS = {
 def test_bins_and_actions_that_do_not_fit_are_refused(few_actions, tmp_path, change):
     np.savez(tmp_path / "run.npz", **few_actions)
     assert qtab.load(tmp_path / "run.npz").actions.count == 2
-    np.savez(tmp_path / "run.npz", **changed_header(few_actions, change))
+    np.savez(tmp_path / "run.npz", **with_header(few_actions, change))
     refused(tmp_path / "run.npz")
 
 

@@ -1,50 +1,154 @@
-"""Writing of files, completely or not at all."""
+"""Writing of files, completely or not at all: also if the process is killed or the machine loses power."""
 
+import errno
 import os
+import re
+import secrets
+import stat
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
+_KINDS = {stat.S_IFIFO: "FIFO", stat.S_IFSOCK: "socket", stat.S_IFCHR: "device", stat.S_IFBLK: "device"}
+_MAX_STEM, _MAX_SUFFIX = 30, 20
+"""The characters of a name that its temporary name repeats at most: file systems allow 255 bytes."""
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
+def replacing(path: Path, name: str = "path") -> Iterator[Path]:
     """Yields a temporary path with the same suffix in the same folder, which replaces ``path`` if no error occurs.
 
+    A symbolic link stays, and its target is replaced. The new file has the permissions of the old one, or else those
+    that the umask gives. Temporary files that killed processes left for the same path are removed.
+
+    Args:
+        path: The file to write.
+        name: The name of the argument, for messages.
+
     Raises:
-        OSError: if the folder cannot be written to.
+        OSError: if the file cannot be written, or if something is there that is not a regular file.
     """
-    handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
-    os.close(handle)
-    temporary = Path(name)
-    try:
+    target = check_writable(name, path)
+    with _temporary_file(target) as temporary:
         yield temporary
-        temporary.chmod(0o666 & ~_umask())
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+        with temporary.open("rb+") as written:
+            os.fsync(written.fileno())
+        with suppress(FileNotFoundError):
+            temporary.chmod(stat.S_IMODE(target.stat().st_mode))
+        temporary.replace(target)
+        _sync_folder(target.parent)
 
 
-def check_writable(name: str, path: Path) -> None:
-    """Checks that a file can be written to a path.
+def check_writable(name: str, path: Path) -> Path:
+    """Checks that a file can be written to a path, and returns the path without symbolic links.
 
     Args:
         name: The name of the argument, for the message.
         path: The path.
 
     Raises:
-        OSError: if it cannot; the message says why.
+        OSError: if it cannot, or if something is there that is not a regular file; the message says why.
     """
-    if path.is_dir():
-        raise IsADirectoryError(f"{name} must be a file, got the folder {str(path)!r}")
     try:
-        with tempfile.TemporaryFile(dir=path.parent):
+        _check_regular(name, path)
+        target = path.resolve()
+        with tempfile.TemporaryFile(dir=target.parent):
             pass
+    except RuntimeError:  # symbolic links in a circle, up to Python 3.12
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path)) from None
     except OSError as error:
+        if error.strerror is None:
+            raise
         raise type(error)(f"{name} must be a file that can be written, got {str(path)!r}: {error.strerror}") from None
+    return target
 
 
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _check_regular(name: str, path: Path) -> None:
+    try:
+        kind = stat.S_IFMT(path.stat().st_mode)
+    except FileNotFoundError:
+        return
+    if kind == stat.S_IFDIR:
+        raise IsADirectoryError(f"{name} must be a file, got the folder {str(path)!r}")
+    if kind != stat.S_IFREG:
+        raise OSError(f"{name} must be a regular file, got the {_KINDS.get(kind, 'special file')} {str(path)!r}")
+
+
+@contextmanager
+def _temporary_file(target: Path) -> Iterator[Path]:
+    """Yields the path of a new file beside the target, which is removed afterwards if it is still there.
+
+    The file is locked while it is in use. A killed process leaves it, but not its lock: so the next one can tell.
+    """
+    suffix = target.suffix if len(target.suffix) <= _MAX_SUFFIX else ""
+    before, after = f".{target.stem[:_MAX_STEM]}-", f".tmp{suffix}"
+    _remove_abandoned(target.parent, re.compile(re.escape(before) + "[0-9a-f]{16}" + re.escape(after)))
+    lock = None
+    while lock is None:
+        temporary = target.with_name(f"{before}{secrets.token_hex(8)}{after}")
+        lock = _create_locked(temporary)
+    if os.name == "nt":
+        os.close(lock)  # an open file could not be renamed
+    try:
+        yield temporary
+    finally:
+        temporary.unlink(missing_ok=True)
+        if os.name != "nt":
+            os.close(lock)
+
+
+def _create_locked(temporary: Path) -> int | None:
+    """Creates and locks a file; returns its handle, or None if it was removed before it was locked."""
+    handle = os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o666)  # less the umask
+    with suppress(OSError):  # a file system without locks, on which nothing is taken for abandoned
+        if not _lock(handle) or not temporary.exists():
+            os.close(handle)
+            return None
+    return handle
+
+
+def _remove_abandoned(folder: Path, name: "re.Pattern[str]") -> None:
+    """Removes the temporary files with a name like this that no process has locked."""
+    with suppress(OSError), os.scandir(folder) as entries:
+        found = [Path(entry.path) for entry in entries if name.fullmatch(entry.name)]
+        for temporary in found:
+            with suppress(OSError):  # another process may have removed it
+                handle = os.open(temporary, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0))
+                try:
+                    if _lock(handle):
+                        temporary.unlink()
+                finally:
+                    os.close(handle)
+
+
+def _lock(handle: int) -> bool:
+    """Locks a file until it is closed or the process ends; returns False if another process has locked it.
+
+    Raises:
+        OSError: if its file system has no locks.
+    """
+    if fcntl is None:
+        raise OSError(errno.ENOTSUP, os.strerror(errno.ENOTSUP))
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def _sync_folder(folder: Path) -> None:
+    """Makes a new name in a folder last."""
+    if os.name == "nt":
+        return  # folders cannot be opened there
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):  # some file systems do not support it
+            os.fsync(handle)
+    finally:
+        os.close(handle)

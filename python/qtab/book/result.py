@@ -3,19 +3,22 @@
 import csv
 import math
 import textwrap
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
+import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils import html, svg
 from qtab._utils.files import replacing
+from qtab._utils.frames import data_frame
 from qtab.book.description import Description
 from qtab.book.runner import FloatArray
 
 if TYPE_CHECKING:
-    import numpy as np
+    import pandas as pd
     from matplotlib.axes import Axes
 
 TEXT_WIDTH = 100
@@ -44,7 +47,7 @@ class Line:
     """Whether the figure shows the line."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Result:
     """The result of an experiment. ``str(result)`` is a table with the settings above it."""
 
@@ -60,6 +63,43 @@ class Result:
     """Draws the figure."""
     surfaces: Mapping[str, FloatArray] = field(default_factory=dict, repr=False)
     """The surfaces of a figure that has them, by title."""
+
+    def __repr__(self) -> str:
+        """One line: ``str(result)`` shows the table."""
+        lines = f"{len(self.lines)} line{'' if len(self.lines) == 1 else 's'}"
+        return f"<Result of {self.experiment.heading}: {lines}, {self.runs:,} runs of each setting, seed {self.seed}>"
+
+    def _repr_html_(self) -> str:
+        """A table with the lowest and the highest point of each line, and the lines, for notebooks."""
+        x, y = self.experiment.x_label, self.experiment.y_label
+        columns = ("", "points", f"lowest {y}", f"highest {y}", "runs", "diverged")
+        rows = []
+        for line in self.lines:
+            finite = line.mean[np.isfinite(line.mean)]
+            lowest, highest = (f"{finite.min():.5g}", f"{finite.max():.5g}") if len(finite) else ("-", "-")
+            rows.append((line.name, len(line.mean), lowest, highest, line.runs, int(line.diverged.sum())))
+        drawn = {line.name: line.mean for line in self.lines if line.drawn}
+        numbers = iter(range(len(self.lines)))
+        colors = [svg.color(next(numbers)) if line.drawn else "" for line in self.lines]
+        return html.listing(self.experiment.heading, columns, rows, svg.lines(f"{y} by {x}", drawn), colors)
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """Returns all points of all lines as a data frame, with the columns of :meth:`save`.
+
+        Raises:
+            ModuleNotFoundError: without pandas; the message names the ``pip install``.
+        """
+        counts = [len(line.x) for line in self.lines]
+        columns: dict[str, NDArray[Any]] = {
+            "line": np.repeat(np.array([line.name for line in self.lines], dtype=object), counts),
+            "x": _joined(line.x for line in self.lines),
+            "mean": _joined(line.mean for line in self.lines),
+            "standard_error": _joined(line.error for line in self.lines),
+            "runs": np.repeat(np.array([line.runs for line in self.lines], dtype=np.int64), counts),
+            "capped_episodes": _joined(line.truncated for line in self.lines),
+            "diverged_runs": _joined(line.diverged for line in self.lines),
+        }
+        return data_frame(columns)
 
     def __str__(self) -> str:
         return "\n".join([*_head(self), "", *_rows(self)])
@@ -89,6 +129,10 @@ class Result:
             ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         """
         return self.draw(self, ax)
+
+
+def _joined(parts: Iterable[NDArray[Any]]) -> NDArray[Any]:
+    return np.concatenate(list(parts))
 
 
 def _head(result: Result) -> Iterator[str]:

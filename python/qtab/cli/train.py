@@ -72,7 +72,10 @@ def _train(resolved: ResolvedRun, outputs: Outputs, best: Optimum | None) -> Non
             done, total = len(partial.episode_returns), partial.config.episodes
             averages(Progress(done, total, partial.episode_returns, partial.episode_lengths))
             print_above(f"Stopped after {done:,} of {total:,} episodes; what was learned so far:")
-            _report(partial, outputs, best)
+            try:
+                _report(partial, outputs, best)
+            except ValueError as problem:  # values that overflowed are not saved
+                print_above(str(problem))
         raise
     _report(finished, outputs, best)
     outputs.show(finished)

@@ -162,6 +162,16 @@ class Config:
         """Checks the values and turns NumPy's numbers into Python's."""
         vars(self).update(validated(vars(self)))
 
+    def __eq__(self, other: object) -> bool:
+        """Whether all settings are equal, those that are arrays in every byte."""
+        if not isinstance(other, Config):
+            return NotImplemented
+        return all(_comparable(value) == _comparable(getattr(other, name)) for name, value in vars(self).items())
+
+    def __hash__(self) -> int:
+        """The hash of all settings but ``env_kwargs`` and ``initial_q``, whose values may not have one."""
+        return hash(tuple(value for name, value in vars(self).items() if name not in ("env_kwargs", "initial_q")))
+
     def replace(self, **changes: "Unpack[ConfigSettings]") -> "Config":
         """Returns a copy with some settings changed.
 
@@ -179,6 +189,17 @@ DEFAULTS: Mapping[str, Any] = {
     for field in dataclasses.fields(Config)
 }
 """The default of each field."""
+
+
+def _comparable(value: Any) -> Any:
+    """Returns what two equal values of a setting have in common: JSON, in which runs are saved, has no tuples."""
+    if isinstance(value, np.ndarray):
+        return value.dtype.str, value.shape, value.tobytes()
+    if isinstance(value, Mapping):
+        return {name: _comparable(part) for name, part in value.items()}
+    if isinstance(value, list | tuple):
+        return tuple(map(_comparable, value))
+    return value
 
 
 def replace_checked(config: Config, **changes: Any) -> Config:

@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import Any
 
 import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec, find_highest_version, get_env_id, parse_env_id
+
+from qtab.envs.stored import StoredId, import_package, unregistered
 
 PACKAGE = "qtab"
 PREFIX = "qtab/"
@@ -113,8 +114,7 @@ def versioned(env: str) -> str:
         ModuleNotFoundError: if the id names a package (``"package:id"``) that is not installed.
     """
     package, colon, name = env.rpartition(":")
-    if package:
-        import_module(package)
+    import_package(env)
     namespace, bare_name, version = parse_env_id(name)
     newest = find_highest_version(namespace, bare_name)
     if version is not None or newest is None:
@@ -123,14 +123,21 @@ def versioned(env: str) -> str:
     gym.logger.warn(
         f"Using the latest versioned environment `{full_name}` instead of the unversioned environment `{name}`."
     )
-    return f"{package}{colon}{full_name}"
+    return type(env)(f"{package}{colon}{full_name}")
 
 
 def spec_of(env: str) -> EnvSpec:
     """Returns the spec of an id, after importing the package that the id names (``"package:id"``).
 
+    Nothing is imported for an id that was read from a file.
+
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
         ModuleNotFoundError: if the package is not installed.
     """
-    return gym.spec(versioned(env).rpartition(":")[2])
+    try:
+        return gym.spec(versioned(env).rpartition(":")[2])
+    except gym.error.UnregisteredEnv:
+        if isinstance(env, StoredId):
+            raise unregistered(env) from None
+        raise

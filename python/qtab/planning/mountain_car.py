@@ -43,6 +43,7 @@ class MountainCarSolver:
     """Acts greedily with respect to the cost-to-go, and evaluates the policies of runs by simulation."""
 
     needs_step_count = False
+    observation_shape = (2,)
 
     def __init__(self, searched: _core.MountainCarSearch) -> None:
         self._searched = searched

@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab._utils import checks
+from qtab._utils import checks, html, svg
 from qtab.envs.registry import gymnasium_id, spec_of
 from qtab.planning.gap import Gap
 from qtab.planning.mountain_car import Search
@@ -24,6 +24,10 @@ class Solver(Protocol):
     needs_step_count: bool
     """Whether the best action depends on the number of steps taken in the episode."""
 
+    @property
+    def observation_shape(self) -> tuple[int, ...]:
+        """The shape of an observation."""
+
     def action(self, observation: ArrayLike, steps_taken: int) -> int:
         """Returns the best action after a number of steps of the episode."""
 
@@ -31,7 +35,7 @@ class Solver(Protocol):
         """Returns the expected return of a run's greedy policy, and its standard error."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Optimum:
     """The best policy of an environment: exact from a transition table, or the best known."""
 
@@ -75,24 +79,45 @@ class Optimum:
     def predict(
         self,
         observation: ArrayLike,
-        state: int | None = None,
+        state: Any = None,
         episode_start: Any = None,
         deterministic: bool = True,  # noqa: ARG002 - Stable-Baselines3's signature
-    ) -> tuple[int, int | None]:
+    ) -> tuple[Any, Any]:
         """Returns the best action for an observation, and the state to pass with the next one.
 
         Under a finite horizon the best action depends on the steps left. The state is then the number of steps taken in
         the episode; otherwise it is None.
 
+        For n observations, an array with one more leading axis, it returns an array of n actions, and of n states.
+
+        Args:
+            observation: An observation, or n of them.
+            state: The state that the last call returned; None for the start of an episode.
+            episode_start: Whether an episode starts, with n observations (n,) booleans. None means no.
+            deterministic: Ignored: the best policy is deterministic.
+
         Raises:
-            TypeError: if ``state`` is not an integer.
-            ValueError: for an observation outside the space, or one that does not determine the best action.
+            TypeError: if ``state`` is not an integer, with n observations (n,) integers.
+            ValueError: for an observation outside the space, or one that does not determine the best action; or for a
+                ``state`` or ``episode_start`` of another length.
         """
+        if np.ndim(observation) == len(self.solver.observation_shape) + 1:
+            return self._predict_each(np.asarray(observation), state, episode_start)
         if not self.solver.needs_step_count:
             return self.solver.action(observation, 0), None
         is_first = state is None or bool(np.any(episode_start))
         steps_taken = 0 if is_first else checks.integer("state", state, least=0)
         return self.solver.action(observation, steps_taken), steps_taken + 1
+
+    def _predict_each(self, observations: NDArray[Any], state: Any, episode_start: Any) -> tuple[Any, Any]:
+        count = len(observations)
+        states = _each("state", state, count)
+        starts = _each("episode_start", episode_start, count)
+        answers = [self.predict(*arguments) for arguments in zip(observations, states, starts, strict=True)]
+        actions = np.array([action for action, _ in answers], dtype=np.int64)
+        if not self.solver.needs_step_count:
+            return actions, None
+        return actions, np.array([steps for _, steps in answers], dtype=np.int64)
 
     @overload
     def gap(self, run: Run) -> Gap[float]: ...
@@ -116,7 +141,7 @@ class Optimum:
             return Gap(self.expected_return, final_return, *self.solver.greedy_return(run), label=self.label)
         evaluated = [(float("nan"),) * 2] * len(run) if run.tables is None else map(self.solver.greedy_return, run)
         greedy, error = np.array(list(evaluated), dtype=np.float64).reshape(len(run), 2).T
-        return Gap(self.expected_return, run.final_returns(FINAL_EPISODES), greedy, error, label=self.label)
+        return Gap(self.expected_return, run.final_returns(), greedy, error, label=self.label)
 
     def _check_same_env(self, run: Run | Runs) -> None:
         config = run.config
@@ -140,6 +165,39 @@ class Optimum:
             lines["predict"] = f"mean return {self.search.predict_return:.6g} from the same starts"
         lines["time"] = f"{self.seconds:.3g} s"
         return "\n".join([self.env, *(f"  {name:17}{text}" for name, text in lines.items())])
+
+    def __repr__(self) -> str:
+        """One line: the values are not shown."""
+        return (
+            f"<Optimum of {self.env}: {self.label} expected return {self.expected_return:.6g} "
+            f"within {self.max_episode_steps:,} steps, by {self.method}>"
+        )
+
+    def _repr_html_(self) -> str:
+        """A table and the state values, for notebooks."""
+        facts: dict[str, object] = {
+            "expected return": f"{self.expected_return:.6g} within {self.max_episode_steps:,} steps",
+            "certainty": "exact" if self.exact else "the best known, not proven optimal",
+            "method": f"{self.method}, discount {self.discount:g}",
+            "threshold": "none" if self.reward_threshold is None else f"{self.reward_threshold:g}",
+            "states": " × ".join(map(str, self.values.shape)) + f", {self.q_values.shape[-1]} actions",
+            "time": f"{self.seconds:.3g} s",
+        }
+        values = self.values.reshape(-1) if self.values.ndim != 2 else self.values
+        if values.ndim == 2:
+            picture = svg.field(f"State values, {values.shape[0]} rows by {values.shape[1]} columns", values)
+        else:
+            picture = svg.lines("The value of each state, by its number", {"value": values})
+        return html.summary(f"Optimum of {self.env}", facts, picture)
+
+
+def _each(name: str, values: Any, count: int) -> list[Any]:
+    """Returns one value for each of some observations."""
+    if values is None:
+        return [None] * count
+    if np.shape(values) != (count,):
+        raise ValueError(f"{name} must hold a value for each of the {count} observations, got {values!r}")
+    return list(values)
 
 
 def _all_kwargs(env: str, kwargs: Mapping[str, Any]) -> dict[str, Any]:

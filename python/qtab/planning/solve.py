@@ -20,6 +20,7 @@ from qtab.envs.classic_control import MountainCarEnv as RustMountainCarEnv
 from qtab.envs.matching import time_limit, unknown_wrapper
 from qtab.envs.native import table_env
 from qtab.envs.registry import spec_of, versioned
+from qtab.envs.stored import spec_of_run
 from qtab.planning.mountain_car import MountainCarSolver, Search, search_routes
 from qtab.planning.optimum import Optimum, Solver
 from qtab.planning.tabular import METHODS, TabularSolver, solve_table
@@ -94,7 +95,7 @@ def _optimum_for_run(
     if env_kwargs is not None:
         raise ValueError(f"env_kwargs must be None with a run, whose own are used, got {env_kwargs!r}")
     try:
-        spec_of(config.env)
+        spec_of_run(config.env)
     except gym.error.Error:
         raise ValueError(
             f"env must be an environment object for this run: its environment {config.env!r} is not a registered id"

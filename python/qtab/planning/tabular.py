@@ -55,6 +55,11 @@ class TabularSolver:
         self._max_episode_steps = max_episode_steps
         self.needs_step_count = solution.policy_changes is not None
 
+    @property
+    def observation_shape(self) -> tuple[int, ...]:
+        """The shape of an observation: () for a Discrete space."""
+        return self._cells.low.shape
+
     def action(self, observation: ArrayLike, steps_taken: int) -> int:
         """Returns the best action after a number of steps of the episode.
 

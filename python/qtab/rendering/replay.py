@@ -9,6 +9,7 @@ import numpy as np
 
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
+from qtab.envs.stored import spec_of_run
 from qtab.results.run import Recording, Run
 
 
@@ -42,12 +43,13 @@ def make_render_env(config: Config, render_mode: str) -> gym.Env:
         ValueError: if the environment does not have this render mode.
     """
     kwargs = {**config.env_kwargs, "render_mode": render_mode}
-    with closing(gym.make(config.env, **config.env_kwargs)) as env:
+    spec = spec_of_run(config.env)
+    with closing(gym.make(spec, **config.env_kwargs)) as env:
         modes = env.metadata.get("render_modes", [])
     if render_mode not in modes:
         known = ", ".join(map(repr, modes)) or "none"
         raise ValueError(f"{config.env} cannot be rendered as {render_mode!r}; its render modes are: {known}")
-    return gym.make(config.env, max_episode_steps=config.max_episode_steps, **kwargs)
+    return gym.make(spec, max_episode_steps=config.max_episode_steps, **kwargs)
 
 
 def replay_episode(env: gym.Env, recording: Recording) -> float:

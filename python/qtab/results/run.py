@@ -4,19 +4,25 @@ import dataclasses
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab._utils import checks
+from qtab._utils import checks, html, svg
 from qtab._utils.files import check_writable
+from qtab._utils.frames import episode_frame
 from qtab.config import Config
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
-from qtab.results import run_file
-from qtab.results.summary import FINAL_EPISODES
+from qtab.results import behaviour, run_file
+from qtab.results.consistency import check_consistent
+from qtab.results.summary import FINAL_EPISODES, default_block
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,6 +51,8 @@ class Run:
     """The versions of qtab, Gymnasium, NumPy and Python, and the platform."""
     recordings: tuple["Recording", ...] = field(default=(), repr=False)
     """The last episodes, where ``record=`` asked for them, to be replayed. They are not saved."""
+    unchecked: bool = field(default=False, repr=False)
+    """True for a run from a file of an earlier version, which has no digest: damage to it may not have been noticed."""
 
     def __repr__(self) -> str:
         """One line: the tables are not shown."""
@@ -52,7 +60,28 @@ class Run:
         episodes = f"{finished}" if self.completed else f"{finished} of {config.episodes}"
         last = self.episode_returns[-FINAL_EPISODES:]
         mean = f", the last {len(last)} at {last.mean():.2f}" if finished else ""
-        return f"<Run of {config.env}: {config.algorithm}, seed {config.seed}, {episodes} episodes{mean}>"
+        unchecked = ", from a file without a digest" if self.unchecked else ""
+        return f"<Run of {config.env}: {config.algorithm}, seed {config.seed}, {episodes} episodes{mean}{unchecked}>"
+
+    def _repr_html_(self) -> str:
+        """A table and the learning curve, for notebooks."""
+        config, returns = self.config, self.episode_returns
+        facts: dict[str, object] = {
+            "algorithm": f"{config.algorithm}, seed {config.seed}",
+            "episodes": f"{len(returns):,}" + ("" if self.completed else f" of {config.episodes:,}"),
+            "table": " × ".join(f"{size:,}" for size in self.tables.shape),
+            "time": f"{self.seconds:.3g} s",
+        }
+        if len(returns):
+            last = returns[-FINAL_EPISODES:]
+            facts |= {f"mean of the last {len(last)}": f"{last.mean():.2f}", "best return": f"{returns.max():.6g}"}
+        if self.unchecked:
+            facts["file"] = "of an earlier version, without a digest"
+        block = min(default_block(len(returns)), max(len(returns) // 20, 1))
+        label = (
+            f"Learning curve: the mean return of each {block:,} episodes" if block > 1 else "The return of each episode"
+        )
+        return html.summary(f"Run of {config.env}", facts, svg.lines(label, {"mean return": self.mean_returns(block)}))
 
     @property
     def grid(self) -> Discretizer:
@@ -101,22 +130,44 @@ class Run:
         observation: ArrayLike,
         state: Any = None,  # noqa: ARG002 - Stable-Baselines3's signature
         episode_start: Any = None,  # noqa: ARG002
-        deterministic: bool = True,  # noqa: ARG002
+        deterministic: bool = True,
     ) -> tuple[Any, None]:
-        """Returns the greedy action of an observation as ``env.step`` takes it, and None, as Stable-Baselines3 does.
+        """Returns the action of an observation as ``env.step`` takes it, and None, as Stable-Baselines3 does.
 
-        For n observations, an array with one more leading axis, it returns an array of n actions. ``state``,
-        ``episode_start`` and ``deterministic`` are accepted and ignored: a greedy policy has no use for them.
+        For n observations, an array with one more leading axis, it returns an array of n actions. ``state`` and
+        ``episode_start`` are accepted and ignored: the policy has no state.
+
+        Args:
+            observation: An observation, or n of them.
+            state: Ignored.
+            episode_start: Ignored.
+            deterministic: True takes the greedy action. False draws an action from the behaviour policy, with the ε
+                or the temperature that the last episode of the training left: an ε that fell to 0 leaves the greedy
+                action. The draws come from a generator of this run, which is seeded by its seed.
 
         Raises:
-            TypeError: if the observation does not hold numbers (integers for a discrete space).
+            TypeError: if the observation does not hold numbers (integers for a discrete space), or ``deterministic`` is
+                not a boolean.
             ValueError: if it has another shape than the space, or lies outside the space.
         """
-        greedy = np.argmax(self.q_values(observation), axis=-1)
-        return (self.actions.take(greedy) if greedy.ndim else self.actions[int(greedy)]), None
+        if not isinstance(deterministic, bool | np.bool_):
+            raise TypeError(f"deterministic must be True or False, got {deterministic!r}")
+        values = self.q_values(observation)
+        if deterministic:
+            columns = np.argmax(values, axis=-1)
+        else:
+            rows = values.reshape(-1, values.shape[-1])
+            probabilities = behaviour.action_probabilities(self.config, len(self.episode_returns), rows)
+            columns = behaviour.sample(probabilities, self._generator).reshape(values.shape[:-1])
+        return (self.actions.take(columns) if columns.ndim else self.actions[int(columns)]), None
+
+    @cached_property
+    def _generator(self) -> np.random.Generator:
+        """Draws for :meth:`predict`. Training draws from the seed itself; this is independent of it."""
+        return np.random.default_rng(np.random.SeedSequence(self.config.seed).spawn(1)[0])
 
     def mean_returns(self, block: int = 100) -> NDArray[np.float64]:
-        """Returns the average return of each whole block of episodes, as the article plots it.
+        """Returns the average return of each whole block of episodes, as the article plots it; none of a shorter run.
 
         Raises:
             TypeError: if ``block`` is not an integer.
@@ -127,16 +178,33 @@ class Run:
         means: NDArray[np.float64] = self.episode_returns[:whole].reshape(-1, block).mean(axis=1)
         return means
 
+    def to_pandas(self) -> "pd.DataFrame":
+        """Returns a data frame with one row per episode: its number, its return, its length and how it ended.
+
+        Raises:
+            ModuleNotFoundError: without pandas; the message names the ``pip install``.
+        """
+        return episode_frame(self.episode_returns, self.episode_lengths, self.terminated)
+
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes the run to one ``.npz`` file: arrays and a JSON header, never a pickle. :func:`qtab.load` reads it.
 
+        A digest of all of it is written as well, by which :func:`qtab.load` notices any change. A symbolic link stays,
+        and its target is replaced.
+
         Raises:
-            OSError: if the file cannot be written. An older file stays, and no unfinished one is left behind.
+            OSError: if the file cannot be written, or something is there that is not a regular file. An older file
+                stays whole, even if the process is killed.
             TypeError: if the environment's keyword arguments hold what JSON cannot.
-            ValueError: if they hold a number that JSON cannot.
+            ValueError: if they hold a number that JSON cannot, or the run is not one that training returns, such as one
+                whose values overflowed.
         """
         path = Path(path)
         check_writable("path", path)
+        try:
+            check_consistent(self)
+        except ValueError as error:
+            raise ValueError(f"this run cannot be saved: {error}") from None
         arrays = {name: getattr(self, name) for name in run_file.ARRAYS} | self.discretizer.arrays()
         if self.actions.values is not None:
             arrays["actions"] = self.actions.values

@@ -1,16 +1,20 @@
 """The format of a saved run: one uncompressed ``.npz`` file of arrays and a JSON header, never a pickle."""
 
 import json
+import math
+import os
 import zipfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
+from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from qtab._utils.files import replacing
+from qtab.results.digest import ALGORITHM, digest
 
 FORMAT = "qtab run"
 FORMAT_VERSION = 1
@@ -23,15 +27,28 @@ ARRAYS: Mapping[str, tuple["np.dtype[Any]", int]] = {
 }
 """The dtype and the number of axes of the arrays that every run has."""
 
+_HEADER, _DIGEST = "header", "digest"
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a file holds: a header and arrays that belong together, of which nothing else is known."""
+
+    header: Mapping[str, Any]
+    arrays: Mapping[str, NDArray[Any]]
+    has_digest: bool
+    """Whether the file had a digest, which is then the right one. Those of earlier versions have none."""
+
 
 def encode(header: Mapping[str, Any]) -> str:
-    """Returns a header as JSON, with the name and the version of the format.
+    """Returns a header as JSON, with the name and the version of the format, and that there is a digest.
 
     Raises:
         TypeError: if it holds what JSON cannot.
         ValueError: if it holds a number that JSON cannot.
     """
-    return json.dumps({"format": FORMAT, "version": FORMAT_VERSION, **header}, allow_nan=False)
+    described = {"format": FORMAT, "version": FORMAT_VERSION, _DIGEST: ALGORITHM, **header}
+    return json.dumps(described, allow_nan=False)
 
 
 def write(path: Path, header: str, arrays: Mapping[str, NDArray[Any]]) -> None:
@@ -40,31 +57,66 @@ def write(path: Path, header: str, arrays: Mapping[str, NDArray[Any]]) -> None:
     Raises:
         OSError: if the file cannot be written.
     """
-    members: dict[str, Any] = {"header": np.array(header), **arrays}
+    checked = np.array(digest(json.loads(header), arrays))
+    members: dict[str, Any] = {_HEADER: np.array(header), _DIGEST: checked, **arrays}
     with replacing(path) as temporary, temporary.open("wb") as file:
         np.savez(file, **members)
 
 
-@contextmanager
-def reading(file: BinaryIO) -> Iterator[tuple[dict[str, Any], Mapping[str, NDArray[Any]]]]:
-    """Yields the header of a file, and its arrays, each of which is read when it is looked up.
+def read(file: BinaryIO) -> Content:
+    """Reads a file, and compares its digest if it has one.
 
     Raises:
-        ValueError: if it is not a run file, or comes from another version of the format. A damaged file can raise
-            almost anything else.
+        ValueError: if it is not a run file, comes from another version of the format, or was changed after it was
+            saved. A damaged file can raise almost anything else.
     """
     with zipfile.ZipFile(file) as archive:
+        entries = archive.infolist()
         # An uncompressed array is no larger than its file, so a small file cannot ask for much memory.
-        if any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist()):
+        if any(entry.compress_type != zipfile.ZIP_STORED for entry in entries):
             raise ValueError("it is compressed, which qtab's files are not")
-    file.seek(0)
-    with np.load(file, allow_pickle=False) as arrays:
-        header = json.loads(str(arrays["header"]))
-        if not isinstance(header, dict) or header.get("format") != FORMAT:
-            raise ValueError("its header is not one of qtab's")
-        if header["version"] != FORMAT_VERSION:
-            raise ValueError(f"its format has version {header['version']!r}, this one reads {FORMAT_VERSION}")
-        yield header, arrays
+        if sum(entry.file_size for entry in entries) > file.seek(0, os.SEEK_END):
+            raise ValueError("its arrays are larger than the file")
+        names = [entry.filename.removesuffix(".npy") for entry in entries]
+        if len(set(names)) < len(names):
+            raise ValueError("it has two arrays of the same name")
+        arrays = {name: _read_array(archive, entry) for name, entry in zip(names, entries, strict=True)}
+    header = _header(arrays.pop(_HEADER))
+    stored = arrays.pop(_DIGEST, None)
+    if (stored is None) != (_DIGEST not in header):
+        raise ValueError("its digest is missing")
+    if stored is not None and (header[_DIGEST] != ALGORITHM or str(stored) != digest(header, arrays)):
+        raise ValueError("its digest is not that of its content, which was changed after it was saved")
+    return Content(header, arrays, has_digest=stored is not None)
+
+
+def _header(stored: NDArray[Any]) -> dict[str, Any]:
+    header = json.loads(str(stored), object_pairs_hook=_without_duplicates)
+    if not isinstance(header, dict) or header.get("format") != FORMAT:
+        raise ValueError("its header is not one of qtab's")
+    if header["version"] != FORMAT_VERSION:
+        raise ValueError(f"its format has version {header['version']!r}, this one reads {FORMAT_VERSION}")
+    return header
+
+
+def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("its header has two values for the same name")
+    return found
+
+
+def _read_array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray[Any]:
+    """Reads an array whose size is that of its member, so that no more memory is allocated than the file is large."""
+    with archive.open(entry) as file:
+        read_header = npy.read_array_header_1_0 if npy.read_magic(file) == (1, 0) else npy.read_array_header_2_0
+        shape, _, dtype = read_header(file)
+        size = entry.file_size - file.tell()
+        if not dtype.hasobject and math.prod(shape) * dtype.itemsize != size:
+            raise ValueError(f"its {entry.filename} has shape {shape}, which does not fit its size")
+    with archive.open(entry) as file:
+        read: NDArray[Any] = npy.read_array(file, allow_pickle=False)
+        return read
 
 
 def array(arrays: Mapping[str, NDArray[Any]], name: str) -> NDArray[Any]:

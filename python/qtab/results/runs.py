@@ -1,24 +1,35 @@
 """``qtab.Runs``: the results of many runs of one config."""
 
+import operator
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils import checks
+from qtab._utils import checks, html, svg
+from qtab._utils.frames import data_frame
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.results.run import Run
-from qtab.results.summary import FINAL_EPISODES, block_means, summarize
+from qtab.results.summary import FINAL_EPISODES, block_means, default_block, summarize
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+BAND = (10.0, 90.0)
+"""The percentiles of the runs that a picture shows beside their mean."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Runs:
-    """Many runs of one config, one per row. ``runs[i]`` is the run of ``seeds[i]``, where the tables were kept."""
+    """Many runs of one config, one per row.
+
+    ``runs[i]`` is the run of ``seeds[i]``, where the tables were kept; ``runs[10:20]`` are ten of the runs.
+    """
 
     config: Config
     """Everything needed to repeat the runs; its seed is that of the first run."""
@@ -52,6 +63,28 @@ class Runs:
         )
         return f"<Runs of {self.config.env}: {self.config.algorithm}, {runs} seeds, {episodes} episodes each{mean}>"
 
+    def _repr_html_(self) -> str:
+        """A table and the mean learning curve, for notebooks."""
+        config, (runs, episodes) = self.config, self.episode_returns.shape
+        facts: dict[str, object] = {
+            "algorithm": config.algorithm,
+            "runs": f"{runs:,}, seeds {self.seeds[0]} to {self.seeds[-1]}" if runs > 1 else f"{runs}",
+            "episodes": f"{episodes:,} each",
+            "time": f"{self.seconds:.3g} s",
+        }
+        picture = ""
+        if self.episode_returns.size:
+            final = self.final_returns()
+            facts[f"mean of the last {min(episodes, FINAL_EPISODES)}"] = (
+                f"{final.mean():.2f}, runs from {final.min():.2f} to {final.max():.2f}"
+            )
+            block = min(default_block(episodes), max(episodes // 20, 1))
+            means = self.mean_returns(block)
+            low, high = np.percentile(means, BAND, axis=0)
+            label = f"Mean learning curve in blocks of {block:,}, with the band of 80% of the runs"
+            picture = svg.lines(label, {"mean of the runs": means.mean(axis=0)}, (low, high))
+        return html.summary(f"Runs of {config.env}", facts, picture)
+
     @property
     def grid(self) -> Discretizer:
         """An alias of :attr:`discretizer`, its name in earlier versions."""
@@ -60,14 +93,28 @@ class Runs:
     def __len__(self) -> int:
         return len(self.seeds)
 
-    def __getitem__(self, index: int) -> Run:
-        """Returns one run, equal to what :func:`qtab.train` returns for its seed; ``seconds`` is an equal share.
+    @overload
+    def __getitem__(self, index: int) -> Run: ...
+    @overload
+    def __getitem__(self, index: slice) -> "Runs": ...
+    def __getitem__(self, index: int | slice) -> "Run | Runs":
+        """Returns one run, equal to what :func:`qtab.train` returns for its seed, or the runs of a slice.
+
+        ``seconds`` is their equal share.
 
         Raises:
             IndexError: if there is no such run.
-            ValueError: if the tables were not kept.
+            TypeError: if ``index`` is neither an integer nor a slice.
+            ValueError: if the tables were not kept, for one run.
         """
-        index = range(len(self))[index]
+        if isinstance(index, slice):
+            return self._part(index)
+        if isinstance(index, bool | np.bool_) or not hasattr(index, "__index__"):
+            raise TypeError(f"index must be an integer or a slice, got {index!r}")
+        try:
+            index = range(len(self))[operator.index(index)]
+        except IndexError:
+            raise IndexError(f"there are {len(self)} runs, got index {index}") from None
         if self.tables is None:
             raise ValueError("a single run needs its table: train_many(..., tables=True) keeps them")
         return Run(
@@ -83,6 +130,19 @@ class Runs:
             versions=self.versions,
         )
 
+    def _part(self, part: slice) -> "Runs":
+        seeds = self.seeds[part]
+        return replace(
+            self,
+            config=replace_checked(self.config, seed=seeds[0]) if seeds else self.config,
+            seeds=seeds,
+            episode_returns=self.episode_returns[part],
+            episode_lengths=self.episode_lengths[part],
+            terminated=self.terminated[part],
+            tables=None if self.tables is None else self.tables[part],
+            seconds=self.seconds * len(seeds) / max(len(self), 1),
+        )
+
     def __iter__(self) -> Iterator[Run]:
         return map(self.__getitem__, range(len(self)))
 
@@ -96,14 +156,18 @@ class Runs:
         block = checks.integer("block", block, least=1)
         return block_means(self.episode_returns, block)
 
-    def final_returns(self, last: int = 100) -> NDArray[np.float64]:
-        """Returns (runs,): the average return of the last episodes of each run, of all where there are fewer.
+    def final_returns(self, last: int | None = None) -> NDArray[np.float64]:
+        """Returns (runs,): the average return of the last episodes of each run.
+
+        Args:
+            last: How many; None averages the last 100, or all where there are fewer.
 
         Raises:
             TypeError: if ``last`` is not an integer.
-            ValueError: if it is less than one.
+            ValueError: if it is less than one, or the runs have fewer episodes.
         """
-        last = checks.integer("last", last, least=1)
+        episodes = self.episode_returns.shape[1]
+        last = min(episodes, FINAL_EPISODES) if last is None else checks.integer("last", last, 1, episodes)
         means: NDArray[np.float64] = self.episode_returns[:, -last:].mean(axis=1)
         return means
 
@@ -111,3 +175,11 @@ class Runs:
         """Returns columns with one number per run: its seed, and those of :func:`qtab.results.summary.summarize`."""
         seeds = np.array(self.seeds)
         return {"seed": seeds, **summarize(self.episode_returns, self.episode_lengths, self.terminated)}
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """Returns the columns of :meth:`summaries` as a data frame with one row per run.
+
+        Raises:
+            ModuleNotFoundError: without pandas; the message names the ``pip install``.
+        """
+        return data_frame(self.summaries())

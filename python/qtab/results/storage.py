@@ -1,23 +1,33 @@
 """``qtab.load``: a saved run, of whose file nothing is believed before it is checked."""
 
+import logging
 import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from qtab import discretizers
 from qtab.config import Config
-from qtab.config.options import defaults, n_tables
+from qtab.config.options import defaults
 from qtab.discretizers.actions import Actions
+from qtab.envs.stored import stored_id
 from qtab.results import run_file
+from qtab.results.consistency import check_consistent
 from qtab.results.run import Run
+
+_LOGGER = logging.getLogger("qtab")
+_MAX_REASON = 400
+"""The characters of the reason in an error: it may show values from the file."""
 
 
 def load(path: "str | os.PathLike[str]") -> Run:
-    """Reads a run that :meth:`qtab.Run.save` wrote.
+    """Reads a run that :meth:`qtab.Run.save` wrote, after checking that not a byte of it was changed.
+
+    Files of earlier versions have no digest to check it by. They are read all the same, with a message of the logger
+    ``qtab`` that says so, and ``run.unchecked`` is True.
+
+    The environment that a file names is used only if it is registered with Gymnasium: no module is imported because a
+    file names it. For ``"package:Name-v0"`` import the package first, or pass ``env=`` to what needs the environment.
 
     Raises:
         OSError: if the file is missing or cannot be read.
@@ -27,51 +37,55 @@ def load(path: "str | os.PathLike[str]") -> Run:
     path = Path(path)
     with path.open("rb") as file:
         try:
-            with run_file.reading(file) as (header, arrays):
-                return _run(header, arrays)
+            run = _run(run_file.read(file))
         except Exception as error:  # a damaged file can raise almost anything
-            reason = str(error)
-            if isinstance(error, KeyError):
-                reason = f"it has no {str(error.args[0]).removesuffix(' is not a file in the archive')!r}"
+            reason = f"it has no {error.args[0]!r}" if isinstance(error, KeyError) else " ".join(str(error).split())
+            reason = reason[:_MAX_REASON]
             raise ValueError(f"{str(path)!r} is not a run file that this version of qtab can read: {reason}") from None
+    if run.unchecked:
+        _LOGGER.warning(
+            "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
+        )
+    return run
 
 
-def _run(header: Mapping[str, Any], stored: Mapping[str, NDArray[Any]]) -> Run:
+def _run(content: run_file.Content) -> Run:
+    header, stored = content.header, content.arrays
     arrays: dict[str, Any] = {name: run_file.array(stored, name) for name in run_file.ARRAYS}
-    fields = dict(header["config"])
-    if fields["initial_q"] is None:
-        fields["initial_q"] = stored["initial_q"]
-    config = Config(**fields)
-    if config.seed is None or config.max_episode_steps is None or defaults(vars(config)):
-        raise ValueError("its config is not that of a run")
-    actions = Actions(int(header["actions"]), int(header["first_action"]), stored.get("actions"))
+    config = _config(header, stored)
+    actions = Actions(_integer(header, "actions"), _integer(header, "first_action"), stored.get("actions"))
+    seconds, versions = header["seconds"], header["versions"]
+    if isinstance(seconds, bool) or not isinstance(seconds, int | float):
+        raise ValueError(f"its seconds must be a number, got {seconds!r}")
+    if not isinstance(versions, dict) or not all(isinstance(version, str) for version in versions.values()):
+        raise ValueError(f"its versions must map names to texts, got {versions!r}")
     run = Run(
         config=config,
         discretizer=discretizers.restore(config, stored, arrays["tables"].shape[1]),
         actions=actions,
-        completed=len(arrays["episode_returns"]) == config.episodes,
-        seconds=float(header["seconds"]),
-        versions={str(key): str(value) for key, value in header["versions"].items()},
+        completed=header["completed"],
+        seconds=float(seconds),
+        versions=versions,
+        unchecked=not content.has_digest,
         **arrays,
     )
-    with np.errstate(all="raise"):
-        _check(run)
-    if header["completed"] is not run.completed:
-        raise ValueError("its header does not agree with the number of its episodes")
+    check_consistent(run)
     return run
 
 
-def _check(run: Run) -> None:
-    config, discretizer = run.config, run.discretizer
-    if not run.actions.match(config):
-        raise ValueError("its actions are not those of its config")
-    k, rows, actions = n_tables(config.algorithm), discretizer.n_rows, len(run.actions)
-    if run.tables.shape != (k, rows, actions) or actions < 1:
-        raise ValueError(f"its tables have shape {run.tables.shape}, which does not fit its {discretizer.shape} rows")
-    if isinstance(config.initial_q, np.ndarray):
-        shape = (*discretizer.shape, actions)
-        if config.initial_q.shape not in (shape if k == 1 else (k, *shape), (k, rows, actions)):
-            raise ValueError(f"its initial_q has shape {config.initial_q.shape}, which does not fit its table {shape}")
-    lengths = {len(run.episode_returns), len(run.episode_lengths), len(run.terminated)}
-    if len(lengths) != 1 or lengths.pop() > config.episodes:
-        raise ValueError("its episodes do not fit together")
+def _config(header: Mapping[str, Any], stored: Mapping[str, Any]) -> Config:
+    fields = dict(header["config"])
+    if fields["initial_q"] is None:
+        fields["initial_q"] = stored["initial_q"]
+    fields["env"] = stored_id(fields["env"])
+    config = Config(**fields)
+    if config.seed is None or config.max_episode_steps is None or defaults(vars(config)):
+        raise ValueError("its config is not that of a run")
+    return config
+
+
+def _integer(header: Mapping[str, Any], name: str) -> int:
+    value = header[name]
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise ValueError(f"its number of {name} must be an integer, got {value!r}")
+    return value

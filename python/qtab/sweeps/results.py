@@ -12,13 +12,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils import html, svg
 from qtab._utils.extras import missing
+from qtab._utils.frames import data_frame
 from qtab.sweeps.database import SUMMARY_COLUMNS, StoredRun, damaged, read_fingerprint, read_runs
 from qtab.sweeps.study import to_cell
 
 if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
+
+
+INTEGER_COLUMNS = ("episodes", "steps")
+"""The summary columns that hold integers, which a store keeps as floats."""
+SHOWN_SETTINGS = 6
+"""The number of settings that a notebook shows."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,6 +48,33 @@ class Sweep:
     def __repr__(self) -> str:
         settings = f"{len(self.settings)} setting{'' if len(self.settings) == 1 else 's'}"
         return f"<Sweep of {self.env}: {settings}, {len(self):,} runs, {self.failed} failed>"
+
+    def _repr_html_(self) -> str:
+        """A table and the mean learning curves of the settings with the best mean final return, for notebooks."""
+        means = {
+            setting: float(values.mean())
+            for setting in range(len(self.settings))
+            if len(values := self.values("final_return", setting))
+        }
+        best = sorted(means, key=means.__getitem__, reverse=True)[:SHOWN_SETTINGS]
+        names = list(self.settings[0]) if self.settings else []
+        columns = ("setting", *names, "runs", "mean final return")
+        rows = [
+            (
+                setting,
+                *(self.settings[setting][name] for name in names),
+                len(self._rows(setting)),
+                f"{means[setting]:.2f}",
+            )
+            for setting in best
+        ]
+        heading = f"Sweep of {self.env}: {len(self.settings)} settings, {len(self):,} runs, {self.failed} failed"
+        if len(best) < len(self.settings):
+            heading += f"; the best {len(best)}"
+        curves = {f"setting {setting}": self.curves(setting).mean(axis=0) for setting in best}
+        label = f"Mean learning curves in blocks of {self.block:,} episodes"
+        colors = [svg.color(index) for index in range(len(best))]
+        return html.listing(heading, columns, rows, svg.lines(label, curves), colors)
 
     def __len__(self) -> int:
         return len(self.columns["seed"])
@@ -70,14 +105,12 @@ class Sweep:
     def to_pandas(self) -> "pd.DataFrame":
         """Returns the table as a pandas data frame.
 
+        Columns of integers are int64; where runs failed, pandas' Int64, which has missing values.
+
         Raises:
-            ModuleNotFoundError: without pandas.
+            ModuleNotFoundError: without pandas; the message names the ``pip install``.
         """
-        try:
-            import pandas as pd
-        except ModuleNotFoundError as error:
-            raise missing(error) from None
-        return pd.DataFrame(dict(self.columns))
+        return data_frame(self.columns, INTEGER_COLUMNS)
 
     def to_arrow(self) -> "pa.Table":
         """Returns the table as an Arrow table, which polars (``polars.from_arrow``) and Parquet files take.
@@ -89,8 +122,10 @@ class Sweep:
             import pyarrow as pa
         except ModuleNotFoundError as error:
             raise missing(error) from None
-        texts = {"error": pa.string()}
-        return pa.table({name: pa.array(column, texts.get(name)) for name, column in self.columns.items()})
+        types = {"error": pa.string(), **dict.fromkeys(INTEGER_COLUMNS, pa.int64())}
+        return pa.table(
+            {name: pa.array(column, types.get(name), from_pandas=True) for name, column in self.columns.items()}
+        )
 
 
 def load_sweep(path: "str | os.PathLike[str]") -> Sweep:

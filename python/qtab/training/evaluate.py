@@ -2,18 +2,22 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils import checks
+from qtab._utils import checks, html, svg
+from qtab._utils.frames import episode_frame
 from qtab.config.options import OPTIONS
-from qtab.envs.registry import spec_of
+from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
 from qtab.training.resolve import resolve
 from qtab.training.train import train_resolved
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 TABLE_SETTINGS = (
     "discretizer",
@@ -39,10 +43,40 @@ class Evaluation:
     """The return at which Gymnasium considers the environment solved; None where it gives none."""
 
     def __repr__(self) -> str:
-        return (
-            f"<Evaluation of {len(self.returns):,} episodes: mean return {self.mean_return:.2f} "
-            f"± {self.standard_error:.2f}, seed {self.seed}>"
-        )
+        return f"<Evaluation of {self._episodes}: mean return {self._mean}, seed {self.seed}>"
+
+    @property
+    def _episodes(self) -> str:
+        return "1 episode" if len(self.returns) == 1 else f"{len(self.returns):,} episodes"
+
+    @property
+    def _mean(self) -> str:
+        error = f" ± {self.standard_error:.2f}" if len(self.returns) > 1 else ""
+        return f"{self.mean_return:.2f}{error}"
+
+    def _repr_html_(self) -> str:
+        """A table and a histogram of the returns, for notebooks."""
+        facts: dict[str, object] = {
+            "mean return": self._mean + (" (standard error)" if len(self.returns) > 1 else ""),
+            "returns": f"{self.returns.min():.6g} to {self.returns.max():.6g}",
+            "mean length": f"{self.lengths.mean():.6g} steps",
+            "terminated": f"{self.terminated_rate:.1%}",
+        }
+        if self.success_rate is not None:
+            facts["success"] = f"{self.success_rate:.1%} at or above {self.reward_threshold:g}"
+        picture = ""
+        if np.isfinite(self.returns).all() and self.returns.min() < self.returns.max():
+            counts, edges = np.histogram(self.returns, bins=min(30, len(self.returns)))
+            picture = svg.bars("Histogram of the returns", counts, f"{edges[0]:.4g}", f"{edges[-1]:.4g}")
+        return html.summary(f"Evaluation of {self._episodes}, seed {self.seed}", facts, picture)
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """Returns a data frame with one row per episode: its number, its return, its length and how it ended.
+
+        Raises:
+            ModuleNotFoundError: without pandas; the message names the ``pip install``.
+        """
+        return episode_frame(self.returns, self.lengths, self.terminated)
 
     @property
     def mean_return(self) -> float:
@@ -88,6 +122,7 @@ def evaluate(
         max_episode_steps: The time limit of an episode, in steps; None takes that of the run.
 
     Raises:
+        gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """
@@ -95,6 +130,7 @@ def evaluate(
     if env is not None and not isinstance(env, gym.Env):
         raise TypeError(f"env must be an environment, got {env!r}")
     config = run.config
+    spec = spec_of_run(config.env) if env is None else env.spec
     # With a learning rate and an exploration rate of 0, training is evaluation.
     settings: dict[str, Any] = {
         "episodes": episodes,
@@ -114,7 +150,6 @@ def evaluate(
         played = train_resolved(resolved)
     finally:
         resolved.close()
-    spec = spec_of(config.env) if env is None else env.spec
     return Evaluation(
         played.episode_returns,
         played.episode_lengths,

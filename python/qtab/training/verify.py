@@ -13,6 +13,7 @@ from qtab._utils import checks
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.envs.registry import ENTRIES, gymnasium_id
+from qtab.envs.stored import spec_of_run
 from qtab.reference import LEARNERS
 from qtab.results.run import Run
 from qtab.training.resolve import resolve
@@ -75,6 +76,7 @@ def verify(
         progress: Called after every episode of the reference with the number done and the total.
 
     Raises:
+        gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range, or an interrupted run without ``episodes``.
     """
@@ -114,7 +116,9 @@ def _environment(config: Config, env: gym.Env | None) -> gym.Env:
         return gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", config.max_episode_steps))
     name = gymnasium_id(config.env)
     return gym.make(
-        name if name in ENTRIES else config.env, max_episode_steps=config.max_episode_steps, **config.env_kwargs
+        name if name in ENTRIES else spec_of_run(config.env),
+        max_episode_steps=config.max_episode_steps,
+        **config.env_kwargs,
     )
 
 

@@ -1,0 +1,67 @@
+"""What notebooks show for a result: a small table beside a small picture, without anything from the network."""
+
+from collections.abc import Mapping, Sequence
+from html import escape
+
+MAX_TEXT = 120
+"""Longer texts are cut."""
+_BOX = "display:flex;flex-wrap:wrap;gap:16px;align-items:center;font:13px/1.4 system-ui,sans-serif"
+_TABLE = "border-collapse:collapse;margin:0;width:auto;color:inherit;font:inherit"
+_DOT = "display:inline-block;width:9px;height:9px;border-radius:5px;margin-right:6px"
+_CELL = "padding:1px 10px 1px 0;border:0;background:none;color:inherit"
+
+
+def summary(heading: str, facts: Mapping[str, object], picture: str = "") -> str:
+    """Returns a table with one fact per row, and a picture.
+
+    Args:
+        heading: What the result is.
+        facts: The names and values to show; every text is escaped.
+        picture: An SVG; empty for none.
+    """
+    rows = "".join(
+        f'<tr><th scope="row" style="{_CELL};text-align:left;font-weight:normal;opacity:.75">{_text(name)}</th>'
+        f'<td style="{_CELL};text-align:left">{_text(value)}</td></tr>'
+        for name, value in facts.items()
+    )
+    return _box(heading, rows, picture)
+
+
+def listing(
+    heading: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[object]],
+    picture: str = "",
+    colors: Sequence[str] = (),
+) -> str:
+    """Returns a table with named columns, the first of which names the rows, and a picture.
+
+    Args:
+        heading: What the result is.
+        columns: The names of the columns.
+        rows: The values of each row; every text is escaped.
+        picture: An SVG; empty for none.
+        colors: The colors in the picture of the first rows; empty for a row that it does not show.
+    """
+    lines = [_row("th", columns, "")]
+    lines += [_row("td", row, color) for row, color in zip(rows, [*colors, *[""] * len(rows)], strict=False)]
+    return _box(heading, "".join(lines), picture)
+
+
+def _row(tag: str, values: Sequence[object], color: str) -> str:
+    dot = f'<span style="{_DOT};background:{color}"></span>' if color else ""
+    first, *others = values
+    cells = [f'<{tag} style="{_CELL};text-align:left">{dot}{_text(first)}</{tag}>']
+    cells += [f'<{tag} style="{_CELL};text-align:right">{_text(value)}</{tag}>' for value in others]
+    return f"<tr>{''.join(cells)}</tr>"
+
+
+def _box(heading: str, rows: str, picture: str) -> str:
+    style = "caption-side:top;text-align:left;color:inherit;font-weight:bold"
+    table = f'<caption style="{style}">{_text(heading)}</caption>{rows}'
+    return f'<div style="{_BOX}"><table style="{_TABLE}">{table}</table>{picture}</div>'
+
+
+def _text(value: object) -> str:
+    text = str(value)
+    return escape(text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT - 1]}…")

@@ -1,0 +1,66 @@
+"""The behaviour policy of a run: how it chose actions, with the exploration of the end of its training."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.config import Config
+from qtab.config.policies import EpsilonGreedy, policy
+from qtab.config.schedules import Constant, Exponential, Schedule
+
+
+def action_probabilities(config: Config, episodes: int, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns (n, actions): the probability with which each action is chosen after so many episodes.
+
+    Args:
+        config: The config of a run.
+        episodes: The number of finished episodes, which determines ε.
+        values: (n, actions): the action values, -inf for actions that there are not.
+    """
+    chosen = policy(config)
+    if isinstance(chosen, EpsilonGreedy):
+        epsilon = rate_after(chosen.epsilon, episodes, config.episodes)
+        available = _available(config, values)
+        greedy = _greedy(values, chosen.ties == "random")
+        return epsilon * _uniform(available) + (1.0 - epsilon) * _uniform(greedy)
+    with np.errstate(under="ignore"):
+        weights = np.exp((values - values.max(axis=1, keepdims=True)) / chosen.temperature)
+    probabilities: NDArray[np.float64] = weights / weights.sum(axis=1, keepdims=True)
+    return probabilities
+
+
+def sample(probabilities: NDArray[np.float64], generator: np.random.Generator) -> NDArray[np.int64]:
+    """Returns (n,): an action drawn from each row of (n, actions) probabilities."""
+    cumulative = np.cumsum(probabilities, axis=1)
+    total = cumulative[:, -1:]
+    # Rounding may reach the total, and the last actions may have a probability of 0.
+    drawn = np.minimum(generator.random(total.shape) * total, np.nextafter(total, 0.0))
+    return np.argmax(drawn < cumulative, axis=1)
+
+
+def rate_after(schedule: Schedule, episodes: int, total: int) -> float:
+    """Returns the value of a schedule after some of a run's ``total`` episodes, up to rounding."""
+    if isinstance(schedule, Constant):
+        return schedule.value
+    falling = max(episodes - schedule.warm_up, 0)
+    if isinstance(schedule, Exponential):
+        return max(schedule.value * schedule.decay**falling, schedule.minimum)
+    fall = (schedule.value - schedule.minimum) / (total - schedule.warm_up)
+    return max(schedule.value - fall * falling, schedule.minimum)
+
+
+def _available(config: Config, values: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which actions there are: -inf marks the others in an initial table."""
+    if isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q).any():
+        return ~np.isneginf(values)
+    return np.ones(values.shape, dtype=np.bool_)
+
+
+def _greedy(values: NDArray[np.float64], all_of_them: bool) -> NDArray[np.bool_]:
+    if all_of_them:
+        return values == values.max(axis=1, keepdims=True)
+    return np.arange(values.shape[1]) == np.argmax(values, axis=1)[:, np.newaxis]
+
+
+def _uniform(chosen: NDArray[np.bool_]) -> NDArray[np.float64]:
+    shares: NDArray[np.float64] = chosen / chosen.sum(axis=1, keepdims=True)
+    return shares
