@@ -21,7 +21,7 @@ from qtab.config.signature import with_settings
 from qtab.rendering.replay import generator_states
 from qtab.results.run import Recording, Run
 from qtab.training.callbacks import Callback, EpisodeReader
-from qtab.training.resolve import log_default_limit, resolve
+from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
 
 CALLBACK_EVERY = 100
@@ -44,8 +44,10 @@ def train(
     environment's first preset, the default.
 
     Args:
-        env: An environment's id, its EnvSpec, or an environment, which is used as it is and not closed. None takes the
-            environment of ``config``.
+        env: An environment's id, its EnvSpec, or an environment, which is not closed. None takes the environment of
+            ``config``. Where Rust implements an environment and it is as ``gymnasium.make`` returns it, Rust trains
+            with the same numbers and leaves the object untouched. Any other environment is stepped in Python as it is;
+            the logger ``qtab`` gives the reason once, unless ``progress`` is False.
         config: The settings to start from: the config of a run, ``qtab.train(config=run.config)``, repeats the run
             exactly. Of a Config, the settings that do not apply beside the keywords are ignored, and with another
             environment its ``env_kwargs`` and ``preset`` as well. A mapping gives only some settings, as keywords do.
@@ -74,6 +76,8 @@ def train(
     env, base = collect(train, env, config, settings)
     resolved = resolve(env, over(base, settings))
     log_default_limit(resolved)
+    if progress is not False:
+        log_python_stepping(resolved)
     try:
         return train_resolved(resolved, callback, callback_every, record, progress)
     finally:

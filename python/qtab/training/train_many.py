@@ -4,6 +4,7 @@ import math
 import os
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import closing
 from typing import Any, TypeAlias
 
 import gymnasium as gym
@@ -22,8 +23,9 @@ from qtab.config.layers import collect, over
 from qtab.config.options import n_tables
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
+from qtab.envs.matching import equal_environments
 from qtab.results.runs import Runs
-from qtab.training.resolve import log_default_limit, resolve
+from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
 
 MakeEnv: TypeAlias = Callable[[], gym.Env]
@@ -46,7 +48,8 @@ def train_many(
     always with :mod:`multiprocessing`, a script then needs ``if __name__ == "__main__":`` around its call.
 
     Args:
-        env: An environment's id, its EnvSpec, or a function that makes one. None takes the environment of ``config``.
+        env: An environment's id, its EnvSpec, or a function that makes one and is called several times. None takes the
+            environment of ``config``.
         seeds: The seeds of the runs; an integer N means 0 to N - 1.
         config: The settings to start from, as for :func:`qtab.train`, without the seed.
         threads: The number of threads or processes; None means one per core.
@@ -68,6 +71,7 @@ def train_many(
     # The largest seed is the one that the bit generator may refuse.
     resolved = resolve_template(env, {**overrides, "seed": max(numbers)}).with_seed(numbers[0])
     log_default_limit(resolved)
+    log_python_stepping(resolved)
     limit = bytes_limit(memory_limit)
     began = time.perf_counter()
     results = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
@@ -139,7 +143,18 @@ def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any]) 
             raise TypeError(f"env must make an environment, got {made!r}")
     resolved = resolve(made, settings, owns_env=True)
     resolved.close()
+    if callable(env) and resolved.is_native and not _makes_equals(env, made):
+        if settings.get("backend") == "rust":
+            raise ValueError("env must make equal environments at every call for backend 'rust', got two that differ")
+        # Each run makes an environment then, in a process of its own.
+        resolved = resolve(env(), {**settings, "backend": "gymnasium"}, owns_env=True)
+        resolved.close()
     return resolved
+
+
+def _makes_equals(make_env: MakeEnv, made: gym.Env) -> bool:
+    with closing(make_env()) as another:
+        return equal_environments(made, another)
 
 
 def allocate_results(resolved: ResolvedRun, runs: int, at_once: int, keep_tables: bool, limit: int) -> Results:
