@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab.config import Config
 from qtab.config.options import OPTIONS
+from qtab.config.unknown import suggesting
 from qtab.envs.registry import spec_of
 from qtab.results.run import Run
 from qtab.training.given_env import check_env, check_id, check_spaces
@@ -70,6 +71,7 @@ class Evaluation:
         return None if self.reward_threshold is None else float(np.mean(self.returns >= self.reward_threshold))
 
 
+@suggesting
 def evaluate(
     run: Run,
     episodes: int = 100,

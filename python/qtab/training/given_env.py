@@ -6,6 +6,7 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
 from qtab import discretizers
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.discretizers.actions import choose_actions
 from qtab.envs.registry import spec_of
@@ -52,7 +53,7 @@ def check_env(env: Any) -> None:
         TypeError: if it is neither None, an id, an EnvSpec nor an environment.
     """
     if env is not None and not isinstance(env, str | EnvSpec | gym.Env):
-        raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {env!r}")
+        raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
 
 
 def _name(env: gym.Env) -> str:

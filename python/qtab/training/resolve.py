@@ -11,6 +11,7 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from qtab import discretizers
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.algorithms import algorithm_settings
 from qtab.config.config import replace_checked
@@ -74,7 +75,7 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: 
             owns_env = True
             on_exit.callback(request.env.close)
         else:
-            raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {env!r}")
+            raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
         run = _fill_defaults(request, owns_env)
         if not run.is_native:
             on_exit.pop_all()  # the run steps the environment, and closes it
@@ -103,7 +104,7 @@ def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:
     kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
     asked = merge_layers(*layers)
     if asked.get("env_kwargs"):
-        raise ValueError(f"env_kwargs must be left out with an environment object, got {asked['env_kwargs']!r}")
+        raise ValueError(f"env_kwargs must be left out with an environment object, got {shown(asked['env_kwargs'])}")
     asked["env_kwargs"] = kwargs
     config = config_of(name, asked)
     entry, python_reason = None, None

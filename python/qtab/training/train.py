@@ -13,6 +13,7 @@ from typing_extensions import Unpack
 from qtab import _core
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
+from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
@@ -71,7 +72,7 @@ def train(
     """
     callback_every = checks.integer("callback_every", callback_every, least=1)
     if callback is not None and not callable(callback):
-        raise TypeError(f"callback must be callable, got {callback!r}")
+        raise TypeError(f"callback must be callable, got {shown(callback)}")
     record = checks.count("record", record, least=0)
     env, base = collect(train, env, config, settings)
     resolved = resolve(env, over(base, settings))

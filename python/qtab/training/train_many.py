@@ -17,6 +17,7 @@ from qtab._spec import Results
 from qtab._utils import checks
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
 from qtab._utils.memory import memory_limit as bytes_limit
+from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
@@ -64,6 +65,7 @@ def train_many(
         ValueError: for an argument out of range, or a repeated seed.
         KeyboardInterrupt: on Ctrl-C. Like any exception that a run raises, it carries the finished runs as ``.run``.
     """
+    tables = checks.boolean("tables", tables)
     numbers = seed_numbers(seeds)
     workers = thread_count(threads)
     env, base = collect(train_many, env, config, settings)
@@ -102,7 +104,7 @@ def seed_numbers(seeds: Any) -> tuple[int, ...]:
     if hasattr(seeds, "__index__") and not np.ndim(seeds):  # an array has an __index__ too
         return tuple(range(checks.integer("seeds", seeds, least=1)))
     if isinstance(seeds, (str, bytes)) or not hasattr(seeds, "__iter__"):
-        raise TypeError(f"seeds must be an integer or a sequence of integers, got {seeds!r}")
+        raise TypeError(f"seeds must be an integer or a sequence of integers, got {shown(seeds)}")
     numbers = tuple(checks.integer("seeds", seed, least=0) for seed in seeds)
     if not numbers:
         raise ValueError("seeds must hold at least one seed, got none")
@@ -140,7 +142,7 @@ def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any]) 
     if callable(env):
         made = env()
         if not isinstance(made, gym.Env):
-            raise TypeError(f"env must make an environment, got {made!r}")
+            raise TypeError(f"env must make an environment, got {shown(made)}")
     resolved = resolve(made, settings, owns_env=True)
     resolved.close()
     if callable(env) and resolved.is_native and not _makes_equals(env, made):

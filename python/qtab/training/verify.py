@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
+from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
+from qtab.config.unknown import suggesting
 from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.reference import LEARNERS
 from qtab.results.run import Run
@@ -62,6 +64,7 @@ class Verification:
         return "\n".join(lines)
 
 
+@suggesting
 def verify(
     run: Run,
     episodes: int | None = None,
@@ -86,7 +89,7 @@ def verify(
     checks.instance("run", run, Run)
     check_env(env)
     if progress is not None and not callable(progress):
-        raise TypeError(f"progress must be callable, got {progress!r}")
+        raise TypeError(f"progress must be callable, got {shown(progress)}")
     finished = len(run.episode_returns)
     if episodes is None and not run.completed:
         raise ValueError(f"episodes must be given for a run that was stopped early, at most {finished}")
