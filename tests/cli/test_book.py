@@ -39,9 +39,9 @@ def test_a_complete_figure_prints_its_number_of_runs(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["99"], "qtab book: error: name must be one of example-6.5, example-6.6, figure-6.3"),
-        (["6.5"], "qtab book: error: name must be example-6.5 or figure-6.5, got '6.5', which is both"),
-        (["8.2", "--runs", "0"], "qtab book: error: runs must be an integer of at least 1, got 0"),
+        (["99"], "qtab book: error: NAME must be one of example-6.5, example-6.6, figure-6.3"),
+        (["6.5"], "qtab book: error: NAME must be example-6.5 or figure-6.5, got '6.5', which is both"),
+        (["8.2", "--runs", "0"], "qtab book: error: --runs must be an integer of at least 1, got 0"),
         (["8.2", "--runs", "many"], "many"),
         (["8.2", "--seed", "-1"], "seed must be an integer of at least 0, got -1"),
         (["8.2", "--threads", "0"], "threads must be an integer from 1 to 1024, got 0"),

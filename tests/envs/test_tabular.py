@@ -148,3 +148,9 @@ def test_a_table_of_another_structure_is_refused(table, error, text):
 def test_a_bad_initial_distribution_is_refused(start, error, text):
     with pytest.raises(error, match=text):
         qtab.TabularEnv(chain(), start)
+
+
+def test_it_has_no_public_names_besides_those_of_every_environment():
+    env = qtab.TabularEnv([[[(1.0, 0, 0.0, True)]]], [1.0])
+    added = {name for name in dir(env) if not name.startswith("_")} - set(dir(gym.make("FrozenLake-v1").unwrapped))
+    assert added == set()

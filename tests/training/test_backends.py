@@ -103,7 +103,7 @@ def test_rust_replaces_an_unedited_object(env):
     assert run.config.backend == "rust"
     assert run.config.max_episode_steps == 60
     theirs = gym.make("MountainCar-v0", goal_velocity=0.01, max_episode_steps=60)
-    assert_same_run(run, qtab.train(theirs, seed=2, episodes=6))
+    assert_same_run(run, qtab.train(theirs, backend="gymnasium", seed=2, episodes=6))
 
 
 def test_rust_replaces_an_object_without_wrappers():

@@ -63,7 +63,7 @@ def test_all_ways_of_naming_an_environment_give_the_same_run(env: str) -> None:
     assert_same_run(run, qtab.train(f"qtab/{env}", **chosen))
     assert_same_run(run, qtab.train(gym.spec(env), **chosen))
     assert_same_run(run, qtab.train(gym.make(env), backend="rust", **chosen))
-    assert_same_run(run, qtab.train(gym.make(env), **chosen))
+    assert_same_run(run, qtab.train(gym.make(env), backend="gymnasium", **chosen))
 
 
 @pytest.mark.parametrize("env", [env for env in TRAINED if env.values[0] in KEYWORDS])

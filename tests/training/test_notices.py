@@ -26,7 +26,7 @@ def test_the_default_time_limit_is_logged_once_per_environment(said):
         run = qtab.train("CliffWalking-v1", episodes=2, seed=0)
     assert run.config.max_episode_steps == 10_000
     assert said() == [f"{UNLIMITED}; max_episode_steps= sets another"]
-    qtab.train(ScriptedEnv([np.array([1.0], np.float32)]), scale=(1,), episodes=1)
+    qtab.train(ScriptedEnv([np.array([1.0], np.float32)]), scale=(1,), episodes=1, progress=False)
     assert [line.split()[0] for line in said()] == ["CliffWalking-v1", "ScriptedEnv"]
 
 

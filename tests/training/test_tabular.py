@@ -72,7 +72,7 @@ def test_tables_of_any_number_of_actions_train(actions):
 def test_an_environment_of_gymnasium_trains_in_rust_when_requested():
     env = gym.make("Taxi-v4", fickle_passenger=True)
     rust = qtab.train(env, backend="rust", **SETTINGS)
-    assert_same_run(rust, qtab.train(env, **SETTINGS))
+    assert_same_run(rust, qtab.train(env, backend="gymnasium", **SETTINGS))
 
 
 def test_many_runs_on_a_tabular_env_equal_single_runs():

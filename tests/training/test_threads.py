@@ -33,7 +33,7 @@ def test_concurrent_runs_equal_sequential_ones(settings):
 def test_concurrent_runs_in_rust_and_python_do_not_affect_each_other():
     with ThreadPoolExecutor(2) as threads:
         fast = threads.submit(qtab.train, "MountainCar-v0", seed=1, episodes=3000)
-        slow = threads.submit(qtab.train, gym.make("MountainCar-v0"), seed=1, episodes=20)
+        slow = threads.submit(qtab.train, gym.make("MountainCar-v0"), backend="gymnasium", seed=1, episodes=20)
     assert_same_run(fast.result(), qtab.train("MountainCar-v0", seed=1, episodes=3000))
     assert_same_run(slow.result(), qtab.train("MountainCar-v0", seed=1, episodes=20))
 

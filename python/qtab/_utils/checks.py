@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
 
 T = TypeVar("T")
@@ -27,9 +28,9 @@ def real(name: str, value: Any, low: float, high: float) -> float:
     """
     number = _number(value)
     if number is None:
-        raise TypeError(f"{name} must be a number in [{low:g}, {high:g}], got {value!r}")
+        raise TypeError(f"{name} must be a number in [{low:g}, {high:g}], got {shown(value)}")
     if not low <= number <= high:
-        raise ValueError(f"{name} must lie in [{low:g}, {high:g}], got {value!r}")
+        raise ValueError(f"{name} must lie in [{low:g}, {high:g}], got {shown(value)}")
     return number
 
 
@@ -42,9 +43,9 @@ def finite(name: str, value: Any) -> float:
     """
     number = _number(value)
     if number is None:
-        raise TypeError(f"{name} must be a finite number, got {value!r}")
+        raise TypeError(f"{name} must be a finite number, got {shown(value)}")
     if not math.isfinite(number):
-        raise ValueError(f"{name} must be finite, got {value!r}")
+        raise ValueError(f"{name} must be finite, got {shown(value)}")
     return number
 
 
@@ -66,14 +67,14 @@ def integer(name: str, value: Any, least: int, most: int | None = None) -> int:
         ValueError: if it is too small or too large.
     """
     fits = f"an integer of at least {least}" if most is None else f"an integer from {least} to {most}"
-    if isinstance(value, bool) or not hasattr(value, "__index__"):
-        raise TypeError(f"{name} must be {fits}, got {value!r}")
+    if isinstance(value, bool | np.bool_) or not hasattr(value, "__index__"):  # NumPy 2.0's booleans have an __index__
+        raise TypeError(f"{name} must be {fits}, got {shown(value)}")
     try:
         number = operator.index(value)
     except TypeError:
-        raise TypeError(f"{name} must be {fits}, got {value!r}") from None
+        raise TypeError(f"{name} must be {fits}, got {shown(value)}") from None
     if number < least or (most is not None and number > most):
-        raise ValueError(f"{name} must be {fits}, got {value!r}")
+        raise ValueError(f"{name} must be {fits}, got {shown(value)}")
     return number
 
 
@@ -86,7 +87,7 @@ def count(name: str, value: Any, least: int) -> int:
     """
     number = integer(name, value, least)
     if number > LARGEST_COUNT:
-        raise ValueError(f"{name} must be less than 2**63, got {value!r}")
+        raise ValueError(f"{name} must be less than 2**63, got {shown(value)}")
     return number
 
 
@@ -100,6 +101,17 @@ def threads(value: Any) -> int:
     return integer("threads", value, least=1, most=MAX_THREADS)
 
 
+def boolean(name: str, value: Any) -> bool:
+    """Returns ``value``, which must be True or False; NumPy's booleans become Python's.
+
+    Raises:
+        TypeError: if it is anything else: "no" would count as true.
+    """
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError(f"{name} must be True or False, got {shown(value)}")
+    return bool(value)
+
+
 def choice(name: str, value: Any, choices: Collection[str]) -> str:
     """Returns ``value``, which must be one of ``choices``.
 
@@ -109,7 +121,7 @@ def choice(name: str, value: Any, choices: Collection[str]) -> str:
     """
     if isinstance(value, str) and value in choices:
         return value
-    message = f"{name} must be one of {', '.join(map(repr, choices))}, got {value!r}"
+    message = f"{name} must be one of {', '.join(map(repr, choices))}, got {shown(value)}"
     if not isinstance(value, str):
         raise TypeError(message)
     raise ValueError(f"{message}{did_you_mean(value, choices)}")
@@ -123,7 +135,7 @@ def instance(name: str, value: Any, kind: type) -> None:
     """
     if not isinstance(value, kind):
         hint = "; qtab.load reads one from a file" if isinstance(value, str | PathLike) else ""
-        raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}{hint}")
+        raise TypeError(f"{name} must be a {kind.__name__}, got {shown(value)}{hint}")
 
 
 def required(name: str, value: T | None) -> T:

@@ -9,6 +9,7 @@ import tyro
 from qtab import book
 from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
+from qtab.cli.constructors import INT, OPTIONAL_INT
 from qtab.cli.parsing import parse
 from qtab.cli.usage import UsageError, usage_errors
 from qtab.plots.axes import check_format
@@ -22,15 +23,15 @@ class Arguments:
 
     experiment: Annotated[tyro.conf.Positional[str | None], tyro.conf.arg(metavar="NAME")] = None
     """figure-10.4, or 10.4 if no example has the same number; without a name, the experiments are listed."""
-    runs: int | None = None
+    runs: Annotated[int | None, OPTIONAL_INT] = None
     """The number of runs of each setting; by default as many as in the book."""
-    seed: int = 0
+    seed: Annotated[int, INT] = 0
     """The seed of the first run; the other runs have the seeds after it."""
     plot: Path | None = None
     """Draw the figure to this file; its suffix determines the format."""
     save: Path | None = None
     """Write all points to this CSV file."""
-    threads: int | None = None
+    threads: Annotated[int | None, OPTIONAL_INT] = None
     """The number of threads; by default one per core. It does not change the results."""
 
 
@@ -43,7 +44,7 @@ def run(arguments: list[str]) -> int:
         for name, experiment in book.EXPERIMENTS.items():
             print_above(f"{name:14}{experiment.title}")
         return 0
-    with usage_errors():
+    with usage_errors(("runs", "seed", "threads", "plot", "save"), "name"):
         experiment = book.find(options.experiment)
         if options.plot is not None:
             check_format("plot", options.plot)

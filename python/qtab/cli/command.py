@@ -4,10 +4,9 @@ import os
 import sys
 from importlib import import_module
 
-import gymnasium as gym
-
+from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
-from qtab.cli.usage import UsageError, one_line
+from qtab.cli.usage import USER_ERRORS, UsageError, one_line, with_origin
 
 SUBCOMMANDS = {
     "train": "train a tabular agent, save and plot the run, replay its last episodes",
@@ -36,27 +35,29 @@ def run(arguments: list[str]) -> int:
             print(f"qtab {qtab.__version__}")  # noqa: T201
             return 0
         if arguments[0] not in SUBCOMMANDS:
-            suggestion = did_you_mean(arguments[0], SUBCOMMANDS)
-            raise UsageError(f"unknown command {arguments[0]!r}{suggestion}; use {', '.join(SUBCOMMANDS)}")
+            suggestion = did_you_mean(arguments[0], [*SUBCOMMANDS, "--help", "--version"])
+            raise UsageError(f"unknown command {shown(arguments[0])}{suggestion}; use {', '.join(SUBCOMMANDS)}")
         name = f"qtab {arguments[0]}"
         code = import_module(f"qtab.cli.{arguments[0]}").run(arguments[1:])
         sys.stdout.flush()
         return int(code)
     except UsageError as error:
-        return _fail(name, error, EXIT_USAGE)
+        return _fail(name, one_line(error), EXIT_USAGE)
     except BrokenPipeError:
         # The reader of the output has closed it. Python would report that once more when it flushes at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_ERROR
-    except (ValueError, TypeError, OverflowError, OSError, ModuleNotFoundError, gym.error.Error) as error:
-        return _fail(name, error, EXIT_ERROR)
+    except USER_ERRORS as error:
+        return _fail(name, one_line(error), EXIT_ERROR)
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED
+    except Exception as error:
+        return _fail(name, with_origin(error), EXIT_ERROR)
 
 
-def _fail(name: str, error: Exception, code: int) -> int:
+def _fail(name: str, message: str, code: int) -> int:
     sys.stdout.flush()
-    sys.stderr.write(f"{name}: error: {one_line(error)}\n")
+    sys.stderr.write(f"{name}: error: {message}\n")
     return code
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import tyro
 
 from qtab._utils.progress import print_above
-from qtab.cli.constructors import PAIRS
+from qtab.cli.constructors import OPTIONAL_FLOAT, OPTIONAL_INT, PAIRS
 from qtab.cli.parsing import parse
 from qtab.cli.usage import usage_errors
 from qtab.config import Config
@@ -24,9 +24,9 @@ class Arguments:
     """Gymnasium's id of the environment."""
     env_kwargs: Annotated[Mapping[str, Any], PAIRS] = field(default_factory=dict)
     """Keyword arguments of the environment's constructor."""
-    max_episode_steps: int | None = None
+    max_episode_steps: Annotated[int | None, OPTIONAL_INT] = None
     """The time limit in steps; by default the environment's own, or 10,000 if it has none."""
-    discount: float | None = None
+    discount: Annotated[float | None, OPTIONAL_FLOAT] = None
     """The discount of the values and the policy; by default 1, no discount."""
     method: str | None = None
     """With a table, finite_horizon (the default), value_iteration or policy_iteration; for MountainCar-v0, search."""
@@ -35,7 +35,7 @@ class Arguments:
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
     options = parse(Arguments, COMMAND, arguments)
-    with usage_errors():
+    with usage_errors(("max_episode_steps", "discount", "method", "env_kwargs"), "env"):
         result = optimum(
             options.env,
             discount=options.discount,

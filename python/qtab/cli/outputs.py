@@ -13,7 +13,7 @@ from qtab.plots.axes import check_format
 from qtab.plots.run import save_plot
 from qtab.rendering.replay import replay_all
 from qtab.rendering.video import VideoRecorder
-from qtab.rendering.window import open_window
+from qtab.rendering.window import display_problem, open_window
 from qtab.results.run import Run
 
 DEFAULT_SHOWN = 20
@@ -50,6 +50,8 @@ class Outputs:
         self.shown = watch or (DEFAULT_SHOWN if record is not None else 0)
         """The number of last episodes to replay."""
         with ExitStack() as opened:
+            if watch is not None and record is not None and (problem := display_problem()) is not None:
+                raise ValueError(f"watch needs a display ({problem}); leave out --watch: --record works without one")
             self._screen = None if watch is None else opened.enter_context(closing(open_window(config)))
             self._recorder = None if record is None else opened.enter_context(closing(VideoRecorder(config, record)))
             self._opened = opened.pop_all()

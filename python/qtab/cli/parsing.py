@@ -1,20 +1,24 @@
-"""Parsing with tyro, whose errors become one line."""
+"""Parsing with tyro, whose errors become one line in the words of this command."""
 
+import dataclasses
 import io
 import re
 from collections.abc import Collection, Sequence
 from contextlib import redirect_stderr
-from typing import TypeVar
+from typing import Any, TypeVar, get_type_hints
 
 import tyro
 
-from qtab.cli.usage import UsageError
+from qtab._utils.shown import shown
+from qtab._utils.suggestions import nearest
+from qtab.cli.usage import UsageError, flag
 from qtab.config.unknown import meant
 
 T = TypeVar("T")
 
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
-_RULE = re.compile(r"^[─╭╰╮╯]{2,}.*$")
+_RULE = re.compile(r"^(?:[─╭╰╮╯]{2,}.*|-{4,})$")
+"""A line of the frame; one of hyphens where the terminal has no line-drawing characters."""
 
 
 def parse(kind: type[T], command: str, arguments: Sequence[str], known: Collection[str] = ()) -> T:
@@ -24,7 +28,7 @@ def parse(kind: type[T], command: str, arguments: Sequence[str], known: Collecti
         kind: The dataclass.
         command: The command's name, for messages.
         arguments: What follows the command on the command line.
-        known: The settings that are flags, to suggest one where another library's name for it is used.
+        known: The settings that are flags besides the fields of ``kind``.
 
     Raises:
         UsageError: for arguments that cannot be parsed.
@@ -35,12 +39,13 @@ def parse(kind: type[T], command: str, arguments: Sequence[str], known: Collecti
             return tyro.cli(kind, prog=command, args=arguments)
     except SystemExit as leaving:
         if leaving.code:
-            raise UsageError(f"{_summary(printed.getvalue(), known)}; see {command} --help") from None
+            reason = _reason(_paragraphs(printed.getvalue()), kind, known)
+            raise UsageError(f"{reason}; see {command} --help") from None
         raise
 
 
-def _summary(box: str, known: Collection[str]) -> str:
-    """The first paragraph of an error that tyro framed, and a suggestion."""
+def _paragraphs(box: str) -> list[str]:
+    """The paragraphs of an error that tyro framed."""
     paragraphs = [""]
     for line in _COLOUR.sub("", box).splitlines():
         text = line.strip().strip("│").strip()
@@ -48,18 +53,44 @@ def _summary(box: str, known: Collection[str]) -> str:
             paragraphs.append("")
         else:
             paragraphs[-1] += f" {text}"
-    printed = [paragraph.strip() for paragraph in paragraphs if paragraph.strip()]
+    found = [" ".join(paragraph.split()) for paragraph in paragraphs if paragraph.strip()]
+    return found if "╭" in box else found[1:]  # without a frame, the title is a line of its own
+
+
+def _reason(paragraphs: Sequence[str], kind: Any, known: Collection[str]) -> str:
+    if not paragraphs:
+        return "the arguments do not fit"
     # tyro lists what each member of a union could not be parsed as, in several lines.
-    summary = printed[0].partition(" Got errors:")[0].rstrip(".") if printed else "the arguments do not fit"
-    summary = re.sub(r"^Error parsing (--[\w-]+): must ", r"\1 must ", summary)
-    suggestion = _suggestion(printed, known)
-    return f"{summary} (did you mean {suggestion}?)" if suggestion else summary
+    summary = paragraphs[0].partition(" Got errors:")[0].rstrip(".")
+    if unrecognized := re.match(r"Unrecognized options: (.+)", summary):
+        return _unknown(unrecognized[1].split(", "), kind, known)
+    if missing := re.match(r"Missing value for argument '([^']+)'", summary):
+        return f"{missing[1].split('/')[-1]} needs a value"
+    if missing := re.match(r"Missing from qtab \w+: (\w+) (.+?)\.? \(required\)", summary):
+        return f"{missing[1]} must be given: {missing[2][0].lower()}{missing[2][1:]}"
+    return re.sub(r"^Error parsing (--[\w-]+): must ", r"\1 must ", summary)
 
 
-def _suggestion(printed: Sequence[str], known: Collection[str]) -> str | None:
-    unrecognized = re.match(r"Unrecognized options: --([\w-]+)", printed[0]) if printed else None
-    setting = unrecognized and meant(unrecognized[1].replace("-", "_"), known)
-    if setting:
-        return f"--{setting.replace('_', '-')}"
-    suggested = next((re.search(r"--[\w-]+", text) for text in printed if text.startswith("Perhaps")), None)
-    return suggested[0] if suggested else None
+def _unknown(words: Sequence[str], kind: Any, known: Collection[str]) -> str:
+    """The message for words that are no arguments: it names the first flag among them, or the first word."""
+    word = next((word for word in words if word.startswith("-")), None)
+    if word is None:
+        return f"unexpected argument {shown(words[0])}"
+    word = word.partition("=")[0]
+    name = word.lstrip("-").replace("-", "_")
+    flags, positional = _arguments(kind)
+    if name in positional:
+        return f"unknown option {shown(word)[1:-1]} ({name} is given without a flag)"
+    names = {*flags, *known}
+    found = meant(name, names) or nearest(name, names)
+    return f"unknown option {shown(word)[1:-1]}" + (f" (did you mean {flag(found)}?)" if found else "")
+
+
+def _arguments(kind: Any) -> tuple[set[str], set[str]]:
+    """The names of a dataclass's flags and of its positional arguments."""
+    hints = get_type_hints(kind, include_extras=True)
+    also_flags = {name.removesuffix("_flag") for name in hints if name.endswith("_flag")}
+    positional = {name for name, hint in hints.items() if "Positional" in repr(hint)} - also_flags
+    groups = {name for name, hint in hints.items() if hasattr(hint, "__total__")}  # the settings, each by its name
+    flags = {field.name.removesuffix("_flag") for field in dataclasses.fields(kind)} - positional - groups
+    return flags, positional

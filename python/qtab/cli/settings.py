@@ -11,7 +11,9 @@ import numpy as np
 import tyro
 from typing_extensions import TypedDict
 
+from qtab._utils.shown import shown
 from qtab.cli import constructors
+from qtab.cli.usage import reading
 from qtab.config import DEFAULTS, Config
 from qtab.config.choices import CHOICES
 from qtab.config.explanations import applicability, explanations, groups
@@ -90,11 +92,13 @@ def read_config(path: Path) -> dict[str, Any]:
         OSError: if the file cannot be read.
         ValueError: if it is not TOML, or holds an unknown setting.
     """
-    with path.open("rb") as file:
+    with reading("--config", path), path.open("rb") as file:
         try:
             settings = tomllib.load(file)
         except ValueError as error:
-            raise ValueError(f"config must be a TOML file, got {str(path)!r}: {error}") from None
+            raise ValueError(f"--config must be a TOML file, got {shown(str(path))}: {error}") from None
+        except RecursionError:
+            raise ValueError(f"--config must be a TOML file, got {shown(str(path))}: it is nested too deeply") from None
     try:
         check_names(settings, DEFAULTS)
     except TypeError as error:
@@ -102,8 +106,11 @@ def read_config(path: Path) -> dict[str, Any]:
     initial_q = settings.get("initial_q")
     if isinstance(initial_q, str):
         settings["initial_q"] = Path(initial_q)
-    elif isinstance(initial_q, list) and np.ndim(initial_q) > 1:
-        settings["initial_q"] = np.array(initial_q)
+    elif isinstance(initial_q, list) and any(isinstance(row, list) for row in initial_q):
+        try:
+            settings["initial_q"] = np.array(initial_q, np.float64)
+        except (TypeError, ValueError):
+            raise ValueError(f"{path}: initial_q must be a table of numbers, got {shown(initial_q)}") from None
     return settings
 
 
@@ -117,6 +124,7 @@ def with_initial_q(settings: Mapping[str, Any]) -> dict[str, Any]:
     path = settings.get("initial_q")
     if not isinstance(path, Path):
         return dict(settings)
-    run = load(path)
+    with reading("--initial-q", path):
+        run = load(path)
     one_table_of_cells = run.discretizer.has_cells and len(run.tables) == 1
     return {**settings, "initial_q": run.q_table if one_table_of_cells else run.tables}

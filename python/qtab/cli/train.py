@@ -2,14 +2,19 @@
 
 from collections.abc import Callable
 
+import gymnasium as gym
+import numpy as np
+
 from qtab._utils.progress import print_above
 from qtab.cli.outputs import Outputs, counted, last_episodes
 from qtab.cli.settings import with_initial_q
-from qtab.cli.train_arguments import parse_arguments
+from qtab.cli.train_arguments import flags_of, parse_arguments
 from qtab.cli.usage import usage_errors
+from qtab.config.presets import presets
+from qtab.envs.registry import spec_of
 from qtab.planning import Optimum, optimum
 from qtab.results.run import Run
-from qtab.results.summary import FINAL_EPISODES, default_block
+from qtab.results.summary import FINAL_EPISODES, SOLVED_EPISODES, best_mean_returns, default_block
 from qtab.training.callbacks import Progress
 from qtab.training.resolve import resolve, time_limit_notice
 from qtab.training.resolved_run import NativeEnvironment, ResolvedRun
@@ -22,10 +27,11 @@ MAX_QUICK_UPDATES = 10**8
 def run(arguments: list[str]) -> int:
     """Trains and reports; returns the exit code."""
     asked, env, settings = parse_arguments(arguments)
-    with usage_errors():
+    flags = flags_of(asked)
+    with usage_errors(flags, "env"):
         resolved = resolve(env, with_initial_q(settings))
     try:
-        with usage_errors():
+        with usage_errors(flags, "env"):
             outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record)
             best = _optimum(resolved) if asked.optimum or _has_quick_optimum(resolved) else None
         with outputs:
@@ -83,6 +89,8 @@ def _train(resolved: ResolvedRun, outputs: Outputs, best: Optimum | None) -> Non
 
 def _report(run: Run, outputs: Outputs, best: Optimum | None) -> None:
     print_above(_summary(run))
+    if (verdict := _verdict(run)) is not None:
+        print_above(verdict)
     if best is not None:
         gap = str(best.gap(run))
         print_above(gap[0].upper() + gap[1:])
@@ -110,3 +118,22 @@ def _summary(run: Run) -> str:
     speed = f" ({steps / run.seconds:,.0f} steps/s)" if run.seconds > 0 else ""
     took = f"{steps:,} steps in {run.seconds:.3g} s{speed}"
     return f"Mean return over {last_episodes(len(returns))}: {returns.mean():.2f}; {took}"
+
+
+def _verdict(run: Run) -> str | None:
+    """Returns whether the run solved its task, and which preset does; None if nothing defines that."""
+    try:
+        threshold = spec_of(run.config.env).reward_threshold
+    except gym.error.Error:
+        return None
+    if threshold is None or len(run.episode_returns) < SOLVED_EPISODES:
+        return None
+    best = float(best_mean_returns(run.episode_returns[np.newaxis])[0])
+    last = run.episode_returns[-SOLVED_EPISODES:].mean()
+    found = f"the best mean return over {SOLVED_EPISODES} consecutive episodes is {best:.2f}"
+    if last >= threshold:
+        return f"Solved: the last {SOLVED_EPISODES} episodes reach the threshold of {threshold:g}"
+    if best >= threshold:
+        return f"Solved earlier, not at the end: {found}, the threshold {threshold:g}"
+    solving = "solved" in presets(run.config.env) and run.config.preset != "solved"
+    return f"Not solved: {found}, the threshold {threshold:g}" + ("; --preset solved reaches it" if solving else "")

@@ -7,6 +7,7 @@ from typing import Annotated, Any, TypeAlias
 
 import tyro
 
+from qtab.cli.constructors import OPTIONAL_INT
 from qtab.cli.parsing import parse
 from qtab.cli.settings import flag_groups, read_config
 from qtab.cli.usage import UsageError, usage_errors
@@ -39,12 +40,23 @@ class Arguments:
     """Draw the learning curve to this file. Its ending gives the format."""
     save: _File = None
     """Save the run to this file, for qtab.load, qtab verify and --initial-q."""
-    watch: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
+    watch: Annotated[int | None, OPTIONAL_INT] = None
     """Show this many of the last training episodes on the screen."""
     record: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER")] = None
     """Write the last training episodes, 20 or the number given by --watch, to videos in this folder."""
     optimum: bool = False
     """Report how far the run is from the optimum, and draw it. Always done for small tables."""
+
+
+OUTPUTS = ("save", "plot", "watch", "record")
+"""The arguments that are no settings and say where a run goes."""
+
+
+def flags_of(asked: Arguments) -> tuple[str, ...]:
+    """Returns the arguments that messages spell as flags: all but the settings that only the file gives."""
+    given = {name for title in groups(DEFAULTS) for name in getattr(asked, title.lower())}
+    in_file = () if asked.config is None else read_config(asked.config).keys() - given
+    return (*OUTPUTS, *(name for name in DEFAULTS if name not in in_file and name != "env"))
 
 
 def parse_arguments(arguments: list[str]) -> tuple[Arguments, str, dict[str, Any]]:
@@ -66,7 +78,7 @@ def parse_arguments(arguments: list[str]) -> tuple[Arguments, str, dict[str, Any
     with usage_errors():
         env, settings = _env_and_settings(asked)
     if help_wanted:
-        with usage_errors():
+        with usage_errors(flags_of(asked)):
             shown = _effective_defaults(env, settings)
         _read(["--help"], shown)
     return asked, env, settings

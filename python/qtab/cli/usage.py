@@ -1,24 +1,91 @@
 """Usage errors: what the user can correct, reported in one line before any work starts."""
 
-from collections.abc import Iterator
+import re
+import traceback
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import gymnasium as gym
+
+from qtab._utils.shown import shown
 
 
 class UsageError(Exception):
     """A command line that cannot be run. The message is shown to the user."""
 
 
+USER_ERRORS = (
+    ValueError,
+    TypeError,
+    OverflowError,
+    OSError,
+    MemoryError,
+    RecursionError,
+    ModuleNotFoundError,
+    gym.error.Error,
+)
+"""What bad arguments, files and environments raise."""
+
+
 def one_line(error: BaseException) -> str:
     """Returns the message of an error without line breaks, or the name of its type if it has none."""
+    if isinstance(error, OSError) and error.strerror is not None and error.filename is not None:
+        return f"{error.strerror}: {shown(str(error.filename))}"
     return " ".join(str(error).split()) or type(error).__name__
 
 
+def with_origin(error: Exception) -> str:
+    """Returns the message of an unexpected error, such as one of the user's environment, with its type and line."""
+    *_, last = traceback.extract_tb(error.__traceback__) or [None]
+    where = "" if last is None else f" (at {last.filename}:{last.lineno})"
+    return f"{type(error).__name__}: {one_line(error)}{where}"
+
+
 @contextmanager
-def usage_errors() -> Iterator[None]:
-    """Turns the errors that bad arguments cause inside the context into a :class:`UsageError`."""
+def usage_errors(flags: Collection[str] = (), positional: str | None = None) -> Iterator[None]:
+    """Turns the errors that bad arguments cause inside the context into a :class:`UsageError`.
+
+    Args:
+        flags: The arguments of the API that were given as flags, which messages then spell as flags.
+        positional: The one that is given without a flag, which messages then write as ``--help`` does.
+    """
     try:
         yield
-    except (ValueError, TypeError, OSError, ModuleNotFoundError, gym.error.Error) as error:
-        raise UsageError(one_line(error)) from error
+    except USER_ERRORS as error:
+        message = one_line(error)
+        if positional is not None and message.startswith(f"{positional} must "):
+            message = positional.upper() + message.removeprefix(positional)
+        raise UsageError(as_flags(message, flags)) from error
+
+
+@contextmanager
+def reading(argument: str, path: Path) -> Iterator[None]:
+    """Turns the errors of reading a file into a :class:`UsageError` that names the argument and the file."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or one_line(error)
+        raise UsageError(f"{argument} must be a file that can be read, got {shown(str(path))}: {reason}") from None
+
+
+def flag(name: str) -> str:
+    """Returns an argument of the API as it is typed on the command line."""
+    return f"--{name.replace('_', '-')}"
+
+
+def as_flags(message: str, names: Collection[str]) -> str:
+    """Returns a message of the API with arguments spelled as flags: where it names them, not where it quotes a word."""
+    if not names:
+        return message
+    words = "|".join(sorted(names, key=len, reverse=True))
+    compound = "|".join(sorted((name for name in names if "_" in name), key=len, reverse=True)) or "(?!)"
+    # At the beginning; before "= value" or "='value'"; before a quoted choice; and everywhere if no English word.
+    for pattern in (
+        rf"^(?P<name>{words})(?= (?:must|applies|needs)\b)",
+        rf"(?<![\w'-])(?P<name>{words})(?= ?= ?|=$)",
+        rf"(?<=to |or |th |se )(?P<name>{words})(?= ')",
+        rf"(?<![\w'-])(?P<name>{compound})(?![\w'])",
+    ):
+        message = re.sub(pattern, lambda found: flag(found["name"]), message)
+    return re.sub(r"(--[\w-]+)=(?=[ ,;.]|$)", r"\1", message)

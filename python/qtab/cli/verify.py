@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import tyro
 
 from qtab._utils.progress import ProgressBar, print_above
+from qtab.cli.constructors import OPTIONAL_INT
 from qtab.cli.parsing import parse
-from qtab.cli.usage import usage_errors
+from qtab.cli.usage import reading, usage_errors
 from qtab.results.storage import load
 from qtab.training.verify import verify
 
@@ -18,17 +20,18 @@ COMMAND = "qtab verify"
 class Arguments:
     """Repeat a saved run with Gymnasium and NumPy, and compare the results; the exit code is 1 if they differ."""
 
-    run: tyro.conf.Positional[Path]
+    run: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")]
     """A file written by qtab train --save."""
-    episodes: int | None = None
+    episodes: Annotated[int | None, OPTIONAL_INT] = None
     """Compare only the first episodes, using the schedules of the full run."""
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
     options = parse(Arguments, COMMAND, arguments)
-    with usage_errors():
-        saved = load(options.run)
+    with usage_errors(("episodes",), "run"):
+        with reading("RUN", options.run):
+            saved = load(options.run)
         total = options.episodes if options.episodes is not None else len(saved.episode_returns)
         with ProgressBar(total, "episode", None, "Gymnasium") as bar:
             verification = verify(saved, options.episodes, progress=lambda done, _: bar.move_to(done))

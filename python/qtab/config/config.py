@@ -4,8 +4,9 @@ Options, the settings that apply only beside certain choices, have None here; th
 """
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import wraps
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -200,6 +201,20 @@ def _comparable(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return tuple(map(_comparable, value))
     return value
+
+
+def _suggesting(init: Callable[..., None]) -> Callable[..., None]:
+    """Makes the generated constructor suggest the setting that was probably meant by an unknown keyword."""
+
+    @wraps(init)
+    def checked(self: Config, *args: Any, **settings: Any) -> None:
+        check_names(settings, DEFAULTS, "Config")
+        init(self, *args, **settings)
+
+    return checked
+
+
+setattr(Config, "__init__", _suggesting(Config.__init__))  # noqa: B010 - type checkers refuse the assignment
 
 
 def replace_checked(config: Config, **changes: Any) -> Config:

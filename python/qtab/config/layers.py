@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 
 from gymnasium.envs.registration import EnvSpec
 
+from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, Config, replace_checked
 from qtab.config.options import applicable, is_set
 from qtab.config.unknown import check_names
@@ -30,7 +31,7 @@ def collect(
         TypeError: for an unknown setting, or a config that is neither a Config nor a mapping.
     """
     arguments = _arguments(function)
-    check_names(settings, arguments)
+    check_names(settings, arguments, function.__name__)
     if config is None:
         return env, {}
     if isinstance(config, Config):
@@ -40,8 +41,8 @@ def collect(
             return config.env, config
         return env, replace_checked(config, env_kwargs={}, preset=None)
     if not isinstance(config, Mapping):
-        raise TypeError(f"config must be a qtab.Config or a mapping of settings, got {config!r}")
-    check_names(config, [name for name in DEFAULTS if name in arguments])
+        raise TypeError(f"config must be a qtab.Config or a mapping of settings, got {shown(config)}")
+    check_names(config, [name for name in DEFAULTS if name in arguments], function.__name__)
     base = dict(config)
     named = base.pop("env", None)
     return named if env is None else env, base

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, Config
 from qtab.config.options import applicable
 from qtab.config.presets import preset
@@ -33,7 +34,7 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
     """
     name = asked.get("preset")
     if name is not None and not isinstance(name, str):
-        raise TypeError(f"preset must be a name, got {name!r}")
+        raise TypeError(f"preset must be a name, got {shown(name)}")
     name, start = preset(env, name)
     start = applicable(start, {**DEFAULTS, **start, **asked})
     return Config(**{**start, **asked, "env": env, "preset": name})

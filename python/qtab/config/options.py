@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from qtab._utils.shown import shown
 from qtab.config.choices import CHOICES
 
 
@@ -84,7 +85,7 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
             option = OPTIONS[option.choice]
             chosen = fields[option.choice]
         if chosen not in option.values:
-            return f"{name} applies to {option.choice} {listed(option.values)}, not to {chosen!r}, got {value!r}"
+            return f"{name} applies to {option.choice} {listed(option.values)}, not to {chosen!r}, got {shown(value)}"
     algorithm = fields["algorithm"]
     with_tiles = fields["discretizer"] == "tiles"
     if (name, value) == ("terminal_update", "assign"):
@@ -95,7 +96,8 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
     if (name, value, algorithm) == ("learning_rate_schedule", "visits", "true_online_sarsa_lambda"):
         return other_choice(name, value, ("visits",), f"for algorithm {algorithm!r}")
     if name == "algorithm" and value in TABLES_ONLY and with_tiles:
-        return other_choice(name, value, TABLES_ONLY, "for discretizer 'tiles'")
+        others = other_choice(name, value, TABLES_ONLY, "for discretizer 'tiles'")
+        return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"
     return None
 
 
@@ -107,7 +109,7 @@ def applicable(fields: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str
 def other_choice(name: str, value: str, excluded: Sequence[str], where: str) -> str:
     """Returns the message for a choice that is excluded where something else was chosen."""
     possible = [word for word in CHOICES[name] if word not in excluded]
-    return f"{name} must be {listed(possible)} {where}, got {value!r}"
+    return f"{name} must be {listed(possible)} {where}, got {shown(value)}"
 
 
 def listed(words: Sequence[str]) -> str:

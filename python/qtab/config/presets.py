@@ -4,11 +4,13 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 
+from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
 from qtab.config.settings import SharedSettings
-from qtab.envs.registry import gymnasium_id
+from qtab.envs.registry import gymnasium_id, spec_of
 
 # G. Hayes, "Getting Started with Reinforcement Learning and Open AI Gym" (2019). The article's other settings are the
 # config's defaults.
@@ -193,8 +195,29 @@ _PRESETS: Mapping[str, Mapping[str, SharedSettings]] = {
 
 
 def presets(env: str) -> Mapping[str, SharedSettings]:
-    """Returns the presets of an environment by name, the default one first."""
-    return MappingProxyType(_PRESETS.get(gymnasium_id(env), {}))
+    """Returns the presets of an environment by name, the default one first; none for one that has no presets.
+
+    Args:
+        env: The environment's id in Gymnasium.
+
+    Raises:
+        TypeError: if ``env`` is not a string.
+        ValueError: if it is not a registered id; the message suggests the nearest one that has presets.
+    """
+    if not isinstance(env, str):
+        raise TypeError(f"env must be an environment id, got {shown(env)}")
+    known = _presets(env)
+    if not known:
+        try:
+            known = _presets(spec_of(env).id)
+        except (gym.error.Error, ModuleNotFoundError):
+            suggestion = did_you_mean(env, _PRESETS)
+            raise ValueError(f"env must be a registered environment id, got {shown(env)}{suggestion}") from None
+    return MappingProxyType(known)
+
+
+def _presets(env: str) -> Mapping[str, SharedSettings]:
+    return _PRESETS.get(gymnasium_id(env), {})
 
 
 def preset(env: str, name: str | None) -> tuple[str | None, Mapping[str, Any]]:
@@ -203,12 +226,12 @@ def preset(env: str, name: str | None) -> tuple[str | None, Mapping[str, Any]]:
     Raises:
         ValueError: if it has none of that name.
     """
-    known = presets(env)
+    known = _presets(env)
     if name is None:
         return next(iter(known.items())) if known else (None, {})
     if name not in known:
         if not known:
-            raise ValueError(f"preset must be left out for {env}, which has none, got {name!r}")
+            raise ValueError(f"preset must be left out for {env}, which has none, got {shown(name)}")
         names = ", ".join(map(repr, known))
-        raise ValueError(f"preset must be one of {names} for {env}, got {name!r}{did_you_mean(name, known)}")
+        raise ValueError(f"preset must be one of {names} for {env}, got {shown(name)}{did_you_mean(name, known)}")
     return name, known[name]

@@ -1,8 +1,15 @@
 """The error for a setting that does not exist, which names the one that was probably meant."""
 
-from collections.abc import Collection, Iterable
+import inspect
+from collections.abc import Callable, Collection, Iterable
+from functools import wraps
+from typing import ParamSpec, TypeVar
 
+from qtab._utils.shown import shown
 from qtab._utils.suggestions import nearest
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 _OTHER_NAMES = {
     "env": ("env_id", "env_name", "environment"),
@@ -43,19 +50,33 @@ _OTHER_NAMES = {
 _STEPS = ("total_timesteps", "n_timesteps", "num_timesteps", "timesteps", "total_steps")
 
 
-def check_names(names: Iterable[str], known: Collection[str]) -> None:
+def check_names(names: Iterable[str], known: Collection[str], function: str = "train", kind: str = "setting") -> None:
     """Refuses unknown settings.
 
     Args:
         names: What was given.
         known: The settings, and any other arguments that could have been meant.
+        function: The public function whose help lists them.
+        kind: What they are, for the message.
 
     Raises:
         TypeError: names the first unknown setting and, where there is one, the nearest known one.
     """
     for name in names:
         if name not in known:
-            raise TypeError(f"unknown setting {name!r}{_suggestion(name, known)}")
+            raise TypeError(f"unknown {kind} {shown(name)}{_suggestion(name, known, function, kind)}")
+
+
+def suggesting(function: Callable[P, T]) -> Callable[P, T]:
+    """Makes a function suggest the argument that was probably meant by an unknown keyword."""
+    known = inspect.signature(function).parameters
+
+    @wraps(function)
+    def checked(*args: P.args, **kwargs: P.kwargs) -> T:
+        check_names(kwargs, known, function.__name__, "argument")
+        return function(*args, **kwargs)
+
+    return checked
 
 
 def meant(name: str, known: Collection[str]) -> str | None:
@@ -68,9 +89,10 @@ def meant(name: str, known: Collection[str]) -> str | None:
     return None if found is None else names[found]
 
 
-def _suggestion(name: str, known: Collection[str]) -> str:
+def _suggestion(name: str, known: Collection[str], function: str, kind: str) -> str:
     found = meant(name, known)
     if found is None:
-        return "; help(qtab.train) and qtab train --help list the settings"
+        command = " and qtab train --help list" if function == "train" else " lists"
+        return f"; help(qtab.{function}){command} the {kind}s"
     counted = " qtab counts episodes, not steps" if name in _STEPS else ""
     return f" (did you mean {found!r}?{counted})"

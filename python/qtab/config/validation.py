@@ -9,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
+from qtab._utils.shown import shown
 from qtab.config.choices import CHOICES
 from qtab.config.options import OPTIONS, check_options, other_choice
 
 LARGEST_MT19937_SEED = 2**32 - 1
 MAX_TILINGS = 32
+MAX_TILES = 2**32 - 1
 MAX_BINS = 1_000_000
 MAX_ACTIONS = 2**16
 
@@ -43,24 +45,24 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
     _at_most(checked, "min_learning_rate", "learning_rate", None)
     for name in ("epsilon_warm_up", "learning_rate_warm_up"):
         if checked[name] is not None and checked[name] >= checked["episodes"]:
-            raise ValueError(f"{name} must be less than episodes = {checked['episodes']}, got {checked[name]!r}")
+            raise ValueError(f"{name} must be less than episodes = {checked['episodes']}, got {shown(checked[name])}")
     if checked["low"] is not None and checked["high"] is not None:
         if len(checked["low"]) != len(checked["high"]):
-            raise ValueError(f"high must hold as many numbers as low, got {checked['high']!r}")
+            raise ValueError(f"high must hold as many numbers as low, got {shown(checked['high'])}")
         if not all(low < high for low, high in zip(checked["low"], checked["high"], strict=True)):
-            raise ValueError(f"high must lie above low = {checked['low']!r}, got {checked['high']!r}")
+            raise ValueError(f"high must lie above low = {checked['low']!r}, got {shown(checked['high'])}")
     return checked
 
 
 def _at_most(fields: Mapping[str, Any], name: str, limit: str, default: float | None) -> None:
     most = default if fields[limit] is None else fields[limit]
     if fields[name] is not None and fields[name] > most:
-        raise ValueError(f"{name} must lie in [0, {limit} = {most:g}], got {fields[name]!r}")
+        raise ValueError(f"{name} must lie in [0, {limit} = {most:g}], got {shown(fields[name])}")
 
 
 def _text(name: str, value: Any) -> str:
     if not isinstance(value, str):
-        raise TypeError(f"{name} must be {'an environment id' if name == 'env' else 'a name'}, got {value!r}")
+        raise TypeError(f"{name} must be {'an environment id' if name == 'env' else 'a name'}, got {shown(value)}")
     return value
 
 
@@ -71,14 +73,14 @@ def _real(low: float, high: float) -> Callable[[str, Any], float]:
 def _above_zero(name: str, value: Any) -> float:
     number = checks.finite(name, value)
     if number <= 0:
-        raise ValueError(f"{name} must be above 0, got {value!r}")
+        raise ValueError(f"{name} must be above 0, got {shown(value)}")
     return number
 
 
 def _not_negative(name: str, value: Any) -> float:
     number = checks.finite(name, value)
     if number < 0:
-        raise ValueError(f"{name} must not be negative, got {value!r}")
+        raise ValueError(f"{name} must not be negative, got {shown(value)}")
     return number
 
 
@@ -96,14 +98,14 @@ def _choice(name: str, value: Any) -> str:
 
 def _keywords(name: str, value: Any) -> dict[str, Any]:
     if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
-        raise TypeError(f"{name} must map names to values, got {value!r}")
+        raise TypeError(f"{name} must map names to values, got {shown(value)}")
     return dict(value)
 
 
 def _each(check: Callable[[str, Any], Any]) -> Callable[[str, Any], tuple[Any, ...]]:
     def checked(name: str, value: Any) -> tuple[Any, ...]:
         if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
-            raise TypeError(f"{name} must hold a number for each component of the observation, got {value!r}")
+            raise TypeError(f"{name} must hold a number for each component of the observation, got {shown(value)}")
         return tuple(check(name, number) for number in value)
 
     return checked
@@ -112,7 +114,7 @@ def _each(check: Callable[[str, Any], Any]) -> Callable[[str, Any], tuple[Any, .
 def _scale(name: str, value: Any) -> tuple[float, ...]:
     scale = _each(checks.finite)(name, value)
     if any(number <= 0 for number in scale):
-        raise ValueError(f"{name} must hold positive numbers, got {value!r}")
+        raise ValueError(f"{name} must hold positive numbers, got {shown(value)}")
     return scale
 
 
@@ -128,24 +130,27 @@ def _counts(least: int, most: int | None) -> Callable[[str, Any], tuple[int, ...
 
 def _edges(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
     if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
-        raise TypeError(f"{name} must hold a row of numbers for each component of the observation, got {value!r}")
+        raise TypeError(f"{name} must hold a row of numbers for each component of the observation, got {shown(value)}")
     rows = tuple(_each(checks.finite)(name, row) for row in value)
     if any(left >= right for row in rows for left, right in pairwise(row)):
-        raise ValueError(f"{name} must hold rows of ascending numbers, got {value!r}")
+        raise ValueError(f"{name} must hold rows of ascending numbers, got {shown(value)}")
     return rows
+
+
+def _action(name: str, action: Any) -> float | tuple[float, ...]:
+    if isinstance(action, list | tuple | np.ndarray) and not (isinstance(action, np.ndarray) and action.ndim != 1):
+        return tuple(checks.finite(name, number) for number in action)
+    return checks.finite(name, action)
 
 
 def _actions(name: str, value: Any) -> Any:
     if hasattr(value, "__index__") and not np.ndim(value):
         return checks.integer(name, value, least=2, most=MAX_ACTIONS)
     if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
-        raise TypeError(f"{name} must be an integer, or hold the actions themselves, got {value!r}")
-    listed = tuple(
-        tuple(checks.finite(name, number) for number in action) if np.ndim(action) == 1 else checks.finite(name, action)
-        for action in value
-    )
+        raise TypeError(f"{name} must be an integer, or hold the actions themselves, got {shown(value)}")
+    listed = tuple(_action(name, action) for action in value)
     if not listed:
-        raise ValueError(f"{name} must hold at least one action, got {value!r}")
+        raise ValueError(f"{name} must hold at least one action, got {shown(value)}")
     return listed
 
 
@@ -153,18 +158,18 @@ def _initial_q(name: str, value: Any) -> float | tuple[float, float] | NDArray[n
     if isinstance(value, tuple | list) and len(value) == 2 and not any(hasattr(part, "__len__") for part in value):
         low, high = (checks.finite(name, bound) for bound in value)
         if low > high:
-            raise ValueError(f"{name} must be a range (low, high) with low <= high, got {value!r}")
+            raise ValueError(f"{name} must be a range (low, high) with low <= high, got {shown(value)}")
         if not math.isfinite(high - low):
-            raise ValueError(f"{name} must be a range (low, high) with a finite width, got {value!r}")
+            raise ValueError(f"{name} must be a range (low, high) with a finite width, got {shown(value)}")
         return low, high
     if hasattr(value, "__float__") and not isinstance(value, bool) and np.ndim(value) == 0:
         return checks.finite(name, value)
     if not isinstance(value, np.ndarray | list):
-        raise TypeError(f"{name} must be a range (low, high), a number or a table, got {value!r}")
+        raise TypeError(f"{name} must be a range (low, high), a number or a table, got {shown(value)}")
     try:
         table = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise TypeError(f"{name} must be a range (low, high) or a table of numbers, got {value!r}") from None
+        raise TypeError(f"{name} must be a range (low, high) or a table of numbers, got {shown(value)}") from None
     if not (np.isfinite(table) | np.isneginf(table)).all():
         raise ValueError(f"{name} must hold finite numbers (or -inf: no such action), got a table with nan or infinity")
     if table.size and table.ndim and np.isneginf(table).all(axis=-1).any():
@@ -195,7 +200,7 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "time_weight": _not_negative,
     "scale": _scale,
     "tilings": _integer(1, MAX_TILINGS),
-    "tiles": _counts(1, None),
+    "tiles": _counts(1, MAX_TILES),
     "hashed_rows": _integer(1, 2**32 - 1),
     "bins": _counts(1, MAX_BINS),
     "edges": _edges,

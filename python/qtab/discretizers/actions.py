@@ -8,6 +8,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.validation import MAX_ACTIONS
 
@@ -65,10 +66,13 @@ def choose_actions(space: Any, wanted: Any) -> Actions:
     """
     if isinstance(space, spaces.Discrete):
         if wanted is not None:
-            raise ValueError(f"actions applies to Box action spaces only, and this one is {space}; got {wanted!r}")
+            raise ValueError(f"actions applies to Box action spaces only, and this one is {space}; got {shown(wanted)}")
         return Actions(int(space.n), int(space.start))
     if not isinstance(space, spaces.Box) or len(space.shape) != 1 or space.dtype not in FLOATS:
-        raise ValueError(f"the action space must be Discrete or a Box of one float axis, got {space}")
+        raise ValueError(
+            f"the action space must be Discrete or a Box of one axis of float32 or float64, got {space}; "
+            "gymnasium.wrappers.TransformAction makes one of it with a function"
+        )
     if wanted is None:
         raise ValueError(
             f"actions must be given for the action space {space}: how many, in equal steps from its low to its high, "
@@ -91,11 +95,11 @@ def _equal_steps(space: spaces.Box, count: int) -> NDArray[np.floating]:
 def _listed(space: spaces.Box, wanted: Any) -> NDArray[np.floating]:
     dimensions = space.shape[0]
     if any((len(action) if isinstance(action, tuple) else 1) != dimensions for action in wanted):
-        raise ValueError(f"actions must hold {dimensions} numbers each for this action space, got {wanted!r}")
+        raise ValueError(f"actions must hold {dimensions} numbers each for this action space, got {shown(wanted)}")
     if len(wanted) > MAX_ACTIONS:
         raise ValueError(f"actions must be at most {MAX_ACTIONS}, got {len(wanted)}")
     with np.errstate(over="ignore"):
         values: NDArray[Any] = np.array(wanted, dtype=space.dtype).reshape(-1, dimensions)
     if not ((space.low <= values) & (values <= space.high)).all():
-        raise ValueError(f"actions must lie in the action space {space}, got {wanted!r}")
+        raise ValueError(f"actions must lie in the action space {space}, got {shown(wanted)}")
     return values

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
 from qtab._spec import DiscretizerSpec
+from qtab._utils.shown import shown
 from qtab.config import Config
 
 MAX_TABLE_SIZE = 2**32
@@ -135,11 +136,13 @@ def check_table_size(name: str, given: Any, values: float, instead: str = "") ->
     """
     if not values < MAX_TABLE_SIZE:
         raise ValueError(
-            f"{name} must give a table of fewer than 2**32 values{instead}, got {given!r}, which needs {values:.3g}"
+            f"{name} must give a table of fewer than 2**32 values{instead}, got {shown(given)}, "
+            f"which needs {values:.3g}"
         )
     try:
         np.empty(int(values))
     except MemoryError:
         raise ValueError(
-            f"{name} must give a table that fits into memory{instead}, got {given!r}, which needs {values:.3g} values"
+            f"{name} must give a table that fits into memory{instead}, got {shown(given)}, "
+            f"which needs {values:.3g} values"
         ) from None

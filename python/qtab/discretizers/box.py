@@ -7,8 +7,14 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from qtab._utils.shown import shown
 from qtab.discretizers.actions import FLOATS
 from qtab.discretizers.base import Discretizer
+
+SUPPORTED = (
+    "the observation space must be a Box of one axis of float32 or float64, Discrete, MultiDiscrete of one axis or a "
+    "Tuple of Discrete spaces"
+)
 
 Span = tuple[NDArray[np.float64], NDArray[np.float64]]
 """The lower and the upper limit of each component, two arrays of (d,)."""
@@ -27,14 +33,30 @@ def box_of(space: Any) -> spaces.Box:
     """Returns the observation space, a Box with one axis of floats.
 
     Raises:
-        ValueError: if it is another space.
+        ValueError: if it is another space; the message names the wrapper that would make one of it.
     """
     if not isinstance(space, spaces.Box) or len(space.shape) != 1 or space.dtype not in FLOATS:
-        hint = (
-            "; discretizer must be left out for it" if isinstance(space, spaces.Discrete | spaces.MultiDiscrete) else ""
-        )
-        raise ValueError(f"the observation space must be a Box of one float axis, got {space}{hint}")
+        raise ValueError(f"{SUPPORTED}, got {space}; {_remedy(space)}")
     return space
+
+
+def _remedy(space: Any) -> str:
+    """Returns what makes a supported space of another one."""
+    if isinstance(space, spaces.Discrete | spaces.MultiDiscrete) and len(space.shape) <= 1:
+        return "discretizer must be left out for it"
+    if isinstance(space, spaces.Dict):
+        return (
+            "gymnasium.wrappers.FlattenObservation makes a Box of it, and gymnasium.wrappers.FilterObservation chooses "
+            "its parts"
+        )
+    if isinstance(space, spaces.Box) and len(space.shape) == 1:
+        return "gymnasium.wrappers.DtypeObservation(env, numpy.float32) converts it"
+    if isinstance(space, spaces.Box | spaces.MultiDiscrete | spaces.MultiBinary | spaces.Tuple):
+        return (
+            "gymnasium.wrappers.FlattenObservation, or gymnasium.wrappers.TransformObservation with a function, makes "
+            "a Box of it"
+        )
+    return "gymnasium.wrappers.TransformObservation makes a Box of it with a function"
 
 
 def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] | None) -> Span:
@@ -47,7 +69,7 @@ def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] |
     for name, given, bound in zip(("low", "high"), (low, high), (space.low, space.high), strict=True):
         limit = bound.astype(np.float64) if given is None else np.array(given)
         if limit.shape != bound.shape:
-            raise ValueError(f"{name} must hold {len(bound)} numbers for this observation space, got {given!r}")
+            raise ValueError(f"{name} must hold {len(bound)} numbers for this observation space, got {shown(given)}")
         if not np.isfinite(limit).all():
             raise ValueError(
                 f"{name} must be given, a number for each component, where the observation space has no finite bounds: "
@@ -68,7 +90,9 @@ def per_dimension(name: str, given: tuple[int, ...], space: spaces.Box) -> tuple
     dimensions = space.shape[0]
     numbers = given * dimensions if len(given) == 1 else given
     if len(numbers) != dimensions:
-        raise ValueError(f"{name} must hold {dimensions} numbers for this observation space, or one, got {given!r}")
+        raise ValueError(
+            f"{name} must hold {dimensions} numbers for this observation space, or one, got {shown(given)}"
+        )
     return numbers
 
 

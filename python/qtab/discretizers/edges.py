@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from qtab._spec import BinsSpec
 from qtab._utils.checks import required
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.discretizers.base import check_table_size
 from qtab.discretizers.box import BoxDiscretizer, box_of, check_stored_bounds
@@ -31,7 +32,7 @@ class Edges(BoxDiscretizer):
         box, edges = box_of(space), config.edges
         if edges is None or len(edges) != len(box.low):
             raise ValueError(
-                f"edges must hold {len(box.low)} rows of numbers for this observation space, got {edges!r}"
+                f"edges must hold {len(box.low)} rows of numbers for this observation space, got {shown(edges)}"
             )
         check_table_size("edges", edges, float(np.prod([len(row) + 1.0 for row in edges])) * n_actions)
         return cls(box.low, box.high, _arrays(edges))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._spec import RoundSpec
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.discretizers.base import check_table_size
 from qtab.discretizers.box import BoxDiscretizer, box_of, check_stored_bounds
@@ -38,7 +39,7 @@ class Rounding(BoxDiscretizer):
         if len(scale) != len(box.low):
             raise ValueError(
                 f"scale must hold {len(box.low)} numbers for this observation space, the cells per unit of each "
-                f"component, got {scale!r}. Without them choose discretizer 'bins' or 'tiles'"
+                f"component, got {shown(scale)}. Without them choose discretizer 'bins' or 'tiles'"
             )
         grid = cls(box.low, box.high, np.array(scale, dtype=np.float64))
         with np.errstate(over="ignore"):

@@ -1,8 +1,10 @@
 """Matching of environment objects to registry entries: Rust replaces only those whose numbers it reproduces."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import gymnasium as gym
+import numpy as np
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
 from qtab.envs.registry import TABULAR, EnvEntry, entry_for_id
@@ -10,14 +12,21 @@ from qtab.envs.registry import TABULAR, EnvEntry, entry_for_id
 # The wrappers of gymnasium.make, none of which changes an observation or a reward.
 _HARMLESS_WRAPPERS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
 
+# What wrappers keep besides what they were made with: a reference, a cache, and whether one was closed.
+_IRRELEVANT = ("env", "_cached_spec", "close_called")
 
-def unknown_wrapper(env: gym.Env) -> str | None:
-    """Returns the class name of the outermost wrapper that may change a number; None if there is none."""
-    while isinstance(env, gym.Wrapper):
-        if type(env) not in _HARMLESS_WRAPPERS:
-            return type(env).__name__
-        env = env.env
-    return None
+
+class NotInRustError(ValueError):
+    """Rust cannot step an environment. The message gives the reason.
+
+    Args:
+        reason: Why.
+        remedy: What would let Rust step it.
+    """
+
+    def __init__(self, reason: str, remedy: str) -> None:
+        super().__init__(reason)
+        self.remedy = remedy
 
 
 def rust_unavailable(reason: str) -> ValueError:
@@ -28,47 +37,111 @@ def rust_unavailable(reason: str) -> ValueError:
 def entry_for_env(env: gym.Env) -> EnvEntry:
     """Returns the registry entry that computes the same numbers as an environment object.
 
+    The generator and the state of the object do not matter: training starts with ``reset(seed=...)``.
+
     Raises:
-        ValueError: if there is none; the message names the class, wrapper or attribute that rules it out.
+        NotInRustError: if there is none; it names the class, wrapper or attribute that rules it out.
     """
     unwrapped: Any = env.unwrapped
+    entry = _entry_for_class(unwrapped)
     wrapper = unknown_wrapper(env)
     if wrapper is not None:
-        raise rust_unavailable(f"Rust does not implement its wrapper {wrapper}")
-    if _entry_point(unwrapped) == TABULAR.entry_point:
-        return TABULAR
-    spec = unwrapped.spec
-    entry = entry_for_id(spec.id) if spec is not None else None
-    if entry is None or _entry_point(unwrapped) not in (entry.gymnasium_entry_point, entry.entry_point):
-        raise rust_unavailable(f"Rust does not implement {type(unwrapped).__qualname__}")
-    if entry.has_table:
-        return entry  # Rust reads the table from the object, so no attribute can be out of date
-    from qtab._core import parameter_names
-
-    default = type(unwrapped)(**(spec.kwargs if spec is not None else {}))
-    for name in parameter_names(entry.name):
-        value, default_value = getattr(unwrapped, name), getattr(default, name)
-        if type(value) not in (int, float, bool, str, list) or value != default_value:
-            raise rust_unavailable(f"its attribute {name} was changed from {default_value!r} to {value!r}")
+        raise NotInRustError(
+            f"Rust does not implement its wrapper {wrapper}",
+            "pass the environment without this wrapper, as gymnasium.make returns it",
+        )
+    for layer in _layers(env):
+        for name in vars(layer):
+            if callable(getattr(type(layer), name, None)):
+                raise _changed(f"its method {name} was replaced")
+    for name in ("observation_space", "action_space"):
+        if getattr(env, name) != getattr(unwrapped, name):
+            raise _changed(f"its {name} was changed from {getattr(unwrapped, name)!r} to {getattr(env, name)!r}")
+    if not entry.has_table:  # Rust reads a table from the object, so no attribute can be out of date
+        _check_attributes(unwrapped, entry)
     return entry
 
 
-def is_tabular_env(env: gym.Env) -> bool:
-    """Returns whether this is a :class:`qtab.TabularEnv` with no wrapper other than those of ``gymnasium.make``."""
-    return unknown_wrapper(env) is None and _entry_point(env.unwrapped) == TABULAR.entry_point
+def _entry_for_class(unwrapped: Any) -> EnvEntry:
+    name, spec = type(unwrapped).__qualname__, unwrapped.spec
+    if _entry_point(unwrapped) == TABULAR.entry_point:
+        return TABULAR
+    entry = entry_for_id(spec.id) if spec is not None else None
+    if entry is None or _entry_point(unwrapped) not in (entry.gymnasium_entry_point, entry.entry_point):
+        made = " without an id of Gymnasium's" if spec is None and type(unwrapped).__module__.startswith("gym") else ""
+        raise NotInRustError(
+            f"Rust does not implement {name}{made}",
+            "pass the environment that gymnasium.make returns for the id"
+            if made
+            else "an environment whose transition table is known can be a qtab.TabularEnv",
+        )
+    return entry
+
+
+def _check_attributes(unwrapped: Any, entry: EnvEntry) -> None:
+    from qtab._core import parameter_names
+
+    default = type(unwrapped)(**(unwrapped.spec.kwargs if unwrapped.spec is not None else {}))
+    for name in ("observation_space", "action_space"):
+        if getattr(unwrapped, name) != getattr(default, name):
+            raise _changed(f"its {name} was changed from {getattr(default, name)!r} to {getattr(unwrapped, name)!r}")
+    for name in parameter_names(entry.name):
+        value, default_value = getattr(unwrapped, name), getattr(default, name)
+        if type(value) not in (int, float, bool, str, list) or value != default_value:
+            raise _changed(f"its attribute {name} was changed from {default_value!r} to {value!r}")
+
+
+def _changed(reason: str) -> NotInRustError:
+    return NotInRustError(reason, "pass the environment as gymnasium.make returns it")
+
+
+def _layers(env: gym.Env) -> Iterator[gym.Env]:
+    """The wrappers of an environment, the outermost first, and the environment in them."""
+    while isinstance(env, gym.Wrapper):
+        yield env
+        env = env.env
+    yield env
+
+
+def unknown_wrapper(env: gym.Env) -> str | None:
+    """Returns the class name of the outermost wrapper that may change a number; None if there is none."""
+    *wrappers, _ = _layers(env)
+    return next((type(wrapper).__name__ for wrapper in wrappers if type(wrapper) not in _HARMLESS_WRAPPERS), None)
 
 
 def time_limit(env: gym.Env) -> int | None:
-    """Returns the time limit in steps that an environment's ``TimeLimit`` wrapper sets; None without one."""
-    while isinstance(env, gym.Wrapper):
-        if isinstance(env, gym.wrappers.TimeLimit):
-            return env._max_episode_steps
-        env = env.env
-    return None
+    """Returns the time limit in steps that ``TimeLimit`` wrappers set, the lowest of several; None without one."""
+    limits = [layer._max_episode_steps for layer in _layers(env) if isinstance(layer, TimeLimit)]
+    return min(limits, default=None)
+
+
+def equal_environments(one: gym.Env, other: gym.Env) -> bool:
+    """Returns whether two environments are known to be equal: the same wrappers and classes with equal attributes."""
+    ours, theirs = list(_layers(one)), list(_layers(other))
+    if [type(layer) for layer in ours] != [type(layer) for layer in theirs]:
+        return False
+    return all(_equal(_attributes(layer), _attributes(twin)) for layer, twin in zip(ours, theirs, strict=True))
+
+
+def _attributes(layer: gym.Env) -> dict[str, Any]:
+    return {name: value for name, value in vars(layer).items() if name not in _IRRELEVANT}
+
+
+def _equal(one: Any, other: Any) -> bool:
+    if type(one) is not type(other):
+        return False
+    if isinstance(one, dict):
+        return one.keys() == other.keys() and all(_equal(one[name], other[name]) for name in one)
+    if isinstance(one, np.ndarray):
+        return np.array_equal(one, other)
+    try:
+        return bool(one == other)
+    except ValueError:  # arrays in lists
+        return False
 
 
 def _entry_point(env: gym.Env) -> str:
     return f"{type(env).__module__}:{type(env).__qualname__}"
 
 
-__all__ = ["entry_for_env", "is_tabular_env", "rust_unavailable", "time_limit", "unknown_wrapper"]
+__all__ = ["NotInRustError", "entry_for_env", "equal_environments", "rust_unavailable", "time_limit", "unknown_wrapper"]

@@ -53,7 +53,7 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
         self.observation_space = gym.spaces.Discrete(states)
         self.action_space = gym.spaces.Discrete(actions)
 
-    def reset_in_python(self) -> tuple[int, dict[str, Any]]:
+    def _reset_in_python(self) -> tuple[int, dict[str, Any]]:
         """Resets in Gymnasium's code, for first-state distributions that Rust does not support, such as a list."""
         self.s = categorical_sample(self.initial_state_distrib, self.np_random)
         self.lastaction = None
@@ -61,7 +61,7 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
             self.render()
         return int(self.s), {"prob": 1}
 
-    def step_in_python(self, action: Any) -> Any:
+    def _step_in_python(self, action: Any) -> Any:
         """Steps in Gymnasium's code, for tables that Rust does not support.
 
         Raises:

@@ -14,31 +14,31 @@ from qtab import _core
 class ToyTextMixin:
     """Mixin that resets a toy text environment in Rust; a class of the extension module precedes it in the bases.
 
-    ``native_reset``, which that class defines, draws the first state from ``np_random`` and returns what ``reset``
-    returns. It calls ``reset_in_python`` if Rust does not support the distribution of first states.
+    ``_native_reset``, which that class defines, draws the first state from ``np_random`` and returns what ``reset``
+    returns. It calls ``_reset_in_python`` if Rust does not support the distribution of first states.
     """
 
-    native_reset: Any
+    _native_reset: Any
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[int, dict[str, Any]]:
         """Draws the first state; ``options`` are ignored, as in Gymnasium."""
         gym.Env.reset(self, seed=seed, options=options)  # type: ignore[arg-type]
-        first: tuple[int, dict[str, Any]] = self.native_reset()
+        first: tuple[int, dict[str, Any]] = self._native_reset()
         return first
 
 
 class FrozenLakeEnv(_core.ToyText, ToyTextMixin, GymnasiumFrozenLakeEnv):
     """Gymnasium's FrozenLake stepped in Rust; changes to its table ``P`` take effect at the next step."""
 
-    reset_in_python = GymnasiumFrozenLakeEnv.reset
-    step_in_python = GymnasiumFrozenLakeEnv.step
+    _reset_in_python = GymnasiumFrozenLakeEnv.reset
+    _step_in_python = GymnasiumFrozenLakeEnv.step
 
 
 class CliffWalkingEnv(_core.ToyText, ToyTextMixin, GymnasiumCliffWalkingEnv):
     """Gymnasium's CliffWalking stepped in Rust; changes to its table ``P`` take effect at the next step."""
 
-    reset_in_python = GymnasiumCliffWalkingEnv.reset
-    step_in_python = GymnasiumCliffWalkingEnv.step
+    _reset_in_python = GymnasiumCliffWalkingEnv.reset
+    _step_in_python = GymnasiumCliffWalkingEnv.step
 
 
 class TaxiEnv(_core.Taxi, ToyTextMixin, GymnasiumTaxiEnv):
@@ -47,20 +47,20 @@ class TaxiEnv(_core.Taxi, ToyTextMixin, GymnasiumTaxiEnv):
     Changes to its table ``P`` take effect at the next step.
     """
 
-    reset_in_python = GymnasiumTaxiEnv.reset
-    step_in_python = GymnasiumTaxiEnv.step
-    action_mask_in_python = GymnasiumTaxiEnv.action_mask
+    _reset_in_python = GymnasiumTaxiEnv.reset
+    _step_in_python = GymnasiumTaxiEnv.step
+    _action_mask_in_python = GymnasiumTaxiEnv.action_mask
 
 
 class BlackjackEnv(_core.Blackjack, GymnasiumBlackjackEnv):
     """Gymnasium's Blackjack dealt and stepped in Rust, with cards drawn from ``np_random``."""
 
-    step_in_python = GymnasiumBlackjackEnv.step
+    _step_in_python = GymnasiumBlackjackEnv.step
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[tuple[int, int, int], dict[str, Any]]:
         """Deals two cards to the player and two to the dealer; ``options`` are ignored, as in Gymnasium."""
         super(GymnasiumBlackjackEnv, self).reset(seed=seed)
-        dealt: tuple[tuple[int, int, int], dict[str, Any]] | None = self.native_reset()
+        dealt: tuple[tuple[int, int, int], dict[str, Any]] | None = self._native_reset()
         return super().reset(options=options) if dealt is None else dealt

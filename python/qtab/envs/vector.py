@@ -62,7 +62,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
     ) -> None:
         self.num_envs = checks.integer("num_envs", num_envs, least=1)
         self._autoreset_mode = AutoresetMode(autoreset_mode)
-        self.copy = bool(copy)
+        self.copy = checks.boolean("copy", copy)
         # A spec instead of an id: Gymnasium would warn of an old version a second time.
         spec = gym.spec(PREFIX + name)
         self._entry_name = ENTRIES[name].name

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.shown import shown
 from qtab.envs.registry import gymnasium_id, spec_of
 from qtab.planning.gap import Gap
 from qtab.planning.mountain_car import Search
@@ -133,7 +134,7 @@ class Optimum:
             ValueError: if the environment, its keyword arguments or the time limit of the run differ from this one's.
         """
         if not isinstance(run, Run | Runs):
-            raise TypeError(f"run must be a Run or Runs, got {run!r}")
+            raise TypeError(f"run must be a Run or Runs, got {shown(run)}")
         self._check_same_env(run)
         if isinstance(run, Run):
             last = run.episode_returns[-FINAL_EPISODES:]

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
+from qtab._utils.shown import shown
+from qtab.config.unknown import suggesting
 from qtab.discretizers import Identity
 from qtab.discretizers.actions import choose_actions
 from qtab.envs.classic_control import MountainCarEnv as RustMountainCarEnv
@@ -31,6 +33,7 @@ from qtab.training.resolve import UNLIMITED_MAX_EPISODE_STEPS
 SEARCH = "search"
 
 
+@suggesting
 def optimum(
     env: str | EnvSpec | gym.Env | Run | Runs,
     *,
@@ -70,11 +73,11 @@ def optimum(
         max_episode_steps = checks.count("max_episode_steps", max_episode_steps, least=1)
     if isinstance(env, gym.Env):
         if env_kwargs is not None:
-            raise ValueError(f"env_kwargs must be None if env is an environment object, got {env_kwargs!r}")
+            raise ValueError(f"env_kwargs must be None if env is an environment object, got {shown(env_kwargs)}")
         name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
         return _optimum_for_env(name, env, max_episode_steps, discount, method)
     if not isinstance(env, str | EnvSpec):
-        raise TypeError(f"env must be an environment id, an EnvSpec, an environment or a run, got {env!r}")
+        raise TypeError(f"env must be an environment id, an EnvSpec, an environment or a run, got {shown(env)}")
     name = env.id if isinstance(env, EnvSpec) else versioned(env)
     spec = env if isinstance(env, EnvSpec) else spec_of(name)
     made = gym.make(spec, **(env_kwargs or {}))
@@ -93,7 +96,7 @@ def _optimum_for_run(
 ) -> Optimum:
     config = run.config
     if env_kwargs is not None:
-        raise ValueError(f"env_kwargs must be None with a run, whose own are used, got {env_kwargs!r}")
+        raise ValueError(f"env_kwargs must be None with a run, whose own are used, got {shown(env_kwargs)}")
     try:
         spec_of_run(config.env)
     except gym.error.Error:
@@ -186,7 +189,7 @@ def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int)
 
 def _search_mountain_car(env: Any, discount: float, max_episode_steps: int) -> _Best:
     if discount != 1.0:
-        raise ValueError(f"discount must be 1 for method 'search', which counts steps, got {discount!r}")
+        raise ValueError(f"discount must be 1 for method 'search', which counts steps, got {shown(discount)}")
     names = _core.parameter_names("MountainCar")
     searched = _core.MountainCarSearch(
         [(name, checks.finite(name, getattr(env, name))) for name in names], max_episode_steps

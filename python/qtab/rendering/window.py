@@ -22,7 +22,7 @@ def open_window(config: Config) -> gym.Env:
     """
     problem = display_problem()
     if problem is not None:
-        raise ValueError(f"watch needs a display ({problem}); --record DIR makes videos without one")
+        raise ValueError(f"watch needs a display ({problem}); --record FOLDER makes videos without one")
     return make_render_env(config, "human")
 
 

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 FINAL_EPISODES = 100
 """The final return of a run is the mean of this many last episodes."""
 
+SOLVED_EPISODES = 100
+"""A task counts as solved once the mean return of this many consecutive episodes reaches its threshold."""
+
 MAX_BLOCKS = 100
 """More averages than this cannot be read in a terminal or told apart in a figure."""
 
@@ -45,3 +48,13 @@ def block_means(returns: NDArray[np.float64], block: int) -> NDArray[np.float64]
     whole = episodes // block * block
     means: NDArray[np.float64] = returns[:, :whole].reshape(runs, whole // block, block).mean(axis=2)
     return means
+
+
+def best_mean_returns(returns: NDArray[np.float64], window: int = SOLVED_EPISODES) -> NDArray[np.float64]:
+    """Returns (runs,): each run's highest mean return over ``window`` consecutive episodes; -inf for shorter runs."""
+    runs, episodes = returns.shape
+    if episodes < window:
+        return np.full(runs, -np.inf)
+    sums = np.cumsum(np.pad(returns, ((0, 0), (1, 0))), axis=1)
+    best: NDArray[np.float64] = np.max((sums[:, window:] - sums[:, :-window]) / window, axis=1)
+    return best

@@ -1,19 +1,25 @@
 """``qtab.evaluate``: how good the greedy policy of a run is."""
 
 from collections.abc import Mapping
+from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
 from qtab._utils.frames import episode_frame
+from qtab.config import Config
 from qtab.config.options import OPTIONS
+from qtab.config.unknown import suggesting
+from qtab.envs.registry import spec_of
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
-from qtab.training.resolve import resolve
+from qtab.training.given_env import check_env, check_id, check_spaces
+from qtab.training.resolve import log_python_stepping, resolve
 from qtab.training.train import train_resolved
 
 if TYPE_CHECKING:
@@ -100,11 +106,12 @@ class Evaluation:
         return None if self.reward_threshold is None else float(np.mean(self.returns >= self.reward_threshold))
 
 
+@suggesting
 def evaluate(
     run: Run,
     episodes: int = 100,
     seed: int | None = None,
-    env: gym.Env | None = None,
+    env: str | EnvSpec | gym.Env | None = None,
     *,
     env_kwargs: Mapping[str, Any] | None = None,
     max_episode_steps: int | None = None,
@@ -117,20 +124,30 @@ def evaluate(
         run: The run to evaluate.
         episodes: The number of episodes.
         seed: The seed of the environment; None draws one, which the evaluation records.
-        env: The environment, for a run that was trained on an environment without an id.
-        env_kwargs: Keyword arguments for the environment's constructor; None takes those of the run.
+        env: Another environment than the run's, or one like it for a run that was trained on an environment without an
+            id: an id, an EnvSpec, or an environment, which is not closed.
+        env_kwargs: Keyword arguments for the environment's constructor; None takes those of the run, or with ``env``
+            none.
         max_episode_steps: The time limit of an episode, in steps; None takes that of the run.
 
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range.
+        ValueError: for an argument out of range, or an environment with other spaces than the run's.
     """
     checks.instance("run", run, Run)
-    if env is not None and not isinstance(env, gym.Env):
-        raise TypeError(f"env must be an environment, got {env!r}")
+    check_env(env)
     config = run.config
-    spec = spec_of_run(config.env) if env is None else env.spec
+    if env is None:
+        spec = spec_of_run(config.env)
+        check_id(config)
+    elif isinstance(env, gym.Env):
+        spec = env.spec
+        check_spaces(run, env)
+    else:
+        spec = env if isinstance(env, EnvSpec) else spec_of(env)
+        with closing(gym.make(env, **(env_kwargs or {}))) as made:
+            check_spaces(run, made)
     # With a learning rate and an exploration rate of 0, training is evaluation.
     settings: dict[str, Any] = {
         "episodes": episodes,
@@ -141,11 +158,13 @@ def evaluate(
         "terminal_update": "target",
         "initial_q": _greedy_table(run),
         **{name: getattr(config, name) for name in TABLE_SETTINGS},
-        "env_kwargs": config.env_kwargs if env_kwargs is None else env_kwargs,
+        **_env_kwargs(config, env, env_kwargs),
         "max_episode_steps": config.max_episode_steps if max_episode_steps is None else max_episode_steps,
         "backend": config.backend if env is None and env_kwargs is None else "auto",
     }
     resolved = resolve(config.env if env is None else env, settings)
+    if env is not None:
+        log_python_stepping(resolved)
     try:
         played = train_resolved(resolved)
     finally:
@@ -157,6 +176,12 @@ def evaluate(
         resolved.seed,
         None if spec is None else spec.reward_threshold,
     )
+
+
+def _env_kwargs(config: Config, env: Any, env_kwargs: Mapping[str, Any] | None) -> dict[str, Any]:
+    if env_kwargs is not None:
+        return {"env_kwargs": env_kwargs}
+    return {"env_kwargs": config.env_kwargs} if env is None else {}
 
 
 def _greedy_table(run: Run) -> NDArray[np.float64]:

@@ -11,6 +11,7 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from qtab import discretizers
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.algorithms import algorithm_settings
 from qtab.config.config import replace_checked
@@ -21,14 +22,14 @@ from qtab.config.schedules import learning_rate
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions, choose_actions
 from qtab.discretizers.identity import integer_bounds
-from qtab.envs.matching import entry_for_env, is_tabular_env, rust_unavailable, time_limit
+from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import native_env
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
 from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun
 
 _LOGGER = logging.getLogger("qtab")
 _logged: set[str] = set()
-"""The environments whose default time limit was logged in this process."""
+"""The environments whose default time limit was logged in this process, and the messages that were."""
 UNLIMITED_MAX_EPISODE_STEPS = 10_000
 """The time limit in training for environments that have none."""
 
@@ -46,6 +47,8 @@ class _Request:
     """What is asked for without the preset."""
     time_limit: int | None
     """That of the environment."""
+    python_reason: str | None = None
+    """Why an environment object is stepped in Python although that was not asked for, and what would help."""
 
 
 def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: bool = False) -> ResolvedRun:
@@ -72,7 +75,7 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: 
             owns_env = True
             on_exit.callback(request.env.close)
         else:
-            raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {env!r}")
+            raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
         run = _fill_defaults(request, owns_env)
         if not run.is_native:
             on_exit.pop_all()  # the run steps the environment, and closes it
@@ -99,12 +102,35 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
 def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:
     name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
     kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
-    asked = merge_layers({"env_kwargs": kwargs}, *layers)
+    asked = merge_layers(*layers)
+    if asked.get("env_kwargs"):
+        raise ValueError(f"env_kwargs must be left out with an environment object, got {shown(asked['env_kwargs'])}")
+    asked["env_kwargs"] = kwargs
     config = config_of(name, asked)
-    native = is_tabular_env(env) if config.backend == "auto" else config.backend == "rust"
-    entry = entry_for_env(env) if native else None
-    config = replace_checked(config, backend="rust" if native else "gymnasium")
-    return _Request(env, entry, config, asked, time_limit(env))
+    entry, python_reason = None, None
+    if config.backend != "gymnasium":
+        try:
+            entry = entry_for_env(env)
+            if config.backend == "auto":
+                _check_not_shown(env)
+        except NotInRustError as error:
+            if config.backend == "rust":
+                raise rust_unavailable(str(error)) from None
+            entry, python_reason = None, f"{error}; {error.remedy}"
+    limit = time_limit(env)
+    if limit is not None and config.max_episode_steps is not None:
+        # Its wrapper ends episodes there, whatever is asked for.
+        config = replace_checked(config, max_episode_steps=min(limit, config.max_episode_steps))
+    return _Request(env, entry, config, asked, limit, python_reason)
+
+
+def _check_not_shown(env: gym.Env) -> None:
+    """Leaves an environment with a render mode to Python, so that it can be seen, as one that is given by its id."""
+    if getattr(env.unwrapped, "render_mode", None) is not None:
+        raise NotInRustError(
+            f"its render_mode is {env.unwrapped.render_mode!r}",
+            "without a render mode Rust steps it; record= and qtab train --watch show the last episodes afterwards",
+        )
 
 
 def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
@@ -112,7 +138,7 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     config = _infer_discretizer(env, request.config, request.asked)
     config = replace_checked(config, **defaults(vars(config)))
     actions = choose_actions(env.action_space, config.actions)
-    environment = _environment(request, actions, owns_env)
+    environment, python_reason = _environment(request, actions, owns_env)
     discretizer = discretizers.build(env.observation_space, config, len(actions))
     own_limit = config.max_episode_steps or request.time_limit
     max_episode_steps = own_limit or UNLIMITED_MAX_EPISODE_STEPS
@@ -136,6 +162,7 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         seed=seed,
         max_episode_steps=max_episode_steps,
         default_time_limit=own_limit is None,
+        python_reason=python_reason,
     )
 
 
@@ -152,16 +179,17 @@ def _infer_discretizer(env: gym.Env, config: Config, asked: Mapping[str, Any]) -
     return replace_checked(identity, scale=())
 
 
-def _environment(request: _Request, actions: Actions, owns_env: bool) -> Environment:
-    """The environment as Rust steps it, where Rust can and the backend allows it; else the environment itself."""
-    entry, backend = request.entry, request.config.backend
+def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[Environment, str | None]:
+    """The environment as Rust steps it, where Rust can and the backend allows it; else itself, and why."""
+    entry, backend, reason = request.entry, request.config.backend, request.python_reason
     if entry is not None and backend != "gymnasium":
         try:
-            return NativeEnvironment(entry, native_env(entry.name, request.env.unwrapped, actions))
+            return NativeEnvironment(entry, native_env(entry.name, request.env.unwrapped, actions)), None
         except (TypeError, ValueError) as error:
             if backend == "rust":
                 raise rust_unavailable(str(error)) from None
-    return PythonEnvironment(request.env, actions, owns_env)
+            reason = str(error)
+    return PythonEnvironment(request.env, actions, owns_env), reason
 
 
 def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> Any:
@@ -192,3 +220,12 @@ def log_default_limit(run: ResolvedRun) -> None:
     if run.default_time_limit and run.config.env not in _logged:
         _logged.add(run.config.env)
         _LOGGER.warning("%s; max_episode_steps= sets another", time_limit_notice(run))
+
+
+def log_python_stepping(run: ResolvedRun) -> None:
+    """Logs why an environment is stepped in Python, where that was not asked for: once in a process for each reason."""
+    if run.python_reason is not None:
+        message = f"{run.config.env} is stepped in Python, which is much slower than Rust: {run.python_reason}"
+        if message not in _logged:
+            _logged.add(message)
+            _LOGGER.warning("%s", message)

@@ -86,6 +86,8 @@ class ResolvedRun:
     max_episode_steps: int
     default_time_limit: bool
     """Whether the environment has no time limit, so that ``max_episode_steps`` is qtab's default."""
+    python_reason: str | None
+    """Why the environment is stepped in Python, where that was not asked for, and what would help; None otherwise."""
 
     @property
     def is_native(self) -> bool:

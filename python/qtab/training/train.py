@@ -14,6 +14,7 @@ from qtab import _core
 from qtab._utils import checks
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.progress import ProgressBar
+from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
@@ -22,7 +23,7 @@ from qtab.config.signature import with_settings
 from qtab.rendering.replay import generator_states
 from qtab.results.run import Recording, Run
 from qtab.training.callbacks import Callback, EpisodeReader
-from qtab.training.resolve import log_default_limit, resolve
+from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_memory import check_run
 
@@ -47,8 +48,10 @@ def train(
     environment's first preset, the default.
 
     Args:
-        env: An environment's id, its EnvSpec, or an environment, which is used as it is and not closed. None takes the
-            environment of ``config``.
+        env: An environment's id, its EnvSpec, or an environment, which is not closed. None takes the environment of
+            ``config``. Where Rust implements an environment and it is as ``gymnasium.make`` returns it, Rust trains
+            with the same numbers and leaves the object untouched. Any other environment is stepped in Python as it is;
+            the logger ``qtab`` gives the reason once, unless ``progress`` is False.
         config: The settings to start from: the config of a run, ``qtab.train(config=run.config)``, repeats the run
             exactly. Of a Config, the settings that do not apply beside the keywords are ignored, and with another
             environment its ``env_kwargs`` and ``preset`` as well. A mapping gives only some settings, as keywords do.
@@ -75,11 +78,13 @@ def train(
     """
     callback_every = checks.integer("callback_every", callback_every, least=1)
     if callback is not None and not callable(callback):
-        raise TypeError(f"callback must be callable, got {callback!r}")
+        raise TypeError(f"callback must be callable, got {shown(callback)}")
     record = checks.count("record", record, least=0)
     env, base = collect(train, env, config, settings)
     resolved = resolve(env, over(base, settings))
     log_default_limit(resolved)
+    if progress is not False:
+        log_python_stepping(resolved)
     try:
         return train_resolved(resolved, callback, callback_every, record, progress, memory_limit)
     finally:

@@ -4,6 +4,7 @@ import math
 import os
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import closing
 from typing import Any, TypeAlias
 
 import gymnasium as gym
@@ -16,13 +17,15 @@ from qtab._spec import Results
 from qtab._utils import checks
 from qtab._utils.memory import BYTES_PER_EPISODE, BYTES_PER_RUN, check_memory
 from qtab._utils.memory import memory_limit as bytes_limit
+from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
+from qtab.envs.matching import equal_environments
 from qtab.results.runs import Runs
-from qtab.training.resolve import log_default_limit, resolve
+from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_memory import bytes_in_progress, tables_shape
 
@@ -46,7 +49,8 @@ def train_many(
     always with :mod:`multiprocessing`, a script then needs ``if __name__ == "__main__":`` around its call.
 
     Args:
-        env: An environment's id, its EnvSpec, or a function that makes one. None takes the environment of ``config``.
+        env: An environment's id, its EnvSpec, or a function that makes one and is called several times. None takes the
+            environment of ``config``.
         seeds: The seeds of the runs; an integer N means 0 to N - 1.
         config: The settings to start from, as for :func:`qtab.train`, without the seed.
         threads: The number of threads or processes; None means one per core.
@@ -61,6 +65,7 @@ def train_many(
         ValueError: for an argument out of range, or a repeated seed.
         KeyboardInterrupt: on Ctrl-C. Like any exception that a run raises, it carries the finished runs as ``.run``.
     """
+    tables = checks.boolean("tables", tables)
     limit = bytes_limit(memory_limit)
     numbers = seed_sequence(seeds, limit)
     workers = thread_count(threads)
@@ -70,6 +75,7 @@ def train_many(
     largest = numbers[-1] if isinstance(numbers, range) else max(numbers)
     resolved = resolve_template(env, {**overrides, "seed": largest}).with_seed(numbers[0])
     log_default_limit(resolved)
+    log_python_stepping(resolved)
     began = time.perf_counter()
     results = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
     try:
@@ -106,7 +112,7 @@ def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
         check_memory(f"{count} runs", count * BYTES_PER_RUN, limit)
         return range(count)
     if isinstance(seeds, (str, bytes)) or not hasattr(seeds, "__iter__"):
-        raise TypeError(f"seeds must be an integer or a sequence of integers, got {seeds!r}")
+        raise TypeError(f"seeds must be an integer or a sequence of integers, got {shown(seeds)}")
     numbers: dict[int, None] = {}
     for seed in seeds:
         number = checks.integer("seeds", seed, least=0)
@@ -152,10 +158,21 @@ def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any]) 
     if callable(env):
         made = env()
         if not isinstance(made, gym.Env):
-            raise TypeError(f"env must make an environment, got {made!r}")
+            raise TypeError(f"env must make an environment, got {shown(made)}")
     resolved = resolve(made, settings, owns_env=True)
     resolved.close()
+    if callable(env) and resolved.is_native and not _makes_equals(env, made):
+        if settings.get("backend") == "rust":
+            raise ValueError("env must make equal environments at every call for backend 'rust', got two that differ")
+        # Each run makes an environment then, in a process of its own.
+        resolved = resolve(env(), {**settings, "backend": "gymnasium"}, owns_env=True)
+        resolved.close()
     return resolved
+
+
+def _makes_equals(make_env: MakeEnv, made: gym.Env) -> bool:
+    with closing(make_env()) as another:
+        return equal_environments(made, another)
 
 
 def allocate_results(resolved: ResolvedRun, runs: int, at_once: int, keep_tables: bool, limit: int) -> Results:

@@ -1,21 +1,26 @@
 """``qtab.verify``: compares a run with Gymnasium's environment and the reference learners in NumPy, byte for byte."""
 
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
+from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
+from qtab.config.unknown import suggesting
 from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.envs.stored import spec_of_run
 from qtab.reference import LEARNERS
 from qtab.results.run import Run
+from qtab.training.given_env import check_env, check_id, check_spaces
 from qtab.training.resolve import resolve
 
 
@@ -60,10 +65,11 @@ class Verification:
         return "\n".join(lines)
 
 
+@suggesting
 def verify(
     run: Run,
     episodes: int | None = None,
-    env: gym.Env | None = None,
+    env: str | EnvSpec | gym.Env | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Verification:
     """Trains a run's config again with Gymnasium's environment and the reference learner in plain NumPy, and compares.
@@ -72,20 +78,33 @@ def verify(
         run: What to verify.
         episodes: Compare only the first episodes, using the full run's schedule: both sides train again, and their
             tables after that many are compared. None compares the run as it is, its Q table included.
-        env: The environment, for a run that was trained on an environment object without an id.
+        env: The environment, for a run that was trained on one without an id: an environment, which is not closed, an
+            id or an EnvSpec.
         progress: Called after every episode of the reference with the number done and the total.
 
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or an interrupted run without ``episodes``.
+        ValueError: for an argument out of range, an environment with other spaces than the run's, or an interrupted run
+            without ``episodes``.
     """
     checks.instance("run", run, Run)
+    check_env(env)
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress must be callable, got {shown(progress)}")
     finished = len(run.episode_returns)
     if episodes is None and not run.completed:
         raise ValueError(f"episodes must be given for a run that was stopped early, at most {finished}")
     count = checks.integer("episodes", finished if episodes is None else episodes, least=1, most=finished)
     config = run.config
+    if env is None:
+        check_id(config)
+    elif isinstance(env, gym.Env):
+        check_spaces(run, env)
+    else:
+        with closing(gym.make(env)) as made:
+            check_spaces(run, made)
+            return verify(run, episodes, made, progress)
     recorder = _Recorder(_environment(config, env), count, progress)
     try:
         table, returns, lengths = LEARNERS[config.algorithm](recorder, config, stop_after=count)
@@ -124,7 +143,7 @@ def _environment(config: Config, env: gym.Env | None) -> gym.Env:
 
 def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[np.float64], list[Any]]:
     """Trains in Rust again: the table after so many episodes, and the actions of the last of them."""
-    resolved = resolve(config.env if env is None else env, _fields(config))
+    resolved = resolve(config.env if env is None else env, _fields(config, env))
     try:
         trainer = _core.Trainer(resolved.spec(), resolved.seed, record=1)
         trainer.advance(episodes)
@@ -134,8 +153,12 @@ def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[
         resolved.close()
 
 
-def _fields(config: Config) -> dict[str, Any]:
-    return {name: value for name, value in vars(config).items() if name != "env"}
+def _fields(config: Config, env: gym.Env | None) -> dict[str, Any]:
+    fields = {name: value for name, value in vars(config).items() if name != "env"}
+    if env is not None:
+        del fields["env_kwargs"]
+        fields["backend"] = "gymnasium" if config.backend == "gymnasium" else "auto"
+    return fields
 
 
 def _first_difference(*pairs: tuple[NDArray[Any], NDArray[Any]]) -> int | None:

@@ -134,6 +134,7 @@ impl PyBlackjack {
 
     /// Deals the first cards, and draws the suit and the name of the open card. Returns what `reset` returns; None, and
     /// nothing drawn, where the generator is not `NumPy`'s.
+    #[pyo3(name = "_native_reset")]
     fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let py = slf.py();
         let generator = generator(slf)?;

@@ -86,12 +86,12 @@ fn probability(outcome: &Bound<'_, PyTuple>) -> PyResult<f64> {
 
 /// The reset in Gymnasium's code, after the generator was seeded.
 pub(super) fn reset_fallback<'py>(env: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    env.call_method0(intern!(env.py(), "reset_in_python"))
+    env.call_method0(intern!(env.py(), "_reset_in_python"))
 }
 
 /// The step in Gymnasium's code.
 pub(super) fn step_fallback<'py>(env: &Bound<'py, PyAny>, action: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    env.call_method1(intern!(env.py(), "step_in_python"), (action,))
+    env.call_method1(intern!(env.py(), "_step_in_python"), (action,))
 }
 
 /// `int(value)`

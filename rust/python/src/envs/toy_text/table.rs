@@ -88,6 +88,7 @@ impl PyToyText {
     }
 
     /// Draws the initial state from the environment's generator; returns what `reset` returns.
+    #[pyo3(name = "_native_reset")]
     fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let Some(state) = sample_initial(slf)? else { return reset_fallback(slf) };

@@ -112,6 +112,7 @@ impl PyTaxi {
     }
 
     /// Draws the initial state from the environment's generator; returns what `reset` returns.
+    #[pyo3(name = "_native_reset")]
     fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let Some(state) = sample_initial(slf)? else { return reset_fallback(slf) };
@@ -168,7 +169,7 @@ impl PyTaxi {
     fn action_mask<'py>(slf: &Bound<'py, Self>, state: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let (Some(state), Some(map)) = (discrete_action(state, STATES), map(slf)?) else {
-            return slf.call_method1(intern!(py, "action_mask_in_python"), (state,));
+            return slf.call_method1(intern!(py, "_action_mask_in_python"), (state,));
         };
         let DecodedState { row, column, passenger, destination } = DecodedState::new(state);
         let open = |offset: usize| map.as_bytes()[(row + 1) * MAP_SHAPE[1] + 2 * column + offset] == b':';

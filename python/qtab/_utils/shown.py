@@ -1,0 +1,19 @@
+"""Values as error messages show them: short, whatever they are."""
+
+from typing import Any
+
+LONGEST = 450
+"""Longer texts are cut in the middle: what was given may be a whole table."""
+
+
+def shown(value: Any) -> str:
+    """Returns the ``repr`` of a value, without the middle of a long one."""
+    try:
+        text = repr(value)
+    except Exception:  # such as that of an integer of more digits than Python prints
+        bits = f" of {value.bit_length():,} bits" if isinstance(value, int) else ""
+        text = f"<{type(value).__name__}{bits}>"
+    if len(text) <= LONGEST:
+        return text
+    half = LONGEST // 2
+    return f"{text[:half]} ... {text[-half:]}"

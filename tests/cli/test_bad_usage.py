@@ -1,0 +1,133 @@
+"""Bad usage is answered in one line that names the flag as it is typed; nothing prints a traceback."""
+
+from pathlib import Path
+
+import pytest
+
+from qtab.cli.usage import as_flags
+from support.command import qtab, qtab_here, refused
+
+FILES = {
+    "deep.toml": "actions = " + "[" * 5000 + "]" * 5000,
+    "digits.toml": "episodes = 1" + "0" * 5000,
+    "ragged.toml": "initial_q = [[1, 2], [3]]",
+    "actions.toml": "actions = [[1, [2]], 3]",
+    "config.toml": "config = []",
+    "table.toml": "[episodes]\nn = 1",
+    "infinite.toml": "learning_rate = 1e999",
+    "twice.toml": "seed = 1\nseed = 2",
+    "rate.toml": "learning_rate = 3.0",
+    "mixed.toml": "min_epsilon = 0.9",
+}
+REFUSED: list[tuple[str, str]] = [
+    ("train --config deep.toml", "--config must be a TOML file, got 'deep.toml': it is nested too deeply"),
+    ("train --config digits.toml", "--config must be a TOML file, got 'digits.toml': "),
+    ("train --config ragged.toml", "ragged.toml: initial_q must be a table of numbers, got [[1, 2], [3]]"),
+    ("train --config actions.toml", "actions must be a finite number, got [2]"),
+    ("train --config config.toml", "config.toml: unknown setting 'config'"),
+    ("train --config table.toml", "episodes must be an integer of at least 1, got {'n': 1}"),
+    ("train --config infinite.toml", "learning_rate must be finite, got inf"),
+    ("train --config twice.toml", "--config must be a TOML file, got 'twice.toml': "),
+    ("train --config rate.toml", "learning_rate must lie in [0, 1], got 3.0"),
+    ("train --config rate.toml --learning-rate 4", "--learning-rate must lie in [0, 1], got 4.0"),
+    ("train --config mixed.toml --epsilon 0.5", "min_epsilon must lie in [0, --epsilon = 0.5], got 0.9"),
+    ("train --config none.toml", "--config must be a file that can be read, got 'none.toml': No such file"),
+    ("train --config .", "--config must be a file that can be read, got '.': Is a directory"),
+    ("train --initial-q none.npz", "--initial-q must be a file that can be read, got 'none.npz': No such file"),
+    (
+        "train --learnig-rate 0.3",
+        "unknown option --learnig-rate (did you mean --learning-rate?); see qtab train --help",
+    ),
+    ("train --alpha=0.3", "unknown option --alpha (did you mean --learning-rate?)"),
+    ("train --savee run.npz", "unknown option --savee (did you mean --save?)"),
+    ("train Taxi-v4 B", "unexpected argument 'B'"),
+    ("train --episodes", "--episodes needs a value"),
+    ("train --watch x", "--watch must be an integer, got 'x'"),
+    ("train --watch 1 --record d", "--watch needs a display"),
+    ("train --max-episode-steps 0", "--max-episode-steps must be an integer of at least 1, got 0"),
+    ("train --trace-decay 0.5", "--trace-decay applies to --algorithm 'sarsa_lambda'"),
+    ("train --tilings 3", "--tilings applies to --discretizer 'tiles', not to 'round', got 3"),
+    ("train --actions " + "[" * 5000, "--actions must be a count or the actions themselves, got '[["),
+    ("train --seed " + "9" * 5000, "--seed must be an integer, got '999"),
+    ("verify none.npz", "RUN must be a file that can be read, got 'none.npz': No such file or directory"),
+    ("verify", "RUN must be given: a file written by qtab train --save"),
+    ("verify run.npz --episodes x", "--episodes must be an integer, got 'x'"),
+    ("optimum --gamma 0.9", "unknown option --gamma (did you mean --discount?); see qtab optimum --help"),
+    ("optimum --env Taxi-v4", "unknown option --env (env is given without a flag)"),
+    ("optimum Taxi-v4 --discount 3", "--discount must lie in [0, 1], got 3.0"),
+    ("optimum CartPole-v1", "ENV must have a transition table"),
+    ("book 10.4 --runs x", "--runs must be an integer, got 'x'"),
+    ("book 99", "NAME must be one of "),
+    ("bench --seconds x", "--seconds must be a number, got 'x'"),
+    ("bench --part foo", "--part must be one of "),
+]
+
+
+@pytest.mark.parametrize(("line", "said"), REFUSED, ids=[line[:40] for line, _ in REFUSED])
+def test_it_is_refused_in_one_line(tmp_path: Path, line: str, said: str) -> None:
+    for name, text in FILES.items():
+        if name in line:
+            (tmp_path / name).write_text(text)
+    command, *arguments = line.split()
+    answer = refused(command, *arguments, cwd=tmp_path)
+    assert answer.startswith(f"qtab {command}: error: {said}"), answer
+    assert len(answer) < 1000
+
+
+def test_the_frame_of_a_terminal_is_taken_off(tmp_path: Path) -> None:
+    done = qtab("train", "--learnig-rate", "3", cwd=tmp_path, PYTHONIOENCODING="utf-8", LC_ALL="C.UTF-8")
+    said = "unknown option --learnig-rate (did you mean --learning-rate?); see qtab train --help"
+    assert done.stderr == f"qtab train: error: {said}\n"
+
+
+def test_a_video_is_not_offered_where_it_was_asked_for(tmp_path: Path) -> None:
+    both = refused("train", "--watch", "1", "--record", "d", cwd=tmp_path)
+    assert both.endswith("leave out --watch: --record works without one")
+    alone = refused("train", "--watch", "1", cwd=tmp_path)
+    assert alone.endswith("--record FOLDER makes videos without one")
+
+
+def test_an_unexpected_error_is_one_line_too(tmp_path: Path) -> None:
+    (tmp_path / "odd.py").write_text(
+        "import gymnasium as gym\n\n\nclass Odd(gym.Env):\n    def __init__(self):\n        {}['wheel']\n\n\n"
+        "gym.register('Odd-v0', entry_point=Odd)\n"
+    )
+    done = qtab("train", "odd:Odd-v0", cwd=tmp_path, PYTHONPATH=str(tmp_path))
+    assert done.returncode == 1
+    assert done.stderr.startswith("qtab train: error: KeyError: 'wheel' (at ")
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("message", "typed"),
+    [
+        ("episodes must be 3", "--episodes must be 3"),
+        ("the last episodes must be seen", "the last episodes must be seen"),
+        ("min_epsilon must lie in [0, epsilon = 1]", "--min-epsilon must lie in [0, --epsilon = 1]"),
+        ("take low= and high=", "take --low and --high"),
+        ("for algorithm 'sarsa', got 'episodes'", "for --algorithm 'sarsa', got 'episodes'"),
+        ("max_episode_steps= sets another", "--max-episode-steps sets another"),
+        ("got 'max_episode_steps'", "got 'max_episode_steps'"),
+    ],
+)
+def test_arguments_are_spelled_as_flags_and_words_are_not(message: str, typed: str) -> None:
+    names = ("episodes", "epsilon", "min_epsilon", "low", "high", "algorithm", "max_episode_steps")
+    assert as_flags(message, names) == typed
+    assert as_flags(message, ()) == message
+
+
+@pytest.mark.parametrize(
+    ("arguments", "verdict"),
+    [
+        (["--seed", "0"], "Not solved: the best mean return over 100 consecutive episodes is "),
+        (["--preset", "solved", "--seed", "0"], "Solved: the last 100 episodes reach the threshold of -110"),
+        (["--seed", "0", "--episodes", "99"], None),
+        (["Pendulum-v1", "--episodes", "100", "--seed", "0"], None),
+    ],
+)
+def test_train_says_whether_the_task_is_solved(tmp_path: Path, arguments: list[str], verdict: str | None) -> None:
+    printed = qtab_here("train", *arguments, cwd=tmp_path).stdout.splitlines()
+    (found,) = [line for line in printed if line.startswith(("Solved", "Not solved"))] or [None]
+    assert (found is None) if verdict is None else str(found).startswith(verdict)
+    if verdict and verdict.startswith("Not"):
+        assert str(found).endswith("the threshold -110; --preset solved reaches it")
