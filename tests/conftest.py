@@ -2,10 +2,13 @@
 
 import os
 import signal
+import sys
+from collections.abc import Iterator
 
 import pytest
 
 os.environ["SDL_VIDEODRIVER"] = "dummy"
+os.environ["MPLBACKEND"] = "agg"
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 
 from hypothesis import settings
@@ -24,6 +27,14 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     """No worker processes where only files or tests are named: starting them would take longer, and hide ``print``."""
     named = config.args_source is pytest.Config.ArgsSource.ARGS
     return 0 if named and all(".py" in argument for argument in config.args) else None
+
+
+@pytest.fixture(autouse=True)
+def closed_figures() -> Iterator[None]:
+    """Closes the figures that a test has left to pyplot, which warns of more than 20."""
+    yield
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
 
 
 @pytest.fixture

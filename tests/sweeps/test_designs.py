@@ -1,5 +1,7 @@
 """Designs: settings drawn from a space."""
 
+import itertools
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -40,3 +42,27 @@ def test_points_lie_within_their_space(low, span, seed):
 def test_a_bad_axis_is_refused_by_name(axis):
     with pytest.raises((ValueError, TypeError), match=r"space\['a'\] must"):
         designs.random({"a": axis}, 3)
+
+
+@pytest.mark.parametrize("axis", [(-1.7e308, 1.7e308), (1e-300, 1e300, "log")])
+@pytest.mark.parametrize("design", [designs.random, designs.sobol])
+def test_bounds_too_far_apart_for_a_float_are_refused(design, axis):
+    with pytest.raises(ValueError, match=r"space\['a'\] must have bounds whose \w+ is less than 1.8e308, got"):
+        design({"a": axis}, 4)
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda: designs.random(3, 4), TypeError, "space must map at least one name .* got 3"),
+        (lambda: designs.sobol(3, 4), TypeError, "space must map at least one name .* got 3"),
+        (lambda: designs.sobol({}, 4), ValueError, "space must map at least one name .* got {}"),
+        (lambda: designs.random({"a": (0, 1)}, 10**12), ValueError, "points must be an integer from 1 to 1000000"),
+        (lambda: designs.grid(3), TypeError, "grid must map names of settings to lists of values, got 3"),
+        (lambda: designs.grid({str(n): range(10) for n in range(12)}), ValueError, "grid must have at most 1,000,000"),
+        (lambda: designs.grid({"a": itertools.count()}), ValueError, "grid must have at most 1,000,000"),
+    ],
+)
+def test_bad_designs_are_refused_by_name(call, error, message):
+    with pytest.raises(error, match=message):
+        call()

@@ -26,3 +26,7 @@ __all__ = [
     "run",
     "windy_grid_world",
 ]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, *(name for name in globals() if name.startswith("__"))]

@@ -8,7 +8,9 @@ import numpy as np
 
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
-from qtab.plots.axes import axes_or_new, color, finish, new_figure, save_figure
+from qtab.plots.axes import axes_or_new, not_shown, save_figure, shown_figure
+from qtab.plots.colors import color
+from qtab.plots.labels import finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,8 +28,8 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
         marker: dict[str, Any] = {"marker": "o", "markersize": 4} if len(line.x) <= MAX_MARKERS else {}
         error = np.nan_to_num(line.error)
         low, high = line.mean - 2 * error, line.mean + 2 * error
-        ax.fill_between(line.x, low, high, color=color(index), alpha=0.25, linewidth=0)
-        ax.plot(line.x, line.mean, color=color(index), linewidth=1.6, label=line.name, **marker)
+        ax.fill_between(line.x, low, high, color=color(index, ax), alpha=0.25, linewidth=0)
+        ax.plot(line.x, line.mean, color=color(index, ax), linewidth=1.6, label=line.name, **marker)
     if experiment.log_y:
         ax.set_yscale("log")
         for axis in ("set_major_formatter", "set_minor_formatter"):
@@ -47,7 +49,7 @@ def draw_surfaces(
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
     """
-    figure = new_figure(9, 5.5)
+    figure = shown_figure(9, 5.5)
     figure.suptitle(title)
     x, y = np.meshgrid(positions, velocities, indexing="ij")
     x_ticks, y_ticks = (positions[0], -0.5, positions[-1]), (velocities[0], 0, velocities[-1])
@@ -71,5 +73,6 @@ def save_plot(result: Result, path: Path) -> None:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         OSError: if the file cannot be written.
     """
-    figure: Any = result.plot().figure
+    with not_shown():
+        figure: Any = result.plot().figure
     save_figure(figure, path, DOTS_PER_INCH)

@@ -1,7 +1,12 @@
-"""Helpers that all plots share: axes, colors, labels, and the files they are saved to."""
+"""Figures and axes: those that are shown, and those that only go to files."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from qtab._utils.extras import missing
 from qtab._utils.files import replacing
@@ -10,19 +15,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from qtab.planning import Optimum
-
-COLORS = ("#1f5fa8", "#d1662b", "#2f8f5b", "#8a4fa3", "#b0892b", "#4b8fa8", "#b03a48", "#5b5b5b")
-"""Colors that differ in lightness, and that most color-blind readers can distinguish."""
-
-
-def color(index: int) -> str:
-    """Returns the color of a line by its index."""
-    return COLORS[index % len(COLORS)]
+_IS_SHOWN: ContextVar[bool] = ContextVar("is_shown", default=True)
 
 
 def new_figure(width: float = 8, height: float = 4.5) -> "Figure":
-    """Returns an empty figure; width and height are in inches.
+    """Returns an empty figure that pyplot does not know, for pictures that only go to files.
+
+    Args:
+        width: In inches.
+        height: In inches.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
@@ -34,43 +35,63 @@ def new_figure(width: float = 8, height: float = 4.5) -> "Figure":
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def axes_or_new(ax: "Axes | None") -> "Axes":
-    """Returns the given axes, or those of a new figure.
+def shown_figure(width: float = 8, height: float = 4.5) -> "Figure":
+    """Returns an empty figure of pyplot's: a notebook shows it, and so does ``plt.show()``.
+
+    Within :func:`not_shown` it is one that pyplot does not know.
+
+    Args:
+        width: In inches.
+        height: In inches.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
     """
-    return new_figure().subplots() if ax is None else ax
+    if not _IS_SHOWN.get():
+        return new_figure(width, height)
+    try:
+        from matplotlib import pyplot as plt
+    except ModuleNotFoundError as error:
+        raise missing(error, "plot") from None
+    return plt.figure(figsize=(width, height), layout="constrained")
 
 
-def mark_optimum(ax: "Axes", optimum: "Optimum | float | None") -> None:
-    """Draws a dashed horizontal line at an optimum or a return, with the number in the legend.
+@contextmanager
+def not_shown() -> Iterator[None]:
+    """Within it, plots without ``ax=`` make figures for files only: no window opens, and nothing must be closed."""
+    token = _IS_SHOWN.set(False)
+    try:
+        yield
+    finally:
+        _IS_SHOWN.reset(token)
+
+
+def check_axes(ax: Any) -> None:
+    """Checks that the argument ``ax`` is None or axes.
 
     Raises:
-        TypeError: if ``optimum`` is neither of them.
+        TypeError: if it is neither.
     """
-    if optimum is None:
+    if ax is None:
         return
-    if not hasattr(optimum, "expected_return") and not isinstance(optimum, int | float):
-        raise TypeError(f"optimum must be a number or a result of qtab.optimum, got {optimum!r}")
-    value, label = (
-        (float(optimum), "optimum") if isinstance(optimum, int | float) else (optimum.expected_return, optimum.label)
-    )
-    ax.axhline(value, color="#a3262f", linestyle=(0, (5, 3)), linewidth=1.5, label=f"{label} {value:.4g}", zorder=4)
+    try:
+        from matplotlib.axes import Axes
+    except ModuleNotFoundError as error:
+        raise missing(error, "plot") from None
+    if not isinstance(ax, Axes):
+        hint = f", an array of shape {ax.shape}: pass one of its axes" if isinstance(ax, np.ndarray) else f", {ax!r}"
+        raise TypeError(f"ax must be a matplotlib Axes or None, got {type(ax).__name__}{hint}")
 
 
-def finish(ax: "Axes", x_label: str, y_label: str, title: str = "") -> "Axes":
-    """Adds labels, a grid and a legend to the axes, removes the top and right spines, and returns the axes."""
-    ax.set_xlabel(x_label)
-    ax.set_ylabel(y_label)
-    if title:
-        ax.set_title(title, loc="left", fontweight="bold")
-    ax.grid(alpha=0.25)
-    ax.spines[["top", "right"]].set_visible(False)
-    handles, _ = ax.get_legend_handles_labels()
-    if handles:
-        ax.legend(framealpha=0.85, edgecolor="none")
-    return ax
+def axes_or_new(ax: "Axes | None") -> "Axes":
+    """Returns the given axes, or those of a new figure, which a notebook and ``plt.show()`` show.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        TypeError: if ``ax`` is neither axes nor None.
+    """
+    check_axes(ax)
+    return shown_figure().subplots() if ax is None else ax
 
 
 def check_format(name: str, path: Path) -> None:

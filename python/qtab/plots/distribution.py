@@ -1,51 +1,80 @@
 """The distribution of the final returns of many runs."""
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
-from qtab.plots.axes import axes_or_new, color, finish
+from qtab._utils import checks
+from qtab.plots.axes import axes_or_new, check_axes
+from qtab.plots.colors import palette
+from qtab.plots.inputs import color_keys, entries, only_env
+from qtab.plots.labels import finish
+from qtab.plots.marks import check_threshold, mark_threshold
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+MAX_BINS = 1000
+"""More bins are narrower than a pixel."""
+
 
 def distribution(
-    returns: ArrayLike | Mapping[str, ArrayLike],
+    returns: Any,
     ax: "Axes | None" = None,
     *,
     bins: int | None = None,
-    threshold: float | None = None,
+    settings: Sequence[int] | None = None,
+    colors: Any = None,
+    threshold: float | Literal[False] | None = None,
     title: str = "",
 ) -> "Axes":
-    """Draws a histogram of returns with their median.
+    """Draws a histogram of the final returns of runs, with their median.
 
     Args:
-        returns: (runs,): one return per run, such as ``runs.final_returns()``; or several such arrays by name, whose
-            histograms share their bins.
-        ax: The axes to draw on; None creates a new figure.
-        bins: The number of bins; None means the square root of the largest number of runs, at most 40.
-        threshold: A return to mark, such as the one at which Gymnasium considers the environment solved.
+        returns: A Run, Runs, a Sweep or an array (runs,) with one return per run, such as ``runs.final_returns()``; or
+            a mapping of names to any of these. Several histograms share their bins. Of a sweep each setting has one;
+            where there are more than eight, the eight with the best mean final return, which the legend reports.
+        ax: The axes to draw on; None creates a new figure, which a notebook and ``plt.show()`` show.
+        bins: The number of bins, at most 1,000; None means the square root of the largest number of runs, at most 40.
+        settings: The indices of the settings of a sweep to draw, such as ``[0, 3]``.
+        colors: A color, a sequence of colors, or a mapping of names to colors; None chooses.
+        threshold: A return to mark by a dotted line. None means that at which Gymnasium considers the environment
+            solved, where it is known and not far from the data; False means no line.
         title: The title of the axes.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range, empty data, or returns that are not finite.
     """
-    named = returns if isinstance(returns, Mapping) else {"": returns}
-    samples = {name: np.asarray(values, dtype=np.float64) for name, values in named.items()}
+    check_axes(ax)
+    check_threshold(threshold)
+    if bins is not None:
+        checks.integer("bins", bins, least=1, most=MAX_BINS)
+    drawn, note = entries("returns", returns, "final returns", settings)
+    edges = _edges([entry.values for entry in drawn], bins)
     ax = axes_or_new(ax)
-    count = bins or min(40, math.isqrt(max(map(len, samples.values()))) + 1)
-    edges = np.histogram_bin_edges(np.concatenate(list(samples.values())), count).tolist()
-    for index, (name, values) in enumerate(samples.items()):
-        middle = float(np.median(values))
-        label = f"{name or 'runs'}: {len(values)}, median {middle:.4g}"
-        ax.hist(values, edges, color=color(index), alpha=0.5, label=label)
-        ax.hist(values, edges, color=color(index), histtype="step", linewidth=1.4)
-        ax.axvline(middle, color=color(index), linewidth=2)
-    if threshold is not None:
-        ax.axvline(threshold, color="0.25", linestyle="--", linewidth=1.2, label=f"threshold {threshold:g}")
+    hues = palette(color_keys(drawn), ax, None, colors, [entry.label for entry in drawn])
+    for entry, hue in zip(drawn, hues, strict=True):
+        middle = float(np.median(entry.values))
+        runs = f"{len(entry.values)} run{'' if len(entry.values) == 1 else 's'}, median {middle:.4g}"
+        label = f"{entry.label}: {runs}" if entry.label else runs
+        ax.hist(entry.values, edges, color=hue, alpha=0.5 / math.sqrt(len(drawn)), label=label)
+        ax.hist(entry.values, edges, color=hue, histtype="step", linewidth=1.4)
+        ax.axvline(middle, color=hue, linewidth=2)
+    mark_threshold(ax, threshold, only_env(drawn), "x")
     ax.locator_params(axis="y", integer=True)
-    return finish(ax, "Final return", "Runs", title)
+    return finish(ax, "Final return", "Runs", title, legend_title=note)
+
+
+def _edges(samples: list[NDArray[np.float64]], bins: int | None) -> list[float]:
+    count = bins or min(40, math.isqrt(max(map(len, samples))) + 1)
+    pooled = np.concatenate(samples)
+    try:
+        edges: list[float] = np.histogram_bin_edges(pooled, count).tolist()
+    except ValueError:  # the values are too close to each other for so many bins
+        edges = np.histogram_bin_edges(pooled, 1).tolist()
+    return edges

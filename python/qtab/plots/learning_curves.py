@@ -1,11 +1,18 @@
-"""The learning curve of many runs with a confidence interval."""
+"""The learning curves of many runs with confidence intervals."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
-from qtab.plots.axes import axes_or_new, color, finish, mark_optimum
+from qtab._utils import checks
+from qtab.plots.axes import axes_or_new, check_axes
+from qtab.plots.blocks import common_block, counted_episodes
+from qtab.plots.colors import palette
+from qtab.plots.inputs import Entry, color_keys, entries, only_env
+from qtab.plots.labels import episode_ticks, finish, joined
+from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -14,52 +21,116 @@ if TYPE_CHECKING:
 
 MAX_SINGLE_RUNS = 200
 """The maximum number of single runs that are drawn behind the statistic."""
+MAX_CLOUDS = 2
+"""With more curves than this, the single runs are left out."""
 
 
 def learning_curves(
-    returns: ArrayLike,
+    returns: Any,
     ax: "Axes | None" = None,
     *,
-    block: int = 100,
+    block: int | None = None,
     statistic: str = "mean",
     confidence: float = 0.95,
     label: str | None = None,
-    index: int = 0,
+    index: int | None = None,
+    settings: Sequence[int] | None = None,
+    colors: Any = None,
     optimum: "Optimum | float | None" = None,
+    threshold: float | Literal[False] | None = None,
     title: str = "",
 ) -> "Axes":
-    """Draws a statistic over the runs with its bootstrap interval, in front of the single runs.
+    """Draws a statistic over the runs with its interval, in front of the single runs.
+
+    The interval is that of :func:`qtab.stats.curve`. A single run has none, and its means are drawn without one.
 
     Args:
-        returns: (runs, episodes), such as ``runs.episode_returns``.
-        ax: The axes to draw on; None creates a new figure.
-        block: The number of episodes in a block. Each point shows the mean returns of one block.
+        returns: A Run, Runs, a Sweep or an array (runs, episodes); or a mapping of names to any of these. Of a sweep
+            each setting has a curve; where there are more than eight, the eight with the best mean final return, which
+            the legend reports.
+        ax: The axes to draw on; None creates a new figure, which a notebook and ``plt.show()`` show.
+        block: The number of episodes in a block. Each point shows the mean returns of one block. None means 100; more
+            for runs of more than 10,000 episodes, and fewer for those of fewer than 400.
         statistic: The statistic over the runs: ``"mean"``, ``"median"`` or ``"iqm"``.
-        confidence: The coverage probability of the interval, in [0, 1].
-        label: The name in the legend.
-        index: The index of the color. Settings on the same axes need different ones.
+        confidence: The coverage probability of the interval, between 0 and 1.
+        label: The name in the legend of a single curve; several have the names of the mapping or the settings.
+        index: The index of the color. Settings on the same axes need different ones. None means the algorithm's color
+            where the algorithm is known, else the first.
+        settings: The indices of the settings of a sweep to draw, such as ``[0, 3]``.
+        colors: A color, a sequence of colors, or a mapping of names to colors; None chooses.
         optimum: A result of :func:`qtab.optimum`, or a return, to mark by a dashed line with its number in the legend.
+        threshold: A return to mark by a dotted line. None means that at which Gymnasium considers the environment
+            solved, where it is known and not far from the data; False means no line.
         title: The title of the axes.
 
     Raises:
         ModuleNotFoundError: without matplotlib or SciPy; the message names the ``pip install``.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range.
+        ValueError: for an argument out of range, empty data, or returns that are not finite.
     """
     from qtab import stats
 
-    points = stats.curve(returns, block=block, statistic=statistic, confidence=confidence)
+    check_axes(ax)
+    check_optimum(optimum)
+    check_threshold(threshold)
+    checks.choice("statistic", statistic, ("mean", "median", "iqm"))
+    if index is not None:
+        checks.integer("index", index, least=0)
+    drawn, note = entries("returns", returns, "curves", settings)
+    if label is not None:
+        if isinstance(returns, Mapping) or len(drawn) > 1:
+            raise ValueError(f"label must be None where returns has names or several settings, got {label!r}")
+        drawn = [Entry(**{**vars(drawn[0]), "label": label})]
+    block = common_block(block, [entry.values.shape[1] * entry.unit for entry in drawn], [e.unit for e in drawn])
+    # The numbers come before the figure: an error leaves no empty one.
+    means = [_block_means(entry, block) for entry in drawn]
+    points = [
+        stats.curve(runs, block=1, statistic=statistic, confidence=confidence) if len(runs) > 1 else None
+        for runs in means
+    ]
     ax = axes_or_new(ax)
-    runs = np.atleast_2d(np.asarray(returns, dtype=np.float64))
-    x = block * (np.arange(len(points)) + 1)
-    means = runs[:, : x[-1]].reshape(len(runs), -1, block).mean(axis=2)
-    faint: dict[str, Any] = {"color": color(index), "linewidth": 0.6, "alpha": max(0.04, min(0.4, 8 / len(runs)))}
-    ax.plot(x, means[:MAX_SINGLE_RUNS].T, rasterized=True, zorder=1, **faint)
-    band = f"{confidence:.0%} interval"
-    low, high = [point.low for point in points], [point.high for point in points]
-    ax.fill_between(x, low, high, color=color(index), alpha=0.35, linewidth=0, zorder=2)
-    name = f"{label + ': ' if label else ''}{statistic} of {len(runs)} run{'' if len(runs) == 1 else 's'}, {band}"
-    ax.plot(x, [point.estimate for point in points], color=color(index), linewidth=2.2, label=name, zorder=3)
+    hues = palette(color_keys(drawn), ax, index, colors, [entry.label for entry in drawn])
+    names, heading = _names(drawn, statistic, f"{100 * confidence:.4g}%")
+    for name, runs, curve, hue in zip(names, means, points, hues, strict=True):
+        x = block * (np.arange(runs.shape[1]) + 1)
+        if curve is None:
+            y: Any = runs[0]
+        else:
+            y = [point.estimate for point in curve]
+            low, high = [point.low for point in curve], [point.high for point in curve]
+            ax.fill_between(x, low, high, color=hue, alpha=0.3, linewidth=0, zorder=2)
+            if len(drawn) <= MAX_CLOUDS:
+                faint: dict[str, Any] = {"color": hue, "linewidth": 0.6, "alpha": max(0.04, min(0.4, 8 / len(runs)))}
+                ax.plot(x, runs[:MAX_SINGLE_RUNS].T, rasterized=True, zorder=1, **faint)
+        marker: dict[str, Any] = {"marker": "o", "markersize": 4} if len(x) == 1 else {}
+        ax.plot(x, y, color=hue, linewidth=2.2, label=name, zorder=3, **marker)
     mark_optimum(ax, optimum)
-    ax.xaxis.set_major_formatter("{x:,.0f}")
-    return finish(ax, "Episode", f"Return, mean of {block:,} episode{'' if block == 1 else 's'}", title)
+    mark_threshold(ax, threshold, only_env(drawn))
+    episode_ticks(ax)
+    return finish(
+        ax, "Episode", f"Return, mean of {counted_episodes(block)}", title, legend_title=joined(note, heading)
+    )
+
+
+def _names(drawn: list[Entry], statistic: str, confidence: str) -> tuple[list[str], str]:
+    """Returns the names of the curves in the legend, and its title, which tells once what holds for all of them."""
+    counts = [len(entry.values) for entry in drawn]
+    if len(drawn) == 1:
+        shown = "1 run" if counts[0] == 1 else f"{statistic} of {counts[0]} runs, {confidence} interval"
+        return [joined(drawn[0].label, shown, separator=": ")], ""
+    if max(counts) == 1:
+        return [entry.label for entry in drawn], "1 run each"
+    if len(set(counts)) == 1:
+        return [entry.label for entry in drawn], f"{statistic} of {counts[0]} runs, {confidence} intervals"
+    names = [
+        f"{entry.label}: {count} run{'' if count == 1 else 's'}" for entry, count in zip(drawn, counts, strict=True)
+    ]
+    return names, f"{statistic} of the runs, {confidence} intervals"
+
+
+def _block_means(entry: Entry, block: int) -> NDArray[np.float64]:
+    """Returns (runs, blocks): the mean returns of each whole block."""
+    points = block // entry.unit
+    whole = entry.values.shape[1] // points * points
+    means: NDArray[np.float64] = entry.values[:, :whole].reshape(len(entry.values), -1, points).mean(axis=2)
+    return means

@@ -1,14 +1,18 @@
 """``qtab.plot``: the learning curve of a single run."""
 
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from qtab._utils import checks
-from qtab.plots.axes import axes_or_new, mark_optimum, new_figure, save_figure
+from qtab.plots.axes import axes_or_new, check_axes, new_figure, save_figure
+from qtab.plots.blocks import counted_episodes, fitting_block
+from qtab.plots.colors import palette
+from qtab.plots.labels import episode_ticks, finish
+from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
 from qtab.results.run import Run
-from qtab.results.summary import default_block
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,15 +25,25 @@ MAX_DOTS = 20_000
 
 
 def plot(
-    run: Run, ax: "Axes | None" = None, *, block: int | None = None, optimum: "Optimum | float | None" = None
+    run: Run,
+    ax: "Axes | None" = None,
+    *,
+    block: int | None = None,
+    color: Any = None,
+    optimum: "Optimum | float | None" = None,
+    threshold: float | Literal[False] | None = None,
 ) -> "Axes":
     """Draws the mean return of each block of episodes as a line, and the return of each episode as a dot.
 
     Args:
-        run: The run.
-        ax: The axes to draw on; None creates a new figure.
-        block: The number of episodes in a block; None means 100, or more for a run of more than 10,000 episodes.
+        run: The run. :func:`qtab.plots.learning_curves` draws several.
+        ax: The axes to draw on; None creates a new figure, which a notebook and ``plt.show()`` show.
+        block: The number of episodes in a block. None means 100; more for a run of more than 10,000 episodes, and
+            fewer for one of fewer than 400.
+        color: The color; None means that of the algorithm.
         optimum: A result of :func:`qtab.optimum`, or a return, to mark by a dashed line with its number in the legend.
+        threshold: A return to mark by a dotted line. None means that at which Gymnasium considers the environment
+            solved, where it is known and not far from the returns; False means no line.
 
     Returns:
         The axes.
@@ -37,16 +51,25 @@ def plot(
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         TypeError: for an argument of the wrong type.
-        ValueError: if ``block`` is less than one.
+        ValueError: for an argument out of range, such as a block longer than the run.
     """
+    if hasattr(run, "mean_returns") and not isinstance(run, Run):
+        raise TypeError(f"run must be a Run, got {run!r}; qtab.plots.learning_curves draws many")
     checks.instance("run", run, Run)
+    check_axes(ax)
+    check_optimum(optimum)
+    check_threshold(threshold)
+    finished = len(run.episode_returns)
     if block is None:
-        block = default_block(len(run.episode_returns))
+        block = fitting_block(finished)
+    else:
+        block = checks.integer("block", block, least=1, most=max(finished, 1))
     means = run.mean_returns(block)
     ax = axes_or_new(ax)
-    episodes = np.arange(len(run.episode_returns))
-    if len(episodes) > MAX_DOTS:
-        episodes = np.linspace(0, len(episodes) - 1, MAX_DOTS).astype(np.int64)
+    [hue] = palette([run.config.algorithm], ax, None, color)
+    episodes = np.arange(finished)
+    if finished > MAX_DOTS:
+        episodes = np.linspace(0, finished - 1, MAX_DOTS).astype(np.int64)
     ax.plot(
         episodes + 1,
         run.episode_returns[episodes],
@@ -54,36 +77,28 @@ def plot(
         marker=".",
         markersize=5,
         markeredgewidth=0,
-        color="tab:blue",
-        alpha=0.3,
+        color=hue,
+        alpha=max(0.3, min(0.8, 5 / math.sqrt(max(finished, 1)))),
         label="one episode",
         rasterized=True,
     )
-    if len(means) > 0:
+    if len(means):
+        marker: dict[str, Any] = {"marker": "o", "markersize": 5} if len(means) == 1 else {}
         # Each mean is drawn at the end of its block, as in the article.
         ax.plot(
             block * (np.arange(len(means)) + 1),
             means,
-            color="#0b3c6f",
+            color=hue,
             linewidth=2.2,
             solid_capstyle="round",
-            label=f"mean of {block:,} episode{'' if block == 1 else 's'}",
+            label=f"mean of {counted_episodes(block)}",
+            **marker,
         )
+    ax.set_xlim(0, max(finished, 1))
     mark_optimum(ax, optimum)
-    ax.set_xlabel("Episode")
-    ax.set_ylabel("Return")
-    ax.set_title(run.config.env, loc="left", fontweight="bold")
-    ax.set_title(_settings_note(run), loc="right", fontsize="small", color="0.35")
-    ax.set_xlim(0, max(len(run.episode_returns), 1))
-    ax.xaxis.set_major_formatter("{x:,.0f}")
-    ax.grid(alpha=0.25)
-    ax.spines[["top", "right"]].set_visible(False)
-    # Below the axes: a run that learns early fills their upper part.
-    legend = ax.legend(loc="upper left", bbox_to_anchor=(0.0, -0.12), ncols=3, frameon=False, markerscale=2)
-    for handle in legend.legend_handles:
-        if handle is not None:
-            handle.set_alpha(1)
-    return ax
+    mark_threshold(ax, threshold, run.config.env)
+    episode_ticks(ax)
+    return finish(ax, "Episode", "Return", run.config.env, note=_settings_note(run))
 
 
 def _settings_note(run: Run) -> str:

@@ -1,68 +1,107 @@
 """The sensitivity of the results of a sweep to a parameter."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from qtab.plots.axes import axes_or_new, color, finish
+from qtab._utils import checks
+from qtab.plots.axes import axes_or_new, check_axes
+from qtab.plots.colors import palette
+from qtab.plots.inputs import short
+from qtab.plots.labels import category_ticks, finish, joined
+from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
+from qtab.plots.slices import Point, slice_of
+from qtab.sweeps.results import Sweep
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from qtab.sweeps import Sweep
+    from qtab.planning import Optimum
 
-RESAMPLES = 999
 LOG_SCALE_RATIO = 50
 """From this ratio of the largest to the smallest value on, the x axis is logarithmic."""
 
 
 def sensitivity(
-    sweep: "Sweep",
+    sweep: Sweep,
     parameter: str,
     ax: "Axes | None" = None,
     *,
     by: str | None = None,
+    fixed: Mapping[str, Any] | None = None,
     column: str = "final_return",
     statistic: str = "mean",
     confidence: float = 0.95,
+    colors: Any = None,
+    optimum: "Optimum | float | None" = None,
+    threshold: float | Literal[False] | None = None,
     title: str = "",
 ) -> "Axes":
-    """Draws a column of a sweep's table over one of its parameters, with bootstrap intervals over the runs.
+    """Draws a column of a sweep's table over one of its parameters, with intervals over the seeds.
+
+    Each point is one setting, and its interval is over the runs of that setting: runs that differ in another parameter
+    are never pooled. The other parameters have the values in ``fixed``; those that are not in it have, for each point,
+    the values with the best statistic, as in the parameter studies of Sutton & Barto. The legend reports which. The
+    best of several settings with the same seeds looks better than it is: train it with fresh seeds before you report
+    its return.
 
     Args:
         sweep: A result of :func:`qtab.sweep`.
-        parameter: The parameter on the x axis. Runs that differ in other parameters than this and ``by`` are pooled.
-        ax: The axes to draw on; None creates a new figure.
-        by: A second parameter, shown by color.
-        column: The column on the y axis.
+        parameter: The parameter on the x axis.
+        ax: The axes to draw on; None creates a new figure, which a notebook and ``plt.show()`` show.
+        by: A second parameter, with one line for each of its values.
+        fixed: Values of other parameters, such as ``{"discount": 0.9}``.
+        column: The column on the y axis. The best is the largest if it is a return or ``"terminated_rate"``; for other
+            columns the best settings are those with the largest mean ``"final_return"``.
         statistic: The statistic over the runs: ``"mean"``, ``"median"`` or ``"iqm"``.
-        confidence: The coverage probability of the intervals, in [0, 1].
+        confidence: The coverage probability of the intervals, between 0 and 1. A setting with one run has none.
+        colors: A color, a sequence of colors, or a mapping of names to colors; None chooses.
+        optimum: A result of :func:`qtab.optimum`, or a return, to mark by a dashed line with its number in the legend.
+        threshold: A return to mark by a dotted line. None means that at which Gymnasium considers the environment
+            solved, where it is not far from the data and the column is ``"final_return"``; False means no line.
         title: The title of the axes.
 
     Raises:
-        KeyError: if the sweep has no such parameter or column.
         ModuleNotFoundError: without matplotlib or SciPy; the message names the ``pip install``.
+        TypeError: for an argument of the wrong type.
+        ValueError: if the sweep has no such parameter, column or value, or no run that succeeded.
     """
-    from qtab import stats
-
-    function = {"mean": stats.mean, "median": stats.median, "iqm": stats.iqm}[statistic]
-    succeeded = np.array([error is None for error in sweep.columns["error"]], dtype=np.bool_)
-    x, y = sweep.columns[parameter], sweep.columns[column]
-    groups: list[Any] = [None] if by is None else sorted(set(sweep.columns[by].tolist()))
+    checks.instance("sweep", sweep, Sweep)
+    check_axes(ax)
+    check_optimum(optimum)
+    check_threshold(threshold)
+    lines, note = slice_of(sweep, parameter, by, fixed, column, statistic, confidence)
     ax = axes_or_new(ax)
-    is_numeric = x.dtype.kind in "if"
-    values = sorted(set(x.tolist()))
-    for index, group in enumerate(groups):
-        selected = succeeded if by is None else succeeded & (sweep.columns[by] == group)
-        present = [value for value in values if (selected & (x == value)).any()]
-        points = [function(y[selected & (x == value)], confidence=confidence, resamples=RESAMPLES) for value in present]
-        coordinates = present if is_numeric else [values.index(value) for value in present]
-        low, high = [point.low for point in points], [point.high for point in points]
-        label = None if by is None else f"{by} = {group:g}" if isinstance(group, float) else f"{by} = {group}"
-        ax.fill_between(coordinates, low, high, color=color(index), alpha=0.25, linewidth=0)
-        ax.plot(coordinates, [point.estimate for point in points], "o-", color=color(index), linewidth=2, label=label)
-    if is_numeric and values[0] > 0 and values[-1] / values[0] >= LOG_SCALE_RATIO:
+    keys = [key for key, _ in lines]
+    labels = ["" if by is None else f"{by} = {short(key)}" for key in keys]
+    values = list(dict.fromkeys(point.value for _, points in lines for point in points))
+    numbers = [value for value in values if isinstance(value, int | float) and not isinstance(value, bool)]
+    is_numeric = len(numbers) == len(values)
+    if by is None and not is_numeric:  # each category has its color, as each algorithm has elsewhere
+        for point, hue in zip(lines[0][1], palette(values, ax, None, colors), strict=True):
+            _draw_line(ax, [point], values, hue, "")
+    else:
+        for (_, points), label, hue in zip(lines, labels, palette(keys, ax, None, colors, labels), strict=True):
+            _draw_line(ax, points, None if is_numeric else values, hue, label)
+    if is_numeric and min(numbers) > 0 and max(numbers) / min(numbers) >= LOG_SCALE_RATIO:
         ax.set_xscale("log")
     if not is_numeric:
-        ax.set_xticks(range(len(values)), [str(value) for value in values])
-    return finish(ax, parameter, f"{statistic} {column}", title)
+        category_ticks(ax, [short(value) for value in values])
+    mark_optimum(ax, optimum)
+    mark_threshold(ax, threshold, sweep.env if column == "final_return" else None)
+    shown = f"{100 * confidence:.4g}% intervals over seeds"
+    return finish(ax, parameter, f"{statistic} {column}", title, legend_title=joined(note, shown))
+
+
+def _draw_line(ax: "Axes", points: list[Point], categories: list[Any] | None, hue: Any, label: str) -> None:
+    """Draws the points of one line, with bars where the x axis has categories, between which there is nothing."""
+    x = [point.value if categories is None else categories.index(point.value) for point in points]
+    y = [point.estimate for point in points]
+    low, high = np.array([point.low for point in points]), np.array([point.high for point in points])
+    if categories is None and len(points) > 1:
+        ax.fill_between(x, low, high, color=hue, alpha=0.3, linewidth=0)
+        ax.plot(x, y, "o-", color=hue, linewidth=2, label=label or None)
+    else:
+        style: dict[str, Any] = {"linestyle": "none", "capsize": 4, "linewidth": 2}
+        ax.errorbar(x, y, [np.subtract(y, low), np.subtract(high, y)], fmt="o", color=hue, label=label, **style)

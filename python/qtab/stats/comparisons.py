@@ -8,7 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
 from qtab._utils import checks
-from qtab.stats.intervals import CONFIDENCE, RESAMPLES, Interval, as_sample, mean
+from qtab.stats.bootstrap import BATCH_VALUES, as_resamples, as_sample
+from qtab.stats.interval import Interval
+from qtab.stats.intervals import CONFIDENCE, RESAMPLES, mean
 
 
 @dataclass(frozen=True)
@@ -16,9 +18,10 @@ class Comparison:
     """The result of a paired comparison; all differences are ``a`` minus ``b``."""
 
     difference: Interval
-    """The mean difference with its bootstrap interval."""
-    effect_size: float
-    """Cohen's d of paired samples: the mean of the differences divided by their standard deviation."""
+    """The mean difference with its interval: Student's t for fewer than 30 pairs, else the bootstrap's."""
+    effect_size: float | None
+    """Cohen's d of paired samples: the mean of the differences divided by their standard deviation; 0 if all
+    differences are 0, None if all are equal and not 0, because their standard deviation is then 0."""
     better: float
     """The proportion of pairs in which ``a`` is larger; ties count half."""
     p_value: float
@@ -27,11 +30,21 @@ class Comparison:
     pairs: int
     """The number of pairs."""
 
+    @property
+    def smallest_p_value(self) -> float:
+        """The smallest p-value that the test can give with so few pairs: all differences of one sign."""
+        return 2.0 ** (1 - self.pairs)
+
     def __str__(self) -> str:
-        return (
-            f"difference {self.difference}, effect size {self.effect_size:.3g}, better in {self.better:.1%} of "
-            f"{self.pairs} pairs, p = {self.p_value:.3g}"
-        )
+        if self.effect_size is None:
+            effect = f"no effect size (all {self.pairs} differences are equal)"
+        else:
+            effect = f"effect size {self.effect_size:.3g}"
+        text = f"difference {self.difference}, {effect}, better in {self.better:.1%} of {self.pairs} pairs"
+        text += f", p = {self.p_value:.3g}"
+        if self.smallest_p_value > 1 - self.difference.confidence:
+            text += f" (at least {self.smallest_p_value:.3g} with {self.pairs} pairs: too few for a significant one)"
+        return text
 
 
 def compare(
@@ -42,22 +55,24 @@ def compare(
     Args:
         a: (runs,): one number per run of the first setting.
         b: (runs,): the same for the second setting; ``b[i]`` has the same seed as ``a[i]``.
-        confidence: The coverage probability of the interval, in [0, 1].
-        resamples: The number of bootstrap resamples, and of permutations.
+        confidence: The coverage probability of the interval, between 0 and 1.
+        resamples: The number of bootstrap resamples, and of permutations, at most a million.
         seed: Seeds both.
 
     Raises:
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or samples of different sizes.
+        ValueError: for an argument out of range, samples of different sizes, or fewer than two pairs.
     """
-    first, second = as_sample("a", a, least=2), as_sample("b", b, least=2)
+    first, second = as_sample("a", a), as_sample("b", b)
     if len(first) != len(second):
         raise ValueError(f"a and b must have the same length, got {len(first)} and {len(second)}")
-    resamples = checks.integer("resamples", resamples, least=1)
+    resamples, seed = as_resamples(resamples), checks.integer("seed", seed, least=0)
     differences = first - second
+    effect: float | None
     if not differences.any():
         p_value, effect = 1.0, 0.0
     else:
+        effect = None if np.ptp(differences) == 0 else float(np.mean(differences) / np.std(differences, ddof=1))
         # Swapping the values of a pair changes the sign of its difference.
         p_value = stats.permutation_test(
             (differences,),
@@ -65,15 +80,12 @@ def compare(
             permutation_type="samples",
             vectorized=True,
             n_resamples=resamples,
-            rng=np.random.default_rng(checks.integer("seed", seed, least=0)),
+            batch=max(1, BATCH_VALUES // (4 * len(differences))),
+            rng=np.random.default_rng(seed),
         ).pvalue
-        deviation = float(np.std(differences, ddof=1))
-        effect = (
-            float(np.mean(differences)) / deviation if deviation > 0 else float(np.copysign(np.inf, differences[0]))
-        )
     return Comparison(
         difference=mean(differences, confidence=confidence, resamples=resamples, seed=seed),
-        effect_size=float(effect),
+        effect_size=effect,
         better=float(np.mean((differences > 0) + 0.5 * (differences == 0))),
         p_value=float(p_value),
         pairs=len(differences),

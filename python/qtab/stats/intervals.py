@@ -1,77 +1,88 @@
 """Estimates from a sample with confidence and tolerance intervals."""
 
-import warnings
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
-from qtab._utils import checks
+from qtab._utils import arrays, checks
+from qtab.stats.bootstrap import as_confidence, as_resamples, as_sample, bootstrap
+from qtab.stats.interval import Interval
 
 CONFIDENCE = 0.95
 RESAMPLES = 9999
+SMALL_SAMPLE = 30
+"""The interval of the mean of fewer runs is Student's t interval: there the bootstrap's is too narrow."""
 TRIM_FRACTION = 0.25
 """The fraction of the values that the interquartile mean leaves out at each end."""
-_BATCH_VALUES = 2**22
-"""The number of resampled values that a bootstrap holds in memory at a time."""
-
-
-@dataclass(frozen=True)
-class Interval:
-    """An estimate and its interval."""
-
-    estimate: float
-    low: float
-    high: float
-    confidence: float
-    """The coverage probability: how often such an interval contains the true value."""
-    method: str
-    """``"BCa"``, ``"percentile"`` (where BCa has no finite bounds), ``"stratified percentile"``, ``"constant"`` (all
-    values equal), ``"Wilson"`` or ``"order statistics"``."""
-
-    def __str__(self) -> str:
-        return f"{self.estimate:.6g} [{self.low:.6g}, {self.high:.6g}]"
-
-
-def as_sample(name: str, values: ArrayLike, least: int = 1) -> NDArray[np.float64]:
-    """Returns the values of the argument ``name`` as a one-dimensional float64 array.
-
-    Raises:
-        TypeError: if they are not numbers.
-        ValueError: if they are not one-dimensional, fewer than ``least``, or NaN.
-    """
-    try:
-        array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} must hold numbers, got {values!r}") from None
-    if array.ndim != 1 or len(array) < least:
-        raise ValueError(f"{name} must be a one-dimensional array of at least {least} numbers, got shape {array.shape}")
-    if np.isnan(array).any():
-        raise ValueError(f"{name} must not contain nan")
-    return array
 
 
 def mean(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int = RESAMPLES, seed: int = 0) -> Interval:
-    """Returns the mean with its bootstrap interval.
+    """Returns the mean with its interval: Student's t for fewer than 30 runs, else the BCa bootstrap.
+
+    The t interval assumes that means of so many runs are about normally distributed. The bootstrap's is too narrow for
+    few runs. Measured coverage of 95 % intervals with t, and with the bootstrap in brackets:
+
+    ====================================================  ============  ============  ============  ============
+    runs                                                  5             10            20            30
+    ====================================================  ============  ============  ============  ============
+    normal                                                95.1 (83.5)   95.2 (89.1)   95.1 (92.5)   95.0 (93.3)
+    MountainCar-v0, the article (skewness 0.4)            94.0 (84.8)   94.4 (91.2)   94.8 (92.9)   94.6 (93.8)
+    MountainCar-v0, "solved", 300 episodes (-0.9)         92.1 (84.0)   93.4 (89.5)   94.3 (93.0)   94.2 (92.7)
+    exponential (2)                                       88.3 (79.8)   90.0 (88.2)   92.1 (91.8)   92.7 (92.2)
+    ====================================================  ============  ============  ============  ============
+
+    From 50 runs on, the bootstrap covers 93 % to 95 %. With two or three runs the interval is wide, and rightly so. No
+    interval can tell of a kind of run, such as a rare failure, that the sample does not contain.
 
     Args:
-        values: (runs,): one number per run, such as ``runs.final_returns()``.
-        confidence: The coverage probability of the interval, in [0, 1].
-        resamples: The number of bootstrap resamples.
+        values: (runs,): one number per run, such as ``runs.final_returns()``; at least two.
+        confidence: The coverage probability of the interval, between 0 and 1.
+        resamples: The number of bootstrap resamples, at most a million. Not used for fewer than 30 runs.
         seed: Seeds the bootstrap.
 
     Raises:
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range.
+        ValueError: for an argument out of range, a single run, which has no interval, or numbers that are not finite.
     """
-    return bootstrap(as_sample("values", values), np.mean, confidence, resamples, seed)
+    sample = as_sample("values", values)
+    if len(sample) >= SMALL_SAMPLE:
+        return bootstrap(sample, np.mean, confidence, resamples, seed)
+    as_resamples(resamples)
+    checks.integer("seed", seed, least=0)
+    return t_intervals(sample[:, np.newaxis], confidence)[0]
+
+
+def t_intervals(samples: NDArray[np.float64], confidence: float) -> list[Interval]:
+    """Returns the mean of each column with Student's t interval.
+
+    Args:
+        samples: (runs, columns): at least two runs.
+        confidence: The coverage probability of the intervals, between 0 and 1.
+
+    Raises:
+        TypeError: if ``confidence`` is not a number.
+        ValueError: if it is out of range.
+    """
+    confidence, runs = as_confidence(confidence), len(samples)
+    half_widths = stats.t.ppf((1 + confidence) / 2, runs - 1) * samples.std(axis=0, ddof=1) / np.sqrt(runs)
+    is_constant = np.ptp(samples, axis=0) == 0  # of equal numbers, the computed deviation may differ from 0
+    return [
+        Interval(estimate, estimate, estimate, confidence, "constant")
+        if constant
+        else Interval(estimate, estimate - half_width, estimate + half_width, confidence, "t")
+        for estimate, half_width, constant in zip(
+            samples.mean(axis=0).tolist(), half_widths.tolist(), is_constant.tolist(), strict=True
+        )
+    ]
 
 
 def median(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int = RESAMPLES, seed: int = 0) -> Interval:
-    """Returns the median with its bootstrap interval; see :func:`mean` for the arguments."""
+    """Returns the median with its bootstrap interval; see :func:`mean` for the arguments.
+
+    Measured coverage of 95 % intervals, for the distributions listed there: 92 % to 95 % with 5 to 30 runs.
+    """
     return bootstrap(as_sample("values", values), np.median, confidence, resamples, seed)
 
 
@@ -79,7 +90,8 @@ def iqm(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int = R
     """Returns the interquartile mean, which is the mean of the middle half, with its bootstrap interval.
 
     See :func:`mean` for the arguments. Source: Agarwal et al., "Deep reinforcement learning at the edge of the
-    statistical precipice" (2021).
+    statistical precipice" (2021). Measured coverage of 95 % intervals, for the
+    distributions listed there: 88 % to 90 % with 5 runs, and 93 % to 95 % with 10 or more.
     """
     return bootstrap(as_sample("values", values), interquartile_mean, confidence, resamples, seed)
 
@@ -87,41 +99,6 @@ def iqm(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int = R
 def interquartile_mean(values: NDArray[np.float64], axis: int | None = None) -> Any:
     """Returns the mean along an axis without the lowest and the highest quarter of the values."""
     return stats.trim_mean(values, TRIM_FRACTION, axis=axis)
-
-
-def bootstrap(
-    values: NDArray[np.float64], statistic: Callable[..., Any], confidence: float, resamples: int, seed: int
-) -> Interval:
-    """Returns a statistic with its bias-corrected and accelerated (BCa) bootstrap interval (Efron, 1987).
-
-    If all values are equal, both bounds are that value. If the BCa bounds are not finite, the bounds are those of the
-    percentile method, which ``method`` records.
-
-    Raises:
-        TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range.
-    """
-    confidence = checks.real("confidence", confidence, 0, 1)
-    resamples = checks.integer("resamples", resamples, least=1)
-    seed = checks.integer("seed", seed, least=0)
-    estimate = float(statistic(values))
-    if np.ptp(values) == 0 or len(values) == 1:
-        return Interval(estimate, estimate, estimate, confidence, "constant")
-    for method in ("BCa", "percentile"):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # SciPy warns of bounds that are not finite, which are checked below
-            interval = stats.bootstrap(
-                (values,),
-                statistic,
-                n_resamples=resamples,
-                batch=max(1, _BATCH_VALUES // len(values)),
-                confidence_level=confidence,
-                method=method,
-                rng=np.random.default_rng(seed),
-            ).confidence_interval
-        if np.isfinite([interval.low, interval.high]).all():
-            break
-    return Interval(estimate, float(interval.low), float(interval.high), confidence, method)
 
 
 def tolerance_interval(values: ArrayLike, *, coverage: float = 0.9, confidence: float = CONFIDENCE) -> Interval:
@@ -134,16 +111,16 @@ def tolerance_interval(values: ArrayLike, *, coverage: float = 0.9, confidence: 
     Args:
         values: (runs,): one number per run.
         coverage: The fraction of runs that the interval is to contain, in [0, 1].
-        confidence: The probability that it does, in [0, 1].
+        confidence: The probability that it does, between 0 and 1.
 
     Raises:
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range, or a sample that is too small; the message says how many values are
             needed.
     """
-    ordered = np.sort(as_sample("values", values))
+    ordered = np.sort(arrays.sample("values", values))
     coverage = checks.real("coverage", coverage, 0, 1)
-    confidence = checks.real("confidence", confidence, 0, 1)
+    confidence = as_confidence(confidence)
     count = len(ordered)
     # Two order statistics whose ranks differ by w enclose a probability with the distribution Beta(w, count - w + 1).
     rank_differences = np.arange(1, count)

@@ -4,8 +4,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from qtab._utils import checks
-from qtab.stats.intervals import CONFIDENCE, Interval, as_sample
+from qtab._utils import arrays, checks
+from qtab.stats.bootstrap import as_confidence
+from qtab.stats.interval import Interval
+from qtab.stats.intervals import CONFIDENCE
 
 
 def rate(successes: int, count: int, *, confidence: float = CONFIDENCE) -> Interval:
@@ -14,15 +16,15 @@ def rate(successes: int, count: int, *, confidence: float = CONFIDENCE) -> Inter
     Args:
         successes: The number of successes.
         count: The number of trials.
-        confidence: The coverage probability of the interval, in [0, 1].
+        confidence: The coverage probability of the interval, between 0 and 1.
 
     Raises:
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """
-    count = checks.integer("count", count, least=1)
+    count = checks.count("count", count, least=1)
     successes = checks.integer("successes", successes, least=0, most=count)
-    confidence = checks.real("confidence", confidence, 0, 1)
+    confidence = as_confidence(confidence)
     interval = stats.binomtest(successes, count).proportion_ci(confidence, method="wilson")
     return Interval(successes / count, float(interval.low), float(interval.high), confidence, "Wilson")
 
@@ -33,11 +35,11 @@ def solved_rate(returns: ArrayLike, threshold: float, *, confidence: float = CON
     Args:
         returns: (runs,): one return per run.
         threshold: The return from which a run counts as solved.
-        confidence: The coverage probability of the interval, in [0, 1].
+        confidence: The coverage probability of the interval, between 0 and 1.
 
     Raises:
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """
-    solved = as_sample("returns", returns) >= checks.finite("threshold", threshold)
+    solved = arrays.sample("returns", returns) >= checks.finite("threshold", threshold)
     return rate(int(np.count_nonzero(solved)), len(solved), confidence=confidence)

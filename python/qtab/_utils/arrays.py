@@ -1,0 +1,82 @@
+"""Checks of arrays of numbers. Each error names the argument, and counts what does not fit."""
+
+import reprlib
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+LARGEST = 1e150
+"""The largest magnitude of a number: its square, and sums of such squares, are finite."""
+
+_SHORT = reprlib.Repr()
+_SHORT.maxother = _SHORT.maxstring = 80
+
+
+def numbers(name: str, values: Any) -> NDArray[np.float64]:
+    """Returns the values of the argument ``name`` as a float64 array of any shape.
+
+    Raises:
+        TypeError: if they are not real numbers.
+        ValueError: if any is NaN, infinite or larger than 1e150.
+    """
+    hint = ""
+    if hasattr(values, "episode_returns"):
+        hint = "; its episode_returns and final_returns() do"
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind not in "biufO":
+            raise TypeError
+        with np.errstate(over="ignore"):
+            array = array.astype(np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise TypeError(f"{name} must hold numbers, got {_SHORT.repr(values)}{hint}") from None
+    not_finite = array.size - np.count_nonzero(np.isfinite(array))
+    if not_finite:
+        raise ValueError(f"{name} must be finite, got {not_finite:,} of {array.size:,} NaN or infinite")
+    if array.size and max(array.max(), -array.min()) > LARGEST:
+        raise ValueError(f"{name} must lie between -{LARGEST:g} and {LARGEST:g}, got {np.abs(array).max():g}")
+    return array
+
+
+def sample(name: str, values: ArrayLike, least: int = 1, purpose: str = "") -> NDArray[np.float64]:
+    """Returns the values of the argument ``name`` as a float64 array (runs,).
+
+    Args:
+        name: The name of the argument.
+        values: Its value.
+        least: The smallest number of values.
+        purpose: What needs so many, such as ``" for an interval"``.
+
+    Raises:
+        TypeError: if they are not real numbers.
+        ValueError: if they have another shape, are fewer than ``least``, or not finite.
+    """
+    array = numbers(name, values)
+    if array.ndim != 1:
+        raise ValueError(f"{name} must be one-dimensional, with one number per run, got shape {array.shape}")
+    if len(array) < least:
+        plural = "" if least == 1 else "s"
+        raise ValueError(f"{name} must hold at least {least} number{plural}{purpose}, got {len(array)}")
+    return array
+
+
+def curves(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """Returns the values of the argument ``name`` as a float64 array (runs, episodes); a single run may be (episodes,).
+
+    Raises:
+        TypeError: if they are not real numbers.
+        ValueError: if they have another shape, are empty, or not finite.
+    """
+    array = np.atleast_2d(numbers(name, values))
+    if array.ndim != 2 or array.size == 0:
+        raise ValueError(f"{name} must have the shape (runs, episodes) and not be empty, got {np.shape(values)}")
+    return array
+
+
+def is_table(values: Any) -> bool:
+    """Returns whether the values are a two-dimensional array."""
+    try:
+        return np.ndim(values) == 2
+    except ValueError:  # nested lists of different lengths
+        return False

@@ -1,0 +1,120 @@
+"""Colors: one per algorithm, sequential ones for ordered parameters, and all of them readable on dark backgrounds."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from qtab.config.choices import CHOICES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COLORS = (
+    *("#1f5fa8", "#d1662b", "#2f8f5b", "#8a4fa3", "#b0892b"),
+    *("#4b8fa8", "#b03a48", "#5b5b5b", "#7a4f2b", "#c75f9b"),
+)
+"""Colors that differ in lightness, and that most color-blind readers can distinguish."""
+
+SEQUENTIAL = "viridis"
+"""The colormap of ordered values."""
+_DARK = 0.35
+"""A background of less luminance than this is dark."""
+_LIGHTENED = 0.45
+"""How far colors are mixed with white on a dark background."""
+
+
+def color(index: int, ax: "Axes | None" = None) -> Any:
+    """Returns the color of a line by its index, lightened where the axes are dark."""
+    return readable(COLORS[index % len(COLORS)], ax)
+
+
+def readable(chosen: str, ax: "Axes | None") -> Any:
+    """Returns a color, lightened where the axes are dark."""
+    if ax is None or not is_dark(ax):
+        return chosen
+    from matplotlib.colors import to_hex, to_rgb
+
+    return to_hex(np.array(to_rgb(chosen)) * (1 - _LIGHTENED) + _LIGHTENED)
+
+
+def text_color() -> Any:
+    """Returns the color of text in the current style."""
+    from matplotlib import rcParams
+
+    return rcParams["text.color"]
+
+
+def is_dark(ax: "Axes") -> bool:
+    """Returns whether the background of the axes, or of the figure behind transparent ones, is dark."""
+    from matplotlib.colors import to_rgba
+
+    for background in (ax.get_facecolor(), ax.figure.get_facecolor()):
+        red, green, blue, alpha = to_rgba(background)
+        if alpha >= 0.5:
+            return 0.2126 * red + 0.7152 * green + 0.0722 * blue < _DARK
+    return False
+
+
+def palette(
+    keys: Sequence[Any], ax: "Axes", first: int | None = None, colors: Any = None, labels: Sequence[str] | None = None
+) -> list[Any]:
+    """Returns a color for each line.
+
+    Algorithms have one color each, the same in every plot. Three or more numbers have sequential colors in their
+    order. Everything else has the colors in the order of the lines.
+
+    Args:
+        keys: For each line the name of its algorithm, a number, or anything else.
+        ax: The axes to draw on.
+        first: The index of the first line's color, whatever the keys; None lets the keys decide.
+        colors: The user's choice: a color, a sequence of colors or a mapping of labels to colors; None chooses.
+        labels: The labels that such a mapping may name; None means the keys.
+
+    Raises:
+        TypeError: if ``colors`` is of the wrong type.
+        ValueError: if it holds what is no color, or too few colors.
+    """
+    if colors is not None:
+        return _chosen(keys if labels is None else labels, colors)
+    if first is None and len(set(keys)) == len(keys):
+        if all(key in CHOICES["algorithm"] for key in keys):
+            return [color(CHOICES["algorithm"].index(key), ax) for key in keys]
+        if len(keys) > 2 and all(isinstance(key, int | float) and not isinstance(key, bool) for key in keys):
+            return _sequential(keys, ax)
+    return [color((first or 0) + index, ax) for index in range(len(keys))]
+
+
+def _sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:
+    from matplotlib import colormaps
+    from matplotlib.colors import to_hex
+
+    # The ends that would vanish into the background are left out.
+    low, high = (0.25, 1.0) if is_dark(ax) else (0.0, 0.85)
+    positions = np.linspace(low, high, len(numbers))
+    ranks = np.argsort(np.argsort(numbers, kind="stable"), kind="stable")
+    return [to_hex(colormaps[SEQUENTIAL](positions[rank])) for rank in ranks]
+
+
+def _chosen(labels: Sequence[Any], colors: Any) -> list[Any]:
+    from matplotlib.colors import is_color_like
+
+    if is_color_like(colors):
+        chosen = [colors] * len(labels)
+    elif isinstance(colors, Mapping):
+        absent = [label for label in labels if label not in colors]
+        if absent:
+            raise ValueError(f"colors must have a color for each of {list(labels)}, got none for {absent[0]!r}")
+        chosen = [colors[label] for label in labels]
+    elif isinstance(colors, Sequence) and not isinstance(colors, str):
+        if len(colors) < len(labels):
+            raise ValueError(f"colors must hold at least {len(labels)} colors, got {len(colors)}")
+        chosen = list(colors[: len(labels)])
+    else:
+        wanted = "a color, a sequence of colors or a mapping of names to colors"
+        error = ValueError if isinstance(colors, str) else TypeError
+        raise error(f"colors must be {wanted}, got {colors!r}")
+    for candidate in chosen:
+        if not is_color_like(candidate):
+            raise ValueError(f"colors must hold colors that matplotlib knows, got {candidate!r}")
+    return chosen

@@ -1,0 +1,21 @@
+"""An estimate with its interval."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Interval:
+    """An estimate and its interval."""
+
+    estimate: float
+    low: float
+    high: float
+    confidence: float
+    """The coverage probability: how often such an interval is meant to contain the true value."""
+    method: str
+    """``"t"`` (Student's), ``"BCa"``, ``"percentile"`` (where BCa has no finite bounds), ``"stratified percentile"``,
+    ``"constant"`` (all values equal: the width of zero only says that the sample shows no variation), ``"Wilson"`` or
+    ``"order statistics"``."""
+
+    def __str__(self) -> str:
+        return f"{self.estimate:.6g} [{self.low:.6g}, {self.high:.6g}]"
