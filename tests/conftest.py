@@ -28,8 +28,8 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
 
 @pytest.fixture
 def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Chunks of about three runs, so that a small sweep has many."""
-    from qtab.sweeps import study as studies
+    """Chunks of at most three runs, so that a small sweep has many."""
+    from qtab.sweeps import pace, training
 
-    monkeypatch.setattr(studies, "CHUNK_STEPS", 2 * 40 * 200 + 1)
-    monkeypatch.setattr(studies, "PYTHON_CHUNK_STEPS", 1)
+    monkeypatch.setattr(pace, "MAX_CHUNK_RUNS", 3)
+    monkeypatch.setattr(training, "MAX_CHUNK_RUNS", 3)

@@ -19,8 +19,8 @@ from support.sweeps import CAR, GRID, SMALL, assert_equal
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ("UPDATE meta SET value = '99' WHERE name = 'version'", "format version '99', but this qtab reads 1"),
-        ("UPDATE meta SET value = '{}' WHERE name = 'study'", "belongs to another sweep"),
+        ("UPDATE meta SET value = '99' WHERE name = 'version'", "format version '99', but this qtab reads 1 and 2"),
+        ("UPDATE meta SET value = '{}' WHERE name = 'study'", "damaged.* no configs, settings, seeds and block"),
         ("UPDATE meta SET value = 'x' WHERE name = 'format'", "is not a sweep store"),
         ("DROP TABLE meta", "is not a sweep store"),
     ],
@@ -67,8 +67,8 @@ def test_a_full_disk_raises_an_error_and_the_sweep_can_be_resumed(tmp_path, smal
     path = tmp_path / "study.db"
     connect = stores.connect  # type: ignore[attr-defined]
 
-    def tight(path):
-        connection = connect(path)
+    def tight(path, *mode):
+        connection = connect(path, *mode)
         pages = connection.execute("PRAGMA page_count").fetchone()[0]
         connection.execute(f"PRAGMA max_page_count = {max(pages, 12)}")
         return connection

@@ -1,4 +1,4 @@
-"""The plan of a sweep, complete before it starts: its settings, its seeds, and the chunks of its runs."""
+"""The plan of a sweep, complete before it starts: its settings and its seeds."""
 
 import hashlib
 import json
@@ -15,31 +15,9 @@ from qtab.config import DEFAULTS
 from qtab.config.layers import Base, over
 from qtab.config.unknown import check_names
 from qtab.sweeps import designs
+from qtab.sweeps.description import Description, read_description
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.train_many import resolve_template, seed_numbers
-
-CHUNK_STEPS = 2**26
-"""The steps of a chunk, which Rust takes in about a second on one core."""
-PYTHON_CHUNK_STEPS = 2**16
-"""The steps of a chunk for an environment stepped in Python."""
-TYPICAL_MAX_STEPS = 1000
-"""Episodes with a longer time limit are expected to end before this many steps."""
-MAX_CHUNK_RUNS = 4096
-"""The maximum number of runs in a chunk."""
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """Consecutive runs of a study, ``start`` to ``stop`` - 1, that are trained and stored together."""
-
-    number: int
-    start: int
-    stop: int
-
-    @property
-    def runs(self) -> range:
-        """The indices of the runs."""
-        return range(self.start, self.stop)
 
 
 @dataclass(frozen=True)
@@ -63,18 +41,6 @@ class Study:
         """The number of runs."""
         return len(self.settings) * len(self.seeds)
 
-    @cached_property
-    def chunks(self) -> list[Chunk]:
-        """The runs in chunks of similar work, estimated from the settings so that every process finds the same ones."""
-        chunks: list[Chunk] = []
-        start, work = 0, 0.0
-        for run in range(self.runs):
-            if work >= 1 or run - start >= MAX_CHUNK_RUNS:
-                chunks.append(Chunk(len(chunks), start, run))
-                start, work = run, 0.0
-            work += _work(self.resolved[run // len(self.seeds)])
-        return [*chunks, Chunk(len(chunks), start, self.runs)]
-
     def check_memory(self, limit: int) -> None:
         """Checks that a single run of each setting fits into the memory limit, in bytes.
 
@@ -89,19 +55,18 @@ class Study:
             check_memory(f"runs of {episodes} episodes", needed, limit)
 
     @cached_property
-    def fingerprint(self) -> str:
-        """JSON text that is equal for equal studies only. It is part of the store format."""
+    def description(self) -> Description:
+        """The study as a store describes it."""
         configs = [
             {name: value for name, value in vars(resolved.config).items() if name != "seed"}
             for resolved in self.resolved
         ]
         settings = [dict(setting) for setting in self.settings]
-        content: dict[str, Any] = {"configs": configs, "settings": settings, "seeds": self.seeds, "block": self.block}
-        content |= {"pieces": len(self.chunks)}
-        return json.dumps(content, sort_keys=True, default=_jsonable)
+        content = {"configs": configs, "settings": settings, "seeds": self.seeds, "block": self.block}
+        return read_description(json.dumps(content, default=_jsonable))
 
-    def split(self, chunk: Chunk) -> list[tuple[int, list[int]]]:
-        """Returns the settings of a chunk by their index, each with its seeds."""
+    def split(self, chunk: range) -> list[tuple[int, list[int]]]:
+        """Returns the settings of consecutive runs by their index, each with its seeds."""
         count = len(self.seeds)
         parts = []
         for setting in range(chunk.start // count, (chunk.stop - 1) // count + 1):
@@ -151,12 +116,6 @@ def _settings_of(grid: Any) -> list[dict[str, Any]]:
     if len({json.dumps(dict(setting), sort_keys=True, default=_jsonable) for setting in grid}) < len(grid):
         raise ValueError("grid must hold different settings, got the same one twice")
     return [dict(setting) for setting in grid]
-
-
-def _work(resolved: ResolvedRun) -> float:
-    """Returns the estimated work of a run as a fraction of a chunk."""
-    steps = resolved.config.episodes * min(resolved.max_episode_steps, TYPICAL_MAX_STEPS)
-    return steps / (CHUNK_STEPS if resolved.is_native else PYTHON_CHUNK_STEPS)
 
 
 def _jsonable(value: Any) -> Any:
