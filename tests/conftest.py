@@ -29,7 +29,6 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
 @pytest.fixture
 def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Chunks of at most three runs, so that a small sweep has many."""
-    from qtab.sweeps import pace, training
+    from qtab.sweeps import pace
 
     monkeypatch.setattr(pace, "MAX_CHUNK_RUNS", 3)
-    monkeypatch.setattr(training, "MAX_CHUNK_RUNS", 3)

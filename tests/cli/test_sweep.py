@@ -10,6 +10,8 @@ import pytest
 import qtab
 from qtab.cli import main
 
+ENV = 'env = "MountainCar-v0"\n'
+GRID = "[grid]\nepsilon = [0.3]\n"
 STUDY = """
 env = "MountainCar-v0"
 seeds = 4
@@ -49,7 +51,7 @@ def test_a_study_is_swept_resumed_and_reported(tmp_path, capsys):
 def test_a_design_can_be_swept(tmp_path, capsys):
     study = tmp_path / "study.toml"
     design = 'kind = "sobol"\npoints = 4\nspace.learning_rate = {low = 0.01, high = 1.0, log = true}'
-    study.write_text(f"seeds = [3, 5]\n[design]\n{design}\n[config]\nepisodes = 5\n")
+    study.write_text(f"env = 'MountainCar-v0'\nseeds = [3, 5]\n[design]\n{design}\n[config]\nepisodes = 5\n")
     assert main(["sweep", str(study), "--store", str(tmp_path / "other.db"), "--threads", "1"]) == 0
     assert len(qtab.load_sweep(tmp_path / "other.db")) == 8
 
@@ -61,9 +63,32 @@ def test_a_design_can_be_swept(tmp_path, capsys):
         ("nonsense = 3", "unknown key 'nonsense'; use env, seeds"),
         ("seed = 3", "unknown key 'seed' (did you mean 'seeds'?)"),
         ("[grid", "study must be a TOML file"),
-        ("[grid]\nepsilon = 0.3", "grid['epsilon'] must be a list of values"),
-        ("[grid]\nepsilom = [0.3]", "unknown setting 'epsilom' (did you mean 'epsilon'?)"),
-        ("[design]\nkind = 'spiral'\npoints = 3", "[design] must have kind"),
+        ("[grid]\nepsilon = [0.3]", "env is missing"),
+        (f"{ENV}[grid]\nepsilon = 0.3", "grid['epsilon'] must be a list of values"),
+        (f"{ENV}[grid]\nepsilom = [0.3]", "unknown setting 'epsilom' (did you mean 'epsilon'?)"),
+        (f"{ENV}[design]\nkind = 'spiral'\npoints = 3", "[design] must have kind"),
+        (f"{ENV}[design]\npoint = 3", "unknown key 'point' in [design] (did you mean 'points'?)"),
+        (f"{ENV}[design]\npoints = 4\nspace = 3", "design.space must be a table, [design.space], got 3"),
+        (f"{ENV}[design]\npoints = 4\nspace.epsilon = 3", "design.space.epsilon must be a list of choices or {low"),
+        (f"{ENV}[design]\npoints = 4\nspace.epsilon = {{low = 0.1}}", "design.space.epsilon must be a list of choices"),
+        (f"{ENV}[design]\npoints = 3\nspace.epsilon = [0.1, 0.2]", "points must be a power of two"),
+        (f"{ENV}design = 3", "design must be a table, [design], got 3"),
+        (f"{ENV}grid = 3", "grid must be a table, [grid], got 3"),
+        (f"{ENV}grid = [1]", "grid must be a table, [grid], got [1]"),
+        (f"{ENV}config = []\n{GRID}", "config must be a table, [config], got []"),
+        (f"{ENV}store = 3\n{GRID}", "store must be a text, got 3"),
+        (f"env = 3\n{GRID}", "env must be a text, got 3"),
+        (f"env = 'MountainCat-v0'\n{GRID}", "MountainCat"),
+        (f"{ENV}{GRID}[config]\nthreads = 2", "threads must stand before the first [table], not in [config]"),
+        (f"{ENV}{GRID}[config]\nstore = 'x'", "store must stand before the first [table]"),
+        (f"{ENV}{GRID}[config]\nlearnig_rate = 1", "unknown setting 'learnig_rate' (did you mean 'learning_rate'?)"),
+        (f"{ENV}{GRID}[config]\nepisodes = 100000000000", "runs of 100000000000 episodes need 3.09 TiB, more than"),
+        (f"{ENV}memory_limit = 1\n{GRID}", "more than memory_limit=1 "),
+        (f"{ENV}seeds = 1000000000000\n{GRID}", "the results of 1,000,000,000,000 runs need"),
+        (f"{ENV}seeds = 'x'\n{GRID}", "seeds must be an integer or a sequence of integers, got 'x'"),
+        (f"{ENV}block = 0\n{GRID}", "block must be an integer of at least 1, got 0"),
+        ("x = " + "[" * 5000, "study must be a TOML file"),
+        ("\0", "study must be a TOML file"),
     ],
 )
 def test_a_bad_study_is_refused_in_one_line(tmp_path, capsys, text, message):
@@ -73,6 +98,8 @@ def test_a_bad_study_is_refused_in_one_line(tmp_path, capsys, text, message):
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert message in said
+    assert str(study) in said
+    assert sorted(tmp_path.iterdir()) == [study]
 
 
 def test_files_that_are_not_stores_are_refused(tmp_path, capsys):

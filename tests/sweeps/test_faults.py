@@ -1,8 +1,6 @@
 """Stores, disks, runs and workers that fail, and bad input."""
 
 import contextlib
-import os
-import signal
 import sqlite3
 from typing import Any
 
@@ -108,27 +106,6 @@ def test_a_run_that_diverges_is_recorded():
     assert said[:3] == [None] * 3
     assert [text is None for text in said[3:]] == [False, True, True]
     assert said[3].startswith("OverflowError: the action values overflowed")
-
-
-@pytest.mark.slow
-@pytest.mark.filterwarnings("ignore")  # distributed warns
-def test_dask_with_a_worker_killed_gives_the_same_table(tmp_path, small_chunks):
-    from distributed import Client, LocalCluster
-
-    many: dict[str, Any] = {"seeds": 40, "episodes": 40}
-    cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50)
-    with cluster, Client(cluster) as client:
-        workers = list(client.run(os.getpid).values())
-        killed: list[int] = []
-
-        def kill(progress):
-            if not killed:
-                os.kill(workers[0], signal.SIGKILL)
-                killed.append(progress.runs)
-
-        study = qtab.sweep(CAR, GRID, executor=client.get_executor(), callback=kill, store=tmp_path / "s.db", **many)
-    assert 0 < killed[0] < 240
-    assert_equal(study, qtab.sweep(CAR, GRID, **many))
 
 
 @pytest.mark.parametrize(

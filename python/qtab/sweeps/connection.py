@@ -57,7 +57,7 @@ def name_of(path: Path | None) -> str:
 
 def damaged(path: Path | None, reason: object) -> StoreError:
     """Returns the error for a file that cannot be read as a store."""
-    return StoreError(f"{name_of(path)} is damaged, or not a sweep store: {reason}")
+    return StoreError(f"{name_of(path)} is damaged, or not a sweep store: {' '.join(str(reason).split())}")
 
 
 @contextmanager
@@ -161,11 +161,17 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
             yield connection
 
 
+def is_writable(path: Path) -> bool:
+    """Returns whether this process may write to a file, and create others beside it."""
+    effective = os.access in os.supports_effective_ids
+    return all(os.access(place, os.W_OK, effective_ids=effective) for place in (path, path.parent))
+
+
 def _open_for_reading(path: Path, on_exit: ExitStack) -> sqlite3.Connection:
     try:
         return _readable(connect(path, "rw"))
     except sqlite3.OperationalError:
-        if os.access(path, os.W_OK) and os.access(path.parent, os.W_OK):
+        if is_writable(path):
             raise
     # A write-ahead log needs a file beside the store, which cannot be created here.
     if not _log_size(path):

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from qtab.sweeps.study import Study
 from qtab.training.resolved_run import ResolvedRun
 
 CHUNK_SECONDS = 1.0
@@ -42,3 +43,21 @@ class Pace:
 def _steps(resolved: ResolvedRun) -> int:
     """Returns the estimated steps of a run."""
     return resolved.config.episodes * min(resolved.max_episode_steps, TYPICAL_MAX_STEPS)
+
+
+def claim_size(study: Study, pace: Pace, at_least: int, start: int) -> int:
+    """Returns how many runs of a study from an index are expected to take about a second.
+
+    A few more do not matter: the training stops after a second, and releases the rest of a claim.
+    """
+    count = len(study.seeds)
+    size, left = 0, CHUNK_SECONDS
+    while size < MAX_CHUNK_RUNS and start + size < study.runs:
+        setting = (start + size) // count
+        of_setting = (setting + 1) * count - start - size
+        predicted = pace.runs(setting, study.resolved[setting], left, at_least)
+        size += min(of_setting, predicted)
+        if predicted <= of_setting:
+            break
+        left *= 1 - of_setting / predicted
+    return min(size, MAX_CHUNK_RUNS)

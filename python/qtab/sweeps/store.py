@@ -115,6 +115,13 @@ class Store:
                 self._connection.execute("UPDATE meta SET value = ? WHERE name = 'digest'", (after,))
             return bool(is_mine)
 
+    def release(self, claim: range) -> None:
+        """Releases a claim, so that its runs can be claimed again."""
+        with self._transaction():
+            self._connection.execute(
+                "DELETE FROM chunks WHERE start = ? AND owner = ? AND digest IS NULL", (claim.start, self._owner)
+            )
+
     def finished(self) -> int:
         """Returns the number of finished runs."""
         with translated_errors(self.path):

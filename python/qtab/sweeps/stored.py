@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from qtab.sweeps import version_1
-from qtab.sweeps.connection import StoreError, name_of, reading
+from qtab.sweeps.connection import StoreError, is_writable, name_of, reading
 from qtab.sweeps.database import Contents, is_empty, read_contents
 from qtab.sweeps.description import Description
 
@@ -43,7 +43,7 @@ def finished_contents(path: Path, description: Description) -> Contents | None:
         OSError: if the store is not finished.
         StoreError: if it is damaged, or belongs to another study.
     """
-    if not path.exists() or (os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)):
+    if not path.exists() or is_writable(path):
         return None
     contents = read_store(path)
     check_study(contents, description, path)

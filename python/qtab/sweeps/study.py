@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from qtab._utils import checks
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
 from qtab.config import DEFAULTS
 from qtab.config.layers import Base, over
@@ -18,6 +19,11 @@ from qtab.sweeps import designs
 from qtab.sweeps.description import Description, read_description
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.train_many import resolve_template, seed_numbers
+
+BYTES_PER_RUN = 1000
+"""The approximate size of a run's results and seed in memory."""
+BYTES_PER_SETTING = 4000
+"""The approximate size of a setting and its config in memory."""
 
 
 @dataclass(frozen=True)
@@ -76,17 +82,25 @@ class Study:
 
 
 def plan_study(
-    env: Any, grid: Any, seeds: Any, block: int, shared: Mapping[str, Any], base: Base | None = None
+    env: Any,
+    grid: Any,
+    seeds: Any,
+    block: int,
+    shared: Mapping[str, Any],
+    base: Base | None = None,
+    memory_limit: int = 2**63,
 ) -> Study:
     """Returns the study of a grid of settings, after resolving the config of each.
 
     Raises:
+        MemoryError: if the settings and the results need more than ``memory_limit`` bytes.
         gymnasium.error.Error: from Gymnasium, for an unknown id.
         TypeError: for an argument of the wrong type, or an unknown setting.
         ValueError: for an argument out of range.
     """
+    settings = _settings_of(grid, memory_limit)
+    _check_runs(len(settings), seeds, memory_limit)
     numbers = seed_numbers(seeds)
-    settings = _settings_of(grid)
     names = list(settings[0])
     check_names({**shared, **settings[0]}, DEFAULTS)
     for setting in settings:
@@ -103,8 +117,23 @@ def plan_study(
     return Study(env, settings, overrides, numbers, resolved, block)
 
 
-def _settings_of(grid: Any) -> list[dict[str, Any]]:
+def _check_runs(settings: int, seeds: Any, limit: int) -> None:
+    """Checks that the results fit into memory, before a list of the seeds is made."""
+    is_number = hasattr(seeds, "__index__") and not np.ndim(seeds)
+    if is_number:
+        count = checks.integer("seeds", seeds, least=1)
+    elif isinstance(seeds, range):  # it can be longer than len() can tell
+        count = (seeds.stop - seeds.start) // seeds.step
+    else:
+        count = len(seeds) if hasattr(seeds, "__len__") else 1
+    runs = settings * count
+    check_memory(f"the results of {runs:,} runs", runs * BYTES_PER_RUN, limit)
+
+
+def _settings_of(grid: Any, limit: int) -> list[dict[str, Any]]:
     if isinstance(grid, Mapping):
+        count = math.prod(len(values) for values in grid.values() if hasattr(values, "__len__"))
+        check_memory(f"{count:,} settings", count * BYTES_PER_SETTING, limit)
         return designs.grid(grid)
     if isinstance(grid, (str, bytes)) or not isinstance(grid, Sequence):
         raise TypeError(f"grid must map names to lists of values, or be a list of mappings, got {grid!r}")

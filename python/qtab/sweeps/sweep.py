@@ -9,7 +9,7 @@ from typing import Any
 from gymnasium.envs.registration import EnvSpec
 from typing_extensions import Unpack
 
-from qtab._utils import checks
+from qtab._utils import checks, memory
 from qtab.config import Config
 from qtab.config.layers import collect
 from qtab.config.settings import SharedSettings
@@ -55,7 +55,8 @@ def sweep(
         executor: Trains the runs: any :class:`concurrent.futures.Executor`, such as Dask's ``client.get_executor()``.
             None trains on threads of this process, or in worker processes if Python steps the environment.
         threads: The number of threads or processes without an executor; None means one per core.
-        memory_limit: The most memory that a single run may need, in bytes; None means half of the machine's memory.
+        memory_limit: The most memory that a single run may need, and the table of all runs, in bytes; None means half
+            of the machine's memory.
         block: The number of episodes that each point of a stored learning curve averages.
         callback: Called with a :class:`SweepProgress` about every second, after each chunk of runs that was stored.
         **settings: The settings that all runs share, explained below.
@@ -66,7 +67,7 @@ def sweep(
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
-        MemoryError: if a run would need more than ``memory_limit``, before any training.
+        MemoryError: if a run or the table would need more than ``memory_limit``, before any training.
         OSError: if the store cannot be written, or is deleted during the sweep.
         RuntimeError: if the executor fails; the message tells how many runs are kept.
         StoreError: if the store is damaged, has another format version, or belongs to another sweep.
@@ -80,7 +81,8 @@ def sweep(
         env, base = collect(sweep, env, config, settings)
         if isinstance(env, str):
             env = spec_of(env)  # a worker process may not have imported the package that registers the id
-        study = plan_study(env, grid, seeds, block, settings, base)
+        limit = memory.memory_limit(memory_limit)
+        study = plan_study(env, grid, seeds, block, settings, base, limit)
         for resolved in study.resolved:
             log_default_limit(resolved)
 

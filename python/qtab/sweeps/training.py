@@ -1,39 +1,30 @@
 """The training of all runs of a study that its store does not have yet."""
 
-import logging
 import os
 import time
 from collections.abc import Callable
-from concurrent.futures import CancelledError, Executor, Future, wait
+from concurrent.futures import Executor
 from contextlib import closing, suppress
 from functools import partial
-from typing import Any, TypeVar
-
-import cloudpickle
+from typing import TypeVar
 
 from qtab._utils import memory
-from qtab.sweeps.connection import name_of
 from qtab.sweeps.database import Contents
-from qtab.sweeps.pace import CHUNK_SECONDS, MAX_CHUNK_RUNS, Pace
+from qtab.sweeps.executors import ExecutorTraining
+from qtab.sweeps.pace import Pace, claim_size
 from qtab.sweeps.progress import Callback, ProgressReporter
 from qtab.sweeps.store import Store
 from qtab.sweeps.stored import finished_contents, store_path
 from qtab.sweeps.study import Study
-from qtab.sweeps.worker import train_chunk, train_parts
+from qtab.sweeps.waiting import POLL_SECONDS, Notice
+from qtab.sweeps.worker import train_parts
 from qtab.training.process_pool import process_pool
 from qtab.training.train_many import thread_count
 
 MAX_PENDING_CHUNKS = 64
 """The maximum number of chunks that an executor is given at a time."""
-POLL_SECONDS = 0.5
-"""The time between two attempts to claim runs while other processes hold all of them."""
-NOTICE_SECONDS = 2.0
-"""How long to wait for other processes before it is logged."""
-NEXT_NOTICE_SECONDS = 60.0
-"""The time after which it is logged again."""
 
 T = TypeVar("T")
-_LOGGER = logging.getLogger("qtab")
 
 
 def run_study(
@@ -72,12 +63,12 @@ def run_study(
         try:
             report = ProgressReporter(study.runs, opened.finished, callback)
             if executor is not None:
-                _train_with_executor(study, opened, executor, report, MAX_PENDING_CHUNKS)
+                ExecutorTraining(study, opened, executor, report).run(MAX_PENDING_CHUNKS)
             elif all(resolved.is_native for resolved in study.resolved):
                 _train_in_threads(study, opened, workers, report)
             elif opened.finished() < study.runs:
                 with process_pool(workers) as processes:
-                    _train_with_executor(study, opened, processes, report, 2 * workers, is_own=True)
+                    ExecutorTraining(study, opened, processes, report).run(2 * workers, is_own=True)
             return build(opened.contents())
         except BaseException as error:
             with suppress(Exception):
@@ -85,27 +76,10 @@ def run_study(
             raise
 
 
-class _Notice:
-    """Logs what a sweep is waiting for, if it waits long."""
-
-    def __init__(self) -> None:
-        self.reset()
-
-    def reset(self) -> None:
-        """Ends a wait."""
-        self._next = time.monotonic() + NOTICE_SECONDS
-
-    def __call__(self, describe: Callable[[], str]) -> None:
-        now = time.monotonic()
-        if now >= self._next:
-            self._next = now + NEXT_NOTICE_SECONDS
-            _LOGGER.warning("waiting for %s", describe())
-
-
 def _train_in_threads(study: Study, store: Store, threads: int, report: Callable[[], None]) -> None:
-    pace, notice = Pace(), _Notice()
+    pace, notice = Pace(), Notice()
     while store.finished() < study.runs:
-        claim = store.claim(partial(_claim_size, study, pace, threads))
+        claim = store.claim(partial(claim_size, study, pace, threads))
         if claim is None:
             notice(store.claimed_by_others)
             time.sleep(POLL_SECONDS)
@@ -118,80 +92,3 @@ def _train_in_threads(study: Study, store: Store, threads: int, report: Callable
         store.commit(claim, records, time.perf_counter() - began)
         notice.reset()
         report()
-
-
-def _train_with_executor(
-    study: Study,
-    store: Store,
-    executor: Executor,
-    report: Callable[[], None],
-    max_pending: int,
-    is_own: bool = False,
-) -> None:
-    pace, notice = Pace(), _Notice()
-    pending: dict[Future[Any], range] = {}
-    try:
-        while pending or store.finished() < study.runs:
-            while len(pending) < max_pending:
-                claim = store.claim(partial(_claim_size, study, pace, 1))
-                if claim is None:
-                    break
-                task = _task(study, claim, pace)
-                try:
-                    pending[executor.submit(train_chunk, task)] = claim
-                except Exception as error:
-                    raise _lost_workers(error, study, store, is_own) from error
-            if not pending:
-                notice(store.claimed_by_others)
-                time.sleep(POLL_SECONDS)
-                continue
-            done, _ = wait(pending, timeout=POLL_SECONDS, return_when="FIRST_COMPLETED")
-            for future in done:
-                try:
-                    records, seconds, pace = future.result()
-                except (Exception, CancelledError) as error:
-                    raise _lost_workers(error, study, store, is_own) from error
-                store.commit(pending.pop(future), records, seconds)
-                notice.reset()
-                report()
-    finally:
-        for future in pending:
-            future.cancel()
-
-
-def _claim_size(study: Study, pace: Pace, at_least: int, start: int) -> int:
-    """Returns how many runs from an index are expected to take about a second; a few more do not matter."""
-    count = len(study.seeds)
-    size, left = 0, CHUNK_SECONDS
-    while left > 0 and size < MAX_CHUNK_RUNS and start + size < study.runs:
-        setting = (start + size) // count
-        of_setting = (setting + 1) * count - start - size
-        predicted = pace.runs(setting, study.resolved[setting], left, at_least)
-        size += min(of_setting, predicted)
-        if predicted <= of_setting:
-            break
-        left *= 1 - of_setting / predicted
-    return min(size, MAX_CHUNK_RUNS)
-
-
-def _task(study: Study, claim: range, pace: Pace) -> bytes:
-    parts = [(setting, study.overrides[setting], seeds) for setting, seeds in study.split(claim)]
-    task: bytes = cloudpickle.dumps((study.env, parts, study.block, pace))
-    return task
-
-
-def _lost_workers(error: BaseException, study: Study, store: Store, is_own: bool) -> RuntimeError:
-    """Returns the error to raise where an executor fails, which tells how to resume."""
-    finished = store.finished()
-    what = "a worker process ended abruptly (killed, or out of memory)" if is_own else "the executor failed"
-    reason = " ".join(str(error).split())
-    detail = f"{type(error).__name__}: {reason}" if reason else type(error).__name__
-    if isinstance(error, CancelledError):
-        detail = "it cancelled its work; was it, its client or its scheduler closed?"
-    message = f"{what}: {detail}; "
-    if is_own and not finished:
-        message += "where this is a script, it must keep its call behind if __name__ == '__main__'; "
-    kept = f"{finished:,} of {study.runs:,} runs are kept"
-    if store.path is None:
-        return RuntimeError(f"{message}{kept} as .run of this error; with a store= the same call could resume")
-    return RuntimeError(f"{message}run the same call again: {kept} in {name_of(store.path)}")
