@@ -1,6 +1,7 @@
 """``qtab sweep`` and ``qtab report``."""
 
 import csv
+import html
 import re
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 
 import qtab
 from qtab.cli import main
+from support.environments import make_brittle
 
 ENV = 'env = "MountainCar-v0"\n'
 GRID = "[grid]\nepsilon = [0.3]\n"
@@ -24,6 +26,7 @@ episodes = 30
 """
 
 
+@pytest.mark.slow
 def test_a_study_is_swept_resumed_and_reported(tmp_path, capsys):
     study = tmp_path / "study.toml"
     study.write_text(STUDY)
@@ -107,3 +110,65 @@ def test_files_that_are_not_stores_are_refused(tmp_path, capsys):
     (tmp_path / "x.db").write_text("x" * 5000)
     assert main(["report", str(tmp_path / "x.db")]) == 2
     assert "not a sweep store" in capsys.readouterr().err
+
+
+def test_the_best_setting_is_confirmed_with_other_seeds(tmp_path, capsys):
+    study = tmp_path / "study.toml"
+    study.write_text(STUDY)
+    confirmed = tmp_path / "confirmed.db"
+    arguments = ["sweep", str(study), "--confirm", "3", "--top", "2", "--confirm-store", str(confirmed)]
+    assert main(arguments) == 0
+    lines = capsys.readouterr().out.splitlines()
+    best = qtab.load_sweep(tmp_path / "study.db").ranking()[:2]
+    assert [line.split()[1] for line in lines[1:]] == [str(setting) for setting in best]
+    assert all("over 3 other seeds; " in line for line in lines[1:])
+    assert qtab.load_sweep(confirmed).seeds == (4, 5, 6)
+    assert main(["sweep", str(study), "--confirm", "0"]) == 2
+
+
+@pytest.mark.slow
+def test_a_report_says_how_it_was_made_and_what_it_leaves_out(tmp_path):
+    study = tmp_path / "study.toml"
+    rates = [0.1 * (1 + index) for index in range(9)]
+    study.write_text(f"{ENV}seeds = 2\nblock = 10\n[grid]\nlearning_rate = {rates}\n[config]\nepisodes = 20\n")
+    assert main(["sweep", str(study)]) == 0
+    store, out = tmp_path / "study.db", tmp_path / "my report"
+    assert main(["report", str(store), "--out", str(out)]) == 0
+    page = html.unescape((out / "report.html").read_text())
+    assert f"qtab report {store} --out '{out}'" in page
+    assert "The best of 9 settings looks better than it is" in page
+    assert "sweep.confirm(seeds=100) in Python, or qtab sweep with --confirm 100" in page
+    assert "The pictures show the best 8 of 9 settings; the table has all of them." in page
+    alternatives = re.findall(r'<img alt="([^"]*)"', page)
+    assert len(alternatives) == 4
+    assert all(text.endswith(".") and len(text) > 60 for text in alternatives)
+    assert "Learning curves of the best 8 of 9 settings: the mean return of each 10 episodes." in alternatives[2]
+    assert "A line marks the reward threshold, -110. A line marks the best known, -97.668." in alternatives[2]
+    for name, value in {"algorithm": "q_learning", "episodes": 20, "seeds": "0, 1", "qtab": qtab.__version__}.items():
+        assert f"<td>{name}</td><td>{value}</td>" in page
+    assert re.search(r"<td>training</td><td>[\d.]+ s, summed over", page)
+    with (out / "settings.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == 9
+
+
+@pytest.mark.slow
+def test_a_report_counts_failed_runs(tmp_path):
+    path = tmp_path / "study.db"
+    grid: dict[str, Any] = {"learning_rate": [0.1, 0.5]}
+    qtab.sweep(make_brittle, grid, seeds=[1, 2], episodes=2, scale=(10, 100), threads=1, store=path)
+    assert main(["report", str(path), "--out", str(tmp_path / "report")]) == 0
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert "2 seeds each, 2 failed" in page
+    assert "a failed run counts as the worst run of the sweep" in page
+    with (tmp_path / "report" / "settings.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["runs"], row["failed"], row["low"], row["high"]) for row in rows] == [("1", "1", "", "")] * 2
+    assert all(float(row["ranked_mean"]) <= float(row["mean"]) for row in rows)
+
+
+@pytest.mark.parametrize("name", ["none.toml", "."])
+def test_a_study_that_cannot_be_read_is_an_error_without_a_number(tmp_path, capsys, name):
+    assert main(["sweep", str(tmp_path / name)]) == 2
+    said = capsys.readouterr().err
+    assert "study must be a file that can be read, got" in said
+    assert "Errno" not in said
