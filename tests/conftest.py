@@ -39,8 +39,7 @@ def closed_figures() -> Iterator[None]:
 
 @pytest.fixture
 def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Chunks of about three runs, so that a small sweep has many."""
-    from qtab.sweeps import study as studies
+    """Chunks of at most three runs, so that a small sweep has many."""
+    from qtab.sweeps import pace
 
-    monkeypatch.setattr(studies, "CHUNK_STEPS", 2 * 40 * 200 + 1)
-    monkeypatch.setattr(studies, "PYTHON_CHUNK_STEPS", 1)
+    monkeypatch.setattr(pace, "MAX_CHUNK_RUNS", 3)

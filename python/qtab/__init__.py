@@ -15,6 +15,7 @@ from qtab.envs import register as _register
 
 _MODULES = {
     "Config": "qtab.config",
+    "Confirmation": "qtab.sweeps.confirm",
     "Evaluation": "qtab.training.evaluate",
     "Gap": "qtab.planning.gap",
     "Optimum": "qtab.planning.optimum",
@@ -22,9 +23,9 @@ _MODULES = {
     "Recording": "qtab.results.run",
     "Run": "qtab.results.run",
     "Runs": "qtab.results.runs",
-    "StoreError": "qtab.sweeps.database",
+    "StoreError": "qtab.sweeps.connection",
     "Sweep": "qtab.sweeps.results",
-    "SweepProgress": "qtab.sweeps.sweep",
+    "SweepProgress": "qtab.sweeps.progress",
     "TabularEnv": "qtab.envs.tabular",
     "Verification": "qtab.training.verify",
     "book": "qtab.book",
@@ -61,10 +62,11 @@ if TYPE_CHECKING:
     from qtab.results.runs import Runs as Runs
     from qtab.results.storage import load as load
     from qtab.sweeps import designs as designs
-    from qtab.sweeps.database import StoreError as StoreError
+    from qtab.sweeps.confirm import Confirmation as Confirmation
+    from qtab.sweeps.connection import StoreError as StoreError
+    from qtab.sweeps.progress import SweepProgress as SweepProgress
     from qtab.sweeps.results import Sweep as Sweep
     from qtab.sweeps.results import load_sweep as load_sweep
-    from qtab.sweeps.sweep import SweepProgress as SweepProgress
     from qtab.sweeps.sweep import sweep as sweep
     from qtab.training.callbacks import Progress as Progress
     from qtab.training.evaluate import Evaluation as Evaluation

@@ -1,6 +1,7 @@
 """``qtab sweep`` and ``qtab report``."""
 
 import csv
+import html
 import re
 from typing import Any
 
@@ -9,7 +10,10 @@ import pytest
 
 import qtab
 from qtab.cli import main
+from support.environments import make_brittle
 
+ENV = 'env = "MountainCar-v0"\n'
+GRID = "[grid]\nepsilon = [0.3]\n"
 STUDY = """
 env = "MountainCar-v0"
 seeds = 4
@@ -22,6 +26,7 @@ episodes = 30
 """
 
 
+@pytest.mark.slow
 def test_a_study_is_swept_resumed_and_reported(tmp_path, capsys):
     study = tmp_path / "study.toml"
     study.write_text(STUDY)
@@ -49,7 +54,7 @@ def test_a_study_is_swept_resumed_and_reported(tmp_path, capsys):
 def test_a_design_can_be_swept(tmp_path, capsys):
     study = tmp_path / "study.toml"
     design = 'kind = "sobol"\npoints = 4\nspace.learning_rate = {low = 0.01, high = 1.0, log = true}'
-    study.write_text(f"seeds = [3, 5]\n[design]\n{design}\n[config]\nepisodes = 5\n")
+    study.write_text(f"env = 'MountainCar-v0'\nseeds = [3, 5]\n[design]\n{design}\n[config]\nepisodes = 5\n")
     assert main(["sweep", str(study), "--store", str(tmp_path / "other.db"), "--threads", "1"]) == 0
     assert len(qtab.load_sweep(tmp_path / "other.db")) == 8
 
@@ -61,9 +66,32 @@ def test_a_design_can_be_swept(tmp_path, capsys):
         ("nonsense = 3", "unknown key 'nonsense'; use env, seeds"),
         ("seed = 3", "unknown key 'seed' (did you mean 'seeds'?)"),
         ("[grid", "study must be a TOML file"),
-        ("[grid]\nepsilon = 0.3", "grid['epsilon'] must be a list of values"),
-        ("[grid]\nepsilom = [0.3]", "unknown setting 'epsilom' (did you mean 'epsilon'?)"),
-        ("[design]\nkind = 'spiral'\npoints = 3", "[design] must have kind"),
+        ("[grid]\nepsilon = [0.3]", "env is missing"),
+        (f"{ENV}[grid]\nepsilon = 0.3", "grid['epsilon'] must be a list of values"),
+        (f"{ENV}[grid]\nepsilom = [0.3]", "unknown setting 'epsilom' (did you mean 'epsilon'?)"),
+        (f"{ENV}[design]\nkind = 'spiral'\npoints = 3", "[design] must have kind"),
+        (f"{ENV}[design]\npoint = 3", "unknown key 'point' in [design] (did you mean 'points'?)"),
+        (f"{ENV}[design]\npoints = 4\nspace = 3", "design.space must be a table, [design.space], got 3"),
+        (f"{ENV}[design]\npoints = 4\nspace.epsilon = 3", "design.space.epsilon must be a list of choices or {low"),
+        (f"{ENV}[design]\npoints = 4\nspace.epsilon = {{low = 0.1}}", "design.space.epsilon must be a list of choices"),
+        (f"{ENV}[design]\npoints = 3\nspace.epsilon = [0.1, 0.2]", "points must be a power of two"),
+        (f"{ENV}design = 3", "design must be a table, [design], got 3"),
+        (f"{ENV}grid = 3", "grid must be a table, [grid], got 3"),
+        (f"{ENV}grid = [1]", "grid must be a table, [grid], got [1]"),
+        (f"{ENV}config = []\n{GRID}", "config must be a table, [config], got []"),
+        (f"{ENV}store = 3\n{GRID}", "store must be a text, got 3"),
+        (f"env = 3\n{GRID}", "env must be a text, got 3"),
+        (f"env = 'MountainCat-v0'\n{GRID}", "MountainCat"),
+        (f"{ENV}{GRID}[config]\nthreads = 2", "threads must stand before the first [table], not in [config]"),
+        (f"{ENV}{GRID}[config]\nstore = 'x'", "store must stand before the first [table]"),
+        (f"{ENV}{GRID}[config]\nlearnig_rate = 1", "unknown setting 'learnig_rate' (did you mean 'learning_rate'?)"),
+        (f"{ENV}{GRID}[config]\nepisodes = 100000000000", "runs of 100000000000 episodes need 3.09 TiB, more than"),
+        (f"{ENV}memory_limit = 1\n{GRID}", "more than memory_limit=1 "),
+        (f"{ENV}seeds = 1000000000000\n{GRID}", "the results of 1,000,000,000,000 runs need"),
+        (f"{ENV}seeds = 'x'\n{GRID}", "seeds must be an integer or a sequence of integers, got 'x'"),
+        (f"{ENV}block = 0\n{GRID}", "block must be an integer of at least 1, got 0"),
+        ("x = " + "[" * 5000, "study must be a TOML file"),
+        ("\0", "study must be a TOML file"),
     ],
 )
 def test_a_bad_study_is_refused_in_one_line(tmp_path, capsys, text, message):
@@ -73,6 +101,8 @@ def test_a_bad_study_is_refused_in_one_line(tmp_path, capsys, text, message):
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert message in said
+    assert str(study) in said
+    assert sorted(tmp_path.iterdir()) == [study]
 
 
 def test_files_that_are_not_stores_are_refused(tmp_path, capsys):
@@ -80,3 +110,65 @@ def test_files_that_are_not_stores_are_refused(tmp_path, capsys):
     (tmp_path / "x.db").write_text("x" * 5000)
     assert main(["report", str(tmp_path / "x.db")]) == 2
     assert "not a sweep store" in capsys.readouterr().err
+
+
+def test_the_best_setting_is_confirmed_with_other_seeds(tmp_path, capsys):
+    study = tmp_path / "study.toml"
+    study.write_text(STUDY)
+    confirmed = tmp_path / "confirmed.db"
+    arguments = ["sweep", str(study), "--confirm", "3", "--top", "2", "--confirm-store", str(confirmed)]
+    assert main(arguments) == 0
+    lines = capsys.readouterr().out.splitlines()
+    best = qtab.load_sweep(tmp_path / "study.db").ranking()[:2]
+    assert [line.split()[1] for line in lines[1:]] == [str(setting) for setting in best]
+    assert all("over 3 other seeds; " in line for line in lines[1:])
+    assert qtab.load_sweep(confirmed).seeds == (4, 5, 6)
+    assert main(["sweep", str(study), "--confirm", "0"]) == 2
+
+
+@pytest.mark.slow
+def test_a_report_says_how_it_was_made_and_what_it_leaves_out(tmp_path):
+    study = tmp_path / "study.toml"
+    rates = [0.1 * (1 + index) for index in range(9)]
+    study.write_text(f"{ENV}seeds = 2\nblock = 10\n[grid]\nlearning_rate = {rates}\n[config]\nepisodes = 20\n")
+    assert main(["sweep", str(study)]) == 0
+    store, out = tmp_path / "study.db", tmp_path / "my report"
+    assert main(["report", str(store), "--out", str(out)]) == 0
+    page = html.unescape((out / "report.html").read_text())
+    assert f"qtab report {store} --out '{out}'" in page
+    assert "The best of 9 settings looks better than it is" in page
+    assert "sweep.confirm(seeds=100) in Python, or qtab sweep with --confirm 100" in page
+    assert "The pictures show the best 8 of 9 settings; the table has all of them." in page
+    alternatives = re.findall(r'<img alt="([^"]*)"', page)
+    assert len(alternatives) == 4
+    assert all(text.endswith(".") and len(text) > 60 for text in alternatives)
+    assert "Learning curves of the best 8 of 9 settings: the mean return of each 10 episodes." in alternatives[2]
+    assert "A line marks the reward threshold, -110. A line marks the best known, -97.668." in alternatives[2]
+    for name, value in {"algorithm": "q_learning", "episodes": 20, "seeds": "0, 1", "qtab": qtab.__version__}.items():
+        assert f"<td>{name}</td><td>{value}</td>" in page
+    assert re.search(r"<td>training</td><td>[\d.]+ s, summed over", page)
+    with (out / "settings.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == 9
+
+
+@pytest.mark.slow
+def test_a_report_counts_failed_runs(tmp_path):
+    path = tmp_path / "study.db"
+    grid: dict[str, Any] = {"learning_rate": [0.1, 0.5]}
+    qtab.sweep(make_brittle, grid, seeds=[1, 2], episodes=2, scale=(10, 100), threads=1, store=path)
+    assert main(["report", str(path), "--out", str(tmp_path / "report")]) == 0
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert "2 seeds each, 2 failed" in page
+    assert "a failed run counts as the worst run of the sweep" in page
+    with (tmp_path / "report" / "settings.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["runs"], row["failed"], row["low"], row["high"]) for row in rows] == [("1", "1", "", "")] * 2
+    assert all(float(row["ranked_mean"]) <= float(row["mean"]) for row in rows)
+
+
+@pytest.mark.parametrize("name", ["none.toml", "."])
+def test_a_study_that_cannot_be_read_is_an_error_without_a_number(tmp_path, capsys, name):
+    assert main(["sweep", str(tmp_path / name)]) == 2
+    said = capsys.readouterr().err
+    assert "study must be a file that can be read, got" in said
+    assert "Errno" not in said

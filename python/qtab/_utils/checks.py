@@ -121,7 +121,8 @@ def choice(name: str, value: Any, choices: Collection[str]) -> str:
     """
     if isinstance(value, str) and value in choices:
         return value
-    message = f"{name} must be one of {', '.join(map(repr, choices))}, got {shown(value)}"
+    words = ", ".join(map(repr, choices))
+    message = f"{name} must be {'one of ' if len(choices) > 1 else ''}{words}, got {shown(value)}"
     if not isinstance(value, str):
         raise TypeError(message)
     raise ValueError(f"{message}{did_you_mean(value, choices)}")

@@ -1,5 +1,6 @@
 """``qtab report``."""
 
+import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,6 +30,7 @@ def run(arguments: list[str]) -> int:
     options = parse(Arguments, COMMAND, arguments)
     with usage_errors():
         folder = options.out or options.store.with_name(f"{options.store.stem}-report")
-        files = report(load_sweep(options.store), folder)
+        command = shlex.join(["qtab", "report", *arguments])
+        files = report(load_sweep(options.store), folder, command)
     print_above(f"{len(files)} files in {folder}; open {files[-1]}")
     return 0

@@ -1,7 +1,9 @@
 """Sweeps: many settings with many seeds each, kept in a store that survives interruption."""
 
-from qtab.sweeps.database import StoreError
+from qtab.sweeps.confirm import Confirmation
+from qtab.sweeps.connection import StoreError
+from qtab.sweeps.progress import SweepProgress
 from qtab.sweeps.results import Sweep, load_sweep
-from qtab.sweeps.sweep import SweepProgress, sweep
+from qtab.sweeps.sweep import sweep
 
-__all__ = ["StoreError", "Sweep", "SweepProgress", "load_sweep", "sweep"]
+__all__ = ["Confirmation", "StoreError", "Sweep", "SweepProgress", "load_sweep", "sweep"]

@@ -1,36 +1,35 @@
-"""The SQLite file format of a store: its tables, the check of its version, and how runs are read and written."""
+"""The SQLite file format of a store: its tables, the check of its version and content, and how runs are written."""
 
+import math
 import sqlite3
-import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+
+from qtab.sweeps.connection import StoreError, damaged, name_of
+from qtab.sweeps.description import SUMMARY_COLUMNS, Description, read_description
+from qtab.sweeps.digests import StoredRun, chunk_digest, combined, study_digest, to_text
 
 FORMAT = "qtab sweep"
-FORMAT_VERSION = 1
-SUMMARY_COLUMNS = ("episodes", "steps", "mean_return", "final_return", "best_return", "terminated_rate")
-BUSY_TIMEOUT_SECONDS = 60.0
-"""How long to wait for another process that is writing to the file."""
+FORMAT_VERSION = 2
+"""The version that is written. Version 1, without digests, is also read, and upgraded when its sweep resumes."""
 
-_SCHEMA = f"""
-CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL);
-CREATE TABLE pieces (
-    piece INTEGER PRIMARY KEY, owner TEXT, heartbeat REAL, done INTEGER NOT NULL DEFAULT 0
-);
-CREATE TABLE runs (
-    run INTEGER PRIMARY KEY, seed TEXT NOT NULL, {", ".join(f"{name} REAL" for name in SUMMARY_COLUMNS)},
-    curve BLOB NOT NULL, error TEXT
-);
-"""
-"""A piece is what the code calls a chunk: runs that are trained and stored together."""
-
-StoredRun: TypeAlias = tuple[Any, ...]
-"""The index of a run, its summary columns (None if it failed), its learning curve and its error."""
-
-
-class StoreError(ValueError):
-    """A file that is not a store, or not a store that this sweep can use; the message says why."""
+_META = "CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL)"
+_RUNS = (
+    f"CREATE TABLE runs ( run INTEGER PRIMARY KEY, seed TEXT NOT NULL, "
+    f"{', '.join(f'{name} REAL' for name in SUMMARY_COLUMNS)}, curve BLOB NOT NULL, error TEXT )"
+)
+CHUNKS = (
+    "CREATE TABLE chunks (start INTEGER PRIMARY KEY, stop INTEGER NOT NULL, owner TEXT, heartbeat REAL, seconds REAL, "
+    "digest TEXT)"
+)
+"""The runs ``start`` to ``stop`` - 1. With a digest they are stored; without, ``owner`` is training them."""
+_PIECES = (
+    "CREATE TABLE pieces ( piece INTEGER PRIMARY KEY, owner TEXT, heartbeat REAL, done INTEGER NOT NULL DEFAULT 0 )"
+)
+"""What version 1 calls a chunk."""
+_TABLES = {"1": {_META, _PIECES, _RUNS}, "2": {_META, CHUNKS, _RUNS}}
+_RUN_COLUMNS = f"run, seed, {', '.join(SUMMARY_COLUMNS)}, curve, error"
 
 
 @dataclass(frozen=True)
@@ -44,38 +43,26 @@ class RunRecord:
     """(blocks,) float64: the mean return of each whole block of episodes."""
     error: str | None = None
 
-
-def connect(path: Path | None) -> sqlite3.Connection:
-    """Opens a store for writing; None opens one in memory.
-
-    Raises:
-        OSError: if the file cannot be opened or written.
-        StoreError: if it is damaged, or not an SQLite file.
-    """
-    try:
-        connection = sqlite3.connect(
-            path or ":memory:", timeout=BUSY_TIMEOUT_SECONDS, isolation_level=None, check_same_thread=False
-        )
-        if path is not None:
-            # With these settings a committed transaction survives the end of the process. A power failure can undo the
-            # last transactions, but does not damage the file.
-            _enable_write_ahead_log(connection)
-            connection.execute("PRAGMA synchronous = NORMAL")
-    except sqlite3.OperationalError as error:
-        raise OSError(f"{name_of(path)}: {error}") from error
-    except sqlite3.DatabaseError as error:
-        raise damaged(path, error) from error
-    return connection
+    def as_row(self, run: int) -> StoredRun:
+        """Returns the row of the table ``runs`` for the run with this index, as SQLite returns it when it is read."""
+        # SQLite does not store the sign of zero, nor lone surrogates.
+        values = [None if self.summary is None else float(self.summary[name]) + 0.0 for name in SUMMARY_COLUMNS]
+        error = None if self.error is None else self.error.encode(errors="replace").decode()
+        return (run, str(self.seed), *values, self.curve, error)
 
 
-def name_of(path: Path | None) -> str:
-    """Returns what messages call a store."""
-    return "the store in memory" if path is None else f"store {str(path)!r}"
+@dataclass(frozen=True)
+class Contents:
+    """What a store holds, after it was checked."""
 
-
-def damaged(path: Path | None, error: Exception) -> StoreError:
-    """Returns the error for a file that SQLite cannot read."""
-    return StoreError(f"{name_of(path)} is damaged, or not a sweep store: {error}")
+    version: str
+    meta: dict[str, str]
+    description: Description
+    runs: list[StoredRun]
+    seconds: float
+    """The time that the chunks took, in seconds of their workers."""
+    unchecked_runs: int
+    """The number of runs that a version without digests wrote: damage to them before an upgrade is not found."""
 
 
 def is_empty(connection: sqlite3.Connection) -> bool:
@@ -83,60 +70,111 @@ def is_empty(connection: sqlite3.Connection) -> bool:
     return not connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
 
 
-def create_tables(connection: sqlite3.Connection, fingerprint: str, chunks: Iterable[int]) -> None:
-    """Creates the tables for a study with the given chunk numbers."""
-    for statement in filter(str.strip, _SCHEMA.split(";")):
+def create_tables(connection: sqlite3.Connection, description: Description, versions: str) -> None:
+    """Creates the tables for a study.
+
+    Args:
+        connection: The connection, in a transaction.
+        description: The study.
+        versions: JSON text: the versions of the software that trains it.
+    """
+    for statement in sorted(_TABLES[str(FORMAT_VERSION)]):
         connection.execute(statement)
-    meta = {"format": FORMAT, "version": str(FORMAT_VERSION), "study": fingerprint}
+    write_meta(connection, {"study": description.text, "versions": versions}, [])
+
+
+def write_meta(connection: sqlite3.Connection, content: dict[str, str], chunks: Sequence[int]) -> None:
+    """Writes what a store says about itself, with the digest over it and the digests of its chunks."""
+    meta = {"format": FORMAT, "version": str(FORMAT_VERSION), **content}
+    meta["digest"] = to_text(combined(study_digest(meta), chunks))
+    connection.execute("DELETE FROM meta")
     connection.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
-    connection.executemany("INSERT INTO pieces (piece) VALUES (?)", ((chunk,) for chunk in chunks))
 
 
-def read_fingerprint(connection: sqlite3.Connection, path: Path | None) -> str:
-    """Returns the fingerprint of the study, after checking the format of the store.
+def read_meta(connection: sqlite3.Connection, path: Path | None) -> dict[str, str]:
+    """Returns what a store says about itself, after checking its format, its version and its tables.
 
     Raises:
-        StoreError: if the file is not a store, or has another format version.
+        StoreError: if the file is not a store, has another format version, or has other tables, views or triggers.
     """
-    try:
-        meta = dict(connection.execute("SELECT name, value FROM meta").fetchall())
-    except sqlite3.OperationalError:
-        meta = {}
-    if meta.get("format") != FORMAT or "study" not in meta:
+    schema = connection.execute("SELECT type, sql FROM sqlite_master").fetchall()
+    # SQLite creates the index of a primary key; it has no text.
+    statements = [" ".join(sql.split()) if isinstance(sql, str) else kind for kind, sql in schema]
+    if _META not in statements:
         raise StoreError(f"{name_of(path)} is not a sweep store")
-    if meta.get("version") != str(FORMAT_VERSION):
-        raise StoreError(
-            f"{name_of(path)} has format version {meta.get('version')!r}, but this qtab reads {FORMAT_VERSION}"
-        )
-    return str(meta["study"])
+    rows = connection.execute("SELECT name, value FROM meta").fetchall()
+    meta = {name: value for name, value in rows if isinstance(name, str) and isinstance(value, str)}
+    if meta.get("format") != FORMAT or "study" not in meta or len(meta) < len(rows):
+        raise StoreError(f"{name_of(path)} is not a sweep store")
+    version = meta.get("version", "")
+    if version not in _TABLES:
+        raise StoreError(f"{name_of(path)} has format version {version!r:.40}, but this qtab reads 1 and 2")
+    if set(statements) - {"index"} != _TABLES[version] or len(statements) != len(_TABLES[version]) + 1:
+        raise damaged(path, "it has other tables, views or triggers than a store")
+    return meta
 
 
-def read_runs(connection: sqlite3.Connection) -> list[StoredRun]:
-    """Returns the stored runs, ordered by their index."""
-    return connection.execute(
-        f"SELECT run, {', '.join(SUMMARY_COLUMNS)}, curve, error FROM runs ORDER BY run"  # noqa: S608 - fixed names
-    ).fetchall()
+def read_contents(connection: sqlite3.Connection, path: Path | None) -> Contents:
+    """Returns what a store holds, after checking all of it.
+
+    Raises:
+        sqlite3.Error: if SQLite cannot read the file.
+        StoreError: if the file is not a store, or is damaged.
+    """
+    meta = read_meta(connection, path)
+    problem = connection.execute("PRAGMA integrity_check(1)").fetchone()[0]
+    if problem != "ok":
+        raise damaged(path, problem)
+    runs = connection.execute(f"SELECT {_RUN_COLUMNS} FROM runs ORDER BY run").fetchall()  # noqa: S608 - fixed names
+    try:
+        description = read_description(meta["study"])
+        for run, seed, *summary, curve, error in runs:
+            if not 0 <= run < description.runs:
+                raise ValueError(f"it has a run {run}, but its study has {description.runs} runs")
+            try:
+                description.check_run(run, seed, summary, curve, error)
+            except ValueError as reason:
+                raise ValueError(f"run {run}: {reason}") from None
+        if meta["version"] == "1":
+            return Contents("1", meta, description, runs, 0.0, len(runs))
+        seconds = _check_chunks(connection, meta, description, runs)
+        return Contents(meta["version"], meta, description, runs, seconds, int(meta.get("unchecked_runs", "0")))
+    except (ValueError, TypeError) as error:
+        raise damaged(path, error) from error
 
 
-def insert_runs(connection: sqlite3.Connection, runs: range, records: Sequence[RunRecord]) -> None:
-    """Stores the records of the runs with these indices."""
-    rows = []
-    for run, record in zip(runs, records, strict=True):
-        summary = record.summary
-        values = [None] * len(SUMMARY_COLUMNS) if summary is None else [summary[name] for name in SUMMARY_COLUMNS]
-        rows.append((run, str(record.seed), *values, record.curve, record.error))
+def _check_chunks(
+    connection: sqlite3.Connection, meta: dict[str, str], description: Description, runs: list[StoredRun]
+) -> float:
+    """Compares the runs with their digests; returns the time that the chunks took, in seconds."""
+    after, position, total, digests = 0, 0, 0.0, []
+    for start, stop, seconds, digest in connection.execute(
+        "SELECT start, stop, seconds, digest FROM chunks ORDER BY start"
+    ):
+        if not (type(start) is int and type(stop) is int and after <= start < stop <= description.runs):
+            raise ValueError(f"its chunk of runs {start!r} to {stop!r} overlaps another or is none of its study")
+        after = stop
+        if digest is None:
+            continue
+        chunk = runs[position : position + stop - start]
+        position += len(chunk)
+        if [run[0] for run in chunk] != list(range(start, stop)):
+            raise ValueError(f"runs are missing among {start} to {stop - 1}, which it says are finished")
+        if not (isinstance(seconds, float) and math.isfinite(seconds)):
+            raise ValueError(f"its chunk of runs {start} to {stop - 1} has no time")
+        expected = chunk_digest(start, stop, seconds, chunk)
+        if digest != to_text(expected):
+            raise ValueError(f"its runs {start} to {stop - 1} differ from their digest")
+        digests.append(expected)
+        total += seconds
+    if position < len(runs):
+        raise ValueError(f"it has a run {runs[position][0]} that belongs to none of its finished chunks")
+    if meta.get("digest") != to_text(combined(study_digest(meta), digests)):
+        raise ValueError("its study or the number of its chunks differs from its digest")
+    return total
+
+
+def insert_runs(connection: sqlite3.Connection, rows: Sequence[StoredRun]) -> None:
+    """Stores runs."""
     placeholders = ", ".join("?" * (len(SUMMARY_COLUMNS) + 4))
     connection.executemany(f"INSERT INTO runs VALUES ({placeholders})", rows)  # noqa: S608 - placeholders only
-
-
-def _enable_write_ahead_log(connection: sqlite3.Connection) -> None:
-    # SQLite's timeout does not apply if two processes switch at the same time: one of them fails at once.
-    deadline = time.monotonic() + BUSY_TIMEOUT_SECONDS
-    while True:
-        try:
-            connection.execute("PRAGMA journal_mode = WAL")
-            return
-        except sqlite3.OperationalError as error:
-            if "locked" not in str(error) or time.monotonic() > deadline:
-                raise
-        time.sleep(0.01)

@@ -1,8 +1,6 @@
 """``qtab report``: a sweep as CSV tables, plots and one HTML page."""
 
-import base64
 import csv
-import html
 import io
 from pathlib import Path
 from typing import Any
@@ -10,23 +8,18 @@ from typing import Any
 import numpy as np
 
 from qtab._utils.files import replacing
+from qtab.sweeps.report_page import page
+from qtab.sweeps.report_plots import draw
 from qtab.sweeps.results import Sweep
 
-BEST_SETTINGS = 5
-"""The number of settings with the best mean final return that the plots show."""
-_STYLE = (
-    "body{font:15px/1.5 system-ui,sans-serif;max-width:64rem;margin:2rem auto;padding:0 1rem;color:#222}"
-    "table{border-collapse:collapse}td,th{padding:.25rem .7rem;text-align:right;border-bottom:1px solid #ddd}"
-    "img{max-width:100%}"
-)
 
-
-def report(sweep: Sweep, folder: Path) -> list[Path]:
+def report(sweep: Sweep, folder: Path, command: str | None = None) -> list[Path]:
     """Writes ``runs.csv``, ``settings.csv``, the plots as PNG, and ``report.html``, which contains all but the runs.
 
     Args:
         sweep: What to report.
         folder: Where to write; created if it does not exist.
+        command: The command that writes the report, which the page shows.
 
     Returns:
         The files written, ``report.html`` last.
@@ -39,70 +32,41 @@ def report(sweep: Sweep, folder: Path) -> list[Path]:
     if len(sweep) == sweep.failed:
         raise ValueError("the store must have at least one run that succeeded, got none")
     folder.mkdir(parents=True, exist_ok=True)
-    header, rows = _settings_table(sweep)
-    plots = _plots(sweep, [row[0] for row in rows])
+    header, rows = settings_table(sweep)
+    pictures = draw(sweep)
     written = [
         _write(folder / "runs.csv", _csv(list(sweep.columns), zip(*sweep.columns.values(), strict=True)).encode()),
         _write(folder / "settings.csv", _csv(header, rows).encode()),
     ]
-    written += [_write(folder / f"{name}.png", png) for name, png in plots.items()]
-    return [*written, _write(folder / "report.html", _page(sweep, header, rows, plots).encode())]
+    written += [_write(folder / f"{name}.png", picture.png) for name, picture in pictures.items()]
+    return [*written, _write(folder / "report.html", page(sweep, header, rows, pictures, command).encode())]
 
 
-def _settings_table(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
-    """Returns the header and one row per setting, sorted by the mean final return, best first."""
+def settings_table(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
+    """Returns the header and one row per setting with finished runs, in the order of the ranking.
+
+    ``ranked_mean`` is the mean in which a failed run counts as the worst run; the other statistics leave failed runs
+    out, and are empty if all failed. An interval needs two runs.
+    """
     from qtab import stats
 
     names = list(sweep.settings[0])
-    header = ["setting", *names, "runs", "failed", "mean", "low", "high", "median", "iqm"]
+    header = ["setting", *names, "runs", "failed", "ranked_mean", "mean", "low", "high", "median", "iqm"]
+    ranked = sweep.mean_final_returns()
     rows = []
-    for setting in range(len(sweep.settings)):
+    for setting in sweep.ranking():
         values = sweep.values("final_return", setting)
         runs = np.flatnonzero(sweep.columns["setting"] == setting)
-        if len(values):
+        cells = [sweep.columns[name][runs[0]] for name in names]
+        numbers: list[Any] = [None] * 5
+        if len(values) > 1:
             mean = stats.mean(values)
-            cells = [sweep.columns[name][runs[0]] for name in names]
-            others = [stats.median(values).estimate, stats.iqm(values).estimate]
-            failed = len(runs) - len(values)
-            rows.append([setting, *cells, len(values), failed, mean.estimate, mean.low, mean.high, *others])
-    mean_column = header.index("mean")
-    return header, sorted(rows, key=lambda row: -row[mean_column])
-
-
-def _plots(sweep: Sweep, ranking: list[int]) -> dict[str, bytes]:
-    """Returns the plots as PNG, by name; ``ranking`` lists the settings, best first."""
-    from qtab import plots
-
-    def label(setting: int) -> str:
-        return ", ".join(f"{name} {value}" for name, value in _rounded(sweep, setting).items())
-
-    best = ranking[:BEST_SETTINGS]
-    final_returns = {label(setting): sweep.values("final_return", setting) for setting in best}
-    axes = {"distribution": plots.distribution(final_returns), "profile": plots.profile(final_returns)}
-    curves = None
-    for index, setting in enumerate(best):
-        if sweep.curves(setting).size:
-            # The store has only the mean of each block; learning_curves averages the same blocks again.
-            returns = np.repeat(sweep.curves(setting), sweep.block, axis=1)
-            curves = plots.learning_curves(returns, curves, block=sweep.block, label=label(setting), index=index)
-    if curves is not None:
-        axes["learning_curves"] = curves
-    for parameter in sweep.settings[0]:
-        if len(set(sweep.columns[parameter].tolist())) > 1:
-            axes[f"sensitivity_{parameter}"] = plots.sensitivity(sweep, parameter)
-    return {title: _png(ax) for title, ax in axes.items()}
-
-
-def _rounded(sweep: Sweep, setting: int) -> dict[str, Any]:
-    return {
-        name: f"{value:.4g}" if isinstance(value, float) else value for name, value in sweep.settings[setting].items()
-    }
-
-
-def _png(ax: Any) -> bytes:
-    buffer = io.BytesIO()
-    ax.figure.savefig(buffer, format="png", dpi=120)
-    return buffer.getvalue()
+            numbers = [mean.estimate, mean.low, mean.high]
+            numbers += [stats.median(values).estimate, stats.iqm(values).estimate]
+        elif len(values):
+            numbers = [values[0], None, None, values[0], values[0]]
+        rows.append([setting, *cells, len(values), len(runs) - len(values), ranked[setting], *numbers])
+    return header, rows
 
 
 def _csv(header: list[str], rows: Any) -> str:
@@ -111,26 +75,6 @@ def _csv(header: list[str], rows: Any) -> str:
     writer.writerow(header)
     writer.writerows(rows)
     return buffer.getvalue()
-
-
-def _page(sweep: Sweep, header: list[str], rows: list[list[Any]], plots: dict[str, bytes]) -> str:
-    def cell(value: Any) -> str:
-        return html.escape(f"{value:.6g}" if isinstance(value, float) else str(value))
-
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in header)
-    body = "\n".join("<tr>" + "".join(f"<td>{cell(value)}</td>" for value in row) + "</tr>" for row in rows)
-    images = "\n".join(
-        f"<h2>{html.escape(name.replace('_', ' ', 1).capitalize())}</h2>\n"
-        f'<img alt="{html.escape(name)}" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
-        for name, png in plots.items()
-    )
-    env = html.escape(sweep.env)
-    return (
-        f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{env}</title><style>{_STYLE}</style>\n'
-        f"<h1>{env}</h1>\n<p>{len(sweep)} runs: {len(sweep.settings)} settings, {len(sweep.seeds)} seeds each, "
-        f"{sweep.failed} failed. Final returns are means of the last 100 episodes; the interval of the mean is the "
-        f"95% bootstrap (BCa) one.</p>\n<table><tr>{head}</tr>\n{body}</table>\n{images}\n</html>\n"
-    )
 
 
 def _write(path: Path, content: bytes) -> Path:

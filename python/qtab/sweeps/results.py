@@ -1,26 +1,28 @@
 """``qtab.Sweep``: the results of a sweep as a table with one row per run, and how they are read from a store."""
 
-import json
 import os
-import sqlite3
-from collections.abc import Mapping, Sequence
-from contextlib import closing
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils import html, svg
-from qtab._utils.extras import missing
+from qtab._utils import checks, html, svg
 from qtab._utils.frames import data_frame
-from qtab.sweeps.database import SUMMARY_COLUMNS, StoredRun, damaged, read_fingerprint, read_runs
+from qtab._utils.suggestions import did_you_mean
+from qtab.sweeps.database import Contents
+from qtab.sweeps.description import SUMMARY_COLUMNS
+from qtab.sweeps.progress import Callback
+from qtab.sweeps.stored import read_store, store_path
 from qtab.sweeps.study import to_cell
 
 if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
+
+    from qtab.sweeps.confirm import Confirmation
 
 
 INTEGER_COLUMNS = ("episodes", "steps")
@@ -44,6 +46,17 @@ class Sweep:
     block: int
     """The number of episodes that each point of a learning curve averages."""
     _curves: Sequence[bytes]
+    configs: Sequence[Mapping[str, Any]] = ()
+    """The complete config of each setting without the seed, as JSON represents it."""
+    seconds: float = 0.0
+    """The time that the training took, in seconds, summed over the processes that took part."""
+    versions: str = "{}"
+    """The versions of the software that started the sweep, as JSON text."""
+    unchecked_runs: int = 0
+    """The number of runs that an earlier version of this package stored without digests, so that damage to them cannot
+    be found."""
+    _source: Any = field(default=None)
+    """The environment and the overrides of each setting, if the sweep was trained in this process."""
 
     def __repr__(self) -> str:
         settings = f"{len(self.settings)} setting{'' if len(self.settings) == 1 else 's'}"
@@ -89,18 +102,102 @@ class Sweep:
 
         Raises:
             KeyError: for an unknown column.
+            TypeError: if ``setting`` is not an integer.
+            ValueError: if there is no such setting.
         """
-        values: NDArray[Any] = self.columns[column][self._rows(setting)]
+        rows = self._rows(setting)
+        if column not in self.columns:
+            near = did_you_mean(column, self.columns) if isinstance(column, str) else ""
+            raise KeyError(f"column must be one of {', '.join(self.columns)}, got {column!r}{near}")
+        values: NDArray[Any] = self.columns[column][rows]
         return values
 
     def curves(self, setting: int) -> NDArray[np.float64]:
-        """Returns (runs, blocks): the learning curves of the runs of one setting that did not fail."""
+        """Returns (runs, blocks): the learning curves of the runs of one setting that did not fail.
+
+        Raises:
+            TypeError: if ``setting`` is not an integer.
+            ValueError: if there is no such setting.
+        """
         curves = [np.frombuffer(self._curves[row]) for row in self._rows(setting).tolist()]
         return np.array(curves) if curves else np.empty((0, 0))
 
     def _rows(self, setting: int) -> NDArray[np.intp]:
+        setting = checks.integer("setting", setting, least=0, most=len(self.settings) - 1)
         succeeded = np.array([error is None for error in self.columns["error"]], dtype=np.bool_)
         return np.flatnonzero((self.columns["setting"] == setting) & succeeded)
+
+    def mean_final_returns(self) -> NDArray[np.float64]:
+        """Returns (settings,): the mean final return of each setting, in which a failed run counts as the worst run.
+
+        A failed run has no return. Leaving it out would favour a setting that sometimes diverges, so it counts as the
+        lowest final return of the whole sweep. A setting without any finished run has NaN, one of which all runs failed
+        has -inf.
+        """
+        setting, returns = self.columns["setting"], self.columns["final_return"]
+        has_failed = np.isnan(returns)
+        worst = np.min(returns[~has_failed], initial=np.inf)
+        means = np.full(len(self.settings), np.nan)
+        for index in range(len(self.settings)):
+            mine = setting == index
+            if mine.any():
+                is_lost = has_failed[mine].all()
+                means[index] = -np.inf if is_lost else np.where(has_failed[mine], worst, returns[mine]).mean()
+        return means
+
+    def ranking(self) -> list[int]:
+        """Returns the indices of the settings, best first, by :meth:`mean_final_returns`.
+
+        The first place is partly luck: of many settings, the best one looks better than it is. :meth:`confirm` trains
+        it again with other seeds. Settings without any finished run are left out.
+        """
+        means = self.mean_final_returns()
+        return [int(index) for index in np.argsort(-means, kind="stable") if not np.isnan(means[index])]
+
+    def confirm(
+        self,
+        seeds: int | Iterable[int] = 100,
+        *,
+        top: int = 1,
+        env: Any = None,
+        store: "str | os.PathLike[str] | None" = None,
+        executor: Executor | None = None,
+        threads: int | None = None,
+        memory_limit: int | None = None,
+        callback: Callback | None = None,
+    ) -> "Confirmation":
+        """Trains the best settings again with seeds that the sweep did not use, which gives unbiased means.
+
+        The mean by which a setting was chosen is too high on average, because the choice prefers lucky seeds.
+
+        Args:
+            seeds: Seeds that the sweep did not use; an integer N means the N after its largest seed.
+            top: The number of settings to train again, from the first of :meth:`ranking`.
+            env: The environment, as for :func:`qtab.sweep`. None takes that of the sweep; in a sweep that was loaded
+                from a store, its id must be registered already.
+            store: As for :func:`qtab.sweep`; it must be another file than that of this sweep.
+            executor: As for :func:`qtab.sweep`.
+            threads: As for :func:`qtab.sweep`.
+            memory_limit: As for :func:`qtab.sweep`.
+            callback: As for :func:`qtab.sweep`.
+
+        Raises:
+            RuntimeError: if the executor fails.
+            StoreError: if the store is damaged, or belongs to another sweep.
+            TypeError: for an argument of the wrong type.
+            ValueError: for seeds that the sweep used, an argument out of range, or settings that cannot be restored.
+            KeyboardInterrupt: on Ctrl-C; its attribute ``run`` is the table of the finished runs.
+        """
+        from qtab.sweeps.confirm import Confirmation, plan_confirmation
+        from qtab.sweeps.training import run_study
+
+        chosen, study = plan_confirmation(self, seeds, top, env)
+
+        def build(contents: Contents) -> Sweep:
+            return build_sweep(contents, study.settings, (study.env, study.overrides))
+
+        again = run_study(study, build, store, executor, threads, memory_limit, callback)
+        return Confirmation(tuple(chosen), self, again)
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns the table as a pandas data frame.
@@ -131,35 +228,51 @@ class Sweep:
 def load_sweep(path: "str | os.PathLike[str]") -> Sweep:
     """Returns the finished runs of a store, which may belong to a sweep that is still running.
 
+    The digests of the store are checked. A store from an earlier version of this package has none, which is logged.
+
     Raises:
-        OSError: if the file does not exist.
-        StoreError: if it is not a store, is damaged, or has another format version.
+        OSError: if the file does not exist or cannot be read.
+        StoreError: if it is not a store, is damaged or empty, or has another format version.
+        TypeError: if ``path`` is not a path.
     """
-    path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"store not found: {str(path)!r}")
-    try:
-        with closing(sqlite3.connect(path)) as connection:
-            study = json.loads(read_fingerprint(connection, path))
-            runs = read_runs(connection)
-        env = study["configs"][0]["env"]
-        return build_sweep(env, study["settings"], tuple(study["seeds"]), study["block"], runs)
-    except (sqlite3.DatabaseError, KeyError, json.JSONDecodeError) as error:
-        raise damaged(path, error) from error
+    found = store_path(path)
+    if not found.exists():
+        raise FileNotFoundError(f"store not found: {str(found)!r}")
+    contents = read_store(found)
+    return build_sweep(contents, contents.description.settings)
 
 
-def build_sweep(
-    env: str, settings: Sequence[Mapping[str, Any]], seeds: tuple[int, ...], block: int, runs: Sequence[StoredRun]
-) -> Sweep:
+def build_sweep(contents: Contents, settings: Sequence[Mapping[str, Any]], source: Any = None) -> Sweep:
     """Returns the table of the stored runs of a study."""
-    count = len(seeds)
-    columns: dict[str, Any] = {"setting": np.array([run[0] // count for run in runs], dtype=np.int64)}
+    description, runs = contents.description, contents.runs
+    indices = np.array([run[0] for run in runs], dtype=np.int64)
+    setting, position = np.divmod(indices, len(description.seeds))
+    columns: dict[str, Any] = {"setting": setting}
     for name in settings[0]:
-        cells = [to_cell(setting[name]) for setting in settings]
-        columns[name] = np.array([cells[run[0] // count] for run in runs])
-    columns["seed"] = np.array([seeds[run[0] % count] for run in runs])
-    for position, name in enumerate(SUMMARY_COLUMNS, start=1):
-        values = [np.nan if run[position] is None else run[position] for run in runs]
+        columns[name] = np.array([to_cell(values[name]) for values in settings])[setting]
+    columns["seed"] = np.array(description.seeds)[position]
+    for place, name in enumerate(SUMMARY_COLUMNS, start=2):
+        values = [np.nan if run[place] is None else run[place] for run in runs]
         columns[name] = np.array(values, dtype=np.float64)
     columns["error"] = np.array([run[-1] for run in runs], dtype=object)
-    return Sweep(env, settings, seeds, columns, block, [run[-2] for run in runs])
+    return Sweep(
+        env=str(description.configs[0]["env"]),
+        settings=settings,
+        seeds=description.seeds,
+        columns=columns,
+        block=description.block,
+        _curves=[run[-2] for run in runs],
+        configs=description.configs,
+        seconds=contents.seconds,
+        versions=contents.meta.get("versions", "{}"),
+        unchecked_runs=contents.unchecked_runs,
+        _source=source,
+    )
+
+
+def empty_sweep(env: Any, block: int) -> Sweep:
+    """Returns the table of a sweep that was interrupted before its settings were known."""
+    columns: dict[str, Any] = {"setting": np.empty(0, np.int64), "seed": np.empty(0, np.int64)}
+    columns |= {name: np.empty(0) for name in SUMMARY_COLUMNS}
+    columns["error"] = np.empty(0, dtype=object)
+    return Sweep(str(getattr(env, "id", env)), (), (), columns, block, ())

@@ -1,4 +1,4 @@
-"""The plan of a sweep, complete before it starts: its settings, its seeds, and the chunks of its runs."""
+"""The plan of a sweep, complete before it starts: its settings and its seeds."""
 
 import hashlib
 import json
@@ -10,36 +10,20 @@ from typing import Any
 
 import numpy as np
 
+from qtab._utils import checks
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
 from qtab.config import DEFAULTS
 from qtab.config.layers import Base, over
 from qtab.config.unknown import check_names
 from qtab.sweeps import designs
+from qtab.sweeps.description import Description, read_description
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.train_many import resolve_template, seed_numbers
 
-CHUNK_STEPS = 2**26
-"""The steps of a chunk, which Rust takes in about a second on one core."""
-PYTHON_CHUNK_STEPS = 2**16
-"""The steps of a chunk for an environment stepped in Python."""
-TYPICAL_MAX_STEPS = 1000
-"""Episodes with a longer time limit are expected to end before this many steps."""
-MAX_CHUNK_RUNS = 4096
-"""The maximum number of runs in a chunk."""
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """Consecutive runs of a study, ``start`` to ``stop`` - 1, that are trained and stored together."""
-
-    number: int
-    start: int
-    stop: int
-
-    @property
-    def runs(self) -> range:
-        """The indices of the runs."""
-        return range(self.start, self.stop)
+BYTES_PER_RUN = 1000
+"""The approximate size of a run's results and seed in memory."""
+BYTES_PER_SETTING = 4000
+"""The approximate size of a setting and its config in memory."""
 
 
 @dataclass(frozen=True)
@@ -63,18 +47,6 @@ class Study:
         """The number of runs."""
         return len(self.settings) * len(self.seeds)
 
-    @cached_property
-    def chunks(self) -> list[Chunk]:
-        """The runs in chunks of similar work, estimated from the settings so that every process finds the same ones."""
-        chunks: list[Chunk] = []
-        start, work = 0, 0.0
-        for run in range(self.runs):
-            if work >= 1 or run - start >= MAX_CHUNK_RUNS:
-                chunks.append(Chunk(len(chunks), start, run))
-                start, work = run, 0.0
-            work += _work(self.resolved[run // len(self.seeds)])
-        return [*chunks, Chunk(len(chunks), start, self.runs)]
-
     def check_memory(self, limit: int) -> None:
         """Checks that a single run of each setting fits into the memory limit, in bytes.
 
@@ -89,19 +61,18 @@ class Study:
             check_memory(f"runs of {episodes} episodes", needed, limit)
 
     @cached_property
-    def fingerprint(self) -> str:
-        """JSON text that is equal for equal studies only. It is part of the store format."""
+    def description(self) -> Description:
+        """The study as a store describes it."""
         configs = [
             {name: value for name, value in vars(resolved.config).items() if name != "seed"}
             for resolved in self.resolved
         ]
         settings = [dict(setting) for setting in self.settings]
-        content: dict[str, Any] = {"configs": configs, "settings": settings, "seeds": self.seeds, "block": self.block}
-        content |= {"pieces": len(self.chunks)}
-        return json.dumps(content, sort_keys=True, default=_jsonable)
+        content = {"configs": configs, "settings": settings, "seeds": self.seeds, "block": self.block}
+        return read_description(json.dumps(content, default=_jsonable))
 
-    def split(self, chunk: Chunk) -> list[tuple[int, list[int]]]:
-        """Returns the settings of a chunk by their index, each with its seeds."""
+    def split(self, chunk: range) -> list[tuple[int, list[int]]]:
+        """Returns the settings of consecutive runs by their index, each with its seeds."""
         count = len(self.seeds)
         parts = []
         for setting in range(chunk.start // count, (chunk.stop - 1) // count + 1):
@@ -111,17 +82,25 @@ class Study:
 
 
 def plan_study(
-    env: Any, grid: Any, seeds: Any, block: int, shared: Mapping[str, Any], base: Base | None = None
+    env: Any,
+    grid: Any,
+    seeds: Any,
+    block: int,
+    shared: Mapping[str, Any],
+    base: Base | None = None,
+    memory_limit: int = 2**63,
 ) -> Study:
     """Returns the study of a grid of settings, after resolving the config of each.
 
     Raises:
+        MemoryError: if the settings and the results need more than ``memory_limit`` bytes.
         gymnasium.error.Error: from Gymnasium, for an unknown id.
         TypeError: for an argument of the wrong type, or an unknown setting.
         ValueError: for an argument out of range.
     """
+    settings = _settings_of(grid, memory_limit)
+    _check_runs(len(settings), seeds, memory_limit)
     numbers = seed_numbers(seeds)
-    settings = _settings_of(grid)
     names = list(settings[0])
     check_names({**shared, **settings[0]}, DEFAULTS)
     for setting in settings:
@@ -138,8 +117,23 @@ def plan_study(
     return Study(env, settings, overrides, numbers, resolved, block)
 
 
-def _settings_of(grid: Any) -> list[dict[str, Any]]:
+def _check_runs(settings: int, seeds: Any, limit: int) -> None:
+    """Checks that the results fit into memory, before a list of the seeds is made."""
+    is_number = hasattr(seeds, "__index__") and not np.ndim(seeds)
+    if is_number:
+        count = checks.integer("seeds", seeds, least=1)
+    elif isinstance(seeds, range):  # it can be longer than len() can tell
+        count = (seeds.stop - seeds.start) // seeds.step
+    else:
+        count = len(seeds) if hasattr(seeds, "__len__") else 1
+    runs = settings * count
+    check_memory(f"the results of {runs:,} runs", runs * BYTES_PER_RUN, limit)
+
+
+def _settings_of(grid: Any, limit: int) -> list[dict[str, Any]]:
     if isinstance(grid, Mapping):
+        count = math.prod(len(values) for values in grid.values() if hasattr(values, "__len__"))
+        check_memory(f"{count:,} settings", count * BYTES_PER_SETTING, limit)
         return designs.grid(grid)
     if isinstance(grid, (str, bytes)) or not isinstance(grid, Sequence):
         raise TypeError(f"grid must map names to lists of values, or be a list of mappings, got {grid!r}")
@@ -151,12 +145,6 @@ def _settings_of(grid: Any) -> list[dict[str, Any]]:
     if len({json.dumps(dict(setting), sort_keys=True, default=_jsonable) for setting in grid}) < len(grid):
         raise ValueError("grid must hold different settings, got the same one twice")
     return [dict(setting) for setting in grid]
-
-
-def _work(resolved: ResolvedRun) -> float:
-    """Returns the estimated work of a run as a fraction of a chunk."""
-    steps = resolved.config.episodes * min(resolved.max_episode_steps, TYPICAL_MAX_STEPS)
-    return steps / (CHUNK_STEPS if resolved.is_native else PYTHON_CHUNK_STEPS)
 
 
 def _jsonable(value: Any) -> Any:

@@ -1,6 +1,8 @@
 """Training of the chunks of a sweep, in this process or in a worker; the results are stored by the caller."""
 
+import math
 import pickle
+import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -9,27 +11,52 @@ import numpy as np
 from qtab import _core
 from qtab.results.summary import block_means, summarize
 from qtab.sweeps.database import RunRecord
+from qtab.sweeps.pace import CHUNK_SECONDS, Pace
 from qtab.training.process_pool import train_unless_stopped
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.train_many import allocate_results, resolve_template, train_in_threads
 
+Part = tuple[int, Mapping[str, Any], ResolvedRun | None, Sequence[int]]
+"""The index of a setting, its overrides, its resolved config (None to resolve it here), and seeds."""
 
-def train_chunk(task: bytes) -> list[RunRecord]:
-    """Trains the runs of a chunk on one thread.
+
+def train_chunk(task: bytes) -> tuple[list[RunRecord], float, Pace]:
+    """Trains the first runs of a chunk on one thread, for about a second; see :func:`train_parts`.
 
     Args:
-        task: ``(env, [(overrides, seeds), ...], block)``, pickled by cloudpickle.
+        task: ``(env, [(setting, overrides, seeds), ...], block, pace)``, pickled by cloudpickle.
+
+    Returns:
+        The records, the time that they took in seconds, and the pace.
     """
-    env, parts, block = pickle.loads(task)  # noqa: S301 - from the process that submitted it
+    env, parts, block, pace = pickle.loads(task)  # noqa: S301 - from the process that submitted it
+    began = time.perf_counter()
+    unresolved = [(setting, overrides, None, seeds) for setting, overrides, seeds in parts]
+    records = train_parts(env, unresolved, block, threads=1, pace=pace)
+    return records, time.perf_counter() - began, pace
+
+
+def train_parts(env: Any, parts: Sequence[Part], block: int, threads: int, pace: Pace) -> list[RunRecord]:
+    """Trains runs in their order for about a second, and at least one; returns the records of those that it trained."""
     records: list[RunRecord] = []
-    for overrides, seeds in parts:
+    began = time.perf_counter()
+    for setting, overrides, given, seeds in parts:
         try:
-            resolved = resolve_template(env, {**overrides, "seed": seeds[0]})
+            resolved = given or resolve_template(env, {**overrides, "seed": seeds[0]})
         except Exception as error:
             records += [_failure(seed, error) for seed in seeds]
-        else:
-            records += train_setting(env, overrides, resolved, seeds, block, threads=1)
+            continue
+        trained = 0
+        while trained < len(seeds):
+            left = CHUNK_SECONDS - (time.perf_counter() - began)
+            if records and left <= 0:
+                return records
+            batch = seeds[trained : trained + pace.runs(setting, resolved, left, at_least=threads)]
+            before = time.perf_counter()
+            records += train_setting(env, overrides, resolved, batch, block, threads)
+            pace.record(setting, resolved, len(batch), time.perf_counter() - before)
+            trained += len(batch)
     return records
 
 
@@ -63,9 +90,15 @@ def _records(seeds: Sequence[int], block: int, returns: Any, lengths: Any, termi
     columns = {name: column.tolist() for name, column in summarize(returns, lengths, terminated).items()}
     curves = block_means(returns, block)
     return [
-        RunRecord(seed, {name: column[index] for name, column in columns.items()}, curves[index].tobytes())
+        _record(seed, {name: column[index] for name, column in columns.items()}, curves[index])
         for index, seed in enumerate(seeds)
     ]
+
+
+def _record(seed: int, summary: dict[str, float | int], curve: Any) -> RunRecord:
+    if all(map(math.isfinite, summary.values())) and np.isfinite(curve).all():
+        return RunRecord(seed, summary, curve.tobytes())
+    return _failure(seed, OverflowError("the means of the returns are not finite"))
 
 
 def _failure(seed: int, error: Exception) -> RunRecord:

@@ -1,0 +1,137 @@
+"""The study file of ``qtab sweep``: a TOML file that describes a sweep."""
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from qtab._utils.suggestions import did_you_mean
+from qtab.config import DEFAULTS
+from qtab.config.unknown import check_names
+from qtab.sweeps import designs
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+KEYS = ("env", "seeds", "block", "store", "threads", "memory_limit", "grid", "design", "config")
+_DESIGN_KEYS = ("kind", "points", "seed", "space")
+_AXIS_KEYS = ("low", "high", "log")
+_DESIGNS = {"random": designs.random, "sobol": designs.sobol}
+
+
+@dataclass(frozen=True)
+class StudyFile:
+    """What a study file holds."""
+
+    env: str
+    """The environment's id."""
+    grid: Any
+    """The settings, as :func:`qtab.sweep` takes them."""
+    store: str | None
+    """The file for the results, relative to the folder of the study file."""
+    config: Mapping[str, Any]
+    """The settings that all runs share."""
+    options: Mapping[str, Any]
+    """The other arguments of :func:`qtab.sweep` that the file gives."""
+
+
+def read_study(path: Path) -> StudyFile:
+    """Returns what a study file holds. The values of settings are checked later, by :func:`qtab.sweep`.
+
+    Raises:
+        OSError: if the file cannot be read.
+        ValueError: if it is not TOML, or does not describe a sweep; the message names the file and the key.
+    """
+    content = _toml(path)
+    try:
+        return _study(content)
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _toml(path: Path) -> dict[str, Any]:
+    try:
+        with path.open("rb") as file:
+            return tomllib.load(file)
+    except OSError as error:
+        raise type(error)(f"study must be a file that can be read, got {str(path)!r}: {error.strerror}") from None
+    except (ValueError, RecursionError) as error:
+        reason = "its brackets are nested too deeply" if isinstance(error, RecursionError) else error
+        raise ValueError(f"study must be a TOML file, got {str(path)!r}: {reason}") from None
+
+
+def _study(content: Mapping[str, Any]) -> StudyFile:
+    for key in content:
+        if key not in KEYS:
+            raise ValueError(f"unknown key {key!r}{did_you_mean(key, KEYS)}; use {', '.join(KEYS)}")
+    if ("grid" in content) == ("design" in content):
+        raise ValueError("a study must have either a [grid] or a [design]")
+    grid = _grid(content["grid"]) if "grid" in content else _design(content["design"])
+    if "env" not in content:
+        raise ValueError('env is missing: add a line such as env = "MountainCar-v0" before the first [table]')
+    config = _table("config", content.get("config", {}))
+    for key in config:
+        if key in KEYS:
+            raise ValueError(f"{key} must stand before the first [table], not in [config]")
+    check_names(config, [name for name in DEFAULTS if name != "env"])
+    return StudyFile(
+        env=_text("env", content["env"]),
+        grid=grid,
+        store=_text("store", content["store"]) if "store" in content else None,
+        config={name: _tuple(value) for name, value in config.items()},
+        options={key: content[key] for key in ("seeds", "block", "threads", "memory_limit") if key in content},
+    )
+
+
+def _grid(grid: Any) -> Any:
+    return {
+        name: [_tuple(value) for value in values] if isinstance(values, list) else values
+        for name, values in _table("grid", grid).items()
+    }
+
+
+def _design(design: Any) -> list[dict[str, Any]]:
+    table = _table("design", design)
+    for key in table:
+        if key not in _DESIGN_KEYS:
+            near = did_you_mean(key, _DESIGN_KEYS)
+            raise ValueError(f"unknown key {key!r} in [design]{near}; use {', '.join(_DESIGN_KEYS)}")
+    kind = table.get("kind", "sobol")
+    if kind not in list(_DESIGNS) or "points" not in table or "space" not in table:
+        raise ValueError("[design] must have kind = 'random' or 'sobol', points, space and optionally seed")
+    space = {name: _axis(name, axis) for name, axis in _table("design.space", table["space"]).items()}
+    return _DESIGNS[kind](space, table["points"], table.get("seed", 0))
+
+
+def _axis(name: str, axis: Any) -> Any:
+    """Returns an axis of a design from ``{low = 0.01, high = 1.0, log = true}`` or a list of choices."""
+    if isinstance(axis, list):
+        return [_tuple(value) for value in axis]
+    if not isinstance(axis, dict) or not axis.keys() <= set(_AXIS_KEYS) or not {"low", "high"} <= axis.keys():
+        raise ValueError(
+            f"design.space.{name} must be a list of choices or {{low = ..., high = ..., log = true or false}}, "
+            f"got {axis!r:.100}"
+        )
+    if not isinstance(axis.get("log", False), bool):
+        raise ValueError(f"design.space.{name}.log must be true or false, got {axis['log']!r:.100}")
+    bounds = (axis["low"], axis["high"])
+    return (*bounds, "log") if axis.get("log") else bounds
+
+
+def _table(key: str, value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise ValueError(f"{key} must be a table, [{key}], got {value!r:.100}")
+    return value
+
+
+def _text(key: str, value: Any) -> str:
+    if not isinstance(value, str) or not value:
+        raise ValueError(f"{key} must be a text, got {value!r:.100}")
+    return value
+
+
+def _tuple(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value

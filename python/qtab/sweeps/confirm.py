@@ -1,0 +1,117 @@
+"""The best settings of a sweep, trained again with other seeds."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import gymnasium as gym
+import numpy as np
+
+from qtab._utils import checks
+from qtab.config import Config
+from qtab.config.layers import over
+from qtab.sweeps.study import Study
+from qtab.training.train_many import resolve_template, seed_numbers
+
+if TYPE_CHECKING:
+    from qtab.stats import Interval
+    from qtab.sweeps.results import Sweep
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Confirmation:
+    """The best settings of a sweep, trained again with seeds that the sweep did not use."""
+
+    chosen: tuple[int, ...]
+    """The indices of the settings in the sweep, best first."""
+    swept: "Sweep"
+    """The sweep, whose means of the chosen settings are too high on average."""
+    confirmed: "Sweep"
+    """The results with the other seeds; its setting ``i`` is the setting ``chosen[i]`` of the sweep."""
+
+    def mean(self, place: int = 0) -> "Interval":
+        """Returns the mean final return of a chosen setting over the other seeds, without the runs that failed.
+
+        Raises:
+            ModuleNotFoundError: without SciPy; the message names the ``pip install``.
+            TypeError: if ``place`` is not an integer.
+            ValueError: if there is no such place, or all of its runs failed.
+        """
+        from qtab import stats
+
+        place = checks.integer("place", place, least=0, most=len(self.chosen) - 1)
+        values = self.confirmed.values("final_return", place)
+        if not len(values):
+            raise ValueError(f"setting {self.chosen[place]} must have a run that succeeded, but all of them failed")
+        return stats.mean(values)
+
+    def __repr__(self) -> str:
+        return f"<Confirmation of {len(self.chosen)} of {len(self.swept.settings)} settings: {self.confirmed!r}>"
+
+    def __str__(self) -> str:
+        return "\n".join(self._line(place, setting) for place, setting in enumerate(self.chosen))
+
+    def _line(self, place: int, setting: int) -> str:
+        values = ", ".join(f"{name} {value}" for name, value in self.swept.settings[setting].items())
+        runs = np.flatnonzero(self.confirmed.columns["setting"] == place)
+        found = len(self.confirmed.values("final_return", place))
+        swept, failed = self.swept.mean_final_returns()[setting], len(runs) - found
+        mean = f"{self.mean(place)}" if found > 1 else "no mean"
+        lost = f", {failed} failed" if failed else ""
+        return f"setting {setting} ({values}): {mean} over {len(runs)} other seeds{lost}; {swept:.6g} in the sweep"
+
+
+def plan_confirmation(sweep: "Sweep", seeds: Any, top: int, env: Any) -> tuple[list[int], Study]:
+    """Returns the indices of the best settings of a sweep, and the study that trains them with other seeds.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for seeds that the sweep used, an argument out of range, or settings that cannot be restored.
+    """
+    ranking = sweep.ranking()
+    if not ranking:
+        raise ValueError("a sweep without finished runs has no best setting")
+    chosen = ranking[: checks.integer("top", top, least=1, most=len(ranking))]
+    numbers = _other_seeds(sweep, seeds)
+    template = {"seed": max(numbers)}
+    if sweep._source is not None:
+        made = sweep._source[0] if env is None else env
+        overrides = [sweep._source[1][index] for index in chosen]
+    else:
+        made = _registered(sweep.env) if env is None else env
+        overrides = [_restored(sweep.configs[index]) for index in chosen]
+    resolved = [resolve_template(made, {**given, **template}) for given in overrides]
+    study = Study(made, [sweep.settings[index] for index in chosen], overrides, numbers, resolved, sweep.block)
+    for index, config in zip(chosen, study.description.configs, strict=True):
+        different = [
+            name for name, value in config.items() if name != "env" and value != sweep.configs[index].get(name)
+        ]
+        if different:
+            raise ValueError(f"setting {index} cannot be restored here: it would have another {different[0]}")
+    return chosen, study
+
+
+def _other_seeds(sweep: "Sweep", seeds: Any) -> tuple[int, ...]:
+    if hasattr(seeds, "__index__") and not np.ndim(seeds):
+        first = max(sweep.seeds) + 1
+        return seed_numbers(range(first, first + checks.integer("seeds", seeds, least=1, most=10**7)))
+    numbers = seed_numbers(seeds)
+    used = sorted(set(numbers) & set(sweep.seeds))
+    if used:
+        raise ValueError(f"seeds must be other seeds than those of the sweep, got {used[0]}, which it used")
+    return numbers
+
+
+def _registered(env: str) -> Any:
+    """Returns the spec of an id from a store. A store must not choose a module to import."""
+    spec = gym.registry.get(env.rpartition(":")[2])
+    if spec is None:
+        raise ValueError(f"the environment {env!r} of the store must be registered, or given as env=, but it is not")
+    return spec
+
+
+def _restored(config: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the overrides that give a config from a store."""
+    if isinstance(config["initial_q"], dict):
+        raise ValueError("a store does not keep an array initial_q; call confirm on the result of qtab.sweep")
+    return over(Config(**config), {})

@@ -1,0 +1,190 @@
+"""Training of a study with a :class:`concurrent.futures.Executor`, which may lose its workers."""
+
+import logging
+import time
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, wait
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import cloudpickle
+
+from qtab.sweeps.connection import name_of
+from qtab.sweeps.pace import Pace, claim_size
+from qtab.sweeps.store import Store
+from qtab.sweeps.study import Study
+from qtab.sweeps.waiting import POLL_SECONDS, Notice
+from qtab.sweeps.worker import train_chunk, train_parts
+
+LATE_SECONDS = 10.0
+"""A chunk that takes longer than this may be late."""
+LATE_FACTOR = 10.0
+"""A chunk is late if it takes so many times longer than the slowest chunk that returned."""
+MAX_ATTEMPTS = 3
+"""How often the task of a chunk may fail before the sweep gives up."""
+
+_LOGGER = logging.getLogger("qtab")
+
+
+@dataclass(frozen=True)
+class _Submitted:
+    claim: range
+    at: float
+    """The time of the submission, on this process's clock."""
+
+
+class ExecutorTraining:
+    """Gives an executor chunks, and stores what it returns."""
+
+    def __init__(self, study: Study, store: Store, executor: Executor, report: Callable[[], None]) -> None:
+        self._study, self._store, self._executor, self._report = study, store, executor, report
+        self._pace, self._notice = Pace(), Notice()
+        self._pending: dict[Future[Any], _Submitted] = {}
+        self._poll_seconds = POLL_SECONDS
+        self._failures: Counter[int] = Counter()
+        """How often the task failed that begins with a run."""
+        self._slowest: float | None = None
+        """The longest time after which a chunk returned, in seconds."""
+
+    def run(self, max_pending: int, is_own: bool = False) -> None:
+        """Trains the runs that the store does not have.
+
+        Args:
+            max_pending: The maximum number of chunks that the executor has at a time.
+            is_own: Whether the executor is a process pool of this package, for messages.
+
+        Raises:
+            RuntimeError: if the executor fails; the message tells how to resume.
+        """
+        try:
+            while self._pending or self._store.finished() < self._study.runs:
+                try:
+                    all_claimed = self._submit(max_pending)
+                    returned = self._collect() if self._pending else False
+                except _ExecutorError as failure:
+                    raise _lost(failure.error, self._study, self._store, is_own) from failure.error
+                if returned:
+                    self._notice.reset()
+                elif not self._pending:
+                    self._notice(self._store.claimed_by_others)
+                    time.sleep(POLL_SECONDS)
+                elif not (all_claimed and self._train_late_chunk()):
+                    self._notice(self._describe_pending)
+        finally:
+            for future in self._pending:
+                future.cancel()
+
+    def _submit(self, max_pending: int) -> bool:
+        """Submits chunks; returns whether all runs are finished or claimed."""
+        while len(self._pending) < max_pending:
+            claim = self._store.claim(partial(claim_size, self._study, self._pace, 1))
+            if claim is None:
+                return True
+            try:
+                future = self._executor.submit(train_chunk, self._task(claim))
+            except Exception as error:
+                raise _ExecutorError(error) from error
+            self._pending[future] = _Submitted(claim, time.monotonic())
+        return False
+
+    def _task(self, claim: range) -> bytes:
+        study = self._study
+        parts = [(setting, study.overrides[setting], seeds) for setting, seeds in study.split(claim)]
+        task: bytes = cloudpickle.dumps((study.env, parts, study.block, self._pace))
+        return task
+
+    def _collect(self) -> bool:
+        """Stores the chunks that return soon; returns whether there is any."""
+        timeout, self._poll_seconds = self._poll_seconds, POLL_SECONDS
+        done, _ = wait(self._pending, timeout=timeout, return_when="FIRST_COMPLETED")
+        for future in sorted(done, key=_has_failed):  # stores what there is before an error ends the sweep
+            submitted = self._pending[future]
+            try:
+                records, seconds, self._pace = future.result()
+            except (BrokenExecutor, CancelledError) as error:
+                raise _ExecutorError(error) from error
+            except Exception as error:
+                self._try_again(submitted.claim, error)
+                del self._pending[future]
+                continue
+            del self._pending[future]
+            self._slowest = max(self._slowest or 0.0, time.monotonic() - submitted.at)
+            self._store.commit(submitted.claim, records, seconds)
+            self._report()
+        return bool(done)
+
+    def _try_again(self, claim: range, error: Exception) -> None:
+        """Releases the runs of a task that failed, so that they are submitted again, unless they have failed often.
+
+        The errors of runs are results. An error of a task comes from the executor: Dask, for example, confuses a result
+        with an error if the worker that sent it is killed at that moment.
+        """
+        self._failures[claim.start] += 1
+        if self._failures[claim.start] >= MAX_ATTEMPTS:
+            raise _ExecutorError(error) from error
+        _LOGGER.warning(
+            "submitting %d runs again: the executor failed with %s: %s", len(claim), type(error).__name__, error
+        )
+        self._store.release(claim)
+
+    def _train_late_chunk(self) -> bool:
+        """Trains a chunk here that the executor does not return; returns whether there is one.
+
+        Dask, for example, tries for 30 seconds to fetch a result from a worker that was killed after it finished, and
+        for minutes from one that was stopped.
+        """
+        if self._slowest is None:
+            return False  # the executor may still wait for its first worker
+        limit = max(LATE_SECONDS, LATE_FACTOR * self._slowest)
+        future, submitted = min(self._pending.items(), key=lambda pair: pair[1].at)
+        late = time.monotonic() - submitted.at
+        if late < limit:
+            return False
+        claim, study = submitted.claim, self._study
+        _LOGGER.warning("training %d runs here, which the executor has not returned for %.0f s", len(claim), late)
+        del self._pending[future]
+        future.cancel()
+        parts = [
+            (setting, study.overrides[setting], study.resolved[setting], seeds) for setting, seeds in study.split(claim)
+        ]
+        began = time.perf_counter()
+        records = train_parts(study.env, parts, study.block, 1, self._pace)
+        self._store.commit(claim, records, time.perf_counter() - began)
+        self._report()
+        self._poll_seconds = 0.0  # the next chunk may be late, too
+        return True
+
+    def _describe_pending(self) -> str:
+        runs = sum(len(submitted.claim) for submitted in self._pending.values())
+        return f"{runs:,} runs that the executor has in {len(self._pending)} tasks"
+
+
+class _ExecutorError(Exception):
+    """An error of the executor, and not of the store or of the callback."""
+
+    def __init__(self, error: BaseException) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
+def _has_failed(future: Future[Any]) -> bool:
+    return future.cancelled() or future.exception() is not None
+
+
+def _lost(error: BaseException, study: Study, store: Store, is_own: bool) -> RuntimeError:
+    """Returns the error to raise where an executor fails, which tells how to resume."""
+    finished = store.finished()
+    if isinstance(error, CancelledError):
+        message = "the executor cancelled its work; was it, its client or its scheduler closed? "
+    else:
+        what = "a worker process ended abruptly (killed, or out of memory)" if is_own else "the executor failed"
+        reason = " ".join(str(error).split())
+        message = f"{what}: {type(error).__name__}{': ' if reason else ''}{reason}; "
+    if is_own and not finished:
+        message += "where this is a script, it must keep its call behind if __name__ == '__main__'; "
+    kept = f"{finished:,} of {study.runs:,} runs are kept"
+    if store.path is None:
+        return RuntimeError(f"{message}{kept} as .run of this error; with a store= the same call could resume")
+    return RuntimeError(f"{message}run the same call again: {kept} in {name_of(store.path)}")

@@ -1,0 +1,114 @@
+"""The HTML page of a report."""
+
+import base64
+import html
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from qtab.sweeps.report_plots import MAX_SETTINGS, Picture
+from qtab.sweeps.results import Sweep
+
+_STYLE = (
+    "body{font:15px/1.5 system-ui,sans-serif;max-width:64rem;margin:2rem auto;padding:0 1rem;color:#222}"
+    "table{border-collapse:collapse}td,th{padding:.25rem .7rem;text-align:right;border-bottom:1px solid #ddd}"
+    "img{max-width:100%}code{white-space:pre-wrap}"
+)
+
+
+def page(
+    sweep: Sweep,
+    header: Sequence[str],
+    rows: Sequence[Sequence[Any]],
+    pictures: Mapping[str, Picture],
+    command: str | None,
+) -> str:
+    """Returns the page, which needs no other file.
+
+    Args:
+        sweep: The sweep.
+        header: The header of the table of settings.
+        rows: Its rows, best first.
+        pictures: The pictures by name.
+        command: The command that writes the report, or None.
+    """
+    env = html.escape(sweep.env)
+    images = "\n".join(
+        f"<h2>{html.escape(name.replace('_', ' ', 1).capitalize())}</h2>\n"
+        f'<img alt="{html.escape(picture.alternative)}" '
+        f'src="data:image/png;base64,{base64.b64encode(picture.png).decode()}">'
+        for name, picture in pictures.items()
+    )
+    notes = "\n".join(f"<p>{html.escape(note)}</p>" for note in _notes(sweep, len(rows)))
+    return (
+        f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{env}</title><style>{_STYLE}</style>\n'
+        f"<h1>{env}</h1>\n{notes}\n{_table(header, rows)}\n{images}\n"
+        f"<h2>Settings that all runs share</h2>\n{_table(('setting', 'value'), _shared(sweep))}\n"
+        f"<h2>How it was made</h2>\n{_table(('', ''), _origin(sweep, command))}\n</html>\n"
+    )
+
+
+def _notes(sweep: Sweep, ranked: int) -> list[str]:
+    total = len(sweep.settings) * len(sweep.seeds)
+    runs = f"{len(sweep):,} runs" if len(sweep) == total else f"{len(sweep):,} of {total:,} runs"
+    notes = [
+        f"{runs}: {len(sweep.settings)} settings, {len(sweep.seeds)} seeds each, {sweep.failed} failed. Final returns "
+        "are means of the last 100 episodes; the interval of the mean has a coverage of 95%."
+    ]
+    if sweep.failed:
+        notes.append(
+            "The order is that of ranked_mean, in which a failed run counts as the worst run of the sweep. The other "
+            "statistics leave failed runs out."
+        )
+    if ranked > 1:
+        notes.append(
+            f"The best of {ranked} settings looks better than it is, because the choice prefers lucky seeds. Train it "
+            "again with other seeds: sweep.confirm(seeds=100) in Python, or qtab sweep with --confirm 100."
+        )
+    if ranked > MAX_SETTINGS:
+        notes.append(f"The pictures show the best {MAX_SETTINGS} of {ranked} settings; the table has all of them.")
+    if sweep.unchecked_runs:
+        notes.append(
+            f"{sweep.unchecked_runs:,} runs are from an earlier version of qtab without digests: damage to them cannot "
+            "be found."
+        )
+    return notes
+
+
+def _shared(sweep: Sweep) -> list[tuple[str, Any]]:
+    """Returns the settings that are given and the same for all runs."""
+    first = sweep.configs[0]
+    return [
+        (name, value)
+        for name, value in sorted(first.items())
+        if value not in (None, [], {}) and all(config.get(name) == value for config in sweep.configs)
+    ]
+
+
+def _origin(sweep: Sweep, command: str | None) -> list[tuple[str, Any]]:
+    rows: list[tuple[str, Any]] = [] if command is None else [("command", command)]
+    rows += [("seeds", _seeds(sweep.seeds)), ("block", f"{sweep.block} episodes")]
+    rows.append(("training", f"{sweep.seconds:.1f} s, summed over the processes that took part"))
+    try:
+        versions = json.loads(sweep.versions)
+    except (ValueError, RecursionError):
+        versions = {}
+    return rows + ([(str(name), value) for name, value in versions.items()] if isinstance(versions, dict) else [])
+
+
+def _seeds(seeds: Sequence[int]) -> str:
+    if list(seeds) == list(range(seeds[0], seeds[0] + len(seeds))) and len(seeds) > 2:
+        return f"{seeds[0]} to {seeds[-1]}"
+    return ", ".join(map(str, seeds[:20])) + (", ..." if len(seeds) > 20 else "")
+
+
+def _table(header: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
+    head = "".join(f"<th>{html.escape(name)}</th>" for name in header)
+    body = "\n".join("<tr>" + "".join(f"<td>{_cell(value)}</td>" for value in row) + "</tr>" for row in rows)
+    return f"<table><tr>{head}</tr>\n{body}</table>"
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    return html.escape(f"{value:.6g}" if isinstance(value, float) else str(value))

@@ -1,0 +1,94 @@
+"""What a store holds, read without writing to it."""
+
+import logging
+import os
+from pathlib import Path
+from typing import Any
+
+from qtab.sweeps import version_1
+from qtab.sweeps.connection import StoreError, is_writable, name_of, reading
+from qtab.sweeps.database import Contents, is_empty, read_contents
+from qtab.sweeps.description import Description
+
+_LOGGER = logging.getLogger("qtab")
+
+
+def store_path(path: Any) -> Path:
+    """Returns the argument ``store`` as a path.
+
+    Raises:
+        OSError: if it names something that is not a regular file.
+        TypeError: if it is not a path.
+        ValueError: if it names no file.
+    """
+    if not isinstance(path, str | os.PathLike):
+        raise TypeError(f"store must be a path or None, got {path!r}")
+    text = os.fspath(path)
+    if not isinstance(text, str):
+        raise TypeError(f"store must be a path or None, got {path!r}")
+    if text in ("", ":memory:") or text.startswith("file:") or "\0" in text:
+        raise ValueError(f"store must be the path of a file, got {text!r}; None keeps the results in memory")
+    found = Path(text)
+    if found.is_dir():
+        raise IsADirectoryError(f"store must be a file, got the folder {text!r}")
+    if found.exists() and not found.is_file():
+        raise OSError(f"store must be a regular file, got {text!r}")
+    return found
+
+
+def finished_contents(path: Path, description: Description) -> Contents | None:
+    """Returns what a finished store on a read-only medium holds; None if it can be written, or does not exist.
+
+    Raises:
+        OSError: if the store is not finished.
+        StoreError: if it is damaged, or belongs to another study.
+    """
+    if not path.exists() or is_writable(path):
+        return None
+    contents = read_store(path)
+    check_study(contents, description, path)
+    if len(contents.runs) < description.runs:
+        raise PermissionError(
+            f"{name_of(path)} cannot be written, and has only {len(contents.runs):,} of {description.runs:,} runs"
+        )
+    return contents
+
+
+def read_store(path: Path) -> Contents:
+    """Returns what a store holds, which may belong to a sweep that is still running.
+
+    Raises:
+        OSError: if the file cannot be read.
+        StoreError: if it is not a store, is damaged, or is empty.
+    """
+    with reading(path) as connection:
+        connection.execute("BEGIN")
+        if is_empty(connection):
+            raise StoreError(f"{name_of(path)} is empty: its sweep ended before it stored anything; start it again")
+        contents = read_contents(connection, path)
+        if contents.version == "1":
+            version_1.check_chunks(connection, path, contents)
+        warn_unchecked(contents, path)
+        return contents
+
+
+def check_study(contents: Contents, description: Description, path: Path | None) -> None:
+    """Checks that a store belongs to a study.
+
+    Raises:
+        StoreError: if it does not.
+    """
+    if contents.description.text != description.text:
+        raise StoreError(
+            f"{name_of(path)} belongs to another sweep (other settings, seeds or environment); choose another file"
+        )
+
+
+def warn_unchecked(contents: Contents, path: Path | None) -> None:
+    """Logs if results have no digests."""
+    if contents.unchecked_runs:
+        _LOGGER.warning(
+            "%s has %s runs from an earlier version of qtab without digests: damage to them cannot be found",
+            name_of(path),
+            f"{contents.unchecked_runs:,}",
+        )

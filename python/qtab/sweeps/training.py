@@ -1,0 +1,94 @@
+"""The training of all runs of a study that its store does not have yet."""
+
+import os
+import time
+from collections.abc import Callable
+from concurrent.futures import Executor
+from contextlib import closing, suppress
+from functools import partial
+from typing import TypeVar
+
+from qtab._utils import memory
+from qtab.sweeps.database import Contents
+from qtab.sweeps.executors import ExecutorTraining
+from qtab.sweeps.pace import Pace, claim_size
+from qtab.sweeps.progress import Callback, ProgressReporter
+from qtab.sweeps.store import Store
+from qtab.sweeps.stored import finished_contents, store_path
+from qtab.sweeps.study import Study
+from qtab.sweeps.waiting import POLL_SECONDS, Notice
+from qtab.sweeps.worker import train_parts
+from qtab.training.process_pool import process_pool
+from qtab.training.train_many import thread_count
+
+MAX_PENDING_CHUNKS = 64
+"""The maximum number of chunks that an executor is given at a time."""
+
+T = TypeVar("T")
+
+
+def run_study(
+    study: Study,
+    build: Callable[[Contents], T],
+    store: "str | os.PathLike[str] | None",
+    executor: Executor | None,
+    threads: int | None,
+    memory_limit: int | None,
+    callback: Callback | None,
+) -> T:
+    """Trains the runs of a study that its store does not have, and returns the table of all.
+
+    Args:
+        study: The study.
+        build: Returns the table of what a store holds.
+        store: The file, or None for a store in memory.
+        executor: Trains the runs; None trains them here, or in worker processes if Python steps the environment.
+        threads: The number of threads or processes without an executor; None means one per core.
+        memory_limit: The most memory that a single run may need, in bytes; None means half of the machine's memory.
+        callback: Receives the progress.
+
+    Raises:
+        Exception: the errors of :func:`qtab.sweep`. Its attribute ``run`` is the table of the finished runs.
+    """
+    workers = thread_count(threads)
+    if executor is not None and not hasattr(executor, "submit"):
+        raise TypeError(f"executor must have a method submit, as in concurrent.futures, got {executor!r}")
+    if callback is not None and not callable(callback):
+        raise TypeError(f"callback must be a function of the progress or None, got {callback!r}")
+    path = None if store is None else store_path(store)
+    study.check_memory(memory.memory_limit(memory_limit))
+    if path is not None and (finished := finished_contents(path, study.description)) is not None:
+        return build(finished)
+    with closing(Store(path, study.description)) as opened:
+        try:
+            report = ProgressReporter(study.runs, opened.finished, callback)
+            if executor is not None:
+                ExecutorTraining(study, opened, executor, report).run(MAX_PENDING_CHUNKS)
+            elif all(resolved.is_native for resolved in study.resolved):
+                _train_in_threads(study, opened, workers, report)
+            elif opened.finished() < study.runs:
+                with process_pool(workers) as processes:
+                    ExecutorTraining(study, opened, processes, report).run(2 * workers, is_own=True)
+            return build(opened.contents())
+        except BaseException as error:
+            with suppress(Exception):
+                error.run = build(opened.contents())  # type: ignore[attr-defined]
+            raise
+
+
+def _train_in_threads(study: Study, store: Store, threads: int, report: Callable[[], None]) -> None:
+    pace, notice = Pace(), Notice()
+    while store.finished() < study.runs:
+        claim = store.claim(partial(claim_size, study, pace, threads))
+        if claim is None:
+            notice(store.claimed_by_others)
+            time.sleep(POLL_SECONDS)
+            continue
+        parts = [
+            (setting, study.overrides[setting], study.resolved[setting], seeds) for setting, seeds in study.split(claim)
+        ]
+        began = time.perf_counter()
+        records = train_parts(study.env, parts, study.block, threads, pace)
+        store.commit(claim, records, time.perf_counter() - began)
+        notice.reset()
+        report()
