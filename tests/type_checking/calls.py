@@ -57,5 +57,5 @@ def wrong_calls(run: qtab.Run, progress: qtab.Progress) -> None:
     run.config.replace(discretizer="hexagons")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.Config(learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
     qtab.Config("Taxi-v4", ties="last")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
-    del progress.steps  # type: ignore[attr-defined]  # pyright: ignore[reportAttributeAccessIssue]
+    del progress.rewards  # type: ignore[attr-defined]  # pyright: ignore[reportAttributeAccessIssue]
     qtab.trian("Taxi-v4")  # type: ignore[attr-defined]  # pyright: ignore[reportAttributeAccessIssue]
