@@ -16,7 +16,7 @@ def in_a_process(code):
 
 
 MODULES = ["book", "callbacks", "designs", "plots", "stats"]
-HEAVY = "matplotlib", "tyro", "tqdm", "moviepy", "pygame", "PIL", "tomllib", "numba"
+HEAVY = "matplotlib", "tyro", "tqdm", "moviepy", "pygame", "PIL", "tomllib", "numba", "IPython", "tensorboardX"
 
 
 def test_importing_loads_no_plotting_video_or_command_line_library():

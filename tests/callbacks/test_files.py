@@ -111,7 +111,7 @@ def test_a_log_of_an_interrupted_run_is_closed(tmp_path):
 
 def curves(folder: Path) -> dict[str, list[tuple[int, float]]]:
     """The points of the curves in TensorBoard's only file in a folder: a length, a checksum, an event, a checksum."""
-    from tensorboardX.proto.event_pb2 import Event  # type: ignore[import-untyped]
+    from tensorboardX.proto.event_pb2 import Event
 
     (path,) = folder.iterdir()
     content, at = path.read_bytes(), 0
@@ -142,7 +142,7 @@ def test_tensorboard_without_its_writer_names_the_command_that_installs_it(tmp_p
     import sys
 
     monkeypatch.setitem(sys.modules, "tensorboardX", None)
-    with pytest.raises(ModuleNotFoundError, match="pip install .*tensorboardX"):
+    with pytest.raises(ModuleNotFoundError, match=r"pip install .*tensorboardX"):
         qtab.train(CAR, callback=TensorBoardLogger(tmp_path / "curves"), **SHORT)
 
 

@@ -89,7 +89,7 @@ def test_a_notebook_without_matplotlib_names_the_command_that_installs_it(
     screen: Screen, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    with pytest.raises(ModuleNotFoundError, match="pip install .*matplotlib"):
+    with pytest.raises(ModuleNotFoundError, match=r"pip install .*matplotlib"):
         qtab.train("MountainCar-v0", callback=LivePlot(), **SHORT)
 
 

@@ -8,8 +8,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from qtab.callbacks import BaseCallback, Checkpoint, CSVLogger, EvaluateEvery, KeepBest, LivePlot, StopAtReturn
-from qtab.callbacks import TensorBoardLogger
+from qtab.callbacks import (
+    BaseCallback,
+    Checkpoint,
+    CSVLogger,
+    EvaluateEvery,
+    KeepBest,
+    LivePlot,
+    StopAtReturn,
+    TensorBoardLogger,
+)
 from support.environments import Walk
 from support.learner_settings import run_settings
 from support.parity import assert_same_run, run_of

@@ -39,4 +39,4 @@ class BaseCallback(ABC):
         """Called after every ``every`` episodes and after the last one. It stops the run by returning False."""
 
     def on_end(self) -> None:  # noqa: B027 - need not do anything
-        """Called after the last call, and after an exception: closes what :meth:`on_start` opened."""
+        """Called once after :meth:`on_start` succeeded, also after an exception: closes what that opened."""

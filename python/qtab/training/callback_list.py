@@ -25,14 +25,14 @@ class CallbackList:
         return bool(self._callbacks)
 
     def start(self, resolved: ResolvedRun) -> ExitStack:
-        """Starts the callbacks; returns the context at whose end they end."""
+        """Starts the callbacks; returns the context at whose end those that were started end."""
         environment = resolved.environment
         env = environment.env if isinstance(environment, PythonEnvironment) else None
         with ExitStack() as on_exit:
             for callback, _ in self._callbacks:
                 if isinstance(callback, BaseCallback):
-                    on_exit.callback(callback.on_end)
                     callback.on_start(resolved.config, env)
+                    on_exit.callback(callback.on_end)
             return on_exit.pop_all()
 
     def next_call(self, done: int, total: int) -> int:
@@ -44,18 +44,16 @@ class CallbackList:
 
         The others are then called as well, so that all have seen where the run ended.
         """
-        due = {
-            index: progress.episodes % every == 0 or progress.episodes == progress.total
-            for index, (_, every) in enumerate(self._callbacks)
-        }
-        proceed = self._call([index for index in due if due[index]], progress)
-        if not proceed:
-            self._call([index for index in due if not due[index]], progress)
+        at_end, proceed = progress.episodes == progress.total, True
+        for callback, every in self._callbacks:
+            if at_end or progress.episodes % every == 0:
+                answer = callback(progress)
+                proceed = proceed and (answer is None or bool(answer))  # NumPy's False stops, too
+        if not proceed and not at_end:
+            for callback, every in self._callbacks:
+                if progress.episodes % every:
+                    callback(progress)
         return proceed
-
-    def _call(self, indices: list[int], progress: Progress) -> bool:
-        answers = [self._callbacks[index][0](progress) for index in indices]
-        return all(answer is None or bool(answer) for answer in answers)  # NumPy's False stops, too
 
 
 def as_tuple(callbacks: Any, argument: str = "callback") -> tuple[Any, ...]:

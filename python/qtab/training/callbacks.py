@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab.config import Config
-from qtab.discretizers import Discretizer
 from qtab.training.rates import Rates
 
 if TYPE_CHECKING:
@@ -60,17 +59,17 @@ class Progress:
     @property
     def config(self) -> Config:
         """The complete config of the run, as in :attr:`qtab.Run.config`."""
-        return self._required.config
+        return self._required.reader.config
 
     @cached_property
     def epsilon(self) -> float | None:
         """The exploration rate of the last finished episode; None with softmax exploration."""
-        return self._required.rates.epsilon(max(self.episode, 0))
+        return self._required.reader.rates.epsilon(max(self.episode, 0))
 
     @cached_property
     def learning_rate(self) -> float:
         """The learning rate of the last finished episode; with schedule ``"visits"`` that of a first visit."""
-        return self._required.rates.learning_rate(max(self.episode, 0))
+        return self._required.reader.rates.learning_rate(max(self.episode, 0))
 
     @cached_property
     def tables(self) -> NDArray[np.float64]:
@@ -111,39 +110,36 @@ class Progress:
             raise RuntimeError("this Progress was not made by qtab.train: it has only episodes, returns and lengths")
         return self._state
 
-    def _current(self, name: str) -> "RunState":
+    def _current(self, name: str) -> "EpisodeReader":
         if not self._required.current:
             raise RuntimeError(
                 f"progress.{name} must be read during the call: the run has moved on since its "
                 f"{self.episodes} episode{'' if self.episodes == 1 else 's'}"
             )
-        return self._required
+        return self._required.reader
 
 
 Callback = Callable[[Progress], bool | None]
 
 
-@dataclass
+@dataclass(slots=True)
 class RunState:
     """The run behind a Progress."""
 
-    config: Config
-    discretizer: Discretizer
-    rates: Rates
+    reader: "EpisodeReader"
     steps: int
     seconds: float
-    read_tables: Callable[[], NDArray[np.float64]]
-    make_run: "Callable[[], Run]"
     current: bool = True
-    """False as soon as the run goes on: what is read from then on belongs to a later time."""
+    """False as soon as the run goes on: what the reader reads from then on belongs to a later time."""
 
 
 class EpisodeReader:
     """Reads the finished episodes of a trainer. Each call copies only the episodes since the last one."""
 
     def __init__(self, trainer: _core.Trainer, resolved: "ResolvedRun", make_run: "Callable[[], Run]") -> None:
-        self._trainer, self._resolved, self._make_run = trainer, resolved, make_run
-        self._rates = Rates(resolved.config)
+        self._trainer, self._resolved = trainer, resolved
+        self.config, self.discretizer, self.make_run = resolved.config, resolved.discretizer, make_run
+        self.rates = Rates(resolved.config)
         self._began = time.perf_counter()
         self._episodes = self._steps = 0
         self._returns, self._lengths = np.empty(0, np.float64), np.empty(0, np.int64)
@@ -153,7 +149,7 @@ class EpisodeReader:
         """Returns the progress so far."""
         returns, lengths, _ = self._trainer.episodes(since=self._episodes)
         before, self._episodes = self._episodes, self._episodes + len(returns)
-        total = self._resolved.config.episodes
+        total = self.config.episodes
         if self._episodes > len(self._returns):
             # Doubled each time, so that over a run every episode is copied about once more.
             capacity = min(max(self._episodes, 2 * len(self._returns)), total)
@@ -162,7 +158,7 @@ class EpisodeReader:
         now = slice(before, self._episodes)
         self._returns[now], self._lengths[now] = returns, lengths
         self._steps += int(lengths.sum())
-        self._state = self._read_state()
+        self._state = RunState(self, self._steps, time.perf_counter() - self._began)
         return Progress(
             self._episodes, total, self._returns[: self._episodes], self._lengths[: self._episodes], self._state
         )
@@ -173,17 +169,9 @@ class EpisodeReader:
             self._state.current = False
             self._state = None
 
-    def _read_state(self) -> RunState:
-        resolved = self._resolved
-        return RunState(
-            config=resolved.config,
-            discretizer=resolved.discretizer,
-            rates=self._rates,
-            steps=self._steps,
-            seconds=time.perf_counter() - self._began,
-            read_tables=lambda: self._trainer.tables().reshape(-1, resolved.discretizer.n_rows, len(resolved.actions)),
-            make_run=self._make_run,
-        )
+    def read_tables(self) -> NDArray[np.float64]:
+        """Returns a copy of the tables as they are now, (k, rows, actions)."""
+        return self._trainer.tables().reshape(-1, self.discretizer.n_rows, len(self._resolved.actions))
 
 
 def _enlarge(column: NDArray[Any], used: int, capacity: int) -> NDArray[Any]:
