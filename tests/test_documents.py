@@ -99,7 +99,7 @@ def test_the_python_of_the_page_on_callbacks_runs(tmp_path: Path, monkeypatch: p
     monkeypatch.chdir(tmp_path)
     libraries = {name: Recorder() for name in ("wandb", "mlflow")}
     for name, library in libraries.items():
-        monkeypatch.setitem(sys.modules, name, library)  # type: ignore[arg-type]
+        monkeypatch.setitem(sys.modules, name, library)
     namespace: dict[str, Any] = {}
     for block in PYTHON.findall((ROOT / "docs/callbacks.md").read_text(encoding="utf-8")):
         exec(block, namespace)  # noqa: S102 - our own page

@@ -142,7 +142,7 @@ def all_of_them(folder: Any, env: gym.Env | None = None) -> list[Any]:
 
 
 @given(data=st.data(), every=st.integers(1, 5))
-@settings(max_examples=settings.default.max_examples // 5)
+@settings(max_examples=settings().max_examples // 5)
 def test_a_run_with_all_callbacks_equals_the_one_without(data, every, tmp_path_factory):
     algorithm = data.draw(st.sampled_from(["q_learning", "double_q_learning", "sarsa_lambda", "dyna_q"]))
     chosen = data.draw(run_settings(algorithm))

@@ -22,7 +22,7 @@ def read_everything(progress: qtab.Progress) -> None:
 
 
 @given(data=st.data(), every=st.integers(1, 3))
-@settings(max_examples=settings.default.max_examples // 2)
+@settings(max_examples=settings().max_examples // 2)
 def test_a_callback_reads_the_run_as_it_would_be_if_it_stopped_there(data, every):
     algorithm = data.draw(st.sampled_from(ALGORITHMS))
     chosen = data.draw(run_settings(algorithm))
@@ -74,13 +74,14 @@ def test_what_was_not_read_during_the_call_cannot_be_read_afterwards(name):
             getattr(progress, name)
         seen.append(progress)
 
-    run = qtab.train("MountainCar-v0", callback=look, callback_every=1, **SHORT)
+    qtab.train("MountainCar-v0", callback=look, callback_every=1, **SHORT)
     early = getattr(seen[1], name)  # read during the call: still what it was then
     assert early is getattr(seen[1], name)
     with pytest.raises(RuntimeError, match=rf"^progress\.{name} must be read during the call: .* since its 1 episode$"):
         getattr(seen[0], name)
-    assert not seen[0].is_current
-    assert_same_run(seen[-1].run, run)  # after the last call the run has not moved on
+    with pytest.raises(RuntimeError, match=r"since its 10 episodes$"):
+        getattr(seen[-1], name)
+    assert not any(progress.is_current for progress in seen)
 
 
 def test_a_progress_kept_beyond_an_interruption_does_not_show_a_later_table():
@@ -160,6 +161,18 @@ def test_seconds_grow():
     assert 0.0 <= seen[0] <= seen[-1] <= run.seconds
 
 
+@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
+def test_a_run_that_is_read_meanwhile_keeps_its_recordings(backend):
+    runs: list[qtab.Run] = []
+    chosen: dict[str, Any] = {**SHORT, "backend": backend, "record": 3}
+    run = qtab.train("MountainCar-v0", callback=lambda p: runs.append(p.run), callback_every=4, **chosen)
+    alone = qtab.train("MountainCar-v0", **chosen)
+    assert_same_run(run, alone)
+    assert [recording.episode for recording in run.recordings] == [7, 8, 9]
+    assert [recording.actions for recording in run.recordings] == [recording.actions for recording in alone.recordings]
+    assert [so_far.recordings for so_far in runs] == [(), (), ()]
+
+
 def test_a_progress_of_ones_own_has_the_fields_that_were_given():
     progress = qtab.Progress(2, 10, np.array([-3.0, -4.0]), np.array([3, 4]))
     assert (progress.episode, progress.steps) == (1, 7)
@@ -172,6 +185,11 @@ def test_nothing_is_copied_unless_it_is_read(monkeypatch):
 
     made: list[object] = []
     real = module._run
-    monkeypatch.setattr(module, "_run", lambda *arguments: made.append(arguments) or real(*arguments))
+
+    def count(*arguments, **keywords):
+        made.append(keywords)
+        return real(*arguments, **keywords)
+
+    monkeypatch.setattr(module, "_run", count)
     qtab.train("MountainCar-v0", callback=lambda progress: progress.episode >= 0, callback_every=1, **SHORT)
     assert len(made) == 1  # the result

@@ -30,7 +30,7 @@ def assert_same_runs(one: qtab.Runs, other: qtab.Runs) -> None:
     threads=st.integers(1, 3),
     every=st.none() | st.integers(1, 50),
 )
-@settings(max_examples=settings.default.max_examples // 3)
+@settings(max_examples=settings().max_examples // 3)
 def test_a_callback_sees_finished_runs_and_does_not_change_them(seeds, threads, every):
     seen: list[qtab.RunsProgress] = []
     chosen: dict[str, Any] = {**SHORT, "threads": threads, "tables": True}
@@ -93,14 +93,12 @@ def test_a_run_that_fails_in_a_later_part_is_named_and_keeps_the_finished_ones()
 @pytest.mark.slow
 def test_runs_in_processes_are_reported_too():
     seen: list[int] = []
-    runs = qtab.train_many(
-        CAR,
-        6,
-        backend="gymnasium",
-        threads=2,
-        callback=lambda p: seen.append(p.runs) or (p.runs < 4 and p.returns.shape == (p.runs, 6)),
-        **SHORT,
-    )
+
+    def stop(progress: qtab.RunsProgress) -> bool:
+        seen.append(progress.runs)
+        return progress.runs < 4 and progress.returns.shape == (progress.runs, 6)
+
+    runs = qtab.train_many(CAR, 6, backend="gymnasium", threads=2, callback=stop, **SHORT)
     assert seen[-1] >= 4
     assert seen == sorted(set(seen))
     assert runs.completed is (seen[-1] == 6)

@@ -1,5 +1,6 @@
 """``LivePlot``: the learning curve of a run in a notebook, while it trains."""
 
+import importlib
 import io
 import time
 from typing import Any
@@ -65,11 +66,10 @@ class LivePlot(BaseCallback):
         progress, self._waiting = self._waiting, None
         if progress is None or not self._shows:
             return
-        from IPython.display import Image, display
-
-        image = Image(data=_picture(progress), format="png")
+        ipython: Any = importlib.import_module("IPython.display")  # without types
+        image = ipython.Image(data=_picture(progress), format="png")
         if self._display is None:
-            self._display = display(image, display_id=True)
+            self._display = ipython.display(image, display_id=True)
         else:
             self._display.update(image)
         self._drawn = time.perf_counter()

@@ -99,6 +99,8 @@ class Progress:
     def run(self) -> "Run":
         """The run so far, to be evaluated, plotted or saved. Its ``completed`` is False before the last episode.
 
+        It has no recordings: the last episodes are those of the whole run.
+
         Raises:
             RuntimeError: if it is first read after the call.
         """
@@ -134,16 +136,27 @@ class RunState:
 
 
 class EpisodeReader:
-    """Reads the finished episodes of a trainer. Each call copies only the episodes since the last one."""
+    """Reads the finished episodes of a trainer. Each call copies only the episodes since the last one.
 
-    def __init__(self, trainer: _core.Trainer, resolved: "ResolvedRun", make_run: "Callable[[], Run]") -> None:
+    It is a context manager, at whose end the last Progress can no longer read its tables.
+    """
+
+    def __init__(
+        self, trainer: _core.Trainer, resolved: "ResolvedRun", began: float, make_run: "Callable[[], Run]"
+    ) -> None:
         self._trainer, self._resolved = trainer, resolved
         self.config, self.discretizer, self.make_run = resolved.config, resolved.discretizer, make_run
         self.rates = Rates(resolved.config)
-        self._began = time.perf_counter()
+        self._began = began
         self._episodes = self._steps = 0
         self._returns, self._lengths = np.empty(0, np.float64), np.empty(0, np.int64)
         self._state: RunState | None = None
+
+    def __enter__(self) -> "EpisodeReader":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.move_on()
 
     def read(self) -> Progress:
         """Returns the progress so far."""

@@ -93,11 +93,11 @@ def train_resolved(
     total = resolved.config.episodes
     began = time.perf_counter()
     trainer = _core.Trainer(resolved.spec(), resolved.seed, record)
-    reader = EpisodeReader(trainer, resolved, lambda: _run(resolved, trainer, began))
+    reader = EpisodeReader(trainer, resolved, began, lambda: _run(resolved, trainer, began, over=False))
     callbacks = CallbackList(callback, callback_every)
     done = 0
     try:
-        with callbacks.start(resolved), ProgressBar(total, "episode", progress) as bar:
+        with reader, callbacks.start(resolved), ProgressBar(total, "episode", progress) as bar:
             while done < total:
                 target = callbacks.next_call(done, total)
                 reader.move_on()
@@ -135,9 +135,10 @@ def _overflow(run: Run) -> OverflowError | None:
     )
 
 
-def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float) -> Run:
+def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float, *, over: bool = True) -> Run:
+    """The run that a trainer has made; one that is not over goes on afterwards, and has no recordings yet."""
     returns, lengths, terminated = trainer.episodes()
-    kept: list[tuple[Any, list[int]]] = trainer.recordings()
+    kept: list[tuple[Any, list[int]]] = trainer.recordings() if over else []
     first = len(returns) - len(kept)
     generators = generator_states(resolved.config, [start for start, _ in kept])
     recordings = tuple(
