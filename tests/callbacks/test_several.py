@@ -1,5 +1,6 @@
 """Several callbacks at once, each with its interval; their start, their end, and what is refused before training."""
 
+import signal
 from typing import Any
 
 import gymnasium as gym
@@ -96,6 +97,19 @@ def test_an_exception_in_one_ends_them_all_and_carries_the_run(raised):
     assert len(run_of(raised).episode_returns) == 4
     assert first.entries[3:] == [4, "end"]
     assert last.entries[3:] == ["end"]
+
+
+@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
+def test_ctrl_c_inside_a_callback_stops_the_run_and_keeps_it(backend, tmp_path):
+    def interrupt(progress):
+        if progress.episodes == 6:
+            signal.raise_signal(signal.SIGINT)
+
+    checkpoint = Checkpoint(tmp_path / "run.npz", every=4)
+    with pytest.raises(KeyboardInterrupt) as caught:
+        qtab.train(CAR, backend=backend, callback=[checkpoint, interrupt], callback_every=2, **SHORT)
+    assert len(run_of(caught.value).episode_returns) == 6
+    assert len(qtab.load(tmp_path / "run.npz").episode_returns) == 4
 
 
 def test_one_that_cannot_start_leaves_the_others_ended_and_nothing_trained(tmp_path):
