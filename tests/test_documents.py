@@ -1,7 +1,9 @@
 """The pages of the repository: their links and paths exist, their pictures are described, their code runs."""
 
 import re
+import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -75,3 +77,39 @@ def test_the_readmes_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert len(blocks) > 5
     assert isinstance(namespace["run"], qtab.Run)
     assert (tmp_path / "learning_curve.png").stat().st_size > 0
+
+
+class Recorder:
+    """Stands for a tracking library: takes any call, and writes down its name and arguments."""
+
+    def __init__(self) -> None:
+        self.calls: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
+
+    def __getattr__(self, name: str) -> Any:
+        def call(*arguments: Any, **keywords: Any) -> "Recorder":
+            self.calls.append((name, arguments, keywords))
+            return self
+
+        return call
+
+
+@pytest.mark.slow
+def test_the_python_of_the_page_on_callbacks_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In order and in one namespace; the tracking libraries, which are not installed, write down their calls."""
+    monkeypatch.chdir(tmp_path)
+    libraries = {name: Recorder() for name in ("wandb", "mlflow")}
+    for name, library in libraries.items():
+        monkeypatch.setitem(sys.modules, name, library)
+    namespace: dict[str, Any] = {}
+    for block in PYTHON.findall((ROOT / "docs/callbacks.md").read_text(encoding="utf-8")):
+        exec(block, namespace)  # noqa: S102 - our own page
+    assert len(qtab.load("best.npz").episode_returns) <= len(qtab.load("run.npz").episode_returns)
+    assert namespace["run"].episode_returns[-100:].mean() >= -105
+    assert Path("log.csv").read_text().count("\n") == len(namespace["run"].episode_returns) // 100 + 1
+    assert [name for name, _, _ in libraries["wandb"].calls] == ["init", *["log"] * 50, "finish"]
+    mlflow = ["start_run", "log_params", *["log_metrics"] * 10, "end_run"]
+    assert [name for name, _, _ in libraries["mlflow"].calls] == mlflow
+    for _, (values,), keywords in libraries["wandb"].calls[1:-1] + libraries["mlflow"].calls[2:-1]:
+        assert set(values) == {"return", "epsilon"}
+        assert keywords["step"] % 100 == 0
+    assert len(namespace["runs"]) % 16 == 0

@@ -15,8 +15,8 @@ def in_a_process(code):
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120).stdout
 
 
-MODULES = ["book", "designs", "plots", "stats"]
-HEAVY = "matplotlib", "tyro", "tqdm", "moviepy", "pygame", "PIL", "tomllib", "numba"
+MODULES = ["book", "callbacks", "designs", "plots", "stats"]
+HEAVY = "matplotlib", "tyro", "tqdm", "moviepy", "pygame", "PIL", "tomllib", "numba", "IPython", "tensorboardX"
 
 
 def test_importing_loads_no_plotting_video_or_command_line_library():

@@ -23,12 +23,14 @@ _MODULES = {
     "Recording": "qtab.results.run",
     "Run": "qtab.results.run",
     "Runs": "qtab.results.runs",
+    "RunsProgress": "qtab.training.runs_progress",
     "StoreError": "qtab.sweeps.connection",
     "Sweep": "qtab.sweeps.results",
     "SweepProgress": "qtab.sweeps.progress",
     "TabularEnv": "qtab.envs.tabular",
     "Verification": "qtab.training.verify",
     "book": "qtab.book",
+    "callbacks": "qtab.callbacks",
     "designs": "qtab.sweeps.designs",
     "evaluate": "qtab.training.evaluate",
     "load": "qtab.results.storage",
@@ -48,6 +50,7 @@ _MODULES = {
 if TYPE_CHECKING:
     # The table again, in the only form that editors and type checkers read. A test compares the two.
     from qtab import book as book
+    from qtab import callbacks as callbacks
     from qtab import plots as plots
     from qtab import stats as stats
     from qtab.config import Config as Config
@@ -71,6 +74,7 @@ if TYPE_CHECKING:
     from qtab.training.callbacks import Progress as Progress
     from qtab.training.evaluate import Evaluation as Evaluation
     from qtab.training.evaluate import evaluate as evaluate
+    from qtab.training.runs_progress import RunsProgress as RunsProgress
     from qtab.training.train import train as train
     from qtab.training.train_many import train_many as train_many
     from qtab.training.verify import Verification as Verification

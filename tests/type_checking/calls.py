@@ -22,17 +22,24 @@ def right_calls(run: qtab.Run, env: gym.Env) -> None:
     run = qtab.train(config=run.config, episodes=10)
     run = qtab.train("MountainCar-v0", config={"learning_rate": 0.1}, callback=stop_soon, record=1)
     run = qtab.train("MountainCar-v0", **qtab.presets("MountainCar-v0")["solved"])
-    runs: qtab.Runs = qtab.train_many("MountainCar-v0", 100, threads=2, learning_rate=0.1, traces=None)
+    run = qtab.train("MountainCar-v0", callback=[stop_soon, qtab.callbacks.StopAtReturn(-110), print])
+    table: np.ndarray = qtab.callbacks.EvaluateEvery(episodes=3).mean_returns
+    runs: qtab.Runs = qtab.train_many("MountainCar-v0", callback=stop_later, progress=False)
+    runs = qtab.train_many("MountainCar-v0", 100, threads=2, learning_rate=0.1, traces=None)
     runs = qtab.train_many(lambda: env, range(3), bins=(3, 4), discretizer="bins")
     sweep: qtab.Sweep = qtab.sweep("MountainCar-v0", {"epsilon": [0.1, 0.2]}, store=Path("a.db"), n_steps=2)
     evaluation: qtab.Evaluation = qtab.evaluate(run, 10, seed=0, max_episode_steps=1000)
     config: qtab.Config = run.config.replace(env="Taxi-v4", learning_rate=0.5, tiles=None)
     config = qtab.Config("Taxi-v4", tiles=8, discretizer="tiles", scale=[])
-    del runs, sweep, evaluation, config
+    del table, runs, sweep, evaluation, config
 
 
 def stop_soon(progress: qtab.Progress) -> bool:
-    return progress.episodes < 10 and bool(progress.returns.mean() < 0)
+    return progress.episodes < 10 and bool(progress.returns.mean() < 0) and progress.run.q_table.size > 0
+
+
+def stop_later(progress: qtab.RunsProgress) -> bool:
+    return progress.runs < 10 and bool(progress.returns.mean() < 0)
 
 
 def wrong_calls(run: qtab.Run, progress: qtab.Progress) -> None:
@@ -43,6 +50,10 @@ def wrong_calls(run: qtab.Run, progress: qtab.Progress) -> None:
     qtab.train("MountainCar-v0", episodes=1e3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", scale="10")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", callback=3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train("MountainCar-v0", callback=[3])  # type: ignore[list-item]  # pyright: ignore[reportArgumentType]
+    qtab.train("MountainCar-v0", callback=stop_later)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train_many("Taxi-v4", callback=stop_soon)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.callbacks.Checkpoint(3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train_many("Taxi-v4", learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
     qtab.train_many("Taxi-v4", algorithm="qlearning")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train_many("Taxi-v4", learning_rate="fast")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
@@ -57,5 +68,5 @@ def wrong_calls(run: qtab.Run, progress: qtab.Progress) -> None:
     run.config.replace(discretizer="hexagons")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.Config(learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
     qtab.Config("Taxi-v4", ties="last")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
-    del progress.steps  # type: ignore[attr-defined]  # pyright: ignore[reportAttributeAccessIssue]
+    del progress.rewards  # type: ignore[attr-defined]  # pyright: ignore[reportAttributeAccessIssue]
     qtab.trian("Taxi-v4")  # type: ignore[attr-defined]  # pyright: ignore[reportAttributeAccessIssue]

@@ -1,11 +1,13 @@
-"""A progress bar on a terminal, and lines printed above it."""
+"""A progress bar on a terminal or in a notebook, and lines printed above it."""
 
 import sys
 import time
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
 from qtab._utils.extras import missing
+from qtab._utils.notebook import in_notebook
 
 SECONDS_BETWEEN_UPDATES = 0.1
 """The approximate time between two updates of the bar."""
@@ -18,13 +20,15 @@ _bars: list[Any] = []
 
 
 class ProgressBar:
-    """The progress of a long call on standard error, as a context manager. Without a bar to show it does nothing.
+    """The progress of a long call, as a context manager: on standard error, or as a widget in a notebook.
+
+    Without a bar to show it does nothing.
 
     Args:
         total: The number of units to do.
         unit: The name of a unit, in the singular.
         progress: True shows the bar at once, False never. None shows it after a second, if standard error is a terminal
-            and tqdm is installed.
+            or a notebook's, and tqdm is installed.
         description: The text before the bar.
 
     Raises:
@@ -47,6 +51,11 @@ class ProgressBar:
         if self._bar is not None:
             _bars.remove(self._bar)
             self._bar.close()
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether there is a bar, now or after its delay."""
+        return self._bar is not None
 
     def chunks(self, done: int, target: int) -> Iterator[int]:
         """Yields the counts up to which to work in turn, from ``done`` to ``target``.
@@ -76,10 +85,15 @@ class ProgressBar:
 def _tqdm(total: int, unit: str, progress: bool | None, description: str | None) -> Any:
     if not (progress is None or isinstance(progress, bool)):
         raise TypeError(f"progress must be True, False or None, got {progress!r}")
-    if progress is False or (progress is None and not is_terminal(sys.stderr)):
+    if progress is False or (progress is None and not is_terminal(sys.stderr) and not in_notebook()):
         return None
     try:
-        from tqdm import tqdm
+        if in_notebook():
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # without ipywidgets the bar is text, which needs no warning
+                from tqdm.auto import tqdm
+        else:
+            from tqdm import tqdm
     except ModuleNotFoundError as error:
         if progress:
             raise missing(error, "cli") from None

@@ -52,4 +52,4 @@ def _single(name: str) -> Benchmark:
 
 
 def _many(name: str, seeds: int, threads: int) -> Benchmark:
-    return lambda _: int(train_many(name, seeds, threads=threads).episode_lengths.sum())
+    return lambda _: int(train_many(name, seeds, threads=threads, progress=False).episode_lengths.sum())

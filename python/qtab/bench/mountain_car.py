@@ -34,7 +34,7 @@ def training() -> dict[str, Benchmark]:
         return int(train(ENV, seed=index, progress=False).episode_lengths.sum())
 
     def many(seeds: int, threads: int) -> Benchmark:
-        return lambda _: int(train_many(ENV, seeds, threads=threads).episode_lengths.sum())
+        return lambda _: int(train_many(ENV, seeds, threads=threads, progress=False).episode_lengths.sum())
 
     loop = compiled()
     return {

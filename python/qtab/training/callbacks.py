@@ -1,18 +1,30 @@
 """What a callback receives while a run is in progress."""
 
+import time
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
+from qtab.config import Config
+from qtab.training.rates import Rates
+
+if TYPE_CHECKING:
+    from qtab.results.run import Run
+    from qtab.training.resolved_run import ResolvedRun
 
 
 @dataclass(frozen=True)
 class Progress:
-    """The progress of a run, as a callback receives it. Later calls receive longer arrays with the same beginning."""
+    """The progress of a run, as a callback receives it. Later calls receive longer arrays with the same beginning.
+
+    ``tables``, ``q_table`` and ``run`` are copied when they are first read, and cost nothing otherwise. They must be
+    read during the call: afterwards the run has moved on.
+    """
 
     episodes: int
     """How many episodes are finished."""
@@ -22,31 +34,157 @@ class Progress:
     """(episodes,): the return of each finished episode."""
     lengths: NDArray[np.int64]
     """(episodes,): the steps of each finished episode."""
+    _state: "RunState | None" = field(default=None, repr=False, compare=False)
+
+    @property
+    def episode(self) -> int:
+        """The number of the last finished episode, from 0; -1 before the first."""
+        return self.episodes - 1
+
+    @property
+    def steps(self) -> int:
+        """The number of steps of all finished episodes together."""
+        return int(self.lengths.sum()) if self._state is None else self._state.steps
+
+    @property
+    def seconds(self) -> float:
+        """The wall-clock time since the training began."""
+        return self._required.seconds
+
+    @property
+    def is_current(self) -> bool:
+        """Whether the run is still where it was at the call, so that its tables can be read."""
+        return self._required.current
+
+    @property
+    def config(self) -> Config:
+        """The complete config of the run, as in :attr:`qtab.Run.config`."""
+        return self._required.reader.config
+
+    @cached_property
+    def epsilon(self) -> float | None:
+        """The exploration rate of the last finished episode; None with softmax exploration."""
+        return self._required.reader.rates.epsilon(max(self.episode, 0))
+
+    @cached_property
+    def learning_rate(self) -> float:
+        """The learning rate of the last finished episode; with schedule ``"visits"`` that of a first visit."""
+        return self._required.reader.rates.learning_rate(max(self.episode, 0))
+
+    @cached_property
+    def tables(self) -> NDArray[np.float64]:
+        """(k, rows, actions): a copy of the Q tables; two for Double Q-learning, else one.
+
+        Raises:
+            RuntimeError: if it is first read after the call.
+        """
+        return self._current("tables").read_tables()
+
+    @cached_property
+    def q_table(self) -> NDArray[np.float64]:
+        """(*cells, actions): a copy of the values that the greedy policy reads; of two tables the sum.
+
+        Raises:
+            RuntimeError: if it is first read after the call.
+            ValueError: with tile coding, which has no cells.
+        """
+        discretizer = self._current("q_table").discretizer
+        if not discretizer.has_cells:
+            return self.run.q_table  # its error says what works instead
+        first, *others = self.tables
+        values: NDArray[np.float64] = sum(others, first.copy())
+        return values.reshape(*discretizer.shape, -1)
+
+    @cached_property
+    def run(self) -> "Run":
+        """The run so far, to be evaluated, plotted or saved. Its ``completed`` is False before the last episode.
+
+        It has no recordings: the last episodes are those of the whole run.
+
+        Raises:
+            RuntimeError: if it is first read after the call.
+        """
+        return self._current("run").make_run()
+
+    @property
+    def _required(self) -> "RunState":
+        if self._state is None:
+            raise RuntimeError("this Progress was not made by qtab.train: it has only episodes, returns and lengths")
+        return self._state
+
+    def _current(self, name: str) -> "EpisodeReader":
+        if not self._required.current:
+            raise RuntimeError(
+                f"progress.{name} must be read during the call: the run has moved on since its "
+                f"{self.episodes} episode{'' if self.episodes == 1 else 's'}"
+            )
+        return self._required.reader
 
 
 Callback = Callable[[Progress], bool | None]
 
 
-class EpisodeReader:
-    """Reads the finished episodes of a trainer. Each call copies only the episodes since the last one."""
+@dataclass(slots=True)
+class RunState:
+    """The run behind a Progress."""
 
-    def __init__(self, trainer: _core.Trainer, total: int) -> None:
-        self._trainer, self._total = trainer, total
-        self._episodes = 0
+    reader: "EpisodeReader"
+    steps: int
+    seconds: float
+    current: bool = True
+    """False as soon as the run goes on: what the reader reads from then on belongs to a later time."""
+
+
+class EpisodeReader:
+    """Reads the finished episodes of a trainer. Each call copies only the episodes since the last one.
+
+    It is a context manager, at whose end the last Progress can no longer read its tables.
+    """
+
+    def __init__(
+        self, trainer: _core.Trainer, resolved: "ResolvedRun", began: float, make_run: "Callable[[], Run]"
+    ) -> None:
+        self._trainer, self._resolved = trainer, resolved
+        self.config, self.discretizer, self.make_run = resolved.config, resolved.discretizer, make_run
+        self.rates = Rates(resolved.config)
+        self._began = began
+        self._episodes = self._steps = 0
         self._returns, self._lengths = np.empty(0, np.float64), np.empty(0, np.int64)
+        self._state: RunState | None = None
+
+    def __enter__(self) -> "EpisodeReader":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.move_on()
 
     def read(self) -> Progress:
         """Returns the progress so far."""
         returns, lengths, _ = self._trainer.episodes(since=self._episodes)
         before, self._episodes = self._episodes, self._episodes + len(returns)
+        total = self.config.episodes
         if self._episodes > len(self._returns):
             # Doubled each time, so that over a run every episode is copied about once more.
-            capacity = min(max(self._episodes, 2 * len(self._returns)), self._total)
+            capacity = min(max(self._episodes, 2 * len(self._returns)), total)
             self._returns = _enlarge(self._returns, before, capacity)
             self._lengths = _enlarge(self._lengths, before, capacity)
         now = slice(before, self._episodes)
         self._returns[now], self._lengths[now] = returns, lengths
-        return Progress(self._episodes, self._total, self._returns[: self._episodes], self._lengths[: self._episodes])
+        self._steps += int(lengths.sum())
+        self._state = RunState(self, self._steps, time.perf_counter() - self._began)
+        return Progress(
+            self._episodes, total, self._returns[: self._episodes], self._lengths[: self._episodes], self._state
+        )
+
+    def move_on(self) -> None:
+        """Called before the trainer advances: the last Progress can no longer read its tables."""
+        if self._state is not None:
+            self._state.current = False
+            self._state = None
+
+    def read_tables(self) -> NDArray[np.float64]:
+        """Returns a copy of the tables as they are now, (k, rows, actions)."""
+        return self._trainer.tables().reshape(-1, self.discretizer.n_rows, len(self._resolved.actions))
 
 
 def _enlarge(column: NDArray[Any], used: int, capacity: int) -> NDArray[Any]:

@@ -5,7 +5,7 @@ import os
 import pickle
 import signal
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -24,9 +24,17 @@ POLL_SECONDS = 0.2
 
 
 def train_in_processes(
-    env: Any, settings: Mapping[str, Any], seeds: Sequence[int], results: Results, workers: int
+    env: Any,
+    settings: Mapping[str, Any],
+    seeds: Sequence[int],
+    results: Results,
+    workers: int,
+    report: Callable[[], bool],
 ) -> list[tuple[int, Exception]]:
-    """Trains each seed in a worker process and fills in the results; returns the runs that failed first, if any."""
+    """Trains each seed in a worker process and fills in the results; returns the runs that failed first, if any.
+
+    After some more runs it calls ``report``, which stops the others by returning False.
+    """
     # cloudpickle also takes functions of the main script, as in Gymnasium's vector environments.
     task = cloudpickle.dumps((_env_to_send(env), dict(settings)))
     keep = results["tables"].shape[1] > 0
@@ -38,6 +46,8 @@ def train_in_processes(
             failed = [(index, error) for index, future in ended if (error := _fill(index, future, results))]
             if failed:
                 return failed
+            if done and not report():
+                break
     return []
 
 

@@ -22,7 +22,8 @@ from qtab.config.settings import Settings
 from qtab.config.signature import with_settings
 from qtab.rendering.replay import generator_states
 from qtab.results.run import Recording, Run
-from qtab.training.callbacks import Callback, EpisodeReader
+from qtab.training.callback_list import CallbackList, Callbacks
+from qtab.training.callbacks import EpisodeReader
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_memory import check_run
@@ -35,7 +36,7 @@ def train(
     env: str | EnvSpec | gym.Env | None = None,
     *,
     config: Config | Mapping[str, Any] | None = None,
-    callback: Callback | None = None,
+    callback: Callbacks | None = None,
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
     progress: bool | None = None,
@@ -55,11 +56,13 @@ def train(
         config: The settings to start from: the config of a run, ``qtab.train(config=run.config)``, repeats the run
             exactly. Of a Config, the settings that do not apply beside the keywords are ignored, and with another
             environment its ``env_kwargs`` and ``preset`` as well. A mapping gives only some settings, as keywords do.
-        callback: Called with a :class:`qtab.Progress` after every ``callback_every`` episodes and after the last one.
-            It stops the run by returning False.
-        callback_every: The number of episodes between two calls.
+        callback: A callable, or a sequence of them, called with a :class:`qtab.Progress` after every
+            ``callback_every`` episodes and after the last one. Any of them stops the run by returning False. Those of
+            :mod:`qtab.callbacks` save, log, evaluate and draw.
+        callback_every: The number of episodes between two calls, for callbacks without an interval of their own.
         record: The number of last episodes to keep for replay, in ``run.recordings``.
-        progress: Whether to show a progress bar. None shows one on a terminal if the run takes more than a second.
+        progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the run takes more
+            than a second.
         memory_limit: The number of bytes that the run may take; None means half of the machine's memory.
         **settings: The settings of the run, explained below.
 
@@ -77,8 +80,7 @@ def train(
             so far as ``.run``.
     """
     callback_every = checks.integer("callback_every", callback_every, least=1)
-    if callback is not None and not callable(callback):
-        raise TypeError(f"callback must be callable, got {shown(callback)}")
+    CallbackList(callback, callback_every)  # refused before the environment is made
     record = checks.count("record", record, least=0)
     env, base = collect(train, env, config, settings)
     resolved = resolve(env, over(base, settings))
@@ -93,7 +95,7 @@ def train(
 
 def train_resolved(
     resolved: ResolvedRun,
-    callback: Callback | None = None,
+    callback: Callbacks | None = None,
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
     progress: bool | None = None,
@@ -104,19 +106,24 @@ def train_resolved(
     room = check_run(resolved, record, bytes_limit(memory_limit))
     began = time.perf_counter()
     trainer = _core.Trainer(resolved.spec(), resolved.seed, record, min(room, checks.LARGEST_COUNT))
-    reader = EpisodeReader(trainer, total)
+    reader = EpisodeReader(trainer, resolved, began, lambda: _run(resolved, trainer, began, over=False))
+    callbacks = CallbackList(callback, callback_every)
     done = 0
     try:
-        with resolved.environment.exclusively(), ProgressBar(total, "episode", progress) as bar:
+        with (
+            resolved.environment.exclusively(),
+            reader,
+            callbacks.start(resolved),
+            ProgressBar(total, "episode", progress) as bar,
+        ):
             while done < total:
-                target = min(done + callback_every, total) if callback is not None else total
+                target = callbacks.next_call(done, total)
+                reader.move_on()
                 for until in bar.chunks(done, target):
                     trainer.advance(until)
                 done = target
-                if callback is not None:
-                    proceed = callback(reader.read())
-                    if proceed is not None and not proceed:  # NumPy's False stops, too
-                        break
+                if callbacks and not callbacks(reader.read()):
+                    break
     except BaseException as error:
         with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
             _attach(error, _run(resolved, trainer, began))
@@ -147,10 +154,11 @@ def _overflow(run: Run) -> OverflowError | None:
     )
 
 
-def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float) -> Run:
+def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float, *, over: bool = True) -> Run:
+    """The run that a trainer has made; one that is not over goes on afterwards, and has no recordings yet."""
     tables = trainer.tables()
-    returns, lengths, terminated = trainer.take_episodes()
-    kept = trainer.take_recordings()
+    returns, lengths, terminated = trainer.take_episodes() if over else trainer.episodes()
+    kept = trainer.take_recordings() if over else []
     first = len(returns) - len(kept)
     generators = generator_states(resolved.config, [start for start, _ in kept])
     recordings = tuple(

@@ -28,6 +28,7 @@ from qtab.results.runs import Runs
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_memory import bytes_in_progress, tables_shape
+from qtab.training.runs_progress import RunsCallback, RunsReporter, train_in_parts
 
 MakeEnv: TypeAlias = Callable[[], gym.Env]
 
@@ -41,6 +42,9 @@ def train_many(
     threads: int | None = None,
     tables: bool = False,
     memory_limit: int | None = None,
+    callback: RunsCallback | Sequence[RunsCallback] | None = None,
+    callback_every: int | None = None,
+    progress: bool | None = None,
     **settings: Unpack[SharedSettings],
 ) -> Runs:
     """Trains one agent per seed. Run ``i`` equals ``train(env, seed=seeds[i], ...)`` to the bit for any ``threads``.
@@ -56,7 +60,15 @@ def train_many(
         threads: The number of threads or processes; None means one per core.
         tables: Whether to keep the Q tables.
         memory_limit: The number of bytes that the runs may take; None means half of the machine's memory.
+        callback: A callable, or a sequence of them, called with a :class:`qtab.RunsProgress` whenever some more runs
+            are finished, and after the last one. Any of them stops the training by returning False.
+        callback_every: The number of runs between two calls; None takes as many as need about a second.
+        progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the runs take more
+            than a second.
         **settings: The settings that all runs share, explained below.
+
+    Returns:
+        The runs. ``runs.completed`` is False if a callback stopped the training; only the finished runs are there.
 
     Raises:
         gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
@@ -65,6 +77,7 @@ def train_many(
         ValueError: for an argument out of range, or a repeated seed.
         KeyboardInterrupt: on Ctrl-C. Like any exception that a run raises, it carries the finished runs as ``.run``.
     """
+    reporter = RunsReporter(callback, callback_every, progress)
     tables = checks.boolean("tables", tables)
     limit = bytes_limit(memory_limit)
     numbers = seed_sequence(seeds, limit)
@@ -79,12 +92,15 @@ def train_many(
     began = time.perf_counter()
     results = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
     try:
-        if resolved.is_native:
-            failed = train_in_threads(resolved, numbers, results, workers, keep_going=False)
-        else:
-            from qtab.training.process_pool import train_in_processes
+        with reporter.start(numbers, results):
+            if not resolved.is_native:
+                from qtab.training.process_pool import train_in_processes
 
-            failed = train_in_processes(env, overrides, numbers, results, workers)
+                failed = train_in_processes(env, overrides, numbers, results, workers, reporter.report)
+            elif reporter.is_used:
+                failed = train_in_parts(resolved, numbers, results, workers, reporter)
+            else:
+                failed = train_in_threads(resolved, numbers, results, workers, keep_going=False)
         for index, error in failed:
             if hasattr(error, "add_note"):
                 error.add_note(f"in the run with seed {numbers[index]}")

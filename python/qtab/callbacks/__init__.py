@@ -1,0 +1,48 @@
+"""Callbacks for :func:`qtab.train`: they save, log, evaluate, stop and draw, and leave the run's numbers as they are.
+
+    from qtab.callbacks import Checkpoint, CSVLogger, StopAtReturn
+
+    qtab.train("MountainCar-v0", callback=[Checkpoint("run.npz"), CSVLogger("log.csv"), StopAtReturn(-110)])
+
+One class in each file; they load when they are first used.
+"""
+
+import importlib as _importlib
+from typing import TYPE_CHECKING
+
+_MODULES = {
+    "BaseCallback": "qtab.callbacks.base",
+    "CSVLogger": "qtab.callbacks.csv_logger",
+    "Checkpoint": "qtab.callbacks.checkpoint",
+    "EvaluateEvery": "qtab.callbacks.evaluate_every",
+    "KeepBest": "qtab.callbacks.keep_best",
+    "LivePlot": "qtab.callbacks.live_plot",
+    "StopAtReturn": "qtab.callbacks.stop_at_return",
+    "TensorBoardLogger": "qtab.callbacks.tensorboard_logger",
+}
+
+if TYPE_CHECKING:
+    # The table again, in the only form that editors and type checkers read. A test compares the two.
+    from qtab.callbacks.base import BaseCallback as BaseCallback
+    from qtab.callbacks.checkpoint import Checkpoint as Checkpoint
+    from qtab.callbacks.csv_logger import CSVLogger as CSVLogger
+    from qtab.callbacks.evaluate_every import EvaluateEvery as EvaluateEvery
+    from qtab.callbacks.keep_best import KeepBest as KeepBest
+    from qtab.callbacks.live_plot import LivePlot as LivePlot
+    from qtab.callbacks.stop_at_return import StopAtReturn as StopAtReturn
+    from qtab.callbacks.tensorboard_logger import TensorBoardLogger as TensorBoardLogger
+else:
+    # Hidden from type checkers, which accept any name from a module that has a __getattr__.
+    __all__ = list(_MODULES)
+
+    def __getattr__(name):
+        if name not in _MODULES:
+            from qtab._utils.suggestions import did_you_mean
+
+            raise AttributeError(f"module 'qtab.callbacks' has no attribute {name!r}{did_you_mean(name, _MODULES)}")
+        value = globals()[name] = getattr(_importlib.import_module(_MODULES[name]), name)
+        return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*_MODULES, *(name for name in globals() if name.startswith("__"))])

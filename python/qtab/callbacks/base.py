@@ -1,0 +1,42 @@
+"""What the callbacks of this package have in common, and what one of your own can be built on."""
+
+from abc import ABC, abstractmethod
+
+import gymnasium as gym
+
+from qtab._utils import checks
+from qtab.config import Config
+from qtab.training.callbacks import Progress
+
+
+class BaseCallback(ABC):
+    """A callback that is told when training begins and ends, and that may have its own interval.
+
+    Any callable can be a callback; this class is for those that open files or keep a state. One object can serve
+    several runs one after the other: :meth:`on_start` begins anew.
+
+    Args:
+        every: The number of episodes between two calls; None takes ``callback_every``.
+
+    Raises:
+        TypeError: if ``every`` is not an integer.
+        ValueError: if it is less than one.
+    """
+
+    def __init__(self, every: int | None = None) -> None:
+        self.every = None if every is None else checks.integer("every", every, least=1)
+
+    def on_start(self, config: Config, env: gym.Env | None) -> None:  # noqa: B027 - need not do anything
+        """Called before the first episode, to begin anew and to refuse what cannot work.
+
+        Args:
+            config: The complete config of the run.
+            env: The environment that Python steps, which belongs to the run; None if Rust steps it.
+        """
+
+    @abstractmethod
+    def __call__(self, progress: Progress) -> bool | None:
+        """Called after every ``every`` episodes and after the last one. It stops the run by returning False."""
+
+    def on_end(self) -> None:  # noqa: B027 - need not do anything
+        """Called once after :meth:`on_start` succeeded, also after an exception: closes what that opened."""

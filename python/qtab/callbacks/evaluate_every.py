@@ -1,0 +1,93 @@
+"""``EvaluateEvery``: how good the greedy policy is, again and again during a run."""
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils import checks
+from qtab.callbacks.base import BaseCallback
+from qtab.config import Config
+from qtab.envs.registry import spec_of
+from qtab.training.callbacks import Progress
+from qtab.training.evaluate import Evaluation, evaluate
+
+
+class EvaluateEvery(BaseCallback):
+    """Plays episodes with the greedy policy, without exploration and without learning, at intervals and at the end.
+
+    They take place in an environment of their own with a random generator of its own: the run is, bit for bit, the
+    one that it would be without them.
+
+    Args:
+        episodes: The number of episodes of each evaluation.
+        every: The number of training episodes between two evaluations; None takes ``callback_every``.
+        seed: The seed of the environment, the same in every evaluation, so that they differ by the policy alone. None
+            derives one from the seed of the run.
+        env: The environment to evaluate in; None makes one like the run's from its id.
+
+    Attributes:
+        evaluated_at: For each evaluation the number of finished training episodes.
+        evaluations: The evaluations, in the same order.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+
+    def __init__(
+        self,
+        episodes: int = 20,
+        every: int | None = 1000,
+        *,
+        seed: int | None = None,
+        env: gym.Env | None = None,
+    ) -> None:
+        super().__init__(every)
+        self.episodes = checks.count("episodes", episodes, least=1)
+        self.seed = None if seed is None else checks.integer("seed", seed, least=0)
+        if env is not None and not isinstance(env, gym.Env):
+            raise TypeError(f"env must be an environment, got {env!r}")
+        self.env = env
+        self.evaluated_at: list[int] = []
+        self.evaluations: list[Evaluation] = []
+
+    @property
+    def mean_returns(self) -> NDArray[np.float64]:
+        """(evaluations,): the mean return of each evaluation."""
+        return np.array([evaluation.mean_return for evaluation in self.evaluations], dtype=np.float64)
+
+    def on_start(self, config: Config, env: gym.Env | None) -> None:
+        """Begins anew.
+
+        Raises:
+            ValueError: if there is no environment to evaluate in other than the one that is trained in.
+        """
+        self.evaluated_at, self.evaluations = [], []
+        if self.env is None:
+            _require_another(config, env)
+        elif env is not None and self.env.unwrapped is env.unwrapped:
+            raise ValueError("env must be another environment than the one that is trained in, got the same one")
+
+    def __call__(self, progress: Progress) -> bool | None:
+        """Evaluates the greedy policy."""
+        seed = _seed_of_its_own(progress.config) if self.seed is None else self.seed
+        self.evaluations.append(evaluate(progress.run, self.episodes, seed, self.env))
+        self.evaluated_at.append(progress.episodes)
+        return None
+
+
+def _require_another(config: Config, env: gym.Env | None) -> None:
+    try:
+        spec = spec_of(config.env)
+    except Exception as error:
+        raise ValueError(f"env must be given: no other environment can be made from {config.env!r}") from error
+    wrappers = () if env is None or env.spec is None else env.spec.additional_wrappers
+    if len(wrappers) != len(spec.additional_wrappers):
+        names = ", ".join(wrapper.name for wrapper in wrappers)
+        raise ValueError(f"env must be given: {config.env!r} does not make the wrappers of the run's ({names})")
+
+
+def _seed_of_its_own(config: Config) -> int:
+    """A seed that depends on the run's, whose bits are unrelated to it."""
+    child = np.random.SeedSequence(config.seed).spawn(1)[0]
+    return int(child.generate_state(1)[0])

@@ -1,0 +1,75 @@
+"""``KeepBest``: the table of the best evaluation."""
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import gymnasium as gym
+
+from qtab._utils.files import check_writable
+from qtab.callbacks.checkpoint import file_path
+from qtab.callbacks.evaluate_every import EvaluateEvery
+from qtab.config import Config
+from qtab.training.callbacks import Progress
+
+if TYPE_CHECKING:
+    from qtab.results.run import Run
+
+
+class KeepBest(EvaluateEvery):
+    """Evaluates the greedy policy as :class:`EvaluateEvery` does, and keeps the run as it was at the best evaluation.
+
+    The mean return of the best of many evaluations is too optimistic: report that of a new :func:`qtab.evaluate`.
+
+    Args:
+        path: A file to save it to, whenever there is a better one; None does not save it.
+        episodes: The number of episodes of each evaluation.
+        every: The number of training episodes between two evaluations; None takes ``callback_every``.
+        seed: The seed of the environment, as for :class:`EvaluateEvery`.
+        env: The environment to evaluate in, as for :class:`EvaluateEvery`.
+
+    Attributes:
+        run: The run as it was at the evaluation with the highest mean return, the first of several; its ``q_table``
+            and :func:`qtab.evaluate` are those of that time. None before the first evaluation.
+        best_return: The mean return of that evaluation; None before the first one.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+
+    def __init__(
+        self,
+        path: "str | os.PathLike[str] | None" = None,
+        episodes: int = 20,
+        every: int | None = 1000,
+        *,
+        seed: int | None = None,
+        env: gym.Env | None = None,
+    ) -> None:
+        super().__init__(episodes, every, seed=seed, env=env)
+        self.path: Path | None = None if path is None else file_path("path", path)
+        self.run: Run | None = None
+        self.best_return: float | None = None
+
+    def on_start(self, config: Config, env: gym.Env | None) -> None:
+        """Begins anew.
+
+        Raises:
+            OSError: if the file cannot be written.
+            ValueError: if there is no environment to evaluate in other than the one that is trained in.
+        """
+        super().on_start(config, env)
+        if self.path is not None:
+            check_writable("path", self.path)
+        self.run = self.best_return = None
+
+    def __call__(self, progress: Progress) -> bool | None:
+        """Evaluates the greedy policy, and keeps the run if it is the best so far."""
+        proceed = super().__call__(progress)
+        mean = self.evaluations[-1].mean_return
+        if self.best_return is None or mean > self.best_return:
+            self.run, self.best_return = progress.run, mean
+            if self.path is not None:
+                self.run.save(self.path)
+        return proceed

@@ -1,0 +1,103 @@
+"""The numbers that the loggers write."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils.suggestions import did_you_mean
+from qtab.callbacks.base import BaseCallback
+from qtab.callbacks.evaluate_every import EvaluateEvery
+from qtab.config import Config
+from qtab.training.callbacks import Progress
+
+
+@dataclass(frozen=True)
+class _Interval:
+    """The episodes since the last time that a logger wrote."""
+
+    progress: Progress
+    returns: NDArray[np.float64]
+    lengths: NDArray[np.int64]
+
+
+METRICS: Mapping[str, Callable[[_Interval], float | int | None]] = {
+    "steps": lambda interval: interval.progress.steps,
+    "mean_return": lambda interval: _mean(interval.returns),
+    "mean_length": lambda interval: _mean(interval.lengths),
+    "epsilon": lambda interval: interval.progress.epsilon,
+    "learning_rate": lambda interval: interval.progress.learning_rate,
+    "seconds": lambda interval: interval.progress.seconds,
+}
+"""The steps and seconds since the run began; the mean return and length of the episodes since the last line; and the
+exploration rate and learning rate of the last episode."""
+
+EVALUATION = "evaluation_return"
+"""The mean return of an evaluation, for a logger that was given one."""
+
+
+class MetricsLogger(BaseCallback):
+    """What the loggers have in common: they compute the same metrics, and write them to different places.
+
+    Args:
+        every: The number of episodes between two lines; None takes ``callback_every``.
+        metrics: The names of what to write, in this order.
+        evaluation: A callback that evaluates the run, whose mean returns are written too. It belongs before the logger
+            in the list of callbacks.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range, or an unknown metric.
+    """
+
+    def __init__(self, every: int | None, metrics: Iterable[str] | None, evaluation: EvaluateEvery | None) -> None:
+        super().__init__(every)
+        if evaluation is not None and not isinstance(evaluation, EvaluateEvery):
+            raise TypeError(f"evaluation must be an EvaluateEvery or a KeepBest, got {evaluation!r}")
+        self.metrics = tuple(METRICS) if metrics is None else check_metrics(metrics)
+        self.evaluation = evaluation
+        self._episodes = self._evaluations = 0
+
+    def on_start(self, config: Config, env: gym.Env | None) -> None:  # noqa: ARG002
+        """Begins anew."""
+        self._episodes = self._evaluations = 0
+
+    def measure(self, progress: Progress) -> dict[str, float | int | None]:
+        """Returns the metrics of the episodes since the last call; None where there is no value."""
+        since, self._episodes = self._episodes, progress.episodes
+        interval = _Interval(progress, progress.returns[since:], progress.lengths[since:])
+        values = {name: METRICS[name](interval) for name in self.metrics}
+        if self.evaluation is not None:
+            values[EVALUATION] = self._last_evaluation(self.evaluation)
+        return values
+
+    def _last_evaluation(self, callback: EvaluateEvery) -> float | None:
+        """The mean return of the last evaluation; None if there was none since the last call."""
+        before, self._evaluations = self._evaluations, len(callback.evaluations)
+        return callback.evaluations[-1].mean_return if self._evaluations > before else None
+
+
+def check_metrics(metrics: Iterable[str]) -> tuple[str, ...]:
+    """Returns the names of metrics.
+
+    Raises:
+        TypeError: if they are not a sequence of strings.
+        ValueError: for an unknown one, or if there is none.
+    """
+    if isinstance(metrics, str) or not isinstance(metrics, Iterable):
+        raise TypeError(f"metrics must be a sequence of names, got {metrics!r}")
+    names = tuple(metrics)
+    for name in names:
+        if name not in METRICS:
+            raise ValueError(
+                f"metrics must be among {', '.join(map(repr, METRICS))}, got {name!r}{did_you_mean(str(name), METRICS)}"
+            )
+    if not names:
+        raise ValueError("metrics must hold at least one name, got none")
+    return names
+
+
+def _mean(values: "NDArray[np.float64] | NDArray[np.int64]") -> float | None:
+    return float(values.mean()) if len(values) else None

@@ -1,0 +1,78 @@
+"""``TensorBoardLogger``: the progress of a run as curves in TensorBoard."""
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+
+from qtab._utils.extras import missing
+from qtab.callbacks.evaluate_every import EvaluateEvery
+from qtab.callbacks.metrics import MetricsLogger
+from qtab.config import Config
+from qtab.training.callbacks import Progress
+
+
+class TensorBoardLogger(MetricsLogger):
+    """Writes the metrics of a run to a folder that ``tensorboard --logdir`` shows, over the number of episodes.
+
+    It needs tensorboardX, which writes TensorBoard's files without TensorBoard.
+
+    Args:
+        folder: The folder, created if it is missing. A run adds a file; give each run a folder to tell them apart.
+        every: The number of episodes between two points; None takes ``callback_every``.
+        metrics: The names of what to write: those of :class:`qtab.callbacks.CSVLogger`. None writes all of them.
+        evaluation: A callback that evaluates the run, whose mean returns are the curve ``evaluation_return``. It
+            belongs before the logger in the list of callbacks.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range, or an unknown metric.
+    """
+
+    def __init__(
+        self,
+        folder: "str | os.PathLike[str]",
+        every: int | None = None,
+        *,
+        metrics: Iterable[str] | None = None,
+        evaluation: EvaluateEvery | None = None,
+    ) -> None:
+        super().__init__(every, metrics, evaluation)
+        if not isinstance(folder, str | os.PathLike):
+            raise TypeError(f"folder must be a path, got {folder!r}")
+        self.folder = Path(folder)
+        self._writer: Any = None
+
+    def on_start(self, config: Config, env: gym.Env | None) -> None:
+        """Creates the file, with the settings of the run as a text.
+
+        Raises:
+            ModuleNotFoundError: without tensorboardX; the message names the ``pip install``.
+            OSError: if the folder cannot be created.
+        """
+        super().on_start(config, env)
+        try:
+            from tensorboardX import SummaryWriter
+        except ModuleNotFoundError as error:
+            raise missing(error, "tensorboard") from None
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise type(error)(f"folder must be a folder, got {str(self.folder)!r}: {error.strerror}") from None
+        self._writer = SummaryWriter(str(self.folder))
+        settings = "\n".join(f"    {name} = {value!r}" for name, value in vars(config).items() if value is not None)
+        self._writer.add_text("settings", settings, 0)
+
+    def __call__(self, progress: Progress) -> None:
+        """Adds a point to each curve."""
+        for name, value in self.measure(progress).items():
+            if value is not None:
+                self._writer.add_scalar(name, value, progress.episodes)
+
+    def on_end(self) -> None:
+        """Closes the file."""
+        if self._writer is not None:
+            self._writer.close()
+            self._writer = None

@@ -1,0 +1,142 @@
+"""The progress of many runs: what a callback of ``train_many`` receives, and the parts that it is called between."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab import _core
+from qtab._spec import Results
+from qtab._utils import checks
+from qtab._utils.progress import ProgressBar
+from qtab.callbacks.base import BaseCallback
+from qtab.training.callback_list import as_tuple
+from qtab.training.resolved_run import ResolvedRun
+
+SECONDS_PER_PART = 1.0
+"""The approximate time between two calls where ``callback_every`` does not set their distance."""
+LANES = 8
+"""A thread trains up to this many runs at once; a part that divides evenly leaves none of them idle."""
+
+
+@dataclass(frozen=True, eq=False)
+class RunsProgress:
+    """The progress of many runs, as a callback receives it."""
+
+    runs: int
+    """How many runs are finished."""
+    total: int
+    """How many runs there are."""
+    seconds: float
+    """The wall-clock time since the training began."""
+    _seeds: Sequence[int] = field(repr=False)
+    _results: Results = field(repr=False)
+    _finished: NDArray[np.bool_] = field(repr=False)
+
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """(runs,): the seeds of the finished runs, in the order of the call."""
+        return tuple(seed for seed, done in zip(self._seeds, self._finished, strict=True) if done)
+
+    @cached_property
+    def returns(self) -> NDArray[np.float64]:
+        """(runs, episodes): the returns of the finished runs, copied when they are first read."""
+        return self._results["returns"][self._finished]
+
+    @cached_property
+    def lengths(self) -> NDArray[np.int64]:
+        """(runs, episodes): the steps of each episode of the finished runs, copied when they are first read."""
+        return self._results["lengths"][self._finished]
+
+
+RunsCallback: TypeAlias = Callable[[RunsProgress], bool | None]
+
+
+class RunsReporter:
+    """Moves the progress bar and calls the callbacks of many runs.
+
+    Raises:
+        ModuleNotFoundError: if ``progress`` is True and tqdm is not installed.
+        TypeError: for an argument of the wrong type.
+        ValueError: if ``callback_every`` is less than one.
+    """
+
+    def __init__(
+        self,
+        callback: RunsCallback | Sequence[RunsCallback] | None,
+        callback_every: int | None,
+        progress: bool | None,
+    ) -> None:
+        self._callbacks = as_tuple(callback)
+        for one in self._callbacks:
+            if isinstance(one, BaseCallback):
+                name = type(one).__name__
+                raise TypeError(f"callback must take a RunsProgress here: {name} is for a single run, qtab.train")
+        self.every = None if callback_every is None else checks.integer("callback_every", callback_every, least=1)
+        self._progress = progress
+        self._bar: ProgressBar | None = None
+        self._began = time.perf_counter()
+        self._called_at = 0
+        self.stopped = False
+
+    def start(self, seeds: Sequence[int], results: Results) -> ProgressBar:
+        """Returns the progress bar, which is a context manager, for runs that begin now."""
+        self._seeds, self._results, self._began = seeds, results, time.perf_counter()
+        self._bar = ProgressBar(len(seeds), "run", self._progress)
+        return self._bar
+
+    @property
+    def is_used(self) -> bool:
+        """Whether anyone looks at the progress."""
+        return bool(self._callbacks) or (self._bar is not None and self._bar.is_shown)
+
+    def report(self) -> bool:
+        """Reports the finished runs; returns False if a callback stops the training."""
+        finished = self._results["finished"].copy()
+        count, total = int(finished.sum()), len(finished)
+        if self._bar is not None:
+            self._bar.move_to(count)
+        if count - self._called_at < (self.every or 1) and count < total:
+            return True
+        self._called_at = count
+        seconds = time.perf_counter() - self._began
+        progress = RunsProgress(count, total, seconds, self._seeds, self._results, finished)
+        answers = [callback(progress) for callback in self._callbacks]
+        self.stopped = not all(answer is None or bool(answer) for answer in answers)
+        return not self.stopped
+
+
+def train_in_parts(
+    resolved: ResolvedRun, seeds: Sequence[int], results: Results, threads: int, reporter: RunsReporter
+) -> list[tuple[int, Exception]]:
+    """Trains a native environment with many seeds, some of them at a time, and reports after each part.
+
+    Returns the index of each run that failed, and its error; no part is started after a failure.
+    """
+    spec, done, size = resolved.spec(), 0, min(reporter.every or threads, len(seeds))
+    while done < len(seeds):
+        part = slice(done, done + size)
+        rows: Any = {name: array[part] for name, array in results.items()}  # type: ignore[index]
+        began = time.perf_counter()
+        failed = _core.train_many(spec, seeds[part], rows, threads, False)
+        if failed:
+            return [(done + index, error) for index, error in failed]
+        done += len(seeds[part])
+        if not reporter.report():
+            break
+        if reporter.every is None:
+            size = _next_size(size, time.perf_counter() - began, threads)
+    return []
+
+
+def _next_size(runs: int, seconds: float, threads: int) -> int:
+    """About as many runs as take a second, and a multiple of what all threads train at once."""
+    wanted = min(int(runs * SECONDS_PER_PART / max(seconds, 1e-9)), 8 * runs)
+    for together in (threads * LANES, threads):
+        if wanted >= together:
+            return wanted // together * together
+    return max(wanted, 1)

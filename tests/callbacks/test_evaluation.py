@@ -1,0 +1,129 @@
+"""Evaluations during a run, the best of them, and stopping at a return."""
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from qtab.callbacks import EvaluateEvery, KeepBest, StopAtReturn
+from support.environments import Walk
+from support.parity import assert_same_run, run_of
+
+LAKE: dict[str, Any] = {"env": "FrozenLake-v1", "seed": 3, "episodes": 3000}
+
+
+def test_an_evaluation_is_that_of_the_run_at_the_time():
+    evaluation = EvaluateEvery(episodes=30, every=1000, seed=7)
+    qtab.train(**LAKE, callback=evaluation)
+    assert evaluation.evaluated_at == [1000, 2000, 3000]
+    for episodes, evaluated in zip(evaluation.evaluated_at, evaluation.evaluations, strict=True):
+        stopped = qtab.train(**LAKE, callback=lambda now, at=episodes: now.episodes < at, callback_every=1000)
+        again = qtab.evaluate(stopped, 30, seed=7)
+        assert evaluated.returns.tobytes() == again.returns.tobytes()
+        assert evaluated.seed == 7
+    assert evaluation.mean_returns.tolist() == [evaluated.mean_return for evaluated in evaluation.evaluations]
+
+
+def test_the_seed_is_derived_from_that_of_the_run_and_is_another_one():
+    seeds = set()
+    for seed in (0, 1, 2**70):
+        evaluation = EvaluateEvery(episodes=1, every=5)
+        qtab.train("FrozenLake-v1", seed=seed, episodes=10, callback=evaluation)
+        (own,) = {evaluated.seed for evaluated in evaluation.evaluations}
+        assert own != seed
+        seeds.add(own)
+    assert len(seeds) == 3
+
+
+def test_an_environment_of_ones_own_is_evaluated_in_another_one():
+    chosen: dict[str, Any] = {"discretizer": "bins", "bins": 5, "episodes": 6, "seed": 1, "max_episode_steps": 9}
+    with pytest.raises(ValueError, match=r"^env must be given: no other environment can be made from 'Walk'$"):
+        qtab.train(Walk(), callback=EvaluateEvery(), **chosen)
+    trained, other = Walk(), Walk()
+    same = gym.wrappers.TimeLimit(trained, 5)
+    with pytest.raises(ValueError, match=r"^env must be another environment than the one that is trained in"):
+        qtab.train(trained, callback=KeepBest(env=same), **chosen)
+    evaluation = EvaluateEvery(episodes=2, every=3, env=other)
+    qtab.train(trained, callback=evaluation, **chosen)
+    assert evaluation.evaluated_at == [3, 6]
+
+
+def test_an_id_does_not_stand_for_an_environment_with_more_wrappers():
+    class Negative(gym.RewardWrapper[Any, Any]):
+        def reward(self, reward: Any) -> Any:
+            return -float(reward)
+
+    wrapped = Negative(gym.make("MountainCar-v0"))
+    with pytest.raises(ValueError, match=r"^env must be given: 'MountainCar-v0' does not make .* \(Negative\)$"):
+        qtab.train(wrapped, episodes=3, callback=EvaluateEvery())
+
+
+def test_an_exception_in_an_evaluation_carries_the_run_that_is_trained():
+    class Broken(Walk):
+        def step(self, action: Any) -> Any:
+            raise KeyboardInterrupt
+
+    chosen: dict[str, Any] = {"discretizer": "bins", "bins": 5, "episodes": 6, "seed": 1, "max_episode_steps": 9}
+    with pytest.raises(KeyboardInterrupt) as caught:
+        qtab.train(Walk(), callback=EvaluateEvery(every=4, env=Broken()), **chosen)
+    run = run_of(caught.value)
+    assert run.config.learning_rate != 0.0  # an evaluation has that of 0
+    assert len(run.episode_returns) == 4
+
+
+def test_the_best_table_is_kept(tmp_path):
+    best = KeepBest(tmp_path / "best.npz", episodes=50, every=250, seed=7)
+    qtab.train(**LAKE, callback=best)
+    assert best.run is not None
+    means = best.mean_returns
+    assert len(set(means.tolist())) > 2
+    assert best.best_return == means.max()
+    at = best.evaluated_at[int(np.argmax(means))]
+    stopped = qtab.train(**LAKE, callback=lambda now: now.episodes < at, callback_every=250)
+    assert_same_run(best.run, stopped)
+    assert_same_run(qtab.load(tmp_path / "best.npz"), stopped)
+    assert qtab.evaluate(best.run, 50, seed=7).mean_return == best.best_return
+
+
+def test_of_equal_evaluations_the_first_is_kept():
+    best = KeepBest(episodes=1, every=2)
+    qtab.train("MountainCar-v0", episodes=6, max_episode_steps=5, callback=best)
+    assert best.run is not None
+    assert len(best.run.episode_returns) == 2
+
+
+def test_a_run_stops_when_its_last_returns_are_good_enough():
+    stop = StopAtReturn(-110, window=100, every=10)
+    run = qtab.train("MountainCar-v0", preset="solved", seed=0, callback=stop)
+    episodes = len(run.episode_returns)
+    assert run.completed is False
+    assert stop.stopped_at == episodes
+    assert episodes % 10 == 0
+    assert run.episode_returns[-100:].mean() >= -110
+    for earlier in range(100, episodes, 10):
+        assert run.episode_returns[earlier - 100 : earlier].mean() < -110
+
+
+def test_a_run_does_not_stop_before_it_has_a_whole_window():
+    stop = StopAtReturn(-1e9, window=8)
+    assert len(qtab.train("MountainCar-v0", episodes=10, callback=stop, callback_every=3).episode_returns) == 9
+    stop = StopAtReturn(-1e9, window=11)
+    assert qtab.train("MountainCar-v0", episodes=10, callback=stop, callback_every=1).completed
+    assert stop.stopped_at is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"episodes": 0}, r"^episodes must be an integer of at least 1, got 0$"),
+        ({"seed": -1}, r"^seed must be an integer of at least 0, got -1$"),
+        ({"env": "FrozenLake-v1"}, r"^env must be an environment, got 'FrozenLake-v1'$"),
+        ({"every": 0}, r"^every must be an integer of at least 1, got 0$"),
+    ],
+)
+@pytest.mark.parametrize("kind", [EvaluateEvery, KeepBest])
+def test_wrong_arguments_are_refused_by_name(kind, arguments, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        kind(**arguments)

@@ -1,0 +1,127 @@
+"""In a notebook the learning curve and the progress bars are shown; elsewhere nothing is."""
+
+import io
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+
+import qtab
+from qtab._utils.notebook import in_notebook
+from qtab._utils.progress import ProgressBar
+from qtab.callbacks import LivePlot, StopAtReturn, live_plot
+from support.parity import assert_same_run
+
+SHORT: dict[str, Any] = {"seed": 6, "episodes": 300, "max_episode_steps": 30}
+
+
+class Screen:
+    """What a notebook shows: pictures, each of which can be replaced."""
+
+    def __init__(self) -> None:
+        self.shown: list[bytes] = []
+        self.replaced: list[bytes] = []
+
+    def display(self, image: Any, display_id: bool) -> "Screen":
+        self.shown.append(image.data)
+        return self
+
+    def update(self, image: Any) -> None:
+        self.replaced.append(image.data)
+
+
+@pytest.fixture
+def screen(monkeypatch: pytest.MonkeyPatch) -> Screen:
+    import IPython.display
+
+    screen = Screen()
+    monkeypatch.setattr(live_plot, "in_notebook", lambda: True)
+    monkeypatch.setattr(live_plot, "DOTS_PER_INCH", 30)  # small pictures are drawn faster
+    monkeypatch.setattr(IPython.display, "display", screen.display)
+    return screen
+
+
+def pixels(picture: bytes) -> np.ndarray:
+    from PIL import Image
+
+    return np.array(Image.open(io.BytesIO(picture)).convert("RGB"))
+
+
+def test_one_picture_is_replaced_in_place(screen: Screen) -> None:
+    run = qtab.train("MountainCar-v0", callback=LivePlot(seconds=0), **SHORT)
+    assert_same_run(run, qtab.train("MountainCar-v0", **SHORT))
+    assert len(screen.shown) == 1
+    assert len(screen.replaced) == 2
+    first, last = pixels(screen.shown[0]), pixels(screen.replaced[-1])
+    assert first.shape == last.shape
+    assert 0.001 < (first != last).mean() < 0.2  # the curve grew, and the axes stayed
+
+
+def test_the_clock_limits_the_pictures_but_the_end_is_always_drawn(screen: Screen) -> None:
+    live = LivePlot(1, seconds=1e6)
+    qtab.train("MountainCar-v0", callback=live, **SHORT)
+    assert (len(screen.shown), len(screen.replaced)) == (1, 1)
+    qtab.train("MountainCar-v0", callback=[live, StopAtReturn(-1e9, window=7, every=1)], **SHORT)
+    assert (len(screen.shown), len(screen.replaced)) == (2, 2)
+
+
+def test_a_picture_of_an_interrupted_run_stays_as_it_is(screen: Screen) -> None:
+    def interrupt(progress: qtab.Progress) -> None:
+        if progress.episodes == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        qtab.train("MountainCar-v0", callback=[interrupt, LivePlot(2, seconds=1e6)], callback_every=1, **SHORT)
+    assert (len(screen.shown), len(screen.replaced)) == (1, 0)
+
+
+def test_outside_of_a_notebook_nothing_is_shown(monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    assert not in_notebook()
+    monkeypatch.setitem(sys.modules, "IPython", None)  # cannot be imported
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    qtab.train("MountainCar-v0", callback=LivePlot(seconds=0), **SHORT)
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_notebook_without_matplotlib_names_the_command_that_installs_it(
+    screen: Screen, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    with pytest.raises(ModuleNotFoundError, match=r"pip install .*matplotlib"):
+        qtab.train("MountainCar-v0", callback=LivePlot(), **SHORT)
+
+
+@pytest.mark.parametrize("seconds", [-1, float("nan"), "1"])
+def test_a_wrong_time_is_refused(seconds: Any) -> None:
+    with pytest.raises((TypeError, ValueError), match=r"^seconds must "):
+        LivePlot(seconds=seconds)
+
+
+def test_a_bar_appears_by_itself_in_a_notebook_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not ProgressBar(3, "run", None).is_shown
+    monkeypatch.setattr("qtab._utils.progress.in_notebook", lambda: True)
+    with ProgressBar(3, "run", None) as bar:
+        assert bar.is_shown
+    assert not ProgressBar(3, "run", False).is_shown
+
+
+CELL = """
+import qtab
+from qtab.callbacks import LivePlot
+run = qtab.train("MountainCar-v0", seed=0, episodes=500, callback=LivePlot(seconds=0), progress=True)
+runs = qtab.train_many("MountainCar-v0", 4, episodes=20, progress=True)
+"""
+
+
+@pytest.mark.slow
+def test_a_kernel_shows_the_picture_and_widgets() -> None:
+    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(CELL)])
+    done = nbclient.NotebookClient(notebook, timeout=60, kernel_name="python3").execute()
+    outputs = done.cells[0].outputs
+    shown = [output.data for output in outputs if output.output_type == "display_data"]
+    assert sum("image/png" in data for data in shown) == 1
+    assert sum("application/vnd.jupyter.widget-view+json" in data for data in shown) >= 1
+    assert [output for output in outputs if output.output_type == "error"] == []
