@@ -16,6 +16,9 @@ from qtab.config import Config
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.results import run_file
+from qtab.results.axes import Axis, action_names, axes_of
+from qtab.results.optional_arrays import optional_arrays
+from qtab.results.snapshots import Snapshots
 from qtab.results.summary import FINAL_EPISODES
 
 
@@ -45,6 +48,11 @@ class Run:
     """The versions of qtab, Gymnasium, NumPy and Python, and the platform."""
     recordings: tuple["Recording", ...] = field(default=(), repr=False)
     """The last episodes, where ``record=`` asked for them, to be replayed. They are not saved."""
+    visits: NDArray[np.int64] | None = field(default=None, repr=False)
+    """(*cells, actions): how often each action was taken in each cell, where ``visits=True`` counted it; None elsewhere. With
+    tile coding (rows, actions): a step counts once for each weight of its action, one in each tiling."""
+    snapshots: Snapshots | None = field(default=None, repr=False)
+    """The tables at several episodes, where ``snapshots=`` asked for them; None elsewhere."""
 
     def __repr__(self) -> str:
         """One line: the tables are not shown."""
@@ -79,6 +87,16 @@ class Run:
         self._require_cells("policy", "predict")
         return self.actions.take(np.argmax(self.q_table, axis=-1))
 
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """For each component of the observation its name, its unit and the edges of its cells."""
+        return axes_of(self.config.env, self.discretizer)
+
+    @property
+    def action_names(self) -> tuple[str, ...]:
+        """(actions,): Gymnasium's words for the actions, such as "push left", or the values of continuous ones."""
+        return action_names(self.config.env, self.actions)
+
     def _require_cells(self, attribute: str, method: str) -> None:
         if not self.discretizer.has_cells:
             raise ValueError(
@@ -95,6 +113,19 @@ class Run:
         """
         active = np.moveaxis(self.discretizer.active_rows(observation), -1, 0)
         return _sum(_sum(table[rows] for rows in active) for table in self.tables)
+
+    def values(self, observation: ArrayLike) -> Any:
+        """Returns the value of an observation under the greedy policy, or the (n,) values of n observations.
+
+        It is the largest action value, as a float. Of Double Q-learning, whose :attr:`q_table` is the sum of two
+        tables, it is half of that: the mean of two estimates.
+
+        Raises:
+            TypeError: if the observation does not hold numbers (integers for a discrete space).
+            ValueError: if it has another shape than the space, or lies outside the space.
+        """
+        values = np.max(self.q_values(observation), axis=-1) / len(self.tables)
+        return values if values.ndim else float(values)
 
     def predict(
         self,
@@ -137,7 +168,9 @@ class Run:
         """
         path = Path(path)
         check_writable("path", path)
-        arrays = {name: getattr(self, name) for name in run_file.ARRAYS} | self.discretizer.arrays()
+        arrays = (
+            {name: getattr(self, name) for name in run_file.ARRAYS} | self.discretizer.arrays() | optional_arrays(self)
+        )
         if self.actions.values is not None:
             arrays["actions"] = self.actions.values
         config = {field.name: getattr(self.config, field.name) for field in dataclasses.fields(Config)}

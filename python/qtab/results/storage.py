@@ -13,6 +13,7 @@ from qtab.config import Config
 from qtab.config.options import defaults, n_tables
 from qtab.discretizers.actions import Actions
 from qtab.results import run_file
+from qtab.results.optional_arrays import restore_optional
 from qtab.results.run import Run
 
 
@@ -44,10 +45,12 @@ def _run(header: Mapping[str, Any], stored: Mapping[str, NDArray[Any]]) -> Run:
     config = Config(**fields)
     if config.seed is None or config.max_episode_steps is None or defaults(vars(config)):
         raise ValueError("its config is not that of a run")
+    discretizer = discretizers.restore(config, stored, arrays["tables"].shape[1])
+    arrays |= restore_optional(stored, arrays["tables"], discretizer.shape, len(arrays["episode_returns"]))
     actions = Actions(int(header["actions"]), int(header["first_action"]), stored.get("actions"))
     run = Run(
         config=config,
-        discretizer=discretizers.restore(config, stored, arrays["tables"].shape[1]),
+        discretizer=discretizer,
         actions=actions,
         completed=len(arrays["episode_returns"]) == config.episodes,
         seconds=float(header["seconds"]),

@@ -1,7 +1,7 @@
 """``qtab.train``: trains one agent."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -16,10 +16,12 @@ from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
+from qtab.config.options import n_tables
 from qtab.config.settings import Settings
 from qtab.config.signature import with_settings
 from qtab.rendering.replay import generator_states
 from qtab.results.run import Recording, Run
+from qtab.results.snapshots import SnapshotCollector, Snapshots, snapshot_episodes
 from qtab.training.callbacks import Callback, EpisodeReader
 from qtab.training.resolve import log_default_limit, resolve
 from qtab.training.resolved_run import ResolvedRun
@@ -35,6 +37,8 @@ def train(
     callback: Callback | None = None,
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
+    visits: bool = False,
+    snapshots: int | Sequence[int] | None = None,
     progress: bool | None = None,
     **settings: Unpack[Settings],
 ) -> Run:
@@ -53,6 +57,9 @@ def train(
             It stops the run by returning False.
         callback_every: The number of episodes between two calls.
         record: The number of last episodes to keep for replay, in ``run.recordings``.
+        visits: Whether to count how often each action was taken in each cell, in ``run.visits``.
+        snapshots: How many copies of the tables to keep, in ``run.snapshots``: evenly spaced over the episodes, the
+            last one included; or after how many episodes to copy them, such as ``(0, 10, 100)``, 0 being before all.
         progress: Whether to show a progress bar. None shows one on a terminal if the run takes more than a second.
         **settings: The settings of the run, explained below.
 
@@ -71,11 +78,15 @@ def train(
     if callback is not None and not callable(callback):
         raise TypeError(f"callback must be callable, got {callback!r}")
     record = checks.count("record", record, least=0)
+    if not isinstance(visits, bool | np.bool_):
+        raise TypeError(f"visits must be True or False, got {visits!r}")
     env, base = collect(train, env, config, settings)
     resolved = resolve(env, over(base, settings))
     log_default_limit(resolved)
     try:
-        return train_resolved(resolved, callback, callback_every, record, progress)
+        return train_resolved(
+            resolved, callback, callback_every, record, progress, visits=bool(visits), snapshots=snapshots
+        )
     finally:
         resolved.close()
 
@@ -86,28 +97,34 @@ def train_resolved(
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
     progress: bool | None = None,
+    *,
+    visits: bool = False,
+    snapshots: int | Sequence[int] | None = None,
 ) -> Run:
     """Trains a run that is already resolved; see :func:`train`."""
     total = resolved.config.episodes
+    copied_at = snapshot_episodes(snapshots, total)
     began = time.perf_counter()
-    trainer = _core.Trainer(resolved.spec(), resolved.seed, record)
+    trainer = _core.Trainer(resolved.spec(), resolved.seed, record, visits)
+    collector = SnapshotCollector(trainer, copied_at, _table_shape(resolved))
     reader = EpisodeReader(trainer, total)
     done = 0
     try:
         with ProgressBar(total, "episode", progress) as bar:
             while done < total:
                 target = min(done + callback_every, total) if callback is not None else total
-                for until in bar.chunks(done, target):
-                    trainer.advance(until)
-                done = target
+                for stop in collector.stops(done, target):
+                    for until in bar.chunks(done, stop):
+                        trainer.advance(until)
+                    done = stop
                 if callback is not None:
                     proceed = callback(reader.read())
                     if proceed is not None and not proceed:  # NumPy's False stops, too
                         break
     except BaseException as error:
-        _attach(error, _run(resolved, trainer, began))
+        _attach(error, _run(resolved, trainer, began, collector.snapshots()))
         raise
-    run = _run(resolved, trainer, began)
+    run = _run(resolved, trainer, began, collector.snapshots())
     overflow = _overflow(run)
     if overflow is not None:
         _attach(overflow, run)
@@ -133,7 +150,11 @@ def _overflow(run: Run) -> OverflowError | None:
     )
 
 
-def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float) -> Run:
+def _table_shape(resolved: ResolvedRun) -> tuple[int, int, int]:
+    return n_tables(resolved.config.algorithm), resolved.discretizer.n_rows, len(resolved.actions)
+
+
+def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float, snapshots: Snapshots | None) -> Run:
     returns, lengths, terminated = trainer.episodes()
     kept: list[tuple[Any, list[int]]] = trainer.recordings()
     first = len(returns) - len(kept)
@@ -142,9 +163,10 @@ def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float) -> Run:
         Recording(first + index, generator, tuple(resolved.actions[column] for column in columns))
         for index, (generator, (_, columns)) in enumerate(zip(generators, kept, strict=True))
     )
+    visits = trainer.visits()
     return Run(
         config=resolved.config,
-        tables=trainer.tables().reshape(-1, resolved.discretizer.n_rows, len(resolved.actions)),
+        tables=trainer.tables().reshape(_table_shape(resolved)),
         episode_returns=returns,
         episode_lengths=lengths,
         terminated=terminated,
@@ -154,4 +176,6 @@ def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float) -> Run:
         seconds=time.perf_counter() - began,
         versions=versions(),
         recordings=recordings,
+        visits=None if visits is None else visits.reshape(*resolved.discretizer.shape, len(resolved.actions)),
+        snapshots=snapshots,
     )

@@ -41,4 +41,9 @@ pub trait Task {
     /// # Errors
     /// As for `reset`.
     fn step(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<Self::Active>, Self::Error>;
+
+    /// How often each action was taken in each row, row by row; `None` where visits are not counted.
+    fn visits(&self) -> Option<&[i64]> {
+        None
+    }
 }

@@ -17,6 +17,9 @@ pub(crate) trait Run: Send {
 
     /// The values of each table, rows first.
     fn tables(&self) -> Vec<&[f64]>;
+
+    /// How often each action was taken in each row; None where visits are not counted.
+    fn visits(&self) -> Option<&[i64]>;
 }
 
 impl<W, L, D> Run for Trainer<W, L, D>
@@ -41,6 +44,10 @@ where
     fn tables(&self) -> Vec<&[f64]> {
         self.learner().tables()
     }
+
+    fn visits(&self) -> Option<&[i64]> {
+        self.task().visits()
+    }
 }
 
 impl Run for Box<dyn Run> {
@@ -58,6 +65,10 @@ impl Run for Box<dyn Run> {
 
     fn tables(&self) -> Vec<&[f64]> {
         (**self).tables()
+    }
+
+    fn visits(&self) -> Option<&[i64]> {
+        (**self).visits()
     }
 }
 

@@ -36,6 +36,8 @@ pub(crate) struct RunSpec {
     pub(crate) terminate_on_truncation: bool,
     pub(crate) episodes: u64,
     pub(crate) bit_generator: BitGenerator,
+    /// Whether to count the visits of each state-action pair. Not part of what is learned, so not of Python's spec.
+    pub(crate) count_visits: bool,
 }
 
 impl RunSpec {
@@ -59,6 +61,7 @@ impl RunSpec {
             terminate_on_truncation: fields.word("on_truncation", &[("bootstrap", false), ("terminate", true)])?,
             episodes,
             bit_generator: fields.word("bit_generator", BitGenerator::WORDS)?,
+            count_visits: false,
         };
         spec.check_tile_coding()?;
         Ok(spec)

@@ -24,18 +24,18 @@ const PYTHON_STEPS_BETWEEN_CHECKS: u64 = 64;
 /// Returns, lengths, and whether each episode ended in a terminal state.
 type FinishedEpisodes<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<bool>>);
 
-/// A training run: the spec of `qtab/_spec.py`, a seed (a non-negative integer of any size), and how many of the last
-/// episodes to record.
+/// A training run: the spec of `qtab/_spec.py`, a seed (a non-negative integer of any size), how many of the last episodes
+/// to record, and whether to count the visits of each state-action pair.
 #[pyclass(frozen, name = "Trainer", module = "qtab._core")]
 pub(crate) struct PyTrainer(Mutex<BuiltRun>);
 
 #[pymethods]
 impl PyTrainer {
     #[new]
-    #[pyo3(signature = (spec, seed, record = 0))]
-    fn new(spec: &Bound<'_, PyAny>, seed: Seed, record: usize) -> PyResult<Self> {
+    #[pyo3(signature = (spec, seed, record = 0, visits = false))]
+    fn new(spec: &Bound<'_, PyAny>, seed: Seed, record: usize, visits: bool) -> PyResult<Self> {
         let fields = Fields::new(spec)?;
-        let run_spec = RunSpec::parse(&fields)?;
+        let run_spec = RunSpec { count_visits: visits, ..RunSpec::parse(&fields)? };
         let built = match EnvironmentSpec::parse(&fields.nested("env")?)? {
             EnvironmentSpec::Native(env) => env.runs(&Arc::new(run_spec), record)?.build(&seed)?,
             EnvironmentSpec::Python(env) => python_run(spec.py(), env, &run_spec, &seed, record)?,
@@ -94,6 +94,11 @@ impl PyTrainer {
             }
         }
         Ok(array)
+    }
+
+    /// How often each action was taken in each row, rows first; None where visits are not counted.
+    fn visits<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<i64>>>> {
+        Ok(self.lock()?.run.visits().map(|visits| PyArray1::from_slice(py, visits)))
     }
 
     /// The recorded episodes, oldest first: the state of the environment's generator at their start, and the actions.
