@@ -40,6 +40,16 @@ class Angle:
 
 
 @dataclass(frozen=True)
+class Mark:
+    """A value of a component to mark in pictures, such as a goal."""
+
+    name: str
+    """The name of the component."""
+    value: float
+    text: str
+
+
+@dataclass(frozen=True)
 class Description:
     """What the numbers of an environment mean."""
 
@@ -53,6 +63,8 @@ class Description:
     """The angles that pictures show instead of their cosines and sines."""
     plane: tuple[str, ...] = ()
     """The two quantities along the axes of a picture by default, where there are more than two."""
+    marks: tuple[Mark, ...] = ()
+    """What pictures mark along an axis."""
     layout: Literal["", "map", "taxi", "blackjack"] = ""
     """How pictures arrange the states; empty for the axes of the observation."""
 
@@ -61,8 +73,12 @@ _POSITION, _VELOCITY = Quantity("position", "m"), Quantity("velocity", "m/step")
 _STATE = (Quantity("state"),)
 
 DESCRIPTIONS: Mapping[str, Description] = {
-    "MountainCar": Description((_POSITION, _VELOCITY), ("push left", "no push", "push right")),
-    "MountainCarContinuous": Description((_POSITION, _VELOCITY), continuous_actions=(Quantity("force"),)),
+    "MountainCar": Description(
+        (_POSITION, _VELOCITY), ("push left", "no push", "push right"), marks=(Mark("position", 0.5, "flag"),)
+    ),
+    "MountainCarContinuous": Description(
+        (_POSITION, _VELOCITY), continuous_actions=(Quantity("force"),), marks=(Mark("position", 0.45, "flag"),)
+    ),
     "CartPole": Description(
         (
             Quantity("cart position", "m"),

@@ -1,11 +1,33 @@
-"""Plots of many runs. Every function draws on the axes it is given, or on a new figure, and returns the axes.
+"""Pictures of runs. Every function draws on the axes it is given, or on a new figure, and returns the axes.
+
+Of many runs: ``learning_curves``, ``distribution``, ``profile`` and ``sensitivity``. Of what was learned: ``values``,
+``policy``, ``visits``, ``trajectory``, ``difference``, ``schedule``, and ``overview``, which returns a figure of four.
 
 They need the extra ``plot``; those with confidence intervals also need ``stats``.
 """
 
+from qtab.plots.difference import difference
 from qtab.plots.distribution import distribution
 from qtab.plots.learning_curves import learning_curves
+from qtab.plots.overview import overview
+from qtab.plots.policy import policy
 from qtab.plots.profile import profile
+from qtab.plots.schedule import schedule
 from qtab.plots.sensitivity import sensitivity
+from qtab.plots.trajectory import trajectory
+from qtab.plots.values import values
+from qtab.plots.visits import visits
 
-__all__ = ["distribution", "learning_curves", "profile", "sensitivity"]
+__all__ = [
+    "difference",
+    "distribution",
+    "learning_curves",
+    "overview",
+    "policy",
+    "profile",
+    "schedule",
+    "sensitivity",
+    "trajectory",
+    "values",
+    "visits",
+]

@@ -24,8 +24,8 @@ class Axis:
     unit: str
     """Its unit; empty where it has none, or where it is not known."""
     edges: NDArray[np.float64]
-    """(cells + 1,): the ascending edges of its cells. Of tile coding, those of a tiling that is not shifted; of integers, the
-    numbers halfway between. The outermost are those of the space or of the discretizer, and can be infinite."""
+    """(cells + 1,): the ascending edges of its cells. Of tile coding, those of an unshifted tiling; of integers,
+    the numbers halfway between. The outermost are those of the space or of the discretizer; they can be infinite."""
     values: tuple[str, ...] = ()
     """The names of its cells, where they have some, such as ``("no", "yes")``."""
 

@@ -49,8 +49,9 @@ class Run:
     recordings: tuple["Recording", ...] = field(default=(), repr=False)
     """The last episodes, where ``record=`` asked for them, to be replayed. They are not saved."""
     visits: NDArray[np.int64] | None = field(default=None, repr=False)
-    """(*cells, actions): how often each action was taken in each cell, where ``visits=True`` counted it; None elsewhere. With
-    tile coding (rows, actions): a step counts once for each weight of its action, one in each tiling."""
+    """(*cells, actions): how often each action was taken in each cell, where ``visits=True`` counted it. With
+    tile coding (rows, actions): a step counts once for each weight of its action, one in each tiling. None if
+    they were not counted."""
     snapshots: Snapshots | None = field(default=None, repr=False)
     """The tables at several episodes, where ``snapshots=`` asked for them; None elsewhere."""
 
