@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from qtab.envs import register as _register
 
 _MODULES = {
+    "Axis": "qtab.results.axes",
     "Config": "qtab.config",
     "Confirmation": "qtab.sweeps.confirm",
     "Evaluation": "qtab.training.evaluate",
@@ -24,6 +25,7 @@ _MODULES = {
     "Run": "qtab.results.run",
     "Runs": "qtab.results.runs",
     "RunsProgress": "qtab.training.runs_progress",
+    "Snapshots": "qtab.results.snapshots",
     "StoreError": "qtab.sweeps.connection",
     "Sweep": "qtab.sweeps.results",
     "SweepProgress": "qtab.sweeps.progress",
@@ -60,9 +62,11 @@ if TYPE_CHECKING:
     from qtab.planning.optimum import Optimum as Optimum
     from qtab.planning.solve import optimum as optimum
     from qtab.plots.run import plot as plot
+    from qtab.results.axes import Axis as Axis
     from qtab.results.run import Recording as Recording
     from qtab.results.run import Run as Run
     from qtab.results.runs import Runs as Runs
+    from qtab.results.snapshots import Snapshots as Snapshots
     from qtab.results.storage import load as load
     from qtab.sweeps import designs as designs
     from qtab.sweeps.confirm import Confirmation as Confirmation

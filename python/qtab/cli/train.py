@@ -14,6 +14,7 @@ from qtab.config.presets import presets
 from qtab.envs.registry import spec_of
 from qtab.planning import Optimum, optimum
 from qtab.results.run import Run
+from qtab.results.snapshots import snapshot_episodes
 from qtab.results.summary import FINAL_EPISODES, SOLVED_EPISODES, best_mean_returns, default_block
 from qtab.training.callbacks import Progress
 from qtab.training.resolve import resolve, time_limit_notice
@@ -33,10 +34,11 @@ def run(arguments: list[str]) -> int:
     try:
         with usage_errors(flags, "env"):
             outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record)
+            snapshots = snapshot_episodes(asked.snapshots, resolved.config.episodes)
             best = _optimum(resolved) if asked.optimum or _has_quick_optimum(resolved) else None
         with outputs:
             print_above(_header(resolved))
-            _train(resolved, outputs, best)
+            _train(resolved, outputs, best, asked.visits, snapshots)
     finally:
         resolved.close()
     return 0
@@ -67,11 +69,15 @@ def _optimum(resolved: ResolvedRun) -> Optimum:
     return optimum(config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps)
 
 
-def _train(resolved: ResolvedRun, outputs: Outputs, best: Optimum | None) -> None:
+def _train(
+    resolved: ResolvedRun, outputs: Outputs, best: Optimum | None, visits: bool, snapshots: tuple[int, ...]
+) -> None:
     block = default_block(resolved.config.episodes)
     averages = _averages(block)
     try:
-        finished = train_resolved(resolved, averages, block, record=outputs.shown)
+        finished = train_resolved(
+            resolved, averages, block, record=outputs.shown, visits=visits, snapshots=snapshots or None
+        )
     except BaseException as error:
         partial = getattr(error, "run", None)
         if isinstance(partial, Run):

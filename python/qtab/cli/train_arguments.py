@@ -44,6 +44,10 @@ class Arguments:
     """Show this many of the last training episodes on the screen."""
     record: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER")] = None
     """Write the last training episodes, 20 or the number given by --watch, to videos in this folder."""
+    visits: bool = False
+    """Count how often each action was taken in each cell, for the file of --save."""
+    snapshots: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
+    """Keep this many copies of the tables, evenly spaced over the episodes, in the file of --save."""
     optimum: bool = False
     """Report how far the run is from the optimum, and draw it. Always done for small tables."""
 

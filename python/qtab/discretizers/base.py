@@ -61,6 +61,10 @@ class Discretizer(ABC):
         """The cells along each component of the observation; ``(n_rows,)`` where there are no cells."""
 
     @abstractmethod
+    def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
+        """Returns for each component of the observation the ascending edges of its cells; see :class:`qtab.Axis`."""
+
+    @abstractmethod
     def spec(self) -> DiscretizerSpec:
         """Returns the discretizer as the extension takes it."""
 

@@ -50,6 +50,10 @@ class Bins(Edges):
         bins.check_stored()
         return bins
 
+    def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
+        """Returns the edges between the bins, and the limits that they cover."""
+        return self._with_outermost(*self.span)
+
     def settings(self) -> dict[str, Any]:
         """Returns the number of bins of each component, and the limits."""
         low, high = self.span

@@ -60,6 +60,16 @@ class Edges(BoxDiscretizer):
         """The bins along each component."""
         return tuple(len(edges) + 1 for edges in self.edges)
 
+    def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
+        """Returns the edges between the bins, and the bounds of the space, which can be infinite."""
+        return self._with_outermost(self.low, self.high)
+
+    def _with_outermost(self, low: NDArray[Any], high: NDArray[Any]) -> tuple[NDArray[np.float64], ...]:
+        return tuple(
+            np.array([min([first, *edges]), *edges, max([last, *edges])], dtype=np.float64)
+            for first, last, edges in zip(low.tolist(), high.tolist(), self.edges, strict=True)
+        )
+
     def spec(self) -> BinsSpec:
         """Returns the discretizer as the extension takes it."""
         edges = [edges.astype(np.float64).tolist() for edges in self.edges]

@@ -55,6 +55,11 @@ class Identity(Discretizer):
         """How many integers each component takes."""
         return tuple(np.ravel(self.high - self.low + 1).tolist())
 
+    def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
+        """Returns the numbers halfway between the integers."""
+        first = np.ravel(self.low).tolist()
+        return tuple(low - 0.5 + np.arange(count + 1.0) for low, count in zip(first, self.shape, strict=True))
+
     def spec(self) -> IdentitySpec:
         """Returns the discretizer as the extension takes it."""
         return {

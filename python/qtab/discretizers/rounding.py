@@ -69,6 +69,15 @@ class Rounding(BoxDiscretizer):
         cells = np.round((self.high - self.low) * self.scale, 0).astype(int) + 1
         return tuple(int(count) for count in cells)
 
+    def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
+        """Returns the edges halfway between the multiples of a step, and the bounds of the space."""
+        return tuple(
+            np.clip(low + (np.arange(count + 1) - 0.5) / scale, low, high)
+            for low, high, scale, count in zip(
+                self.low.astype(np.float64), self.high.astype(np.float64), self.scale, self.shape, strict=True
+            )
+        )
+
     def spec(self) -> RoundSpec:
         """Returns the discretizer as the extension takes it."""
         return {

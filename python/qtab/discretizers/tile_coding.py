@@ -94,6 +94,11 @@ class TileCoding(BoxDiscretizer):
         """The number of tilings."""
         return self.tilings
 
+    def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
+        """Returns the edges of the tiles of a tiling that is not shifted."""
+        low, high = self.span
+        return tuple(np.linspace(*limits) for limits in zip(low, high, np.array(self.tiles) + 1, strict=True))
+
     def spec(self) -> TilesSpec:
         """Returns the discretizer as the extension takes it."""
         low, high = self.span

@@ -14,6 +14,9 @@ UP, RIGHT, DOWN, LEFT = range(4)
 """Actions, as in Gymnasium's CliffWalking."""
 _MOVES = {UP: (-1, 0), RIGHT: (0, 1), DOWN: (1, 0), LEFT: (0, -1)}
 
+ACTION_NAMES = ("up", "right", "down", "left")
+"""Their names, as pictures take them: ``qtab.plots.policy(run, layout=(7, 10), action_names=ACTION_NAMES)``."""
+
 _WIND = (0, 0, 0, 1, 1, 1, 2, 2, 1, 0)
 """The number of cells by which the wind of each column shifts a move upwards."""
 

@@ -18,7 +18,10 @@ from qtab.config import Config
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.results import behaviour, run_file
+from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.consistency import check_consistent
+from qtab.results.optional_arrays import optional_arrays
+from qtab.results.snapshots import Snapshots
 from qtab.results.summary import FINAL_EPISODES, default_block
 
 if TYPE_CHECKING:
@@ -53,6 +56,12 @@ class Run:
     """The last episodes, where ``record=`` asked for them, to be replayed. They are not saved."""
     unchecked: bool = field(default=False, repr=False)
     """True for a run from a file of an earlier version, which has no digest: damage to it may not have been noticed."""
+    visits: NDArray[np.int64] | None = field(default=None, repr=False)
+    """(*cells, actions): how often each action was taken in each cell, where ``visits=True`` counted it. With
+    tile coding (rows, actions): a step counts once for each weight of its action, one in each tiling. None if
+    they were not counted."""
+    snapshots: Snapshots | None = field(default=None, repr=False)
+    """The tables at several episodes, where ``snapshots=`` asked for them; None elsewhere."""
 
     def __repr__(self) -> str:
         """One line: the tables are not shown."""
@@ -108,6 +117,16 @@ class Run:
         self._require_cells("policy", "predict")
         return self.actions.take(np.argmax(self.q_table, axis=-1))
 
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """For each component of the observation its name, its unit and the edges of its cells."""
+        return axes_of(self.config.env, self.discretizer)
+
+    @property
+    def action_names(self) -> tuple[str, ...]:
+        """(actions,): Gymnasium's words for the actions, such as "push left", or the values of continuous ones."""
+        return action_names(self.config.env, self.actions)
+
     def _require_cells(self, attribute: str, method: str) -> None:
         if not self.discretizer.has_cells:
             raise ValueError(
@@ -124,6 +143,19 @@ class Run:
         """
         active = np.moveaxis(self.discretizer.active_rows(observation), -1, 0)
         return _sum(_sum(table[rows] for rows in active) for table in self.tables)
+
+    def values(self, observation: ArrayLike) -> Any:
+        """Returns the value of an observation under the greedy policy, or the (n,) values of n observations.
+
+        It is the largest action value, as a float. Of Double Q-learning, whose :attr:`q_table` is the sum of two
+        tables, it is half of that: the mean of two estimates.
+
+        Raises:
+            TypeError: if the observation does not hold numbers (integers for a discrete space).
+            ValueError: if it has another shape than the space, or lies outside the space.
+        """
+        values = np.max(self.q_values(observation), axis=-1) / len(self.tables)
+        return values if values.ndim else float(values)
 
     def predict(
         self,
@@ -205,7 +237,9 @@ class Run:
             check_consistent(self)
         except ValueError as error:
             raise ValueError(f"this run cannot be saved: {error}") from None
-        arrays = {name: getattr(self, name) for name in run_file.ARRAYS} | self.discretizer.arrays()
+        arrays = (
+            {name: getattr(self, name) for name in run_file.ARRAYS} | self.discretizer.arrays() | optional_arrays(self)
+        )
         if self.actions.values is not None:
             arrays["actions"] = self.actions.values
         config = {field.name: getattr(self.config, field.name) for field in dataclasses.fields(Config)}

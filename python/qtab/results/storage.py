@@ -13,6 +13,7 @@ from qtab.discretizers.actions import Actions
 from qtab.envs.stored import stored_id
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent
+from qtab.results.optional_arrays import restore_optional
 from qtab.results.run import Run
 
 _LOGGER = logging.getLogger("qtab")
@@ -59,9 +60,11 @@ def _run(content: run_file.Content) -> Run:
         raise ValueError(f"its seconds must be a number, got {seconds!r}")
     if not isinstance(versions, dict) or not all(isinstance(version, str) for version in versions.values()):
         raise ValueError(f"its versions must map names to texts, got {versions!r}")
+    discretizer = discretizers.restore(config, stored, arrays["tables"].shape[1])
+    arrays |= restore_optional(stored, arrays["tables"], discretizer.shape, len(arrays["episode_returns"]))
     run = Run(
         config=config,
-        discretizer=discretizers.restore(config, stored, arrays["tables"].shape[1]),
+        discretizer=discretizer,
         actions=actions,
         completed=header["completed"],
         seconds=float(seconds),

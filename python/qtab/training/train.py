@@ -1,7 +1,7 @@
 """``qtab.train``: trains one agent."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -18,10 +18,12 @@ from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
+from qtab.config.options import n_tables
 from qtab.config.settings import Settings
 from qtab.config.signature import with_settings
 from qtab.rendering.replay import generator_states
 from qtab.results.run import Recording, Run
+from qtab.results.snapshots import SnapshotCollector, Snapshots, snapshot_episodes
 from qtab.training.callback_list import CallbackList, Callbacks
 from qtab.training.callbacks import EpisodeReader
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
@@ -39,6 +41,8 @@ def train(
     callback: Callbacks | None = None,
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
+    visits: bool = False,
+    snapshots: int | Sequence[int] | None = None,
     progress: bool | None = None,
     memory_limit: int | None = None,
     **settings: Unpack[Settings],
@@ -61,6 +65,9 @@ def train(
             :mod:`qtab.callbacks` save, log, evaluate and draw.
         callback_every: The number of episodes between two calls, for callbacks without an interval of their own.
         record: The number of last episodes to keep for replay, in ``run.recordings``.
+        visits: Whether to count how often each action was taken in each cell, in ``run.visits``.
+        snapshots: How many copies of the tables to keep, in ``run.snapshots``: evenly spaced over the episodes, the
+            last one included; or after how many episodes to copy them, such as ``(0, 10, 100)``, 0 being before all.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the run takes more
             than a second.
         memory_limit: The number of bytes that the run may take; None means half of the machine's memory.
@@ -82,13 +89,17 @@ def train(
     callback_every = checks.integer("callback_every", callback_every, least=1)
     CallbackList(callback, callback_every)  # refused before the environment is made
     record = checks.count("record", record, least=0)
+    if not isinstance(visits, bool | np.bool_):
+        raise TypeError(f"visits must be True or False, got {visits!r}")
     env, base = collect(train, env, config, settings)
     resolved = resolve(env, over(base, settings))
     log_default_limit(resolved)
     if progress is not False:
         log_python_stepping(resolved)
     try:
-        return train_resolved(resolved, callback, callback_every, record, progress, memory_limit)
+        return train_resolved(
+            resolved, callback, callback_every, record, progress, memory_limit, visits=visits, snapshots=snapshots
+        )
     finally:
         resolved.close()
 
@@ -100,12 +111,17 @@ def train_resolved(
     record: int = 0,
     progress: bool | None = None,
     memory_limit: int | None = None,
+    *,
+    visits: bool = False,
+    snapshots: int | Sequence[int] | None = None,
 ) -> Run:
     """Trains a run that is already resolved; see :func:`train`."""
     total = resolved.config.episodes
+    copied_at = snapshot_episodes(snapshots, total)
     room = check_run(resolved, record, bytes_limit(memory_limit))
     began = time.perf_counter()
-    trainer = _core.Trainer(resolved.spec(), resolved.seed, record, min(room, checks.LARGEST_COUNT))
+    trainer = _core.Trainer(resolved.spec(), resolved.seed, record, min(room, checks.LARGEST_COUNT), visits)
+    collector = SnapshotCollector(trainer, copied_at, _table_shape(resolved))
     reader = EpisodeReader(trainer, resolved, began, lambda: _run(resolved, trainer, began, over=False))
     callbacks = CallbackList(callback, callback_every)
     done = 0
@@ -119,16 +135,17 @@ def train_resolved(
             while done < total:
                 target = callbacks.next_call(done, total)
                 reader.move_on()
-                for until in bar.chunks(done, target):
-                    trainer.advance(until)
-                done = target
+                for stop in collector.stops(done, target):
+                    for until in bar.chunks(done, stop):
+                        trainer.advance(until)
+                    done = stop
                 if callbacks and not callbacks(reader.read()):
                     break
     except BaseException as error:
         with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
-            _attach(error, _run(resolved, trainer, began))
+            _attach(error, _run(resolved, trainer, began, collector.snapshots()))
         raise
-    run = _run(resolved, trainer, began)
+    run = _run(resolved, trainer, began, collector.snapshots())
     overflow = _overflow(run)
     if overflow is not None:
         _attach(overflow, run)
@@ -154,7 +171,18 @@ def _overflow(run: Run) -> OverflowError | None:
     )
 
 
-def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float, *, over: bool = True) -> Run:
+def _table_shape(resolved: ResolvedRun) -> tuple[int, int, int]:
+    return n_tables(resolved.config.algorithm), resolved.discretizer.n_rows, len(resolved.actions)
+
+
+def _run(
+    resolved: ResolvedRun,
+    trainer: _core.Trainer,
+    began: float,
+    snapshots: Snapshots | None = None,
+    *,
+    over: bool = True,
+) -> Run:
     """The run that a trainer has made; one that is not over goes on afterwards, and has no recordings yet."""
     tables = trainer.tables()
     returns, lengths, terminated = trainer.take_episodes() if over else trainer.episodes()
@@ -165,9 +193,10 @@ def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float, *, over: b
         Recording(first + index, generator, tuple(resolved.actions[column] for column in columns.tolist()))
         for index, (generator, (_, columns)) in enumerate(zip(generators, kept, strict=True))
     )
+    visits = trainer.visits()
     return Run(
         config=resolved.config,
-        tables=tables.reshape(-1, resolved.discretizer.n_rows, len(resolved.actions)),
+        tables=tables.reshape(_table_shape(resolved)),
         episode_returns=returns,
         episode_lengths=lengths,
         terminated=terminated,
@@ -177,4 +206,6 @@ def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float, *, over: b
         seconds=time.perf_counter() - began,
         versions=versions(),
         recordings=recordings,
+        visits=None if visits is None else visits.reshape(*resolved.discretizer.shape, len(resolved.actions)),
+        snapshots=snapshots,
     )

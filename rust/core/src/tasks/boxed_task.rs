@@ -12,6 +12,7 @@ struct StatefulTask<T: Task> {
 trait DynTask<R, X> {
     fn reset(&mut self) -> Result<R, X>;
     fn step(&mut self, action: usize) -> Result<Transition<R>, X>;
+    fn visits(&self) -> Option<&[i64]>;
 }
 
 impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
@@ -24,6 +25,10 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
     fn step(&mut self, action: usize) -> Result<Transition<T::Active>, X> {
         let Some(state) = &mut self.state else { unreachable!("a trainer resets a task before it steps it") };
         Ok(self.task.step(state, action)?)
+    }
+
+    fn visits(&self) -> Option<&[i64]> {
+        self.task.visits()
     }
 }
 
@@ -60,5 +65,9 @@ impl<R: Copy + AsRef<[u32]>, X> Task for BoxedTask<R, X> {
     #[inline]
     fn step_work(&self) -> u64 {
         self.step_work
+    }
+
+    fn visits(&self) -> Option<&[i64]> {
+        self.task.visits()
     }
 }

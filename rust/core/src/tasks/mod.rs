@@ -5,9 +5,11 @@ mod episode_recorder;
 mod native_task;
 mod rng_snapshot;
 mod task;
+mod visit_counter;
 
 pub use boxed_task::BoxedTask;
 pub use episode_recorder::{EpisodeRecorder, Recording, Recordings};
 pub use native_task::{NativeTask, TimedState};
 pub use rng_snapshot::RngSnapshot;
 pub use task::{Next, Task, Transition};
+pub use visit_counter::{CountedState, VisitCounter};

@@ -48,4 +48,9 @@ pub trait Task {
     fn step_work(&self) -> u64 {
         0
     }
+
+    /// How often each action was taken in each row, row by row; `None` where visits are not counted.
+    fn visits(&self) -> Option<&[i64]> {
+        None
+    }
 }

@@ -9,7 +9,7 @@ use qtab_core::learners::{
     TdLearner, Traces, TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
 };
 use qtab_core::random::AgentRng;
-use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot};
+use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, VisitCounter};
 use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer};
 
 use super::agent::generic_agent;
@@ -75,13 +75,26 @@ where
     RunError: From<W::Error>,
 {
     let (task, recordings) = if record == 0 {
-        (BoxedTask::<W::Active, RunError>::new(task), AnyRecordings::None)
+        (boxed_task(task, shape, spec), AnyRecordings::None)
     } else {
         let (task, recordings) = EpisodeRecorder::new(task, record, spec.max_recorded_actions);
-        (BoxedTask::new(task), keep(recordings))
+        (boxed_task(task, shape, spec), keep(recordings))
     };
     let rng = spec.bit_generator.agent_rng(seed)?;
     Ok((build_learner(task, shape, rng, spec, stop)?, recordings))
+}
+
+/// A boxed task, which counts visits if the spec asks for it.
+fn boxed_task<W>(task: W, (n_rows, _): (usize, usize), spec: &RunSpec) -> BoxedTask<W::Active, RunError>
+where
+    W: Task<Active: Send, State: Send> + Send + 'static,
+    RunError: From<W::Error>,
+{
+    if spec.count_visits {
+        BoxedTask::new(VisitCounter::new(task, n_rows, spec.num_actions))
+    } else {
+        BoxedTask::new(task)
+    }
 }
 
 /// Any learner on a boxed task, with a generator chosen at run time: compiled once for each kind of active rows.

@@ -20,6 +20,9 @@ pub(crate) trait Run: Send {
 
     /// The values of each table, rows first.
     fn tables(&self) -> Vec<&[f64]>;
+
+    /// How often each action was taken in each row; None where visits are not counted.
+    fn visits(&self) -> Option<&[i64]>;
 }
 
 impl<W, L, D> Run for Trainer<W, L, D>
@@ -49,6 +52,10 @@ where
     fn tables(&self) -> Vec<&[f64]> {
         self.learner().tables()
     }
+
+    fn visits(&self) -> Option<&[i64]> {
+        self.task().visits()
+    }
 }
 
 impl Run for Box<dyn Run> {
@@ -70,6 +77,10 @@ impl Run for Box<dyn Run> {
 
     fn tables(&self) -> Vec<&[f64]> {
         (**self).tables()
+    }
+
+    fn visits(&self) -> Option<&[i64]> {
+        (**self).visits()
     }
 }
 

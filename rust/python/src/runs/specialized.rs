@@ -8,7 +8,7 @@ use qtab_core::learners::{Agent, ExpectedSarsa, QLearning, Sarsa, TdLearner, Upd
 use qtab_core::policies::{EpsilonGreedy, Policy, TieBreaking};
 use qtab_core::random::Pcg64;
 use qtab_core::schedules::{Schedule, StepSize};
-use qtab_core::tasks::NativeTask;
+use qtab_core::tasks::{NativeTask, VisitCounter};
 use qtab_core::{Env, Features, StopFlag, Trainer};
 
 use super::agent::policy;
@@ -135,7 +135,8 @@ where
         A: StepSize + Clone + Send + Sync + 'static,
     {
         let Self { env, features, spec } = self;
-        let build = move |seed: &Seed, stop: &StopFlag<'_>| {
+        let count_visits = spec.count_visits;
+        let parts = move |seed: &Seed, stop: &StopFlag<'_>| {
             let mut rng = agent_pcg64(seed);
             let agent = Agent {
                 table: spec.initial_q.table((0, 1), (features.len(), N), &mut rng, stop)?,
@@ -147,6 +148,19 @@ where
             let task =
                 NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
             let learner = TdLearner { agent, rule: rule.clone() };
+            PyResult::Ok((task, learner, rng))
+        };
+        // Counting is compiled into the steps of a type of its own: a run that does not count pays nothing for it.
+        if count_visits {
+            let build = move |seed: &Seed, stop: &StopFlag<'_>| {
+                let (task, learner, rng) = parts(seed, stop)?;
+                let task = VisitCounter::new(task, learner.agent.table.values().len() / N, N);
+                Ok((Trainer::new(task, learner, rng), AnyRecordings::None))
+            };
+            return Box::new(Factory { build, batching: Batching::one_by_one() });
+        }
+        let build = move |seed: &Seed, stop: &StopFlag<'_>| {
+            let (task, learner, rng) = parts(seed, stop)?;
             Ok((Trainer::new(task, learner, rng), AnyRecordings::None))
         };
         Box::new(Factory { build, batching })

@@ -38,6 +38,8 @@ pub(crate) struct RunSpec {
     pub(crate) bit_generator: BitGenerator,
     /// How many actions all recordings together may hold.
     pub(crate) max_recorded_actions: u64,
+    /// Whether to count the visits of each state-action pair. Not part of what is learned, so not of Python's spec.
+    pub(crate) count_visits: bool,
 }
 
 impl RunSpec {
@@ -62,6 +64,7 @@ impl RunSpec {
             episodes,
             bit_generator: fields.word("bit_generator", BitGenerator::WORDS)?,
             max_recorded_actions: u64::MAX,
+            count_visits: false,
         };
         spec.check_tile_coding()?;
         Ok(spec)

@@ -112,7 +112,11 @@ impl Results<'_> {
         let (episodes, values) = (self.returns.shape()[1], self.tables.shape()[1]);
         let finished = self.finished.as_slice_mut()?;
         if finished.len() != runs {
-            return Err(invalid("results['finished']", format!("an array of {runs}, one for each seed"), finished.len()));
+            return Err(invalid(
+                "results['finished']",
+                format!("an array of {runs}, one for each seed"),
+                finished.len(),
+            ));
         }
         Ok(Rows {
             next: 0,

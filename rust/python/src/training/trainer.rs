@@ -26,7 +26,7 @@ type FinishedEpisodes<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64
 type PyRecording<'py> = (Py<PyAny>, Bound<'py, PyArray1<u32>>);
 
 /// A training run: the spec of `qtab/_spec.py`, a seed (a non-negative integer of any size), how many of the last
-/// episodes to record, and how many actions they may have together.
+/// episodes to record, how many actions they may have together, and whether to count the visits of each state-action pair.
 #[pyclass(frozen, name = "Trainer", module = "qtab._core")]
 pub(crate) struct PyTrainer {
     run: Mutex<BuiltRun>,
@@ -37,10 +37,16 @@ pub(crate) struct PyTrainer {
 #[pymethods]
 impl PyTrainer {
     #[new]
-    #[pyo3(signature = (spec, seed, record = 0, max_recorded_actions = u64::MAX))]
-    fn new(spec: &Bound<'_, PyAny>, seed: Seed, record: usize, max_recorded_actions: u64) -> PyResult<Self> {
+    #[pyo3(signature = (spec, seed, record = 0, max_recorded_actions = u64::MAX, visits = false))]
+    fn new(
+        spec: &Bound<'_, PyAny>,
+        seed: Seed,
+        record: usize,
+        max_recorded_actions: u64,
+        visits: bool,
+    ) -> PyResult<Self> {
         let fields = Fields::new(spec)?;
-        let run_spec = RunSpec { max_recorded_actions, ..RunSpec::parse(&fields)? };
+        let run_spec = RunSpec { max_recorded_actions, count_visits: visits, ..RunSpec::parse(&fields)? };
         let environment = EnvironmentSpec::parse(&fields.nested("env")?)?;
         // A large table takes seconds to fill.
         let built = run_polling(|stop| match environment {
@@ -104,6 +110,11 @@ impl PyTrainer {
         let mut values = with_capacity(size).map_err(allocation)?;
         tables.iter().for_each(|table| values.extend_from_slice(table));
         Ok(PyArray1::from_vec(py, values))
+    }
+
+    /// How often each action was taken in each row, rows first; None where visits are not counted.
+    fn visits<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<i64>>>> {
+        Ok(self.lock()?.run.visits().map(|visits| PyArray1::from_slice(py, visits)))
     }
 
     /// The recorded episodes, oldest first, taken out. It ends the training.

@@ -1,0 +1,140 @@
+"""Names and units of the observations and actions of Gymnasium's environments and of this package's.
+
+They come from Gymnasium's documentation, which names the components of observations and the actions in tables. Axes of
+pictures, ``run.axes`` and ``run.action_names`` show them. An environment that is not listed has neutral names.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from qtab.envs.registry import gymnasium_id
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A component of an observation, or of a continuous action."""
+
+    name: str
+    """Its name, in lower case."""
+    unit: str = ""
+    """Its unit; empty where it has none."""
+    values: tuple[str, ...] = ()
+    """The names of its values, from the first on, where it is discrete and they have names."""
+
+    @property
+    def label(self) -> str:
+        """The name and the unit, as axes show them."""
+        return f"{self.name} ({self.unit})" if self.unit else self.name
+
+
+@dataclass(frozen=True)
+class Angle:
+    """An angle that an observation gives by its cosine and its sine."""
+
+    quantity: Quantity
+    cosine: int
+    """The component that is the cosine."""
+    sine: int
+    """The component that is the sine."""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A value of a component to mark in pictures, such as a goal."""
+
+    name: str
+    """The name of the component."""
+    value: float
+    text: str
+
+
+@dataclass(frozen=True)
+class Description:
+    """What the numbers of an environment mean."""
+
+    observation: tuple[Quantity, ...] = ()
+    """The components of an observation."""
+    actions: tuple[str, ...] = ()
+    """The names of the actions of a Discrete space."""
+    continuous_actions: tuple[Quantity, ...] = ()
+    """The components of an action of a Box."""
+    angles: tuple[Angle, ...] = ()
+    """The angles that pictures show instead of their cosines and sines."""
+    plane: tuple[str, ...] = ()
+    """The two quantities along the axes of a picture by default, where there are more than two."""
+    marks: tuple[Mark, ...] = ()
+    """What pictures mark along an axis."""
+    layout: Literal["", "map", "taxi", "blackjack"] = ""
+    """How pictures arrange the states; empty for the axes of the observation."""
+
+
+_POSITION, _VELOCITY = Quantity("position", "m"), Quantity("velocity", "m/step")
+_STATE = (Quantity("state"),)
+
+DESCRIPTIONS: Mapping[str, Description] = {
+    "MountainCar": Description(
+        (_POSITION, _VELOCITY), ("push left", "no push", "push right"), marks=(Mark("position", 0.5, "flag"),)
+    ),
+    "MountainCarContinuous": Description(
+        (_POSITION, _VELOCITY), continuous_actions=(Quantity("force"),), marks=(Mark("position", 0.45, "flag"),)
+    ),
+    "CartPole": Description(
+        (
+            Quantity("cart position", "m"),
+            Quantity("cart velocity", "m/s"),
+            Quantity("pole angle", "rad"),
+            Quantity("pole angular velocity", "rad/s"),
+        ),
+        ("push left", "push right"),
+        plane=("pole angle", "pole angular velocity"),
+    ),
+    "Acrobot": Description(
+        (
+            Quantity("cos θ1"),
+            Quantity("sin θ1"),
+            Quantity("cos θ2"),
+            Quantity("sin θ2"),
+            Quantity("angular velocity of θ1", "rad/s"),
+            Quantity("angular velocity of θ2", "rad/s"),
+        ),
+        ("torque -1", "torque 0", "torque +1"),
+        angles=(Angle(Quantity("θ1", "rad"), 0, 1), Angle(Quantity("θ2", "rad"), 2, 3)),
+        plane=("θ1", "angular velocity of θ1"),
+    ),
+    "Pendulum": Description(
+        (Quantity("cos θ"), Quantity("sin θ"), Quantity("angular velocity", "rad/s")),
+        continuous_actions=(Quantity("torque", "N m"),),
+        angles=(Angle(Quantity("θ", "rad"), 0, 1),),
+        plane=("θ", "angular velocity"),
+    ),
+    "FrozenLake": Description(_STATE, ("left", "down", "right", "up"), layout="map"),
+    "FrozenLake8x8": Description(_STATE, ("left", "down", "right", "up"), layout="map"),
+    "CliffWalking": Description(_STATE, ("up", "right", "down", "left"), layout="map"),
+    "CliffWalkingSlippery": Description(_STATE, ("up", "right", "down", "left"), layout="map"),
+    "Taxi": Description(_STATE, ("south", "north", "east", "west", "pick up", "drop off"), layout="taxi"),
+    "Blackjack": Description(
+        (Quantity("player's sum"), Quantity("dealer's card"), Quantity("usable ace", values=("no", "yes"))),
+        ("stick", "hit"),
+        layout="blackjack",
+    ),
+    "qtab/MaximizationBias": Description((Quantity("state", values=("A", "B", "end")),), ("right", "left")),
+}
+"""The environments by their id, without its version."""
+
+UNKNOWN = Description()
+"""The description of an environment that is not listed."""
+
+
+def describe(env: str) -> Description:
+    """Returns the description of an id, of Gymnasium's or of this package's; ``UNKNOWN`` for any other."""
+    full_name = env.rpartition(":")[2].partition("-v")[0]
+    return DESCRIPTIONS.get(full_name) or DESCRIPTIONS.get(gymnasium_id(full_name), UNKNOWN)
+
+
+def observation_quantities(env: str, count: int) -> tuple[Quantity, ...]:
+    """Returns the ``count`` components of an environment's observations; neutral names where they do not fit."""
+    known = describe(env).observation
+    if len(known) == count:
+        return known
+    return _STATE if count == 1 else tuple(Quantity(f"observation[{index}]") for index in range(count))

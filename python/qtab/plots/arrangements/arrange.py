@@ -1,0 +1,51 @@
+"""Which arrangement suits an environment."""
+
+from collections.abc import Mapping
+
+from qtab.envs.descriptions import describe
+from qtab.plots.arrangements import blackjack as blackjack_module
+from qtab.plots.arrangements.blackjack import blackjack
+from qtab.plots.arrangements.grid_map import Layout, checked_layout, grid_map, known_layout
+from qtab.plots.arrangements.plane import plane
+from qtab.plots.arrangements.raster import Raster
+from qtab.plots.arrangements.taxi import taxi
+from qtab.plots.subject import Subject
+
+TAXI_STATES = 500
+
+
+def arrange(
+    subject: Subject,
+    at: Mapping[str, float] | None = None,
+    layout: Layout | None = None,
+    sampled: bool = False,
+) -> Raster:
+    """Returns where a picture of a subject shows which state.
+
+    Args:
+        subject: What to draw.
+        at: The components of the observation that are held fixed, where it has more than two.
+        layout: The map of an environment with numbered states; None takes the known one.
+        sampled: Whether to sample points of a continuous space even where the table has cells.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for one that does not fit the environment.
+    """
+    shape = subject.discretizer.shape
+    kind = describe(subject.env).layout
+    numbered = subject.discretizer.low.ndim == 0 and len(shape) == 1
+    if layout is not None and not numbered:
+        raise ValueError(f"layout must be None for observations that are not numbered states, got {layout!r}")
+    is_blackjack = kind == "blackjack" and shape == blackjack_module.SHAPE
+    if at is not None and (numbered or is_blackjack):
+        raise ValueError(f"at must be None for {subject.env}, whose picture shows every state, got {at!r}")
+    if layout is not None:
+        return grid_map(subject, checked_layout(layout, shape[0]))
+    if is_blackjack:
+        return blackjack()
+    if kind == "taxi" and shape == (TAXI_STATES,):
+        return taxi()
+    if kind == "map" and numbered:
+        return grid_map(subject, checked_layout(known_layout(subject), shape[0]))
+    return plane(subject, at, sampled)

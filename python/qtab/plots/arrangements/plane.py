@@ -1,0 +1,203 @@
+"""Two components of the observation along the axes of the picture, and the others held fixed."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils import checks
+from qtab._utils.suggestions import did_you_mean
+from qtab.envs.descriptions import describe
+from qtab.plots.arrangements.raster import Raster
+from qtab.plots.subject import Subject
+from qtab.results.axes import Axis
+
+RESOLUTION = 200
+"""The points along each axis, where cells cannot be drawn as they are."""
+
+
+@dataclass(frozen=True, eq=False)
+class Coordinate:
+    """A quantity that can be an axis: a component of the observation, or an angle of which it has cosine and sine."""
+
+    name: str
+    label: str
+    low: float
+    high: float
+    components: tuple[int, ...]
+    """The component, or those of the cosine and the sine."""
+    edges: NDArray[np.float64] | None
+    """The edges of its cells; None for an angle."""
+
+    @property
+    def default(self) -> float:
+        """Zero, or else the bound that is nearest."""
+        return float(np.clip(0.0, self.low, self.high))
+
+
+def coordinates(subject: Subject) -> tuple[Coordinate, ...]:
+    """Returns the quantities that can be axes: angles first, then the remaining components in their order."""
+    axes = subject.axes
+    description = describe(subject.env)
+    angles = description.angles if len(description.observation) == len(axes) else ()
+    used = {index for angle in angles for index in (angle.cosine, angle.sine)}
+    turns = [
+        Coordinate(angle.quantity.name, angle.quantity.label, -np.pi, np.pi, (angle.cosine, angle.sine), None)
+        for angle in angles
+    ]
+    return (*turns, *(_component(index, axis) for index, axis in enumerate(axes) if index not in used))
+
+
+def _component(index: int, axis: Axis) -> Coordinate:
+    """Outer bins without an outer edge are drawn as wide as their neighbors."""
+    edges = axis.edges.copy()
+    inner = edges[np.isfinite(edges)]
+    width = float(np.diff(inner).mean()) if len(inner) > 1 else 1.0
+    for end, step in ((0, -width), (-1, width)):
+        if not np.isfinite(edges[end]):
+            nearest = inner[end] if len(inner) else step / 2 + 0.0
+            edges[end] = nearest + step
+    return Coordinate(axis.name, axis.label, float(edges[0]), float(edges[-1]), (index,), edges)
+
+
+def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = False) -> Raster:
+    """Returns the raster of two coordinates.
+
+    Args:
+        subject: What to draw.
+        at: The coordinates that are held fixed, by name; None and missing ones take their defaults.
+        sampled: Whether to sample points where cells could be drawn as they are.
+
+    Raises:
+        TypeError: if ``at`` is not a mapping of names to numbers.
+        ValueError: for an unknown name, a number out of range, or fewer than two free coordinates.
+    """
+    known = coordinates(subject)
+    chosen, fixed = _choose(subject, known, at)
+    discretizer = subject.discretizer
+    as_cells = discretizer.has_cells and not sampled and all(one.edges is not None for one in known)
+    edges = [_edges(one, as_cells) for one in chosen]
+    if len(edges) == 1:
+        edges.append(np.array([0.0, 1.0]))
+    shape = (len(edges[1]) - 1, len(edges[0]) - 1)
+    observations = _observations(subject, known, chosen, fixed, edges)
+    if as_cells:
+        rows = _cell_rows(subject, known, chosen, fixed)
+    else:
+        rows = discretizer.active_rows(observations)
+    note = ", ".join(f"{one.name} = {fixed[one.name]:.4g}" for one in known if one.name in fixed)
+
+    def locate(observed: NDArray[Any]) -> NDArray[np.float64]:
+        points = np.asarray(observed, np.float64)
+        points = points[:, np.newaxis] if points.ndim == 1 else points
+        columns = [_read(one, points) for one in chosen]
+        return np.stack(columns if len(columns) == 2 else [*columns, np.full(len(points), 0.5)], axis=-1)
+
+    def decorate(ax: Any, ink: str) -> None:
+        for mark in describe(subject.env).marks:
+            for line, one in zip((ax.axvline, ax.axhline), chosen, strict=False):
+                if one.name == mark.name:
+                    line(mark.value, color=ink, linewidth=1, linestyle=(0, (4, 3)), zorder=3)
+                    # Inside the axes, at the left of the line.
+                    ax.annotate(
+                        mark.text, (mark.value, 0.02), (-3, 0), xycoords=("data", "axes fraction"),
+                        textcoords="offset points", ha="right", va="bottom", color=ink, fontsize="small",
+                    )  # fmt: skip
+        for axis, one in zip((ax.xaxis, ax.yaxis), chosen, strict=False):
+            values = next((known_axis.values for known_axis in subject.axes if known_axis.name == one.name), ())
+            if values and len(values) <= round(one.high - one.low):
+                axis.set_ticks(one.low + 0.5 + np.arange(len(values)), values)
+            if one.edges is None:
+                axis.set_ticks([-np.pi, -np.pi / 2, 0, np.pi / 2, np.pi], ["-π", "-π/2", "0", "π/2", "π"])
+        if len(chosen) == 1:
+            ax.set_yticks([])
+
+    return Raster(
+        x_edges=edges[0],
+        y_edges=edges[1],
+        rows=rows.reshape(*shape, -1),
+        locate=locate,
+        labels=(chosen[0].label, chosen[1].label if len(chosen) > 1 else ""),
+        note=note,
+        decorate=decorate,
+        has_numbers=len(chosen) == 1 and shape[1] <= 20,
+        observations=observations,
+        size=(6.4, 4.5) if len(chosen) > 1 else (8.0, 2.0),
+    )
+
+
+def _choose(
+    subject: Subject, known: tuple[Coordinate, ...], at: Mapping[str, float] | None
+) -> tuple[list[Coordinate], dict[str, float]]:
+    if at is not None and not isinstance(at, Mapping):
+        raise TypeError(f"at must be a mapping of the names of components to numbers, got {at!r}")
+    by_name = {one.name: one for one in known}
+    fixed = {}
+    for name, value in (at or {}).items():
+        if name not in by_name:
+            listed = ", ".join(map(repr, by_name))
+            raise ValueError(
+                f"at must name components of the observation ({listed}), got {name!r}{did_you_mean(str(name), by_name)}"
+            )
+        one = by_name[name]
+        fixed[name] = checks.real(f"at[{name!r}]", value, one.low, one.high)
+    free = [one for one in known if one.name not in fixed]
+    if len(free) < min(2, len(known)):
+        raise ValueError(
+            f"at must leave two components as the axes of the picture, got values for {', '.join(map(repr, fixed))}"
+        )
+    preferred = [one for one in free if one.name in describe(subject.env).plane]
+    chosen = preferred if len(preferred) == 2 and len(free) > 2 else free[:2]
+    return chosen, fixed | {one.name: one.default for one in free if one not in chosen}
+
+
+def _edges(one: Coordinate, as_cells: bool) -> NDArray[np.float64]:
+    return one.edges if as_cells and one.edges is not None else np.linspace(one.low, one.high, RESOLUTION + 1)
+
+
+def _observations(
+    subject: Subject,
+    known: tuple[Coordinate, ...],
+    chosen: list[Coordinate],
+    fixed: Mapping[str, float],
+    edges: list[NDArray[np.float64]],
+) -> NDArray[Any]:
+    """The observation in the middle of each point of the picture."""
+    middles = [(ends[1:] + ends[:-1]) / 2 for ends in edges]
+    grid = np.meshgrid(*middles)
+    found = np.empty((grid[0].size, len(subject.axes)))
+    for one in known:
+        axis = next((index for index, other in enumerate(chosen) if other is one), None)
+        value = np.full(grid[0].size, fixed[one.name]) if axis is None else grid[axis].ravel()
+        if len(one.components) == 2:
+            found[:, one.components[0]], found[:, one.components[1]] = np.cos(value), np.sin(value)
+        else:
+            found[:, one.components[0]] = value
+    low = subject.discretizer.low
+    return np.round(found).astype(np.int64) if low.dtype == np.int64 else found.astype(low.dtype)
+
+
+def _cell_rows(
+    subject: Subject, known: tuple[Coordinate, ...], chosen: list[Coordinate], fixed: Mapping[str, float]
+) -> NDArray[np.int64]:
+    shape = subject.discretizer.shape
+    axes = [np.arange(shape[one.components[0]]) for one in chosen]
+    grid = np.meshgrid(*axes) if len(axes) == 2 else [axes[0][np.newaxis]]
+    index: list[Any] = [0] * len(shape)
+    for one in known:
+        component = one.components[0]
+        axis = next((number for number, other in enumerate(chosen) if other is one), None)
+        if axis is not None:
+            index[component] = grid[axis]
+        elif one.edges is not None:
+            index[component] = int(np.searchsorted(one.edges[1:-1], fixed[one.name], side="right"))
+    return np.ravel_multi_index(np.broadcast_arrays(*index), shape)[..., np.newaxis]
+
+
+def _read(one: Coordinate, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    if len(one.components) == 2:
+        cosine, sine = one.components
+        return np.arctan2(points[:, sine], points[:, cosine])
+    return points[:, one.components[0]]

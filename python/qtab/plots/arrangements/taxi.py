@@ -1,0 +1,78 @@
+"""Taxi's 500 states as twenty small maps: one for each place of the passenger and each destination."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from gymnasium.envs.toy_text.taxi import MAP
+from numpy.typing import NDArray
+
+from qtab.plots.arrangements.raster import Raster
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SIDE, PASSENGERS, DESTINATIONS = 5, 5, 4
+PITCH = SIDE + 1
+"""From one map to the next: one cell is left between them."""
+PLACES = ("red", "green", "yellow", "blue")
+LOCATIONS = ((0, 0), (0, 4), (4, 0), (4, 3))
+"""The row and column of each place."""
+
+
+def taxi() -> Raster:
+    """Returns the raster of all states: columns of maps by the place of the passenger, rows by the destination."""
+    height, width = PITCH * DESTINATIONS - 1, PITCH * PASSENGERS - 1
+    rows = np.full((height, width), -1)
+    for state in range(500):
+        x, y = _place(np.array(state))
+        rows[int(y), int(x)] = state
+
+    def locate(observed: NDArray[Any]) -> NDArray[np.float64]:
+        return np.stack(_place(np.asarray(observed).ravel()), axis=-1) + 0.5
+
+    return Raster(
+        x_edges=np.arange(width + 1.0),
+        y_edges=np.arange(height + 1.0),
+        rows=rows[..., np.newaxis],
+        locate=locate,
+        labels=("passenger at", "destination"),
+        decorate=_decorate,
+        is_map=True,
+        has_gaps=True,
+        note="solid square: destination, dashed square: passenger",
+        size=(8.6, 6.6),
+    )
+
+
+def _place(states: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Decodes states as Gymnasium encodes them: ((row * 5 + column) * 5 + passenger) * 4 + destination."""
+    rest, destination = np.divmod(states, DESTINATIONS)
+    rest, passenger = np.divmod(rest, PASSENGERS)
+    row, column = np.divmod(rest, SIDE)
+    return PITCH * passenger + column, PITCH * destination + row
+
+
+def _decorate(ax: "Axes", ink: str) -> None:
+    walls = [
+        (row, column) for row, line in enumerate(MAP[1:-1]) for column in range(1, SIDE) if line[2 * column] == "|"
+    ]
+    line: dict[str, Any] = {"color": ink, "zorder": 5, "scalex": False, "scaley": False}
+    for destination in range(DESTINATIONS):
+        for passenger in range(PASSENGERS):
+            x, y = PITCH * passenger, PITCH * destination
+            ax.plot([x, x + 5, x + 5, x, x], [y, y, y + 5, y + 5, y], linewidth=0.8, **line)
+            for row, column in walls:
+                ax.plot([x + column] * 2, [y + row, y + row + 1], linewidth=1.6, **line)
+            for index, (row, column) in enumerate(LOCATIONS):
+                if index in (destination, passenger):
+                    _draw_square(ax, x + column, y + row, ink, "-" if index == destination else (0, (2, 1.5)))
+    ax.set_xticks(PITCH * np.arange(PASSENGERS) + 2.5, [*PLACES, "in the taxi"])
+    ax.set_yticks(PITCH * np.arange(DESTINATIONS) + 2.5, PLACES)
+
+
+def _draw_square(ax: "Axes", x: int, y: int, ink: str, style: Any) -> None:
+    from matplotlib.patches import Rectangle
+
+    ax.add_patch(
+        Rectangle((x + 0.06, y + 0.06), 0.88, 0.88, fill=False, edgecolor=ink, linestyle=style, linewidth=1.3, zorder=6)
+    )

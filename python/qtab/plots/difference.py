@@ -1,0 +1,109 @@
+"""A picture of where a policy differs from the optimal one, and what that costs."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.envs.registry import gymnasium_id
+from qtab.planning.optimum import Optimum
+from qtab.plots.arrangements import Raster, arrange
+from qtab.plots.arrangements.grid_map import Layout
+from qtab.plots.panels import axes_for, color_bar, draw_cells, finish_panel, is_dark, shade_unknown, write_numbers
+from qtab.plots.subject import Subject, subject_of
+from qtab.results.run import Run
+from qtab.results.runs import Runs
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+EXACT = 1e-9
+"""A smaller cost, relative to the largest value, is a tie between actions."""
+
+
+def difference(
+    run: Run | Runs,
+    optimum: Optimum,
+    ax: "Axes | None" = None,
+    *,
+    at: Mapping[str, float] | None = None,
+    layout: Layout | None = None,
+    title: str | None = None,
+) -> "Axes":
+    """Draws what the greedy action of each state costs: how much of the optimal value it gives away, V*(s) - Q*(s, a).
+
+    The cost is that of one such action, followed by optimal ones. It is 0 where the action is optimal, also where
+    several are; these states stay blank. Grey is where the run has learned nothing, as in :func:`qtab.plots.values`.
+    For MountainCar the values are those of the best known policy, so costs are approximate.
+
+    Args:
+        run: A run, or the runs of many seeds with their tables, whose most frequent greedy action is taken.
+        optimum: What :func:`qtab.optimum` returned for the environment.
+        ax: The axes to draw on; None creates a new figure.
+        at: For observations of more than two components, the values of those that are not axes; see
+            :func:`qtab.plots.values`.
+        layout: A map for numbered states; see :func:`qtab.plots.values`.
+        title: The title; None names the environment and the optimum.
+
+    Returns:
+        The axes.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        TypeError: for an argument of the wrong type.
+        ValueError: if the optimum is that of another environment, or an argument does not fit it.
+    """
+    from matplotlib.colors import Normalize
+
+    if not isinstance(run, Run | Runs):
+        raise TypeError(f"run must be a Run or Runs, got {run!r}")
+    if not isinstance(optimum, Optimum):
+        raise TypeError(f"optimum must be a result of qtab.optimum, got {optimum!r}")
+    subject, best = subject_of("run", run), subject_of("optimum", optimum)
+    _check_same(subject, best)
+    raster = arrange(subject, at, layout, sampled=optimum.search is not None)
+    cost = costs(subject, best, raster)
+    [ax] = axes_for([raster], ax)
+    known = np.isfinite(cost)
+    wrong = known & (cost > 0)
+    share = wrong.sum() / max(known.sum(), 1)
+    if title is None:
+        title = f"{subject.env}: cost against the {optimum.label}"
+    shade_unknown(ax, raster, cost)
+    cmap = "magma" if is_dark(ax) else "magma_r"
+    norm = Normalize(0, float(cost[wrong].max(initial=0.0)) or 1.0)
+    image = draw_cells(ax, raster, np.where(wrong, cost, np.nan), cmap, norm)
+    if raster.has_numbers:
+        write_numbers(ax, raster, np.where(wrong, cost, np.nan), image, lambda value: f"{value:.2g}")
+    note = f"{share:.1%} of the states have a worse action"
+    finish_panel(ax, raster, title, ", ".join(filter(None, [note, raster.note])))
+    color_bar([ax], raster, image, "cost of the action, V*(s) - Q*(s, a)")
+    return ax
+
+
+def costs(subject: Subject, best: Subject, raster: Raster) -> NDArray[np.float64]:
+    """Returns (ny, nx): what the greedy action of a subject costs; 0 where it is optimal, NaN where it is not known."""
+    rows = raster.rows
+    if best.discretizer.shape != subject.discretizer.shape or raster.observations is not None:
+        if raster.observations is None:
+            raise ValueError(
+                f"run must have a table of shape {best.discretizer.shape}, got {subject.discretizer.shape}"
+            )
+        rows = best.discretizer.active_rows(raster.observations).reshape(*raster.rows.shape[:2], -1)
+    greedy = subject.greedy_actions(raster.rows)
+    optimal = best.action_values(rows)[0]
+    taken = np.take_along_axis(optimal, np.maximum(greedy, 0)[..., np.newaxis], axis=-1)[..., 0]
+    cost = optimal.max(axis=-1) - taken
+    scale = np.nanmax(np.abs(optimal), initial=1.0)
+    return np.where(greedy < 0, np.nan, np.where(cost > EXACT * scale, cost, 0.0))
+
+
+def _check_same(subject: Subject, best: Subject) -> None:
+    ours, theirs = gymnasium_id(subject.env), gymnasium_id(best.env)
+    if ours != theirs:
+        raise ValueError(f"optimum must be that of {ours!r}, the run's environment, got that of {theirs!r}")
+    if len(subject.action_names) != len(best.action_names):
+        raise ValueError(
+            f"optimum must have the run's {len(subject.action_names)} actions, got {len(best.action_names)}"
+        )

@@ -1,0 +1,146 @@
+"""What the pictures of tables share: panels with one scale of colors, and colors for light and dark styles."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.plots.arrangements import Raster
+from qtab.plots.axes import axes_or_new, new_figure
+from qtab.plots.subject import Subject, subject_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colors import Normalize
+
+MAX_PANELS_IN_A_ROW = 3
+
+
+def subjects_of(name: str, source: Any) -> list[Subject]:
+    """Returns the subjects of one run, of Runs or of an optimum, or of a sequence of them.
+
+    Raises:
+        TypeError: for anything else.
+        ValueError: for an empty sequence, and runs whose tables were not kept.
+    """
+    if not isinstance(source, list | tuple):
+        return [subject_of(name, source)]
+    if not source:
+        raise ValueError(f"{name} must hold at least one run, got an empty {type(source).__name__}")
+    return [subject_of(f"{name}[{index}]", one) for index, one in enumerate(source)]
+
+
+def axes_for(rasters: Sequence[Raster], ax: "Axes | None") -> "list[Axes]":
+    """Returns the axes of the panels: the given one, or those of a new figure.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        ValueError: if one axes is given for several panels.
+    """
+    if len(rasters) == 1:
+        if ax is not None:
+            return [axes_or_new(ax)]
+        return [new_figure(*rasters[0].size).subplots()]
+    if ax is not None:
+        raise ValueError(f"ax must be None for {len(rasters)} runs, each of which has a panel of its own")
+    columns = min(len(rasters), MAX_PANELS_IN_A_ROW)
+    lines = -(-len(rasters) // columns)
+    width, height = (max(raster.size[side] for raster in rasters) for side in (0, 1))
+    grid: Any = new_figure(0.85 * width * columns, 0.95 * height * lines).subplots(lines, columns, squeeze=False)
+    for unused in grid.ravel()[len(rasters) :]:
+        unused.set_axis_off()
+    return list(grid.ravel()[: len(rasters)])
+
+
+def is_dark(ax: "Axes") -> bool:
+    """Returns whether the background is dark."""
+    # The background itself can be transparent; the style's letters tell.
+    return brightness(ax.title.get_color()) > 0.5
+
+
+def brightness(color: Any) -> float:
+    """Returns how bright a color looks, from 0 to 1."""
+    from matplotlib.colors import to_rgb
+
+    red, green, blue = to_rgb(color)
+    return 0.299 * red + 0.587 * green + 0.114 * blue
+
+
+def ink(ax: "Axes") -> str:
+    """Returns the color of letters and lines on the background."""
+    return "#f2f2f2" if is_dark(ax) else "#1a1a1a"
+
+
+def shade_unknown(ax: "Axes", raster: Raster, values: NDArray[Any]) -> None:
+    """Fills the states that have no value, NaN or negative indices, with grey."""
+    from matplotlib.colors import ListedColormap
+
+    unknown = (raster.rows >= 0).all(axis=-1) & ~(values >= 0 if values.dtype.kind == "i" else np.isfinite(values))
+    if unknown.any():
+        grey = ListedColormap(["#444444" if is_dark(ax) else "#d5d5d5"])
+        draw_cells(ax, raster, np.where(unknown, 0.0, np.nan), grey)
+
+
+def draw_cells(
+    ax: "Axes", raster: Raster, values: NDArray[np.float64], cmap: Any, norm: "Normalize | None" = None
+) -> Any:
+    """Draws (ny, nx) values in colors; NaN stays transparent. Returns what a color bar takes."""
+    shown = np.ma.masked_invalid(values)
+    # A vector picture would hold every point as a polygon.
+    return ax.pcolormesh(raster.x_edges, raster.y_edges, shown, cmap=cmap, norm=norm, rasterized=True)
+
+
+def write_numbers(
+    ax: "Axes", raster: Raster, values: NDArray[np.float64], image: Any, text: Callable[[float], str]
+) -> None:
+    """Writes the number of each cell in a color that is readable on the cell's."""
+    xs, ys = raster.centers
+    size = cell_font_size(ax, raster)
+    for (row, column), value in np.ndenumerate(values):
+        if np.isfinite(value):
+            color = "#ffffff" if brightness(image.to_rgba(value)) < 0.5 else "#101010"
+            ax.text(xs[column], ys[row], text(value), color=color, fontsize=size, ha="center", va="center", zorder=7)
+
+
+def finish_panel(ax: "Axes", raster: Raster, title: str, note: str = "") -> None:
+    """Draws what belongs to the arrangement, the title and the note."""
+    ax.set_title(title, loc="left", fontsize="medium", fontweight="bold")
+    if note := note or raster.note:
+        ax.text(1.0, 1.015, note, transform=ax.transAxes, ha="right", va="bottom", fontsize="x-small", alpha=0.8)
+        ax.set_title(title + "\n", loc="left", fontsize="medium", fontweight="bold")
+    raster.frame(ax, ink(ax))
+
+
+def color_bar(axes: "Sequence[Axes]", raster: Raster, image: Any, label: str) -> Any:
+    """Draws a color bar beside a panel, of its height, or one beside all panels."""
+    figure: Any = axes[0].figure
+    if len(axes) == 1:
+        # Inset: a bar of a map, whose cells are square, would else be higher than the map.
+        place = {"cax": axes[0].inset_axes((raster.bar_at, 0.0, 0.03, 1.0))}
+    else:
+        place = {"ax": list(axes), "pad": 0.02, "fraction": 0.05}
+    bar = figure.colorbar(image, label=label, **place)
+    bar.outline.set_visible(False)
+    return bar
+
+
+def check_same_environment(subjects: Sequence[Subject], name: str) -> None:
+    """Checks that panels with one scale of colors show one environment.
+
+    Raises:
+        ValueError: if they do not.
+    """
+    from qtab.envs.registry import gymnasium_id
+
+    names = {gymnasium_id(subject.env) for subject in subjects}
+    if len(names) > 1:
+        raise ValueError(f"{name} must hold runs of one environment, got {', '.join(sorted(map(repr, names)))}")
+
+
+def cell_font_size(ax: "Axes", raster: Raster) -> float:
+    """Returns the size of letters, in points, with which a number fits into a cell."""
+    figure: Any = ax.figure
+    width = ax.get_position().width * figure.get_figwidth() * 72 / len(raster.x_edges)
+    height = ax.get_position().height * figure.get_figheight() * 72 / len(raster.y_edges)
+    return max(4.0, min(11.0, width / 3.3, height / 1.6))

@@ -1,0 +1,182 @@
+"""A picture of the greedy policy."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.plots.arrangements import Raster, arrange
+from qtab.plots.arrangements.grid_map import Layout
+from qtab.plots.arrangements.raster import DIRECTIONS
+from qtab.plots.axes import COLORS
+from qtab.plots.panels import (
+    axes_for,
+    brightness,
+    cell_font_size,
+    check_same_environment,
+    draw_cells,
+    finish_panel,
+    is_dark,
+    shade_unknown,
+    subjects_of,
+)
+from qtab.plots.subject import Drawable, Subject
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def policy(
+    run: Drawable | Sequence[Drawable],
+    ax: "Axes | None" = None,
+    *,
+    at: Mapping[str, float] | None = None,
+    layout: Layout | None = None,
+    action_names: Sequence[str] | None = None,
+    title: str | None = None,
+) -> "Axes":
+    """Draws the greedy action of each state: arrows on a map, colors with a legend elsewhere.
+
+    Of several greedy actions the first is shown, which is the one that ``run.predict`` takes; of many seeds the most
+    frequent one. Grey is where nothing was learned, as in :func:`qtab.plots.values`.
+
+    Args:
+        run: A run; the runs of many seeds with their tables; or an optimum. A sequence of them makes panels.
+        ax: The axes to draw on; None creates a new figure. A sequence needs None.
+        at: For observations of more than two components, the values of those that are not axes; see
+            :func:`qtab.plots.values`.
+        layout: A map for numbered states; see :func:`qtab.plots.values`.
+        action_names: A name for each action; None takes ``run.action_names``. On a map the actions left, right, up and
+            down, and west, east, north and south, are arrows.
+        title: The title; None names the environment, the algorithm and the seed.
+
+    Returns:
+        The axes, of several panels the first.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        TypeError: for an argument of the wrong type.
+        ValueError: for one that does not fit the environment, or runs without tables.
+    """
+    subjects = subjects_of("run", run)
+    check_same_environment(subjects, "run")
+    names = [checked_names(subject, action_names) for subject in subjects]
+    rasters = [arrange(subject, at, layout) for subject in subjects]
+    axes = axes_for(rasters, ax)
+    for subject, raster, panel, named in zip(subjects, rasters, axes, names, strict=True):
+        greedy = subject.greedy_actions(raster.rows)
+        if raster.is_map and any(name in DIRECTIONS for name in named):
+            _draw_map(panel, raster, greedy, named)
+        else:
+            _draw_colors(panel, raster, greedy, named)
+        finish_panel(panel, raster, subject.name if title is None else title)
+    return axes[0]
+
+
+def checked_names(subject: Subject, given: Sequence[str] | None) -> tuple[str, ...]:
+    """Returns the names of a subject's actions.
+
+    Raises:
+        TypeError: if the given ones are not strings.
+        ValueError: if there are too few or too many.
+    """
+    if given is None:
+        return subject.action_names
+    if isinstance(given, str) or not all(isinstance(name, str) for name in given):
+        raise TypeError(f"action_names must hold a name for each action, got {given!r}")
+    if len(given) != len(subject.action_names):
+        raise ValueError(f"action_names must hold {len(subject.action_names)} names, got {len(given)}")
+    return tuple(given)
+
+
+def _draw_map(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str]) -> None:
+    """Draws an arrow in each cell, or the letters of an action that is no move."""
+    xs, ys = np.meshgrid(*raster.centers)
+    color, letter_color = ("#9ecbff", "#ffb26b") if is_dark(ax) else ("#1f5fa8", "#b3480f")
+    cells = max(greedy.shape)
+    shade_unknown(ax, raster, greedy)
+    for action, name in enumerate(names):
+        chosen = greedy == action
+        if name in DIRECTIONS:
+            right, down = DIRECTIONS[name]
+            ax.quiver(
+                xs[chosen] - 0.32 * right,
+                ys[chosen] - 0.32 * down,
+                np.full(chosen.sum(), 0.64 * right),
+                np.full(chosen.sum(), 0.64 * down),
+                angles="xy",
+                scale_units="xy",
+                scale=1,
+                width=0.05 if cells <= 12 else 0.09,
+                units="xy",
+                headwidth=4.5 if cells <= 12 else 4,
+                headlength=4.5 if cells <= 12 else 3.5,
+                headaxislength=4 if cells <= 12 else 3.2,
+                color=color,
+                zorder=4,
+            )
+        else:
+            letters = "".join(word[0].upper() for word in name.split()) if " " in name else name[:3]
+            size = max(5.0, cell_font_size(ax, raster))
+            style: dict[str, Any] = {"color": letter_color, "fontsize": size, "fontweight": "bold"}
+            for x, y in zip(xs[chosen], ys[chosen], strict=True):
+                ax.text(x, y, letters, ha="center", va="center", zorder=7, **style)
+
+
+def action_colors(count: int, ordered: bool) -> list[Any]:
+    """Returns a color for each action; from blue over pale yellow to orange where their order means something."""
+    from matplotlib import colormaps
+
+    if count == 2:
+        return [COLORS[0], COLORS[1]]
+    if count == 3 and ordered:
+        return [COLORS[0], "#f5e6a8", COLORS[1]]
+    if ordered:
+        return [colormaps["cividis"](index / (count - 1)) for index in range(count)]
+    return (
+        list(COLORS[:count]) if count <= len(COLORS) else [colormaps["turbo"](index / count) for index in range(count)]
+    )
+
+
+def _draw_colors(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str]) -> None:
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+    from matplotlib.patches import Patch
+
+    ordered = any(character.isdigit() for character in names[-1]) or "no push" in names
+    colors = action_colors(len(names), ordered and not names[0].startswith("action"))
+    shade_unknown(ax, raster, greedy)
+    norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
+    draw_cells(ax, raster, np.where(greedy < 0, np.nan, greedy), ListedColormap(colors), norm)
+    if raster.parts:
+        _label_regions(ax, raster, greedy, names, colors)
+        return
+    present = [index for index in range(len(names)) if (greedy == index).any() or len(names) <= 8]
+    handles = [Patch(color=colors[index], label=names[index]) for index in present]
+    ax.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(0.0, -0.13 if len(greedy) > 1 else -0.55),
+        ncols=min(len(handles), 4),
+        frameon=False,
+        fontsize="small",
+        handlelength=1.2,
+        borderaxespad=0.2,
+    )
+
+
+def _label_regions(
+    ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str], colors: Sequence[Any]
+) -> None:
+    """Writes the action into the middle of its region, in each part of the picture, as the book does."""
+    xs, ys = raster.centers
+    for part in raster.parts.values():
+        for action, name in enumerate(names):
+            lines, columns = np.nonzero(greedy[part] == action)
+            if len(lines):
+                line = int(np.bincount(lines).argmax())
+                x = xs[columns[lines == line]].mean()
+                color = "#ffffff" if brightness(colors[action]) < 0.6 else "#101010"
+                ax.text(
+                    x, ys[part][line], name.upper(), color=color, ha="center", va="center", fontweight="bold", zorder=7
+                )

@@ -1,0 +1,148 @@
+"""What a picture of values shows: a run, the mean of several, or an optimum, in one form."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.config import Config
+from qtab.discretizers import Discretizer, Identity
+from qtab.discretizers.actions import Actions
+from qtab.discretizers.edges import Edges
+from qtab.planning.optimum import Optimum
+from qtab.results.axes import Axis, action_names, axes_of
+from qtab.results.run import Run
+from qtab.results.runs import Runs
+
+Drawable = Run | Runs | Optimum
+"""What the pictures show."""
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """One or several Q tables of one environment."""
+
+    source: Drawable
+    """What it was made from."""
+    env: str
+    """The environment's id, or the name of its class."""
+    env_kwargs: Mapping[str, Any]
+    """Keyword arguments of the environment's constructor."""
+    name: str
+    """A title."""
+    discretizer: Discretizer
+    """Maps observations to rows of the tables."""
+    tables: NDArray[np.float64]
+    """(seeds, rows, actions): the action values that the greedy policy reads, on the scale of returns."""
+    known: NDArray[np.bool_] | None
+    """(seeds, rows): whether anything was learned there; None where every value means something."""
+    action_names: tuple[str, ...]
+    """(actions,)"""
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """The components of the observation."""
+        return axes_of(self.env, self.discretizer)
+
+    def action_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Returns (seeds, ny, nx, actions) values; NaN where no state is, and where nothing was learned.
+
+        Args:
+            rows: (ny, nx, n_active): the active rows at each point of a picture, -1 where there is no state.
+        """
+        points = rows.reshape(-1, rows.shape[-1])
+        total = np.empty((len(self.tables), len(points), self.tables.shape[-1]))
+        for seed, table in enumerate(self.tables):
+            np.take(table, points[:, 0], axis=0, out=total[seed], mode="wrap")
+            for active in points.T[1:]:
+                total[seed] += table[active]
+            if self.known is not None:
+                # The value of a point of which most tiles were never updated is mostly initial_q.
+                total[seed, 2 * np.count_nonzero(self.known[seed][points], axis=-1) < points.shape[-1]] = np.nan
+        total[:, points[:, 0] < 0] = np.nan
+        return total.reshape(len(total), *rows.shape[:2], -1)
+
+    def state_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Returns (ny, nx): the largest action value, the mean over the seeds; NaN where none knows one."""
+        largest = self.action_values(rows).max(axis=-1)
+        count = (~np.isnan(largest)).sum(axis=0)
+        total = np.nansum(largest, axis=0)
+        return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+
+    def greedy_actions(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Returns (ny, nx): the greedy action, of several seeds the most frequent one; -1 where none is known."""
+        values = self.action_values(rows)
+        unknown = np.isnan(values).any(axis=-1)
+        greedy = np.argmax(np.nan_to_num(values, nan=-np.inf), axis=-1)
+        votes = np.array([((greedy == action) & ~unknown).sum(axis=0) for action in range(values.shape[-1])])
+        chosen: NDArray[np.int64] = np.where(votes.any(axis=0), votes.argmax(axis=0), -1)
+        return chosen
+
+
+def subject_of(name: str, source: Any) -> Subject:
+    """Returns the subject of a run, of many runs or of an optimum.
+
+    Raises:
+        TypeError: for anything else.
+        ValueError: for runs whose tables were not kept.
+    """
+    if isinstance(source, Run):
+        return _of_runs(
+            source, source.config, source.tables[np.newaxis], source.action_names, f"seed {source.config.seed}"
+        )
+    if isinstance(source, Runs):
+        if source.tables is None:
+            raise ValueError(f"{name} must hold tables: train_many(..., tables=True) keeps them")
+        if not len(source):
+            raise ValueError(f"{name} must hold at least one run, got none")
+        names = action_names(source.config.env, source.actions)
+        return _of_runs(source, source.config, source.tables, names, f"mean of {len(source):,} seeds")
+    if isinstance(source, Optimum):
+        return _of_optimum(source)
+    raise TypeError(f"{name} must be a Run, Runs or an Optimum, got {source!r}")
+
+
+def _of_runs(
+    source: Run | Runs, config: Config, tables: NDArray[np.float64], names: tuple[str, ...], which: str
+) -> Subject:
+    algorithm = config.algorithm.replace("_", " ")
+    summed = tables[:, 0] if tables.shape[1] == 1 else (tables[:, 0] + tables[:, 1]) / 2
+    return Subject(
+        source,
+        config.env,
+        config.env_kwargs,
+        f"{config.env}: {algorithm}, {which}",
+        source.discretizer,
+        summed,
+        _known(source, config, tables),
+        names,
+    )
+
+
+def _known(source: Run | Runs, config: Config, tables: NDArray[np.float64]) -> NDArray[np.bool_] | None:
+    """Where a table was updated: by its visits, or else where it is no longer at its first value."""
+    if isinstance(source, Run) and source.visits is not None:
+        return source.visits.reshape(1, -1, source.visits.shape[-1]).any(axis=-1)
+    if isinstance(config.initial_q, int | float):
+        changed: NDArray[np.bool_] = (tables != config.initial_q).any(axis=(1, 3))
+        return changed
+    return None
+
+
+def _of_optimum(best: Optimum) -> Subject:
+    shape = best.values.shape
+    discretizer: Discretizer
+    if best.search is not None:
+        points = best.search.positions, best.search.velocities
+        low, high = (np.array([axis[end] for axis in points], np.float64) for end in (0, -1))
+        discretizer = Edges(low, high, tuple((axis[1:] + axis[:-1]) / 2 for axis in points))
+    elif len(shape) == 1:
+        discretizer = Identity(np.array(0), np.array(shape[0] - 1))
+    else:
+        discretizer = Identity(np.zeros(len(shape), np.int64), np.array(shape) - 1)
+    tables = best.q_values.reshape(1, -1, best.q_values.shape[-1])
+    names = action_names(best.env, Actions(tables.shape[-1]))
+    name = f"{best.env}: {best.label}"
+    return Subject(best, best.env, best.env_kwargs, name, discretizer, tables, None, names)

@@ -1,0 +1,80 @@
+"""A picture of the learned values."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from qtab.plots.arrangements import arrange
+from qtab.plots.arrangements.grid_map import Layout
+from qtab.plots.panels import (
+    axes_for,
+    check_same_environment,
+    color_bar,
+    draw_cells,
+    finish_panel,
+    shade_unknown,
+    subjects_of,
+    write_numbers,
+)
+from qtab.plots.subject import Drawable
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+VALUE_LABEL = "value, max$_a$ Q(s, a)"
+
+
+def values(
+    run: Drawable | Sequence[Drawable],
+    ax: "Axes | None" = None,
+    *,
+    at: Mapping[str, float] | None = None,
+    layout: Layout | None = None,
+    title: str | None = None,
+    numbers: bool = True,
+) -> "Axes":
+    """Draws the value of each state under the greedy policy: the largest action value.
+
+    States along the axes of the observation, or on the map that the environment has; Taxi's by the place of the
+    passenger and the destination, Blackjack's as in Sutton & Barto (2nd ed., Figure 5.2). Tile coding is sampled on
+    200 x 200 points. Grey is where nothing was learned: never visited, where the run counted visits, and otherwise
+    still at ``initial_q``, where that is one number. With tile coding this holds of most tiles of a grey point.
+
+    Args:
+        run: A run; the runs of many seeds with their tables, of which the mean is shown; or an optimum. A sequence of
+            them makes panels with one scale of colors.
+        ax: The axes to draw on; None creates a new figure. A sequence needs None.
+        at: For observations of more than two components, the values of those that are not axes, by the names in
+            ``run.axes``, such as ``{"cart position": 0.0, "cart velocity": 0.0}``. Acrobot and Pendulum have angles
+            instead of cosines and sines: ``"θ1"``, ``"θ2"``, ``"θ"``. Missing ones are 0, or the nearest possible.
+        layout: A map for numbered states: rows of text as FrozenLake's ``desc``, with ``#`` for obstacles, or the
+            numbers of rows and columns. None takes the environment's own.
+        title: The title; None names the environment, the algorithm and the seed.
+        numbers: Whether to write the values into the cells of small maps.
+
+    Returns:
+        The axes, of several panels the first.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        TypeError: for an argument of the wrong type.
+        ValueError: for one that does not fit the environment, or runs without tables.
+    """
+    from matplotlib.colors import Normalize
+
+    subjects = subjects_of("run", run)
+    check_same_environment(subjects, "run")
+    rasters = [arrange(subject, at, layout) for subject in subjects]
+    shown = [subject.state_values(raster.rows) for subject, raster in zip(subjects, rasters, strict=True)]
+    axes = axes_for(rasters, ax)
+    finite = np.concatenate([np.zeros(0), *(grid[np.isfinite(grid)] for grid in shown)])
+    norm = Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0, 1)
+    for subject, raster, grid, panel in zip(subjects, rasters, shown, axes, strict=True):
+        shade_unknown(panel, raster, grid)
+        image = draw_cells(panel, raster, grid, "viridis", norm)
+        if numbers and raster.has_numbers:
+            write_numbers(panel, raster, grid, image, lambda value: f"{value:.3g}")
+        finish_panel(panel, raster, subject.name if title is None else title)
+    color_bar(axes, rasters[0], image, VALUE_LABEL)
+    return axes[0]

@@ -1,0 +1,67 @@
+"""What the axes of a run's tables mean: the components of the observation, and the actions."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.discretizers.actions import Actions
+from qtab.envs.descriptions import Quantity, describe, observation_quantities
+
+if TYPE_CHECKING:
+    from qtab.discretizers import Discretizer
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """A component of the observation, and how the discretizer divides it."""
+
+    name: str
+    """Its name in Gymnasium's documentation, in lower case, such as ``"position"``; for an unknown environment
+    ``"state"`` if the observation is one integer, else ``"observation[0]"`` and so on."""
+    unit: str
+    """Its unit; empty where it has none, or where it is not known."""
+    edges: NDArray[np.float64]
+    """(cells + 1,): the ascending edges of its cells. Of tile coding, those of an unshifted tiling; of integers,
+    the numbers halfway between. The outermost are those of the space or of the discretizer; they can be infinite."""
+    values: tuple[str, ...] = ()
+    """The names of its cells, where they have some, such as ``("no", "yes")``."""
+
+    @property
+    def label(self) -> str:
+        """The name and the unit: ``"position (m)"``."""
+        return Quantity(self.name, self.unit).label
+
+
+def axes_of(env: str, discretizer: "Discretizer") -> tuple[Axis, ...]:
+    """Returns an axis for each component of the observations of an environment."""
+    edges = discretizer.cell_edges()
+    quantities = observation_quantities(env, len(edges))
+    return tuple(
+        Axis(known.name, known.unit, found, known.values) for known, found in zip(quantities, edges, strict=True)
+    )
+
+
+def action_names(env: str, actions: Actions) -> tuple[str, ...]:
+    """Returns a name for each action: Gymnasium's word, the value of a continuous action, or ``"action 2"``."""
+    known = describe(env)
+    if actions.values is not None:
+        quantities = known.continuous_actions
+        if len(quantities) != actions.values.shape[1]:
+            quantities = ()
+        return tuple(_named_values(action.tolist(), quantities) for action in actions.values)
+    named = known.actions if len(known.actions) == len(actions) or known.layout == "" else ()
+    neutral = [f"action {actions.first + index}" for index in range(len(actions))]
+    return (*named, *neutral[len(named) :])[: len(actions)]
+
+
+def _named_values(values: Sequence[float], quantities: Sequence[Quantity]) -> str:
+    if not quantities:
+        text = ", ".join(f"{value:g}" for value in values)
+        return text if len(values) == 1 else f"({text})"
+    return ", ".join(
+        f"{known.name} {value:g}{' ' + known.unit if known.unit else ''}"
+        for known, value in zip(quantities, values, strict=True)
+    )

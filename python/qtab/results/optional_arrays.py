@@ -1,0 +1,60 @@
+"""What a run file holds only where it was asked for: visits and snapshots."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.results.snapshots import Snapshots
+
+if TYPE_CHECKING:
+    from qtab.results.run import Run
+
+OPTIONAL_ARRAYS = ("visits", "snapshot_episodes", "snapshot_tables")
+"""The names of the arrays in a file."""
+
+
+def optional_arrays(run: "Run") -> dict[str, NDArray[Any]]:
+    """Returns the arrays to save."""
+    arrays: dict[str, NDArray[Any]] = {}
+    if run.visits is not None:
+        arrays["visits"] = run.visits
+    if run.snapshots is not None:
+        arrays["snapshot_episodes"] = run.snapshots.episodes
+        arrays["snapshot_tables"] = run.snapshots.tables
+    return arrays
+
+
+def restore_optional(
+    stored: Mapping[str, NDArray[Any]], tables: NDArray[np.float64], cells: tuple[int, ...], finished: int
+) -> dict[str, Any]:
+    """Returns the fields of a run that these arrays of a file give, of which nothing is believed before it is checked.
+
+    Args:
+        stored: The arrays in the file.
+        tables: The run's tables.
+        cells: The shape of its discretizer.
+        finished: How many episodes the run has.
+
+    Raises:
+        KeyError: if one of the two arrays of snapshots is missing.
+        ValueError: if the arrays do not fit the run.
+    """
+    fields: dict[str, Any] = {}
+    if "visits" in stored:
+        visits = stored["visits"]
+        shape = (*cells, tables.shape[-1])
+        if visits.dtype != np.int64 or visits.shape != shape or (visits < 0).any():
+            raise ValueError(f"its visits are not counts of shape {shape}")
+        fields["visits"] = visits
+    if "snapshot_episodes" in stored or "snapshot_tables" in stored:
+        episodes, snapshots = stored["snapshot_episodes"], stored["snapshot_tables"]
+        if episodes.dtype != np.int64 or episodes.ndim != 1 or (np.diff(episodes) <= 0).any():
+            raise ValueError("its snapshots are not at ascending episodes")
+        if len(episodes) and not 0 <= episodes[0] <= episodes[-1] <= finished:
+            raise ValueError("its snapshots are not at episodes of the run")
+        if snapshots.dtype != np.float64 or snapshots.shape != (len(episodes), *tables.shape):
+            raise ValueError("its snapshots do not fit its tables")
+        fields["snapshots"] = Snapshots(episodes, snapshots)
+    return fields
