@@ -16,6 +16,7 @@ from qtab.envs import register as _register
 _MODULES = {
     "Config": "qtab.config",
     "Evaluation": "qtab.training.evaluate",
+    "Explanation": "qtab.explanation.explanation",
     "Gap": "qtab.planning.gap",
     "Optimum": "qtab.planning.optimum",
     "Progress": "qtab.training.callbacks",
@@ -30,6 +31,7 @@ _MODULES = {
     "book": "qtab.book",
     "designs": "qtab.sweeps.designs",
     "evaluate": "qtab.training.evaluate",
+    "explain": "qtab.explanation.explain",
     "load": "qtab.results.storage",
     "load_sweep": "qtab.sweeps.results",
     "optimum": "qtab.planning.solve",
@@ -52,6 +54,8 @@ if TYPE_CHECKING:
     from qtab.config import Config as Config
     from qtab.config.presets import presets as presets
     from qtab.envs.tabular import TabularEnv as TabularEnv
+    from qtab.explanation.explain import explain as explain
+    from qtab.explanation.explanation import Explanation as Explanation
     from qtab.planning.gap import Gap as Gap
     from qtab.planning.optimum import Optimum as Optimum
     from qtab.planning.solve import optimum as optimum
