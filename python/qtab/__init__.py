@@ -15,6 +15,7 @@ from qtab.envs import register as _register
 
 _MODULES = {
     "Config": "qtab.config",
+    "Diagnosis": "qtab.diagnosis.diagnosis",
     "Evaluation": "qtab.training.evaluate",
     "Explanation": "qtab.explanation.explanation",
     "Gap": "qtab.planning.gap",
@@ -30,6 +31,7 @@ _MODULES = {
     "Verification": "qtab.training.verify",
     "book": "qtab.book",
     "designs": "qtab.sweeps.designs",
+    "diagnose": "qtab.diagnosis.diagnose",
     "evaluate": "qtab.training.evaluate",
     "explain": "qtab.explanation.explain",
     "load": "qtab.results.storage",
@@ -53,6 +55,8 @@ if TYPE_CHECKING:
     from qtab import stats as stats
     from qtab.config import Config as Config
     from qtab.config.presets import presets as presets
+    from qtab.diagnosis.diagnose import diagnose as diagnose
+    from qtab.diagnosis.diagnosis import Diagnosis as Diagnosis
     from qtab.envs.tabular import TabularEnv as TabularEnv
     from qtab.explanation.explain import explain as explain
     from qtab.explanation.explanation import Explanation as Explanation
