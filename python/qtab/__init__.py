@@ -17,7 +17,9 @@ _MODULES = {
     "Axis": "qtab.results.axes",
     "Config": "qtab.config",
     "Confirmation": "qtab.sweeps.confirm",
+    "Diagnosis": "qtab.diagnosis.diagnosis",
     "Evaluation": "qtab.training.evaluate",
+    "Explanation": "qtab.explanation.explanation",
     "Gap": "qtab.planning.gap",
     "Optimum": "qtab.planning.optimum",
     "Progress": "qtab.training.callbacks",
@@ -34,7 +36,9 @@ _MODULES = {
     "book": "qtab.book",
     "callbacks": "qtab.callbacks",
     "designs": "qtab.sweeps.designs",
+    "diagnose": "qtab.diagnosis.diagnose",
     "evaluate": "qtab.training.evaluate",
+    "explain": "qtab.explanation.explain",
     "load": "qtab.results.storage",
     "load_sweep": "qtab.sweeps.results",
     "optimum": "qtab.planning.solve",
@@ -57,7 +61,11 @@ if TYPE_CHECKING:
     from qtab import stats as stats
     from qtab.config import Config as Config
     from qtab.config.presets import presets as presets
+    from qtab.diagnosis.diagnose import diagnose as diagnose
+    from qtab.diagnosis.diagnosis import Diagnosis as Diagnosis
     from qtab.envs.tabular import TabularEnv as TabularEnv
+    from qtab.explanation.explain import explain as explain
+    from qtab.explanation.explanation import Explanation as Explanation
     from qtab.planning.gap import Gap as Gap
     from qtab.planning.optimum import Optimum as Optimum
     from qtab.planning.solve import optimum as optimum

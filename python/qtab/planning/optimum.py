@@ -135,7 +135,7 @@ class Optimum:
         """
         if not isinstance(run, Run | Runs):
             raise TypeError(f"run must be a Run or Runs, got {shown(run)}")
-        self._check_same_env(run)
+        self.check_same_env(run)
         if isinstance(run, Run):
             last = run.episode_returns[-FINAL_EPISODES:]
             final_return = float(last.mean()) if len(last) else float("nan")
@@ -144,7 +144,12 @@ class Optimum:
         greedy, error = np.array(list(evaluated), dtype=np.float64).reshape(len(run), 2).T
         return Gap(self.expected_return, run.final_returns(), greedy, error, label=self.label)
 
-    def _check_same_env(self, run: Run | Runs) -> None:
+    def check_same_env(self, run: Run | Runs) -> None:
+        """Checks that a run is on the environment of this optimum.
+
+        Raises:
+            ValueError: if the environment, its keyword arguments or the time limit of the run differ.
+        """
         config = run.config
         expected = gymnasium_id(self.env), _all_kwargs(self.env, self.env_kwargs), self.max_episode_steps
         actual = gymnasium_id(config.env), _all_kwargs(config.env, config.env_kwargs), config.max_episode_steps

@@ -29,7 +29,7 @@ def sarsa_lambda(env: gym.Env, config: Config, stop_after: int | None = None) ->
             if not step.terminal:
                 next_action = task.choose(Q, step.state)
                 target = step.reward + task.discount * value(Q, step.state, next_action)
-            apply_td_error(Q, z, task.learning_rate, target - value(Q, state, action))
+            apply_td_error(task, Q, z, target - value(Q, state, action))
             decay(z, task.discount * options.trace_decay, options.trace_cutoff)
 
             state, action, over = step.state, next_action, step.over

@@ -12,6 +12,7 @@ from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.reference.actions import actions
 from qtab.reference.discretizers import discretizer
+from qtab.reference.observer import current_observer
 from qtab.reference.policies import policy
 from qtab.reference.schedules import LearningRate
 from qtab.reference.streams import agent_stream
@@ -46,10 +47,11 @@ class Task:
         self.discount = config.discount
         self.actions = actions(env, config)
         self.n_actions = len(self.actions)
-        self.rng = agent_stream(self.seed, config.bit_generator)
+        self.observer = current_observer()
+        self.rng = self.observer.stream(agent_stream(self.seed, config.bit_generator))
         self.discretizer = discretizer(env, config)
         self.n_rows = int(np.prod(self.discretizer.shape))
-        self.policy = policy(config, self.rng)
+        self.policy = self.observer.policy(policy(config, self.rng))
         self.learning_rate = self.new_learning_rate()
         self.returns: list[float] = []
         self.lengths: list[int] = []
@@ -60,6 +62,12 @@ class Task:
 
     def table(self, index: int = 0, tables: int = 1) -> Table:
         """Returns one of the tables as it is before the first episode."""
+        Q = self.initial_table(index, tables)
+        self.observer.table(Q)
+        return Q
+
+    def initial_table(self, index: int, tables: int) -> Table:
+        """Returns the initial values: a number, random numbers, or given ones."""
         shape = (self.n_rows, self.n_actions)
         if isinstance(self.config.initial_q, float):
             return np.full(shape, self.config.initial_q)
@@ -97,15 +105,21 @@ class Task:
     def update(self, Q: Table, state: Rows, action: int, target: float, rate: LearningRate | None = None) -> None:
         """Q(S, A) <- Q(S, A) + α [target - Q(S, A)]; the active rows of S share the change."""
         rate = rate or self.learning_rate
+        self.observer.before_update(Q, state, action, target)
         error = target - value(Q, state, action)
+        step_sizes = []
         for row in state:
             rate.visit([row], action)
-            Q[row, action] += rate.step(row, action) * error
+            step_sizes.append(rate.step(row, action))
+            Q[row, action] += step_sizes[-1] * error
+        self.observer.after_update(Q, step_sizes)
 
     def end(self, Q: Table, state: Rows, action: int, reward: float, rate: LearningRate | None = None) -> None:
         """Updates before a terminal state, where the target is the reward alone. The article assigns it."""
         if self.config.terminal_update == "assign":
+            self.observer.before_update(Q, state, action, reward)
             Q[state[0], action] = reward
+            self.observer.after_update(Q, None)
         else:
             self.update(Q, state, action, reward, rate)
 

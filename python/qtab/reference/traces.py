@@ -3,8 +3,7 @@
 import numpy as np
 
 from qtab.config.choices import Traces
-from qtab.reference.schedules import LearningRate
-from qtab.reference.task import Rows, Table
+from qtab.reference.task import Rows, Table, Task
 
 
 def mark(z: Table, state: Rows, action: int, kind: Traces) -> None:
@@ -18,10 +17,11 @@ def mark(z: Table, state: Rows, action: int, kind: Traces) -> None:
             z[row, action] = 1.0
 
 
-def apply_td_error(Q: Table, z: Table, rate: LearningRate, error: float) -> None:
+def apply_td_error(task: Task, Q: Table, z: Table, error: float) -> None:
     """W <- w + α δ z, for the weights whose trace is not zero."""
+    task.observer.before_traces(Q, z, error, task.learning_rate)
     for row, action in np.argwhere(z != 0.0).tolist():
-        Q[row, action] += rate.step(row, action) * error * z[row, action]
+        Q[row, action] += task.learning_rate.step(row, action) * error * z[row, action]
 
 
 def decay(z: Table, factor: float, cutoff: float) -> None:

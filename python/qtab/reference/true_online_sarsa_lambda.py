@@ -39,7 +39,7 @@ def true_online_sarsa_lambda(env: gym.Env, config: Config, stop_after: int | Non
                 z[row, action] += 1.0 - alpha * gamma_lambda * overlap
 
             # w <- w + α (δ + Q - Q_old) z - α (Q - Q_old) x
-            apply_td_error(Q, z, task.learning_rate, error + (this_value - old_value))
+            apply_td_error(task, Q, z, error + (this_value - old_value))
             for row in state:
                 Q[row, action] -= alpha * (this_value - old_value)
 

@@ -31,7 +31,7 @@ def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None
                 next_values = values(Q, step.state)
                 greedy = bool(next_values[next_action] == np.max(next_values))
                 target = step.reward + task.discount * float(np.max(next_values))
-            apply_td_error(Q, z, task.learning_rate, target - value(Q, state, action))
+            apply_td_error(task, Q, z, target - value(Q, state, action))
             if greedy:
                 decay(z, task.discount * options.trace_decay, options.trace_cutoff)
             else:

@@ -1,0 +1,47 @@
+"""The checks of a diagnosis, in the order in which their findings are shown."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from qtab.diagnosis.coarse_grid import coarse_grid
+from qtab.diagnosis.coverage import coverage
+from qtab.diagnosis.divergence import divergence
+from qtab.diagnosis.exploration import exploration, lasting_exploration
+from qtab.diagnosis.facts import Facts
+from qtab.diagnosis.finding import Finding
+from qtab.diagnosis.horizon import horizon
+from qtab.diagnosis.initial_values import too_optimistic, too_pessimistic
+from qtab.diagnosis.learning_rate import noisy_values, slow_learning
+from qtab.diagnosis.not_solved import not_solved
+from qtab.diagnosis.truncation import truncation
+from qtab.diagnosis.unlucky_seed import unlucky_seed
+
+
+@dataclass(frozen=True)
+class Check:
+    """A check, and when it can be made."""
+
+    find: Callable[[Facts], Finding | None]
+    """Returns the finding, or None."""
+    repeats: bool = False
+    """Whether it repeats the run, for which Rust must step the environment."""
+    if_solved: bool = False
+    """Whether it is also made for a run that solved its environment."""
+
+
+CHECKS: Mapping[str, Check] = {
+    "not solved": Check(not_solved),
+    "divergence": Check(divergence, if_solved=True),
+    "horizon": Check(horizon),
+    "grid too coarse": Check(coarse_grid, repeats=True),
+    "coverage": Check(coverage),
+    "exploration": Check(exploration, repeats=True),
+    "lasting exploration": Check(lasting_exploration),
+    "slow learning": Check(slow_learning),
+    "noisy values": Check(noisy_values, repeats=True),
+    "too optimistic": Check(too_optimistic),
+    "too pessimistic": Check(too_pessimistic),
+    "time-outs treated as terminal": Check(truncation, if_solved=True),
+    "unlucky seed": Check(unlucky_seed, repeats=True),
+}
+"""Each check by the name of its finding."""

@@ -1,0 +1,48 @@
+"""Coverage: entries of the table that were never updated."""
+
+import numpy as np
+
+from qtab.diagnosis.facts import Facts
+from qtab.diagnosis.finding import Finding, percent
+
+MOST_UNTRIED = 0.2
+"""A larger share of untried actions in visited states is reported."""
+SHOWN = 3
+
+
+def coverage(facts: Facts) -> Finding | None:
+    """Finds that in many visited states some actions still have their initial value."""
+    changed, visited = facts.changed, facts.visited
+    has_action = np.isfinite(facts.initial_tables).all(axis=0)
+    entries = has_action & visited[:, np.newaxis]
+    if not entries.any():
+        return None
+    untried = float(1.0 - changed[entries].mean())
+    if untried <= MOST_UNTRIED:
+        return None
+    run = facts.run
+    states = np.flatnonzero((entries & ~changed).sum(axis=1))
+    where = ", ".join(_place(facts, int(row)) for row in states[:SHOWN])
+    per_entry = float(run.episode_lengths.sum()) * run.discretizer.n_active / max(int(changed.sum()), 1)
+    more = 5 * facts.config.episodes
+    return Finding(
+        name="coverage",
+        title="Many actions were never tried, or their values never changed.",
+        evidence={
+            "share of unchanged values in visited states": untried,
+            "visited states": int(visited.sum()),
+            "states of the table": len(visited),
+            "updates per changed value": per_entry,
+        },
+        meaning=f"{percent(untried)} of the values in visited states are still the initial ones, such as in {where}. "
+        "The greedy policy compares them with learned values.",
+        advice=f"train longer, such as episodes={more}, or explore more",
+        changes=({"episodes": more},),
+    )
+
+
+def _place(facts: Facts, row: int) -> str:
+    discretizer = facts.run.discretizer
+    if not discretizer.has_cells or len(discretizer.shape) == 1:
+        return f"{'cell' if discretizer.has_cells else 'row'} {row}"
+    return f"cell {tuple(int(index) for index in np.unravel_index(row, discretizer.shape))}"

@@ -1,0 +1,65 @@
+"""``qtab.diagnose``: looks for reasons why a run did not solve its environment."""
+
+import time
+
+import numpy as np
+
+from qtab._utils import checks
+from qtab.diagnosis.checks import CHECKS
+from qtab.diagnosis.diagnosis import Diagnosis
+from qtab.diagnosis.facts import Facts
+from qtab.planning.optimum import Optimum
+from qtab.results.run import Run
+
+
+def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None) -> Diagnosis:
+    """Looks for reasons why a run did not solve its environment, and for what to change.
+
+    Each finding is computed from the run and from its environment: some checks repeat the run in Rust, and train other
+    seeds. A run that solved its environment has no findings, except for settings that are mistakes.
+
+    Args:
+        run: The run.
+        optimum: What :func:`qtab.optimum` returned for the run. None computes that of small tables, and takes the best
+            known return of MountainCar-v0.
+        seeds: How many other seeds to train for comparison. None takes as many as fit into a fraction of a second.
+
+    Returns:
+        The findings; they print as text. Its ``what_if()`` tries the changes that they advise.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for a run without a finished episode, or the optimum of another environment.
+    """
+    checks.instance("run", run, Run)
+    if optimum is not None:
+        checks.instance("optimum", optimum, Optimum)
+        optimum.check_same_env(run)
+    if seeds is not None:
+        seeds = checks.integer("seeds", seeds, least=0)
+    if len(run.episode_returns) == 0:
+        raise ValueError("run must have a finished episode, got one that was stopped during its first")
+    began = time.perf_counter()
+    facts = Facts(run, optimum, seeds)
+    findings, unremarkable, not_made = [], [], []
+    with np.errstate(all="ignore"):  # values that diverged
+        for name, check in CHECKS.items():
+            if facts.solved and not check.if_solved:
+                continue
+            if check.repeats and not facts.can_repeat:
+                not_made.append(name)
+                continue
+            finding = check.find(facts)
+            if finding is None:
+                unremarkable.append(name)
+            else:
+                findings.append(finding)
+    return Diagnosis(
+        run=run,
+        solved=facts.solved,
+        findings=tuple(findings),
+        unremarkable=tuple(unremarkable),
+        not_made=tuple(not_made),
+        facts=facts,
+        seconds=time.perf_counter() - began,
+    )

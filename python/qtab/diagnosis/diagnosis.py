@@ -1,0 +1,115 @@
+"""``qtab.Diagnosis``: the findings of the checks, and what they advise to try."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from html import escape
+
+from qtab.diagnosis.facts import Facts
+from qtab.diagnosis.finding import Finding, shown
+from qtab.diagnosis.what_if import WhatIf, try_changes
+from qtab.results.run import Run
+
+SEEDS = 20
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Diagnosis:
+    """Why a run did not solve its environment: findings with their evidence, and what to change. It prints as text."""
+
+    run: Run
+    """The run."""
+    solved: bool | None
+    """Whether the run solved its environment; None where no threshold and no optimum is known."""
+    findings: tuple[Finding, ...]
+    """The findings, the most direct first."""
+    unremarkable: tuple[str, ...]
+    """The checks that found nothing."""
+    not_made: tuple[str, ...]
+    """The checks that could not be made, because Rust does not step the environment."""
+    facts: Facts = field(repr=False)
+    """The run and what follows from it."""
+    seconds: float = field(repr=False)
+    """How long the diagnosis took."""
+
+    def __repr__(self) -> str:
+        """The whole report, so that it appears where Python is used interactively."""
+        return str(self)
+
+    def __str__(self) -> str:
+        lines = [self.heading]
+        lines += [f"\n{number}. {finding}" for number, finding in enumerate(self.findings, 1)]
+        return "\n".join([*lines, *(f"\n{line}" for line in self._footer())])
+
+    def _repr_html_(self) -> str:
+        """The findings as a table, for notebooks."""
+        rows = "".join(
+            "<tr>"
+            + "".join(
+                f"<td>{cell}</td>"
+                for cell in (
+                    f"<b>{escape(finding.title)}</b><br>{escape(finding.meaning)}",
+                    "<br>".join(f"{escape(name)}: {shown(value)}" for name, value in finding.evidence.items()),
+                    escape(finding.advice),
+                )
+            )
+            + "</tr>"
+            for finding in self.findings
+        )
+        head = "<tr><th>finding</th><th>evidence</th><th>change</th></tr>"
+        table = f"<table><thead>{head}</thead><tbody>{rows}</tbody></table>" if self.findings else ""
+        footer = "".join(f"<p>{escape(line)}</p>" for line in self._footer())
+        return f"<p>{escape(self.heading)}</p>{table}{footer}"
+
+    def __len__(self) -> int:
+        return len(self.findings)
+
+    def __iter__(self) -> Iterator[Finding]:
+        return iter(self.findings)
+
+    def __getitem__(self, name: str) -> Finding:
+        """Returns the finding of a name.
+
+        Raises:
+            KeyError: if there is none.
+        """
+        for finding in self.findings:
+            if finding.name == name:
+                return finding
+        raise KeyError(f"no finding {name!r}; there are {', '.join(self.names) or 'none'}")
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.names
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the findings."""
+        return tuple(finding.name for finding in self.findings)
+
+    @property
+    def heading(self) -> str:
+        """The run and whether it solved its environment, in one line."""
+        word = {True: "solved", False: "not solved", None: "no threshold or optimum is known"}[self.solved]
+        return f"Diagnosis of {repr(self.run)[1:-1]}: {word}"
+
+    def what_if(self, seeds: "int | Iterable[int]" = SEEDS) -> WhatIf:
+        """Tries the advised changes, one at a time, over the same seeds, and compares each with the run's settings.
+
+        Args:
+            seeds: The seeds, as for :func:`qtab.train_many`.
+
+        Raises:
+            ModuleNotFoundError: if SciPy, which the intervals need, is not installed.
+            ValueError: if no finding advises a change, or the run's environment cannot be made from its id.
+        """
+        return try_changes(self.facts, self.findings, seeds)
+
+    def _footer(self) -> list[str]:
+        lines = []
+        if not self.findings:
+            reason = "The run solved its environment" if self.solved else "No check found anything"
+            lines.append(f"{reason}: there is nothing to advise.")
+        elif self.unremarkable:
+            lines.append(f"Nothing to report on: {', '.join(self.unremarkable)}.")
+        if self.not_made:
+            lines.append(f"Not checked, as Rust does not step this environment: {', '.join(self.not_made)}.")
+        return lines

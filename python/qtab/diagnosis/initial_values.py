@@ -1,0 +1,73 @@
+"""Initial values: so high that they have not been unlearned, or so low that nothing untried is ever chosen."""
+
+import numpy as np
+
+from qtab.diagnosis.facts import Facts
+from qtab.diagnosis.finding import Finding, percent
+from qtab.reference.schedules import epsilon_schedule
+
+MOST_STATES = 0.3
+"""A larger share of visited states is reported."""
+LITTLE_EPSILON = 0.05
+
+
+def too_optimistic(facts: Facts) -> Finding | None:
+    """Finds visited states whose best value is higher than any return can be."""
+    active, visited = facts.run.discretizer.n_active, facts.visited
+    initial = facts.initial_tables[np.isfinite(facts.initial_tables)]
+    highest = float(initial.max(initial=-np.inf)) * active
+    possible = max(0.0, float(facts.run.episode_returns.max(initial=0.0)), _best_value(facts))
+    if highest <= possible + 1e-9 * abs(possible) or not visited.any() or active > 1:
+        return None
+    share = float(np.mean(facts.q_values[visited].max(axis=1) > possible))
+    if share <= MOST_STATES:
+        return None
+    return Finding(
+        name="too optimistic",
+        title="The initial values are too high to be unlearned in time.",
+        evidence={
+            "highest initial value": highest,
+            "highest possible return": possible,
+            "share of visited states above it": share,
+        },
+        meaning=f"In {percent(share)} of the visited states the best value is still higher than any return can be: the "
+        "agent still tries what looks promising only because it is new.",
+        advice=f"use lower initial values, such as initial_q={possible:g}, or train longer",
+        changes=({"initial_q": possible},),
+    )
+
+
+def too_pessimistic(facts: Facts) -> Finding | None:
+    """Finds visited states whose untried actions look worse than the first one tried, without exploration."""
+    config, visited = facts.config, facts.visited
+    if config.exploration != "epsilon_greedy" or not visited.any():
+        return None
+    schedule = epsilon_schedule(config)
+    rates = []
+    for _ in range(min(len(facts.run.episode_returns), 10_000)):
+        rates.append(schedule.value)
+        schedule.end_episode()
+    epsilon = float(np.mean(rates))
+    if epsilon > LITTLE_EPSILON:
+        return None
+    untried = ~facts.changed & np.isfinite(facts.initial_tables).all(axis=0)
+    values = facts.q_values
+    hidden = (untried & (values < values.max(axis=1, keepdims=True))).any(axis=1) & facts.changed.any(axis=1)
+    greedy_tried = facts.changed[np.arange(len(values)), values.argmax(axis=1)]
+    share = float(np.mean((hidden & greedy_tried)[visited]))
+    if share <= MOST_STATES:
+        return None
+    best = max(0.0, float(facts.run.episode_returns.max()), _best_value(facts)) / facts.run.discretizer.n_active
+    return Finding(
+        name="too pessimistic",
+        title="The initial values are too low for so little exploration.",
+        evidence={"mean epsilon": epsilon, "share of visited states with untried actions that look worse": share},
+        meaning=f"In {percent(share)} of the visited states an action was never tried, because the values of those "
+        "that were tried are higher than the initial ones.",
+        advice=f"use higher initial values, such as initial_q={best:g}, or a larger epsilon",
+        changes=({"initial_q": best}, {"epsilon": 0.2}),
+    )
+
+
+def _best_value(facts: Facts) -> float:
+    return -np.inf if facts.optimum is None else float(facts.optimum.values.max())

@@ -1,0 +1,89 @@
+"""Learning rate: values that are still noisy at the end, or still far from their targets."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.diagnosis.facts import Facts
+from qtab.diagnosis.finding import Finding, percent
+from qtab.reference.schedules import LearningRate
+from qtab.training.train import train
+
+MOST_LEFT = 0.3
+"""A larger share of the initial values that is still in the values is reported."""
+MOST_NOISE = 0.15
+"""A larger change of the values over the last tenth of the episodes, relative to their spread, is reported."""
+LEAST_RATE = 0.05
+"""A smaller learning rate does not cause noise."""
+
+
+def slow_learning(facts: Facts) -> Finding | None:
+    """Finds that the learning rate is too small for the number of updates."""
+    rates = _rates(facts)
+    changed = int(facts.changed.sum())
+    if changed == 0 or facts.config.learning_rate_schedule == "visits":
+        return None
+    updates = float(facts.run.episode_lengths.sum()) * facts.run.discretizer.n_active / changed
+    rate = float(np.average(rates, weights=facts.run.episode_lengths))
+    left = (1.0 - min(rate, 1.0)) ** updates
+    if left <= MOST_LEFT:
+        return None
+    faster = min(10 * facts.config.learning_rate, 0.5)
+    return Finding(
+        name="slow learning",
+        title="The learning rate is too small for so few updates.",
+        evidence={"mean learning rate": rate, "updates per changed value": updates, "initial value left": left},
+        meaning=f"After {updates:,.3g} updates {percent(left)} of the initial value is still in a value.",
+        advice=f"use a larger learning rate, such as learning_rate={faster:g}, or train longer",
+        changes=({"learning_rate": faster},) if faster > facts.config.learning_rate else (),
+    )
+
+
+def noisy_values(facts: Facts) -> Finding | None:
+    """Finds that the values still jump up and down, because the learning rate stays high where there is chance."""
+    run, config = facts.run, facts.config
+    rate = float(_rates(facts)[-1])
+    before = len(run.episode_returns) * 9 // 10
+    if not facts.can_repeat or not facts.is_finite or rate < LEAST_RATE or before == 0:
+        return None
+    if config.learning_rate_schedule == "visits":
+        return None
+    earlier = train(
+        config=config, callback=lambda done: done.episodes < before, callback_every=before, progress=False
+    ).tables.mean(axis=0)
+    differences = facts.q_values - np.where(np.isfinite(earlier), earlier, facts.q_values)
+    moved = facts.changed & (differences != 0.0)
+    if not moved.any():
+        return None
+    spread = _spread(facts.q_values[facts.changed])
+    change, drift = float(np.abs(differences[moved]).mean()), float(np.abs(differences[moved].mean()))
+    if spread == 0.0 or change / spread <= MOST_NOISE or drift > 0.8 * change:
+        return None
+    return Finding(
+        name="noisy values",
+        title="The values are still noisy at the end.",
+        evidence={
+            "learning rate of the last episode": rate,
+            "mean change in the last tenth of the episodes": change,
+            "spread of the values": spread,
+        },
+        meaning=f"The values still move by {percent(change / spread)} of their spread, up and down: with a learning "
+        f"rate of {rate:g} a value is an average over about {max(1.0, 2.0 / rate - 1.0):.2g} targets only.",
+        advice="let the learning rate fall: learning_rate_schedule='linear'",
+        changes=({"learning_rate_schedule": "linear"}, {"learning_rate": config.learning_rate / 10}),
+    )
+
+
+def _rates(facts: Facts) -> NDArray[np.float64]:
+    """(episodes,): the learning rate in each episode."""
+    schedule = LearningRate(facts.config, (1, 1), 1).schedule
+    rates = []
+    for _ in range(len(facts.run.episode_returns)):
+        rates.append(schedule.value)
+        schedule.end_episode()
+    return np.array(rates)
+
+
+def _spread(values: NDArray[np.float64]) -> float:
+    """The range of the middle 90 % of the values."""
+    low, high = np.percentile(values, [5, 95])
+    return float(high - low)

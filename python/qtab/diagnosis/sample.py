@@ -1,0 +1,63 @@
+"""The last steps of a run, found by repeating it and replaying its last episodes."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.envs.registry import ENTRIES, gymnasium_id
+from qtab.results.run import Run
+from qtab.training.train import train
+
+SAMPLE_STEPS = 20_000
+"""Replaying so many steps takes tens of milliseconds."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Consecutive steps of the last episodes."""
+
+    rows: NDArray[np.int64]
+    """(steps, n_active): the active rows of the state."""
+    next_rows: NDArray[np.int64]
+    """(steps, n_active): the active rows of the next state."""
+    rewards: NDArray[np.float64]
+    """(steps,): the reward of each step."""
+    observations: NDArray[Any]
+    """(steps, ...): the state's observation."""
+
+
+def sample_steps(run: Run) -> Sample:
+    """Repeats a run in Rust, keeping its last episodes, and replays those."""
+    lengths = run.episode_lengths[::-1].cumsum()
+    episodes = max(1, int(np.searchsorted(lengths, SAMPLE_STEPS, side="right")))
+    finished = len(run.episode_returns)
+    repeated = train(
+        config=run.config,
+        record=episodes,
+        progress=False,
+        callback=lambda progress: progress.episodes < finished,
+        callback_every=finished,
+    )
+    name, config = gymnasium_id(run.config.env), run.config
+    env = gym.make(f"qtab/{name}" if name in ENTRIES else config.env, disable_env_checker=True, **config.env_kwargs)
+    visited, following, rewards = [], [], []
+    try:
+        plain: Any = env.unwrapped
+        for recording in repeated.recordings:
+            bit_generator = np.random.PCG64()
+            bit_generator.state = dict(recording.start)  # type: ignore[assignment]
+            plain.np_random = np.random.Generator(bit_generator)
+            observation, _ = plain.reset()
+            for action in recording.actions[:SAMPLE_STEPS]:
+                visited.append(observation)
+                observation, reward, *_ = plain.step(action)
+                following.append(observation)
+                rewards.append(float(reward))
+    finally:
+        env.close()
+    observations = np.array(visited)
+    active = run.discretizer.active_rows
+    return Sample(active(observations), active(np.array(following)), np.array(rewards), observations)

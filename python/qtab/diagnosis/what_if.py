@@ -1,0 +1,143 @@
+"""``Diagnosis.what_if``: tries changes of the settings, one at a time, with the same seeds."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils.extras import missing
+from qtab.config import Config
+from qtab.diagnosis.facts import Facts
+from qtab.diagnosis.finding import Finding, as_keywords, shown
+from qtab.envs.registry import spec_of
+from qtab.results.runs import Runs
+from qtab.training.train_many import train_many
+
+if TYPE_CHECKING:
+    from qtab.stats.comparisons import Comparison
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A change that was tried."""
+
+    change: Mapping[str, Any]
+    """The settings that were changed, as keyword arguments of :func:`qtab.train`."""
+    finding: str
+    """The name of the finding that advises it."""
+    returns: NDArray[np.float64]
+    """(seeds,): the mean return of the last 100 episodes, for each seed."""
+    comparison: "Comparison"
+    """The change against the run's settings, paired by seed."""
+    solved: int | None
+    """The number of seeds that solved the environment; None where neither threshold nor optimum is known."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WhatIf:
+    """The changes that a diagnosis advises, each tried over the same seeds. The best is first."""
+
+    config: Config
+    """The settings without a change."""
+    seeds: tuple[int, ...]
+    """The seeds of all runs."""
+    returns: NDArray[np.float64]
+    """(seeds,): the mean return of the last 100 episodes without a change."""
+    solved: int | None
+    """The number of seeds that solved the environment without a change; None where that is not known."""
+    trials: tuple[Trial, ...]
+    """The changes, by their mean difference."""
+    failed: Mapping[str, str]
+    """The changes that could not be trained, with the reason."""
+
+    @property
+    def best(self) -> Trial:
+        """The change with the largest mean difference."""
+        return self.trials[0]
+
+    def __repr__(self) -> str:
+        """The whole table, so that it appears where Python is used interactively."""
+        return str(self)
+
+    def __str__(self) -> str:
+        rows = self._rows()
+        widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+        lines = [
+            "  ".join([row[0].ljust(widths[0]), *(cell.rjust(w) for cell, w in zip(row[1:], widths[1:], strict=True))])
+            for row in rows
+        ]
+        return "\n".join([self._heading(), *lines, *self._failures()])
+
+    def _repr_html_(self) -> str:
+        """The changes as a table, for notebooks."""
+        head, *rows = self._rows()
+        body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
+        names = "".join(f"<th>{escape(cell)}</th>" for cell in head)
+        failures = "".join(f"<p>{escape(line)}</p>" for line in self._failures())
+        table = f"<table><thead><tr>{names}</tr></thead><tbody>{body}</tbody></table>"
+        return f"<p>{escape(self._heading())}</p>{table}{failures}"
+
+    def _heading(self) -> str:
+        config = self.config
+        return (
+            f"{config.env}, {config.algorithm}: one change at a time over {len(self.seeds)} seeds, mean return of the "
+            "last 100 episodes"
+        )
+
+    def _rows(self) -> list[list[str]]:
+        rows = [["change", "return", "difference, 95 % interval", "solved"]]
+        rows.append(["none", shown(float(self.returns.mean())), "", self._share(self.solved)])
+        for trial in self.trials:
+            interval = trial.comparison.difference
+            difference = f"{interval.estimate:+.4g} [{interval.low:+.4g}, {interval.high:+.4g}]"
+            mean = shown(float(trial.returns.mean()))
+            rows.append([as_keywords(trial.change), mean, difference, self._share(trial.solved)])
+        return rows
+
+    def _share(self, solved: int | None) -> str:
+        return "not known" if solved is None else f"{solved} of {len(self.seeds)}"
+
+    def _failures(self) -> list[str]:
+        return [f"{change} failed: {reason}" for change, reason in self.failed.items()]
+
+
+def try_changes(facts: Facts, findings: Sequence[Finding], seeds: int | Iterable[int]) -> WhatIf:
+    """Trains the settings of a run, and each change that the findings advise; see :meth:`qtab.Diagnosis.what_if`."""
+    try:
+        from qtab.stats.comparisons import compare
+    except ModuleNotFoundError as error:
+        raise missing(error, "stats") from None
+
+    config = facts.config
+    changes = {as_keywords(change): (finding.name, change) for finding in findings for change in finding.changes}
+    if not changes:
+        raise ValueError("no finding advises a change of the settings: there is nothing to try")
+    spec_of(config.env)  # an environment object has no id to make others from
+    base = train_many(config=config, seeds=seeds)
+    before = base.final_returns()
+    trials, failed = [], {}
+    for text, (name, change) in changes.items():
+        try:
+            runs = _changed(config, change, base.seeds)
+        except (OverflowError, ValueError) as error:
+            failed[text] = str(error)
+            continue
+        returns = runs.final_returns()
+        trials.append(Trial(change, name, returns, compare(returns, before), _solved(facts, returns)))
+    trials.sort(key=lambda trial: -trial.comparison.difference.estimate)
+    return WhatIf(config, base.seeds, before, _solved(facts, before), tuple(trials), failed)
+
+
+def _changed(config: Config, change: Mapping[str, Any], seeds: Sequence[int]) -> Runs:
+    """Trains with a change. A preset replaces all settings except for those of the environment."""
+    if "preset" in change:
+        environment: dict[str, Any] = {"env_kwargs": config.env_kwargs, "max_episode_steps": config.max_episode_steps}
+        return train_many(config.env, seeds, **environment, **change)
+    return train_many(config=config, seeds=seeds, **change)
+
+
+def _solved(facts: Facts, returns: NDArray[np.float64]) -> int | None:
+    return None if facts.goal_return is None else int(np.sum(returns >= facts.goal_return))

@@ -1,0 +1,59 @@
+"""Watches a policy, and tells from what it drew why it chose an action."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.explanation.records import Choice, Reason
+from qtab.reference.policies import EpsilonGreedy, Policy, Softmax
+from qtab.reference.streams import AgentStream
+
+
+class ObservedStream:
+    """The same random numbers; the last float is kept."""
+
+    def __init__(self, stream: AgentStream, kept: list[float]) -> None:
+        self._stream, self._kept = stream, kept
+        self.integers, self.uniform = stream.integers, stream.uniform
+
+    def random(self) -> float:
+        """Returns a float in [0, 1)."""
+        drawn = self._stream.random()
+        self._kept[:] = [drawn]
+        return drawn
+
+
+class ObservedPolicy:
+    """The same policy; ``chose`` receives the values and the action of each choice."""
+
+    def __init__(self, policy: Policy, chose: Callable[[NDArray[np.float64], int], None]) -> None:
+        self._policy, self._chose = policy, chose
+        self.probabilities, self.end_episode = policy.probabilities, policy.end_episode
+
+    def choose(self, values: NDArray[np.float64]) -> int:
+        """Returns an action."""
+        action = self._policy.choose(values)
+        self._chose(values, action)
+        return action
+
+
+def explained(policy: Policy, values: NDArray[np.float64], action: int, drawn: float) -> Choice:
+    """Returns why a policy chose an action, from the random number in [0, 1) that it drew."""
+    tied = int(np.count_nonzero(values == np.max(values)))
+    reason: Reason = "softmax"
+    epsilon = None
+    if isinstance(policy, EpsilonGreedy):
+        epsilon = policy.epsilon.value
+        reason = "explored" if not drawn < 1.0 - epsilon else "greedy" if tied == 1 else "tie broken"
+    return Choice(
+        action=action,
+        reason=reason,
+        values=tuple(values.tolist()),
+        probability=float(policy.probabilities(values)[action]),
+        drawn=drawn,
+        tied=tied,
+        epsilon=epsilon,
+        temperature=policy.temperature if isinstance(policy, Softmax) else None,
+        random_ties=isinstance(policy, EpsilonGreedy) and policy.random_ties,
+    )

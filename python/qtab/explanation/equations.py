@@ -1,0 +1,121 @@
+"""The equations of an update, in symbols and with their numbers."""
+
+from collections.abc import Sequence
+
+BOOTSTRAP = {
+    "q_learning": "max Q(S', a)",
+    "sarsa": "Q(S', A')",
+    "expected_sarsa": "Σ π(a | S') Q(S', a)",
+    "n_step_sarsa": "Q(S', A')",
+    "sarsa_lambda": "Q(S', A')",
+    "true_online_sarsa_lambda": "Q(S', A')",
+    "watkins_q_lambda": "max Q(S', a)",
+    "dyna_q": "max Q(S', a)",
+    "dyna_q_plus": "max Q(S', a)",
+}
+"""The value of the next state in the target of each algorithm; Double Q-learning names its tables as well."""
+SHOWN_REWARDS = 4
+"""The longer sums of n-step Sarsa are shortened."""
+
+
+def number(value: float) -> str:
+    """Returns a number with six digits."""
+    return f"{value:.6g}"
+
+
+def term(value: float) -> str:
+    """Returns a number inside an equation: a negative one in parentheses."""
+    return f"({number(value)})" if value < 0 else number(value)
+
+
+def bootstrap_symbol(algorithm: str, table: int) -> str:
+    """Returns the value of the next state in the target of an algorithm that updates a table."""
+    if algorithm != "double_q_learning":
+        return BOOTSTRAP[algorithm]
+    learning, other = (1, 2) if table == 0 else (2, 1)
+    return f"Q{other}(S', argmax Q{learning}(S', a))"
+
+
+def target_equation(
+    symbol: str, rewards: Sequence[float], discount: float, bootstrap: float | None, target: float
+) -> tuple[str, str]:
+    """Returns the equation of a target and its numbers: discounted rewards, and the value of what follows."""
+    symbols, numbers = [], []
+    for index, reward in enumerate(rewards):
+        if index >= SHOWN_REWARDS - 1 and index < len(rewards) - 1:
+            if index == SHOWN_REWARDS - 1:
+                symbols.append("...")
+                numbers.append("...")
+            continue
+        name = "R" if len(rewards) == 1 else f"R{index + 1}"
+        symbols.append(power("γ", index) + name)
+        numbers.append(power(number(discount), index, " · ") + (term(reward) if index else number(reward)))
+    if bootstrap is not None:
+        symbols.append(power("γ", len(rewards), " ") + symbol)
+        numbers.append(power(number(discount), len(rewards), " · ") + term(bootstrap))
+    if len(numbers) > 1:
+        numbers[-1] += f" = {number(target)}"
+    return f"target = {' + '.join(symbols)}", f"target = {' + '.join(numbers)}"
+
+
+def power(base: str, exponent: int, times: str = " ") -> str:
+    """Returns a factor to a power in front of something; nothing for a power of 0."""
+    if exponent == 0:
+        return ""
+    return f"{base}{times}" if exponent == 1 else f"{base}^{exponent}{times}"
+
+
+def gain(rows: Sequence[int], step_sizes: Sequence[float], traces: Sequence[float]) -> float:
+    """Returns by how much Q(S, A) changes for an error of 1. With hashing a row can be active several times."""
+    if traces:  # a value changes once, however often its row is active
+        return sum(size * trace for size, trace in zip(step_sizes, traces, strict=True))
+    return sum(rows.count(row) * size for row, size in zip(rows, step_sizes, strict=True))
+
+
+def gain_numbers(rows: Sequence[int], step_sizes: Sequence[float], traces: Sequence[float]) -> str:
+    """Returns the factor of the error: the learning rate, times the number of active rows, times the trace."""
+    if len(set(step_sizes)) > 1 or len(set(traces)) > 1 or len(set(rows)) < len(rows):
+        return number(gain(rows, step_sizes, traces))
+    shares = f"{len(rows)} · " if len(rows) > 1 else ""
+    trace = f" · {term(traces[0])}" if traces else ""
+    return f"{shares}{number(step_sizes[0])}{trace}"
+
+
+def update_equation(
+    name: str,
+    before: float,
+    target: float,
+    after: float,
+    rows: Sequence[int],
+    step_sizes: Sequence[float],
+    traces: Sequence[float],
+) -> tuple[str, str]:
+    """Returns the equation of an update and its numbers."""
+    if not step_sizes:
+        return f"{name} <- target", f"{name} <- {number(after)}"
+    factor = gain_numbers(rows, step_sizes, traces)
+    return (
+        f"{name} <- {name} + α{' z' if traces else ''} [target - {name}]",
+        f"{name} <- {number(before)} + {factor} · [{number(target)} - {term(before)}] = {number(after)}",
+    )
+
+
+def true_online_equation(
+    name: str,
+    before: float,
+    target: float,
+    after: float,
+    old_value: float,
+    rows: Sequence[int],
+    step_sizes: Sequence[float],
+    traces: Sequence[float],
+) -> tuple[str, str]:
+    """Returns the update of true online Sarsa(λ) and its numbers; z is the dutch trace."""
+    own = gain_numbers(rows, step_sizes, ())
+    traced = number(gain(rows, step_sizes, traces))
+    old = term(old_value)
+    return (
+        f"{name} <- {name} + α z [target - Q_old] - α [{name} - Q_old]",
+        f"{name} <- {number(before)} + {traced} · [{number(target)} - {old}]"
+        f" - {own} · [{number(before)} - {old}] = {number(after)}",
+    )

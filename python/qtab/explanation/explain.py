@@ -1,0 +1,187 @@
+"""``qtab.explain``: the steps of an episode, repeated by the reference learner, with the numbers of every update."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from qtab._utils import checks
+from qtab._utils.progress import ProgressBar
+from qtab.config import Config
+from qtab.envs.registry import ENTRIES, gymnasium_id
+from qtab.explanation.explanation import Explanation
+from qtab.explanation.records import ExplainedStep
+from qtab.explanation.watcher import SeenStep, Watcher
+from qtab.explanation.words import action_name, map_columns, state_in_words
+from qtab.reference import LEARNERS
+from qtab.reference.observer import observed_by
+from qtab.reference.schedules import LearningRate
+from qtab.results.run import Run
+
+
+def explain(
+    run: Run,
+    episode: int = 0,
+    steps: int = 5,
+    start: int = 0,
+    env: gym.Env | None = None,
+    *,
+    progress: bool | None = None,
+) -> Explanation:
+    """Explains steps of an episode: what the agent saw, why it chose its action, and how it learned from the result.
+
+    The reference learner in plain NumPy repeats the run from its first episode to the end of this one, with the same
+    numbers to the last bit. This takes tens of microseconds per step: later episodes take longer.
+
+    Args:
+        run: The run.
+        episode: The number of the episode, from 0.
+        steps: How many steps to explain; fewer where the episode ends before.
+        start: The first of these steps, from 0.
+        env: The environment, for a run that was trained on an environment object without an id.
+        progress: Whether to show a progress bar. None shows one on a terminal if it takes more than a second.
+
+    Raises:
+        RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+    checks.instance("run", run, Run)
+    finished = len(run.episode_returns)
+    if finished == 0:
+        raise ValueError("run must have a finished episode, got one that was stopped during its first")
+    episode = checks.integer("episode", episode, least=0, most=finished - 1)
+    start = checks.integer("start", start, least=0, most=int(run.episode_lengths[episode]) - 1)
+    steps = checks.integer("steps", steps, least=1)
+    if env is not None and not isinstance(env, gym.Env):
+        raise TypeError(f"env must be an environment, got {env!r}")
+    began = time.perf_counter()
+    config = run.config
+    watcher = Watcher(config, lambda row: _cell(run, row))
+    stepped = _environment(config, env)
+    columns = map_columns(stepped)
+    try:
+        with ProgressBar(episode + 1, "episode", progress, "repeating") as bar, observed_by(watcher):
+            watched = _Watched(stepped, run, watcher, episode, bar.move_to)
+            _, returns, lengths = LEARNERS[config.algorithm](watched, config, stop_after=episode + 1)
+            watcher.finish()
+    finally:
+        if env is None:
+            stepped.close()
+    for repeated, kept in ((returns, run.episode_returns), (lengths, run.episode_lengths)):
+        if repeated.tobytes() != kept[: episode + 1].tobytes():
+            first = int(np.argmax(repeated != kept[: episode + 1]))
+            raise RuntimeError(
+                f"the reference does not repeat this run: episode {first} differs. Was it trained on another "
+                "environment, machine or version? qtab.verify(run) compares them"
+            )
+    return Explanation(
+        config=config,
+        episode=episode,
+        steps=tuple(_explained(run, watcher, index, columns) for index in range(len(watcher.steps))[start:][:steps]),
+        episode_length=len(watcher.steps),
+        episode_return=float(returns[-1]),
+        learning_rate=_learning_rate(config, episode),
+        seconds=time.perf_counter() - began,
+    )
+
+
+def _environment(config: Config, env: gym.Env | None) -> gym.Env:
+    """The environment as the run had it. For an id it is qtab's class, which is equal to Gymnasium's and faster."""
+    if env is not None:
+        return gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", config.max_episode_steps))
+    name = gymnasium_id(config.env)
+    return gym.make(
+        f"qtab/{name}" if name in ENTRIES else config.env,
+        max_episode_steps=config.max_episode_steps,
+        disable_env_checker=True,
+        **config.env_kwargs,
+    )
+
+
+def _cell(run: Run, row: int) -> tuple[int, ...] | None:
+    if not run.discretizer.has_cells:
+        return None
+    return tuple(int(index) for index in np.unravel_index(row, run.discretizer.shape))
+
+
+def _learning_rate(config: Config, episode: int) -> float:
+    """The learning rate after so many episodes."""
+    schedule = LearningRate(config, (1, 1), 1).schedule
+    for _ in range(episode):
+        schedule.end_episode()
+    return schedule.value
+
+
+def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> ExplainedStep:
+    step, choice = watcher.steps[index], watcher.choices[index]
+    updated = sum(len(seen.updates) for seen in watcher.steps[: index + 1])
+    env = run.config.env
+    return ExplainedStep(
+        step=index,
+        observation=step.observation,
+        rows=step.rows,
+        cell=_cell(run, step.rows[0]),
+        state=state_in_words(env, step.observation, columns),
+        action=run.actions[choice.action],
+        action_name=action_name(env, choice.action, run.actions[choice.action]),
+        choice=choice,
+        reward=step.reward,
+        next_observation=step.next_observation,
+        next_rows=step.next_rows,
+        next_cell=_cell(run, step.next_rows[0]),
+        next_state=state_in_words(env, step.next_observation, columns),
+        terminated=step.terminated,
+        truncated=step.truncated,
+        updates=tuple(step.updates),
+        planning=tuple(step.planning),
+        traces=step.traces,
+        n_traces=step.n_traces,
+        pending=tuple(range(updated, index + 1)),
+    )
+
+
+class _Watched(gym.Wrapper[Any, Any, Any, Any]):
+    """Shows the watcher the steps of one episode."""
+
+    def __init__(self, env: gym.Env, run: Run, watcher: Watcher, episode: int, progress: Callable[[int], None]) -> None:
+        super().__init__(env)
+        self._run, self._watcher, self._episode, self._progress = run, watcher, episode, progress
+        self._begun = 0
+        self._observation: Any = None
+        self._rows: tuple[int, ...] = ()
+
+    def reset(self, **kwargs: Any) -> Any:
+        self._progress(self._begun)
+        self._watcher.active = self._begun == self._episode
+        self._begun += 1
+        observation, info = self.env.reset(**kwargs)
+        if self._watcher.active:
+            self._observation, self._rows = observation, self._active_rows(observation)
+        return observation, info
+
+    def step(self, action: Any) -> Any:
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        if self._watcher.active:
+            config = self._run.config
+            rows = self._active_rows(observation)
+            terminal = terminated or (truncated and config.on_truncation == "terminate")
+            self._watcher.took(
+                SeenStep(
+                    observation=self._observation,
+                    rows=self._rows,
+                    reward=float(reward),
+                    next_observation=observation,
+                    next_rows=rows,
+                    terminated=bool(terminated),
+                    truncated=bool(truncated),
+                    terminal=bool(terminal),
+                )
+            )
+            self._observation, self._rows = observation, rows
+        return observation, reward, terminated, truncated, info
+
+    def _active_rows(self, observation: Any) -> tuple[int, ...]:
+        return tuple(self._run.discretizer.active_rows(observation).tolist())

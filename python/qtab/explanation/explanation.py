@@ -1,0 +1,60 @@
+"""``qtab.Explanation``: some steps of an episode, each with its choice and its updates."""
+
+from dataclasses import dataclass, field
+
+from qtab.config import Config
+from qtab.explanation.records import ExplainedStep
+from qtab.explanation.text import html, text
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Explanation:
+    """Steps of an episode: what the agent saw and did, why, and how it learned. ``print`` shows them."""
+
+    config: Config
+    """The config of the run."""
+    episode: int
+    """The number of the episode, from 0."""
+    steps: tuple[ExplainedStep, ...]
+    """The steps, in their order."""
+    episode_length: int
+    """The number of steps that the whole episode has."""
+    episode_return: float
+    """The return of the whole episode."""
+    learning_rate: float
+    """The learning rate in this episode, before it is shared by the active rows or divided by the visits."""
+    seconds: float = field(repr=False)
+    """How long it took to repeat the run up to the end of the episode."""
+
+    def __repr__(self) -> str:
+        shown = f"step {self.steps[0].step}"
+        if len(self.steps) > 1:
+            shown = f"steps {self.steps[0].step} to {self.steps[-1].step}"
+        return (
+            f"<Explanation of {self.config.env}: {self.config.algorithm}, seed {self.config.seed}, "
+            f"episode {self.episode}, {shown} of {self.episode_length}; print shows them>"
+        )
+
+    def __len__(self) -> int:
+        return len(self.steps)
+
+    def __getitem__(self, index: int) -> ExplainedStep:
+        return self.steps[index]
+
+    def __str__(self) -> str:
+        """The steps as aligned text."""
+        return text(self.heading, self.steps)
+
+    def _repr_html_(self) -> str:
+        """The steps as a table, for notebooks."""
+        return html(self.heading, self.steps)
+
+    @property
+    def heading(self) -> str:
+        """The run, the episode and its rates, in one line."""
+        config, choice = self.config, self.steps[0].choice
+        rate = f"temperature {choice.temperature:.6g}" if choice.epsilon is None else f"epsilon {choice.epsilon:.6g}"
+        return (
+            f"{config.env}, {config.algorithm}, seed {config.seed}, episode {self.episode}: {self.episode_length} "
+            f"steps, return {self.episode_return:.6g}; {rate}, α = {self.learning_rate:.6g}, γ = {config.discount:.6g}"
+        )

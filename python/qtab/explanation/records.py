@@ -1,0 +1,158 @@
+"""What an explanation holds of each step: the choice of the action, the updates, the traces."""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+Reason = Literal["greedy", "tie broken", "explored", "softmax"]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An action, and why it was chosen."""
+
+    action: int
+    """The column of the action in the table."""
+    reason: Reason
+    """``"greedy"``: it has the largest value. ``"tie broken"``: several have. ``"explored"``: drawn at random, as
+    happens with probability epsilon. ``"softmax"``: drawn with the probabilities of the softmax policy."""
+    values: tuple[float, ...]
+    """(actions,): the values that the policy compared; the sum of both tables for Double Q-learning."""
+    probability: float
+    """How likely the policy was to choose this action."""
+    drawn: float
+    """The random number in [0, 1) that decided."""
+    tied: int
+    """The number of actions with the largest value."""
+    epsilon: float | None
+    """The exploration rate; None for softmax."""
+    temperature: float | None
+    """The temperature of softmax; None for epsilon-greedy."""
+    random_ties: bool
+    """Whether ties are broken at random, instead of for the first action."""
+
+    def __str__(self) -> str:
+        if self.epsilon is None:
+            return f"softmax: drawn with probability {self.probability:.3g} at temperature {self.temperature:.6g}"
+        if self.reason == "explored":
+            return f"explored: drawn at random, as {self.drawn:.3g} >= 1 - epsilon = {1.0 - self.epsilon:.3g}"
+        below = f"{self.drawn:.3g} < 1 - epsilon = {1.0 - self.epsilon:.3g}"
+        if self.reason == "greedy":
+            return f"greedy: the largest of {len(self.values)} values, as {below}"
+        how = "drawn from" if self.random_ties else "the first of"
+        return f"tie broken: {how} {self.tied} actions with the largest value, as {below}"
+
+
+@dataclass(frozen=True)
+class Update:
+    """A change of Q(S, A) towards a target. Its numbers are exact: from them follows the table, bit for bit."""
+
+    step: int | None
+    """The step of S and A, counted from 0 in the episode: for n-step Sarsa an earlier one. None in planning."""
+    table: int
+    """Which table changed: 0, or 1 for the second one of Double Q-learning."""
+    rows: tuple[int, ...]
+    """(n_active,): the active rows of S."""
+    cell: tuple[int, ...] | None
+    """The cell of S; None with tile coding, which has no cells."""
+    action: int
+    """The column of A."""
+    rewards: tuple[float, ...]
+    """The rewards in the target: one, or up to n for n-step Sarsa; none in planning, whose target is shown alone."""
+    bootstrap: float | None
+    """The value of the next state in the target; None where the next state is terminal, and in planning."""
+    target: float
+    error: float
+    """The TD error: the target minus ``before``."""
+    step_sizes: tuple[float, ...]
+    """(n_active,): the learning rate of each weight; empty where the target was assigned."""
+    traces: tuple[float, ...]
+    """(n_active,): the eligibility trace of each weight; empty for algorithms without traces."""
+    old_value: float | None
+    """Q_old of true online Sarsa(lambda): the value of S and A before the last update. None for others."""
+    before: float
+    """Q(S, A) before the update: the sum of ``weights_before``."""
+    after: float
+    """Q(S, A) after it: the sum of ``weights_after``."""
+    weights_before: tuple[float, ...]
+    """(n_active,): the values of the active rows before the update."""
+    weights_after: tuple[float, ...]
+    """(n_active,): the values of the active rows after it."""
+    equations: tuple[str, ...]
+    """The equations of the update."""
+    numbers: tuple[str, ...]
+    """The same equations with their numbers, rounded to six digits."""
+
+    @property
+    def assigned(self) -> bool:
+        """Whether the target was assigned, as the article does at a terminal state."""
+        return not self.step_sizes
+
+
+@dataclass(frozen=True)
+class Trace:
+    """The eligibility trace of a value, and how the step changed that value."""
+
+    row: int
+    cell: tuple[int, ...] | None
+    action: int
+    trace: float
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class ExplainedStep:
+    """A step of an episode: what the agent saw, did and learned."""
+
+    step: int
+    """The number of the step, from 0."""
+    observation: Any
+    rows: tuple[int, ...]
+    """(n_active,): the active rows of the observation."""
+    cell: tuple[int, ...] | None
+    """The cell of the observation; None with tile coding, which has no cells."""
+    state: str
+    """The observation in words."""
+    action: Any
+    """The action as ``env.step`` takes it."""
+    action_name: str
+    choice: Choice
+    """Why the action was chosen."""
+    reward: float
+    next_observation: Any
+    next_rows: tuple[int, ...]
+    next_cell: tuple[int, ...] | None
+    next_state: str
+    """The next observation in words."""
+    terminated: bool
+    truncated: bool
+    updates: tuple[Update, ...]
+    """The updates that followed the step: one; for n-step Sarsa none at first and several at the end of the episode."""
+    planning: tuple[Update, ...]
+    """The planning updates of Dyna-Q and Dyna-Q+, in their order."""
+    traces: tuple[Trace, ...]
+    """The largest eligibility traces when the values changed, at most eight."""
+    n_traces: int
+    """The number of values with a trace, all of which changed."""
+    pending: tuple[int, ...]
+    """The steps that n-step Sarsa has not updated yet."""
+
+    @property
+    def target(self) -> float | None:
+        """The target of the first update; None where there is none."""
+        return self.updates[0].target if self.updates else None
+
+    @property
+    def td_error(self) -> float | None:
+        """The TD error of the first update; None where there is none."""
+        return self.updates[0].error if self.updates else None
+
+    @property
+    def before(self) -> float | None:
+        """The value before the first update; None where there is none."""
+        return self.updates[0].before if self.updates else None
+
+    @property
+    def after(self) -> float | None:
+        """The value after the first update; None where there is none."""
+        return self.updates[0].after if self.updates else None

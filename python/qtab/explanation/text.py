@@ -1,0 +1,116 @@
+"""An explanation as plain text and as an HTML table."""
+
+from collections.abc import Sequence
+from html import escape
+
+from qtab.explanation.equations import number
+from qtab.explanation.records import ExplainedStep, Update
+
+SHOWN_ROWS = 4
+"""With more active rows, only the first ones are listed."""
+SHOWN_PLANNING = 10
+"""Of more planning updates, only the first ones are listed."""
+COLUMNS = ("step", "state", "action", "why", "reward", "target", "TD error", "before", "after", "equation")
+
+
+def text(heading: str, steps: Sequence[ExplainedStep]) -> str:
+    """Returns a block of lines for each step."""
+    blocks = [heading]
+    for step in steps:
+        lines = details(step)
+        width = max(len(name) for name, _ in lines)
+        blocks.append("\n".join([f"step {step.step}", *(f"  {name:{width}}  {line}" for name, line in lines)]))
+    return "\n\n".join(blocks)
+
+
+def html(heading: str, steps: Sequence[ExplainedStep]) -> str:
+    """Returns a table with a row for each step."""
+    head = "".join(f"<th>{escape(name)}</th>" for name in COLUMNS)
+    body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in _cells(step))}</tr>" for step in steps)
+    return f"<p>{escape(heading)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def details(step: ExplainedStep) -> list[tuple[str, str]]:
+    """Returns the lines of a step: what each shows, and the text."""
+    lines = [
+        ("state", f"{step.state}; {place(step.rows, step.cell)}"),
+        ("action", f"{step.action_name}; values {', '.join(number(value) for value in step.choice.values)}"),
+        ("why", str(step.choice)),
+        ("reward", f"{number(step.reward)}, then {step.next_state}; {ending(step)}"),
+    ]
+    for update in step.updates:
+        lines += update_lines(step, update)
+    if not step.updates:
+        lines.append(("update", f"none yet: n steps are not complete; waiting: {steps_waiting(step)}"))
+    elif step.pending:
+        lines.append(("waiting", steps_waiting(step)))
+    if step.n_traces:
+        for trace in step.traces:
+            values = f"z = {number(trace.trace)}, {number(trace.before)} -> {number(trace.after)}"
+            lines.append(("trace", f"{place((trace.row,), trace.cell)} action {trace.action}: {values}"))
+        if step.n_traces > len(step.traces):
+            lines.append(("trace", f"and {step.n_traces - len(step.traces)} more"))
+    for update in step.planning[:SHOWN_PLANNING]:
+        lines.append(("planning", f"{place(update.rows, update.cell)} action {update.action}: {update.numbers[-1]}"))
+    if len(step.planning) > SHOWN_PLANNING:
+        lines.append(("planning", f"and {len(step.planning) - SHOWN_PLANNING} more"))
+    return lines
+
+
+def update_lines(step: ExplainedStep, update: Update) -> list[tuple[str, str]]:
+    """Returns the lines of an update: its equations, with their numbers below."""
+    name = "update" if update.step == step.step else f"update of step {update.step}"
+    lines = []
+    for symbols, numbers in zip(update.equations, update.numbers, strict=True):
+        lines += [(name, symbols), ("", numbers)]
+        name = ""
+    lines.append(
+        (
+            "value",
+            f"{number(update.before)} -> {number(update.after)}, TD error {number(update.error)}"
+            if not update.assigned
+            else f"{number(update.before)} -> {number(update.after)}, assigned at the terminal state",
+        )
+    )
+    return lines
+
+
+def place(rows: Sequence[int], cell: tuple[int, ...] | None) -> str:
+    """Returns the cell of a state, or its active rows."""
+    if cell is not None:
+        return f"cell {cell[0]}" if len(cell) == 1 else f"cell ({', '.join(map(str, cell))})"
+    if len(rows) == 1:
+        return f"row {rows[0]}"
+    more = ", ..." if len(rows) > SHOWN_ROWS else ""
+    return f"rows {', '.join(map(str, rows[:SHOWN_ROWS]))}{more}"
+
+
+def ending(step: ExplainedStep) -> str:
+    """Returns where the step led, and whether the episode ended there."""
+    if step.terminated:
+        return "a terminal state"
+    where = place(step.next_rows, step.next_cell)
+    if not step.truncated:
+        return where
+    return f"{where}; the time limit ends the episode" + (
+        ", and counts as a terminal state" if step.updates and step.updates[-1].bootstrap is None else ""
+    )
+
+
+def steps_waiting(step: ExplainedStep) -> str:
+    """Returns which steps n-step Sarsa has not updated yet."""
+    first, last = step.pending[0], step.pending[-1]
+    return f"step {first}" if first == last else f"steps {first} to {last}"
+
+
+def _cells(step: ExplainedStep) -> list[str]:
+    """The cells of a step's row in the HTML table. The equation's cell also has traces and planning updates."""
+    update = step.updates[0] if step.updates else None
+    numbers = ["", "", "", ""]
+    if update is not None:
+        numbers = [number(value) for value in (update.target, update.error, update.before, update.after)]
+    lines = details(step)[4:]
+    equation = "<br>".join(escape(f"{name}: {line}" if name else line) for name, line in lines)
+    state = f"{step.state}; {place(step.rows, step.cell)}"
+    plain = [str(step.step), state, step.action_name, str(step.choice), number(step.reward), *numbers]
+    return [*map(escape, plain), equation]

@@ -1,0 +1,153 @@
+"""Watches a reference learner: the choices and updates of one episode."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.config import Config
+from qtab.explanation.choices import ObservedPolicy, ObservedStream, explained
+from qtab.explanation.records import Choice, Trace, Update
+from qtab.explanation.targets import bootstrap, discounted
+from qtab.explanation.updates import Begun, finished
+from qtab.reference.observer import Observer
+from qtab.reference.policies import Policy
+from qtab.reference.schedules import LearningRate
+from qtab.reference.streams import AgentStream
+
+Table = NDArray[np.float64]
+Cell = tuple[int, ...] | None
+SHOWN_TRACES = 8
+
+
+@dataclass
+class SeenStep:
+    """What happened in a step."""
+
+    observation: Any
+    rows: tuple[int, ...]
+    reward: float
+    next_observation: Any
+    next_rows: tuple[int, ...]
+    terminated: bool
+    truncated: bool
+    terminal: bool
+    """Whether the learner takes the next state as terminal, so that its value is zero."""
+    updates: list[Update] = field(default_factory=list)
+    planning: list[Update] = field(default_factory=list)
+    traces: tuple[Trace, ...] = ()
+    n_traces: int = 0
+
+
+class Watcher(Observer):
+    """Records the steps of one episode, while ``active``; nothing of the episodes before it."""
+
+    def __init__(self, config: Config, cell: Callable[[int], Cell]) -> None:
+        """Takes the config of the run, and a function from a row to its cell."""
+        self.config, self.cell = config, cell
+        self.active = False
+        self.tables: list[Table] = []
+        self.choices: list[Choice] = []
+        self.steps: list[SeenStep] = []
+        self._policy: Policy | None = None
+        self._begun: Begun | None = None
+        self._draws: list[float] = []
+
+    def stream(self, stream: AgentStream) -> AgentStream:
+        """Returns a stream that keeps the last number that decided."""
+        return ObservedStream(stream, self._draws)
+
+    def policy(self, policy: Policy) -> Policy:
+        """Returns a policy that keeps what it chooses."""
+        self._policy = policy
+        return ObservedPolicy(policy, self._chose)
+
+    def table(self, Q: Table) -> None:  # noqa: N803 - the book's name
+        """Keeps the table, which the learner changes in place."""
+        self.tables.append(Q)
+
+    def took(self, step: SeenStep) -> None:
+        """Receives a step of the environment, before the learner learns from it."""
+        self.finish()
+        self.steps.append(step)
+
+    def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:  # noqa: N803
+        """Begins an update: of this step, of an earlier one for n-step Sarsa, or in planning."""
+        if not self.active:
+            return
+        table = next(index for index, known in enumerate(self.tables) if known is Q)
+        if self.config.algorithm in ("dyna_q", "dyna_q_plus") and self.steps[-1].updates:
+            step, rewards, following = None, (), None
+        else:
+            step, rewards, following = self._target(table)
+        self._begun = Begun(step, table, tuple(state), action, rewards, following, target, self._weights(table, state))
+
+    def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:  # noqa: N803, ARG002
+        """Ends it."""
+        if self._begun is not None:
+            self._begun.step_sizes = tuple(step_sizes or ())
+            self._end()
+
+    def before_traces(self, Q: Table, z: Table, error: float, rate: LearningRate) -> None:  # noqa: N803, ARG002
+        """Begins an update of all values with a trace. It ends before the next step, or with the episode."""
+        if not self.active:
+            return
+        step, rewards, following = self._target(0)
+        seen, action = self.steps[step], self.choices[step].action
+        target = discounted(rewards, self.config.discount, following)
+        begun = Begun(step, 0, seen.rows, action, rewards, following, target, self._weights(0, seen.rows))
+        begun.step_sizes = tuple(rate.step(row, action) for row in seen.rows)
+        begun.traces = tuple(float(z[row, action]) for row in seen.rows)
+        if self.config.algorithm == "true_online_sarsa_lambda":
+            begun.old_value = (self.steps[step - 1].updates[0].bootstrap or 0.0) if step > 0 else 0.0
+        traced = np.argwhere(z != 0.0)
+        order = np.argsort(-np.abs(z[z != 0.0]), kind="stable")[:SHOWN_TRACES]
+        seen.n_traces = len(traced)
+        seen.traces = tuple(
+            Trace(row, self.cell(row), column, float(z[row, column]), float(Q[row, column]), float("nan"))
+            for row, column in traced[order].tolist()
+        )
+        self._begun = begun
+
+    def finish(self) -> None:
+        """Ends the update of the traces, if there is one."""
+        if self._begun is not None:
+            seen, Q = self.steps[-1], self.tables[0]  # noqa: N806
+            seen.traces = tuple(
+                Trace(one.row, one.cell, one.action, one.trace, one.before, float(Q[one.row, one.action]))
+                for one in seen.traces
+            )
+            self._end()
+
+    def _chose(self, values: NDArray[np.float64], action: int) -> None:
+        if self.active and self._policy is not None:
+            self.choices.append(explained(self._policy, values, action, self._draws[0]))
+
+    def _target(self, table: int) -> tuple[int, tuple[float, ...], float | None]:
+        """The step that is updated next, the rewards in its target, and the value of what follows them."""
+        if self.config.algorithm == "n_step_sarsa":
+            step = sum(len(seen.updates) for seen in self.steps)
+            end = min(step + (self.config.n_steps or 1), len(self.steps))
+        else:
+            step, end = len(self.steps) - 1, len(self.steps)
+        rewards = tuple(seen.reward for seen in self.steps[step:end])
+        last = self.steps[end - 1]
+        if last.terminal:
+            return step, rewards, None
+        assert self._policy is not None  # noqa: S101 - it is given before the first step
+        next_action = self.choices[end].action if len(self.choices) > end else -1
+        following = bootstrap(
+            self.config.algorithm, self.tables, table, list(last.next_rows), next_action, self._policy
+        )
+        return step, rewards, following
+
+    def _weights(self, table: int, rows: Sequence[int]) -> tuple[tuple[float, ...], ...]:
+        return tuple(tuple(self.tables[table][row].tolist()) for row in rows)
+
+    def _end(self) -> None:
+        begun, self._begun = self._begun, None
+        if begun is not None:
+            update = finished(begun, self.config, self.cell(begun.rows[0]), self._weights(begun.table, begun.rows))
+            (self.steps[-1].planning if begun.step is None else self.steps[-1].updates).append(update)

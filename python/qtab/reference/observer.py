@@ -1,0 +1,59 @@
+"""What a learner shows of its work while it trains. :func:`qtab.explain` watches a run this way."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.reference.streams import AgentStream
+
+if TYPE_CHECKING:
+    from qtab.reference.policies import Policy
+    from qtab.reference.schedules import LearningRate
+
+Table = NDArray[np.float64]
+
+
+class Observer:
+    """Sees the parts of a task and every update. This one does nothing with them; nothing it returns may differ."""
+
+    def stream(self, stream: AgentStream) -> AgentStream:
+        """Returns the agent's random numbers, or the same numbers observed."""
+        return stream
+
+    def policy(self, policy: "Policy") -> "Policy":
+        """Returns the policy, or the same policy observed."""
+        return policy
+
+    def table(self, Q: Table) -> None:
+        """Called with each table before the first episode."""
+
+    def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:
+        """Called before Q(S, A) changes towards a target."""
+
+    def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:
+        """Called after that, with the step size of each active row; None where the target was assigned."""
+
+    def before_traces(self, Q: Table, z: Table, error: float, rate: "LearningRate") -> None:
+        """Called before all values with a trace change by an error."""
+
+
+_observer: ContextVar[Observer | None] = ContextVar("_observer", default=None)
+
+
+def current_observer() -> Observer:
+    """Returns the observer of the learners that start now."""
+    return _observer.get() or Observer()
+
+
+@contextmanager
+def observed_by(observer: Observer) -> Iterator[None]:
+    """Lets an observer watch the learners that start inside the context."""
+    token = _observer.set(observer)
+    try:
+        yield
+    finally:
+        _observer.reset(token)
