@@ -1,5 +1,7 @@
 """``Optimum.predict`` answers many observations at once as it does one by one."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -34,7 +36,8 @@ def test_several_episodes_are_at_steps_of_their_own(lake):
 def test_a_vector_environment_is_played_by_it(lake):
     envs = gym.make_vec("FrozenLake-v1", num_envs=4, vectorization_mode="sync")
     observations, _ = envs.reset(seed=0)
-    state, starts = None, None
+    state: Any = None
+    starts = None
     for _ in range(30):
         actions, state = lake.predict(observations, state, starts)
         observations, _, terminated, truncated, _ = envs.step(actions)

@@ -169,8 +169,9 @@ def change_json(header: dict[str, Any], draw: Draw) -> None:
 
 def edit_header(content: bytes, draw: Draw) -> bytes:
     members = members_of(io.BytesIO(content))  # type: ignore[arg-type]
-    changed = with_header(members, lambda header: [change_json(header, draw) for _ in range(draw(st.integers(1, 3)))])
-    return packed(changed)
+    for _ in range(draw(st.integers(1, 3))):
+        members = with_header(members, lambda header: change_json(header, draw))
+    return packed(members)
 
 
 def edit_array(content: bytes, draw: Draw) -> bytes:

@@ -87,6 +87,13 @@ def test_a_link_stays_and_its_target_is_replaced(run, tmp_path):
 
 
 @posix
+def test_a_fifo_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(OSError, match="path must be a regular file, got the FIFO"):
+        qtab.load(tmp_path / "pipe")
+
+
+@posix
 def test_links_in_a_circle_are_refused(run, tmp_path):
     (tmp_path / "a").symlink_to("b")
     (tmp_path / "b").symlink_to("a")

@@ -133,7 +133,7 @@ except OSError as error:
 
 @pytest.mark.parametrize(
     ("value", "error"),
-    [(np.float32(0.1), TypeError), (float("nan"), ValueError), (object(), TypeError)],
+    [(np.float32(0.1), TypeError), (float("nan"), ValueError), (object(), TypeError), ({1: 2}, TypeError)],
     ids=short_repr,
 )
 def test_a_value_that_json_cannot_hold_is_refused_and_leaves_the_old_file(tmp_path, value, error):

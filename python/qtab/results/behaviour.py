@@ -34,7 +34,8 @@ def sample(probabilities: NDArray[np.float64], generator: np.random.Generator) -
     total = cumulative[:, -1:]
     # Rounding may reach the total, and the last actions may have a probability of 0.
     drawn = np.minimum(generator.random(total.shape) * total, np.nextafter(total, 0.0))
-    return np.argmax(drawn < cumulative, axis=1)
+    actions: NDArray[np.int64] = np.argmax(drawn < cumulative, axis=1)
+    return actions
 
 
 def rate_after(schedule: Schedule, episodes: int, total: int) -> float:
@@ -56,9 +57,10 @@ def _available(config: Config, values: NDArray[np.float64]) -> NDArray[np.bool_]
 
 
 def _greedy(values: NDArray[np.float64], all_of_them: bool) -> NDArray[np.bool_]:
-    if all_of_them:
-        return values == values.max(axis=1, keepdims=True)
-    return np.arange(values.shape[1]) == np.argmax(values, axis=1)[:, np.newaxis]
+    greedy: NDArray[np.bool_] = values == values.max(axis=1, keepdims=True)
+    if not all_of_them:
+        greedy = np.arange(values.shape[1]) == np.argmax(values, axis=1)[:, np.newaxis]
+    return greedy
 
 
 def _uniform(chosen: NDArray[np.bool_]) -> NDArray[np.float64]:

@@ -25,9 +25,9 @@ def digest(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> str
     Raises:
         ValueError: if the header holds a number that JSON cannot.
     """
-    described = {name: [array.dtype.str, list(array.shape)] for name, array in arrays.items()}
-    text = json.dumps({"header": header, "arrays": described}, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    layouts = {name: [array.dtype.str, list(array.shape)] for name, array in arrays.items()}
+    text = json.dumps({"header": header, "arrays": layouts}, sort_keys=True, separators=(",", ":"), allow_nan=False)
     computed = hashlib.new(ALGORITHM, text.encode())
     for name in sorted(arrays):
-        computed.update(np.ascontiguousarray(arrays[name]).reshape(-1).view(np.uint8))
+        computed.update(np.ascontiguousarray(arrays[name]).reshape(-1).view(np.uint8).data)
     return computed.hexdigest()

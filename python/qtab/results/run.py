@@ -1,6 +1,7 @@
 """``qtab.Run``: the result of a training run."""
 
 import dataclasses
+import json
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -12,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks, html, svg
-from qtab._utils.files import check_writable
 from qtab._utils.frames import episode_frame
 from qtab.config import Config
+from qtab.config.config import replace_checked
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.results import behaviour, run_file
@@ -231,8 +232,6 @@ class Run:
             ValueError: if they hold a number that JSON cannot, or the run is not one that training returns, such as one
                 whose values overflowed.
         """
-        path = Path(path)
-        check_writable("path", path)
         try:
             check_consistent(self)
         except ValueError as error:
@@ -254,12 +253,14 @@ class Run:
             "seconds": self.seconds,
             "versions": dict(self.versions),
         }
+        kwargs = self.config.env_kwargs
         try:
             text = run_file.encode(header)
         except (TypeError, ValueError) as error:
-            kwargs = self.config.env_kwargs
             raise type(error)(f"env_kwargs must hold what JSON can, got {kwargs!r}: {error}") from None
-        run_file.write(path, text, arrays)
+        if replace_checked(self.config, env_kwargs=json.loads(text)["config"]["env_kwargs"]) != self.config:
+            raise TypeError(f"env_kwargs must hold what JSON can, got {kwargs!r}: keys must be texts")
+        run_file.write(Path(path), text, arrays)
 
 
 @dataclass(frozen=True)

@@ -47,8 +47,8 @@ def encode(header: Mapping[str, Any]) -> str:
         TypeError: if it holds what JSON cannot.
         ValueError: if it holds a number that JSON cannot.
     """
-    described = {"format": FORMAT, "version": FORMAT_VERSION, _DIGEST: ALGORITHM, **header}
-    return json.dumps(described, allow_nan=False)
+    content = {"format": FORMAT, "version": FORMAT_VERSION, _DIGEST: ALGORITHM, **header}
+    return json.dumps(content, allow_nan=False)
 
 
 def write(path: Path, header: str, arrays: Mapping[str, NDArray[Any]]) -> None:

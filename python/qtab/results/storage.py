@@ -4,7 +4,7 @@ import logging
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from qtab import discretizers
 from qtab.config import Config
@@ -36,7 +36,7 @@ def load(path: "str | os.PathLike[str]") -> Run:
             message says why.
     """
     path = Path(path)
-    with path.open("rb") as file:
+    with _open_regular(path) as file:
         try:
             run = _run(run_file.read(file))
         except Exception as error:  # a damaged file can raise almost anything
@@ -48,6 +48,13 @@ def load(path: "str | os.PathLike[str]") -> Run:
             "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
         )
     return run
+
+
+def _open_regular(path: Path) -> BinaryIO:
+    """Opens a file; a FIFO, which would be waited for until something is written to it, is refused."""
+    if path.is_fifo():
+        raise OSError(f"path must be a regular file, got the FIFO {str(path)!r}")
+    return path.open("rb")
 
 
 def _run(content: run_file.Content) -> Run:
