@@ -10,7 +10,7 @@ use qtab_core::learners::{
 };
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, VisitCounter};
-use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer};
+use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
 
 use super::agent::generic_agent;
 use super::factory::{Batching, Factory};
@@ -72,7 +72,7 @@ pub(super) fn boxed_run<W>(
 where
     W: RngSnapshot + Task<Active: Send, State: Send> + Send + 'static,
     W::Snapshot: Send,
-    RunError: From<W::Error>,
+    RunError: From<W::Error> + From<TrainingError<W::Error>>,
 {
     let (task, recordings) = if record == 0 {
         (boxed_task(task, shape, spec), AnyRecordings::None)
