@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from qtab._utils import checks
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.axes import new_figure
+from qtab.plots.axes import shown_figure
 from qtab.plots.policy import policy
 from qtab.plots.run import plot
 from qtab.plots.schedule import schedule
@@ -44,7 +44,7 @@ def overview(
         ValueError: for one that does not fit the environment.
     """
     checks.instance("run", run, Run)
-    figure = new_figure(12, 7.5)
+    figure = shown_figure(12, 7.5)
     (curve, value), (greedy, last) = figure.subplots(2, 2)
     plot(run, curve, optimum=optimum)
     values(run, value, at=at, layout=layout, title="Values")

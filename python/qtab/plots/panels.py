@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.plots.arrangements import Raster
-from qtab.plots.axes import axes_or_new, new_figure
+from qtab.plots.axes import axes_or_new, shown_figure
 from qtab.plots.subject import Subject, subject_of
 
 if TYPE_CHECKING:
@@ -41,13 +41,13 @@ def axes_for(rasters: Sequence[Raster], ax: "Axes | None") -> "list[Axes]":
     if len(rasters) == 1:
         if ax is not None:
             return [axes_or_new(ax)]
-        return [new_figure(*rasters[0].size).subplots()]
+        return [shown_figure(*rasters[0].size).subplots()]
     if ax is not None:
         raise ValueError(f"ax must be None for {len(rasters)} runs, each of which has a panel of its own")
     columns = min(len(rasters), MAX_PANELS_IN_A_ROW)
     lines = -(-len(rasters) // columns)
     width, height = (max(raster.size[side] for raster in rasters) for side in (0, 1))
-    grid: Any = new_figure(0.85 * width * columns, 0.95 * height * lines).subplots(lines, columns, squeeze=False)
+    grid: Any = shown_figure(0.85 * width * columns, 0.95 * height * lines).subplots(lines, columns, squeeze=False)
     for unused in grid.ravel()[len(rasters) :]:
         unused.set_axis_off()
     return list(grid.ravel()[: len(rasters)])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DIRECTIONS
-from qtab.plots.axes import COLORS
+from qtab.plots.colors import COLORS
 from qtab.plots.panels import (
     axes_for,
     brightness,

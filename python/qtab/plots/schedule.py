@@ -9,7 +9,9 @@ from qtab._utils import checks
 from qtab.config.policies import Softmax
 from qtab.config.policies import policy as policy_of
 from qtab.config.schedules import ByVisits, Constant, Exponential, Schedule, learning_rate
-from qtab.plots.axes import axes_or_new, color, finish
+from qtab.plots.axes import axes_or_new
+from qtab.plots.colors import color
+from qtab.plots.labels import finish
 from qtab.results.run import Run
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.extras import missing
 from qtab._utils.frames import data_frame
 from qtab._utils.suggestions import did_you_mean
 from qtab.sweeps.database import Contents

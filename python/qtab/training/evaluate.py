@@ -18,7 +18,7 @@ from qtab.config.unknown import suggesting
 from qtab.envs.registry import spec_of
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
-from qtab.training.given_env import check_env, check_id, check_spaces
+from qtab.training.given_env import check_env, check_spaces
 from qtab.training.resolve import log_python_stepping, resolve
 from qtab.training.train import train_resolved
 
@@ -140,7 +140,6 @@ def evaluate(
     config = run.config
     if env is None:
         spec = spec_of_run(config.env)
-        check_id(config)
     elif isinstance(env, gym.Env):
         spec = env.spec
         check_spaces(run, env)

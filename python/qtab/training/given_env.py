@@ -7,24 +7,8 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import discretizers
 from qtab._utils.shown import shown
-from qtab.config import Config
 from qtab.discretizers.actions import choose_actions
-from qtab.envs.registry import spec_of
 from qtab.results.run import Run
-
-
-def check_id(config: Config) -> None:
-    """Checks that the environment of a run can be made from its id.
-
-    Raises:
-        ValueError: if it cannot; the message asks for ``env``.
-    """
-    try:
-        spec_of(config.env)
-    except (gym.error.Error, ModuleNotFoundError) as error:
-        raise ValueError(
-            f"env must be given for this run: its environment {config.env!r} is not a registered id ({error})"
-        ) from None
 
 
 def check_spaces(run: Run, env: gym.Env) -> None:

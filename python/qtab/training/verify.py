@@ -20,7 +20,7 @@ from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.envs.stored import spec_of_run
 from qtab.reference import LEARNERS
 from qtab.results.run import Run
-from qtab.training.given_env import check_env, check_id, check_spaces
+from qtab.training.given_env import check_env, check_spaces
 from qtab.training.resolve import resolve
 
 
@@ -98,7 +98,7 @@ def verify(
     count = checks.integer("episodes", finished if episodes is None else episodes, least=1, most=finished)
     config = run.config
     if env is None:
-        check_id(config)
+        spec_of_run(config.env)
     elif isinstance(env, gym.Env):
         check_spaces(run, env)
     else:
