@@ -72,7 +72,8 @@ where
 
     /// Benchmarks all learners that work with any features.
     fn all(&mut self) {
-        let traces = |agent: &Agent, cutoff| Traces::new(agent.table.values().len(), cutoff, &StopFlag::new()).expect(FITS);
+        let traces =
+            |agent: &Agent, cutoff| Traces::new(agent.table.values().len(), cutoff, &StopFlag::new()).expect(FITS);
         let (kind, trace_decay) = (TraceKind::Replacing, TRACE_DECAY);
         self.rule("Q-learning", |_| QLearning);
         self.rule("Sarsa", |_| Sarsa);
@@ -92,9 +93,12 @@ where
 fn grid(criterion: &mut Criterion) {
     let mut grid = Bench { group: criterion.benchmark_group("grid"), features: rounding(), n_active: 1 };
     grid.all();
-    let model = |agent: &Agent| Model::new(agent.table.values().len() / ACTIONS, ACTIONS, &StopFlag::new()).expect(FITS);
+    let model =
+        |agent: &Agent| Model::new(agent.table.values().len() / ACTIONS, ACTIONS, &StopFlag::new()).expect(FITS);
     grid.rule("Dyna-Q, 10 steps planned", |agent| DynaQ::new(model(agent), 10));
-    grid.rule("Dyna-Q+, 10 steps planned", |agent| DynaQPlus::new(model(agent), 10, 1e-3, &StopFlag::new()).expect(FITS));
+    grid.rule("Dyna-Q+, 10 steps planned", |agent| {
+        DynaQPlus::new(model(agent), 10, 1e-3, &StopFlag::new()).expect(FITS)
+    });
     grid.group.finish();
 }
 

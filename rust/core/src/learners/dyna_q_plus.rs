@@ -92,7 +92,8 @@ mod tests {
 
     #[test]
     fn an_action_that_was_not_tried_for_long_gains_value() {
-        let rule = DynaQPlus::new(Model::new(1, 2, &StopFlag::new()).expect("a few pairs"), 64, 1.0, &StopFlag::new()).expect("a few pairs");
+        let rule = DynaQPlus::new(Model::new(1, 2, &StopFlag::new()).expect("a few pairs"), 64, 1.0, &StopFlag::new())
+            .expect("a few pairs");
         let mut learner = TdLearner { agent: agent(&[0.0, 0.0]), rule };
         learner.learn([0], 0, 0.0, Next::Terminal, &mut rng());
         // Action 1 was never tried: it is assumed to lead back with κ √1, so its value tends to v = 1 + 0.5 v = 2.

@@ -65,7 +65,11 @@ mod tests {
 
     #[test]
     fn an_error_updates_earlier_pairs_along_the_traces() {
-        let rule = SarsaLambda { traces: Traces::new(4, 0.0, &StopFlag::new()).expect("a few weights"), kind: TraceKind::Accumulating, trace_decay: 0.5 };
+        let rule = SarsaLambda {
+            traces: Traces::new(4, 0.0, &StopFlag::new()).expect("a few weights"),
+            kind: TraceKind::Accumulating,
+            trace_decay: 0.5,
+        };
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         // δ = -1 + 0.5 · 3 - 1
         assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);

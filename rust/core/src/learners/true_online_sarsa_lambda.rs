@@ -85,7 +85,13 @@ mod tests {
     use crate::learners::common::{Learner, TdLearner};
 
     fn learner(values: &[f64]) -> TdLearner<TrueOnlineSarsaLambda> {
-        TdLearner { agent: agent(values), rule: TrueOnlineSarsaLambda::new(Traces::new(values.len(), 0.0, &StopFlag::new()).expect("a few weights"), 0.5) }
+        TdLearner {
+            agent: agent(values),
+            rule: TrueOnlineSarsaLambda::new(
+                Traces::new(values.len(), 0.0, &StopFlag::new()).expect("a few weights"),
+                0.5,
+            ),
+        }
     }
 
     #[test]

@@ -76,7 +76,11 @@ mod tests {
     fn learner(epsilon: f64) -> TdLearner<WatkinsQLambda> {
         let mut agent = agent(&[1.0, 0.0, 2.0, 3.0]);
         agent.policy = AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(epsilon), ties: TieBreaking::First };
-        let rule = WatkinsQLambda { traces: Traces::new(4, 0.0, &StopFlag::new()).expect("a few weights"), kind: TraceKind::Replacing, trace_decay: 0.5 };
+        let rule = WatkinsQLambda {
+            traces: Traces::new(4, 0.0, &StopFlag::new()).expect("a few weights"),
+            kind: TraceKind::Replacing,
+            trace_decay: 0.5,
+        };
         TdLearner { agent, rule }
     }
 

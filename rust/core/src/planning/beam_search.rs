@@ -3,13 +3,13 @@
 //! From an initial state it tries all three actions, step by step, and keeps the most promising states after each step.
 //! The first step that reaches the goal completes a route, which can be driven. The route is not proven to be shortest.
 
-use std::mem::swap;
 use crate::StopFlag;
+use std::mem::swap;
 
 use super::{CostToGo, PlanningError};
 use crate::envs::Env;
-use crate::memory::{collect, reserve};
 use crate::envs::classic_control::{MOUNTAIN_CAR_RESET_BOUNDS, MountainCar, MountainCarState};
+use crate::memory::{collect, reserve};
 
 /// The default number of initial positions, which represent the uniform distribution.
 pub const STARTS: u32 = 1000;
@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn the_stop_flag_stops_the_search() {
         let stop = StopFlag::new();
-    stop.set();
+        stop.set();
         assert_eq!(CostToGo::new(MountainCar::default(), 200, &stop), Err(PlanningError::Stopped));
         let heuristic = cost_to_go(MountainCar::default());
         assert_eq!(beam_search(&heuristic, -0.5, 200, BEAM, &stop), Err(PlanningError::Stopped));

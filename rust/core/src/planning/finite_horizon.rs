@@ -2,12 +2,12 @@
 //!
 //! Vₖ(s) = maxₐ Σ p (r + γ Vₖ₋₁(s′)) with V₀ = 0 (M. Puterman, *Markov Decision Processes*, 1994, section 4.5).
 
-use std::mem::swap;
 use crate::StopFlag;
+use std::mem::swap;
 
 use super::PlanningError;
-use super::stop_checks::StopChecks;
 use super::bellman::{action_value, action_values};
+use super::stop_checks::StopChecks;
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{filled, reserve};
@@ -95,7 +95,12 @@ pub fn finite_horizon(
 ///
 /// # Panics
 /// If the policy does not have one action per state, or an action is out of range.
-pub fn policy_return(mdp: &TabularMdp, policy: &[usize], steps: u64, stop: &StopFlag<'_>) -> Result<f64, PlanningError> {
+pub fn policy_return(
+    mdp: &TabularMdp,
+    policy: &[usize],
+    steps: u64,
+    stop: &StopFlag<'_>,
+) -> Result<f64, PlanningError> {
     assert_eq!(policy.len(), mdp.num_states(), "a policy must have one action per state");
     let (mut returns, mut next_returns) =
         (filled(&0.0, mdp.num_states(), stop)?, filled(&0.0, mdp.num_states(), stop)?);

@@ -29,8 +29,9 @@ pub fn policy_iteration(mdp: &TabularMdp, discount: f64, stop: &StopFlag<'_>) ->
     let mut values = filled(&0.0, mdp.num_states(), stop)?;
     let mut sweeps = 0;
     loop {
-        sweeps +=
-            converge(&mut values, mdp, stop, |state, values| action_value(mdp, state, policy[state], discount, values))?;
+        sweeps += converge(&mut values, mdp, stop, |state, values| {
+            action_value(mdp, state, policy[state], discount, values)
+        })?;
         let q_values = action_values(mdp, discount, &values, stop)?;
         let tie_tolerance = tie_tolerance(&values);
         let mut stable = true;

@@ -12,7 +12,13 @@ use crate::error::allocation;
 use crate::spec::{LearningRateSpec, PolicySpec, RunSpec};
 
 /// The agent of any learner, with its first table.
-pub(super) fn generic_agent(spec: &RunSpec, n_rows: usize, n_active: usize, rng: &mut impl Rng, stop: &StopFlag<'_>) -> PyResult<Agent> {
+pub(super) fn generic_agent(
+    spec: &RunSpec,
+    n_rows: usize,
+    n_active: usize,
+    rng: &mut impl Rng,
+    stop: &StopFlag<'_>,
+) -> PyResult<Agent> {
     let shape = (n_rows, spec.num_actions);
     Ok(Agent {
         table: spec.initial_q.table((0, spec.algorithm.n_tables()), shape, rng, stop)?,

@@ -1,8 +1,8 @@
 //! Runs that differ in their seeds alone: one after the other, or several in a batch.
 
 use pyo3::prelude::*;
-use qtab_core::{Budget, StopFlag};
 use qtab_core::batch::{BatchedRun, LANES};
+use qtab_core::{Budget, StopFlag};
 
 use super::{AnyRecordings, BuiltRun, Run};
 use crate::convert::Seed;

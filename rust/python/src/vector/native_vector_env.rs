@@ -8,9 +8,9 @@ use qtab_core::memory::{filled, with_capacity};
 use qtab_core::vector::{Autoreset, StepBuffers};
 use qtab_core::{Env, StopFlag, VectorEnv};
 
-use crate::error::allocation;
 use super::infos::{EnvInfo, Infos};
 use super::{BatchAction, BatchObservation, SubEnvRng};
+use crate::error::allocation;
 
 /// How sub-environments are to be stepped.
 #[derive(Clone, Copy)]

@@ -3,9 +3,9 @@
 
 use std::hint::select_unpredictable;
 
+use crate::StopFlag;
 use crate::memory::{AllocationError, filled, with_capacity};
 use crate::q_table::QTable;
-use crate::StopFlag;
 use crate::schedules::{LearningRate, StepSize};
 
 /// How a visit of a state-action pair changes traces.
@@ -210,7 +210,7 @@ impl Traces {
 mod tests {
     use super::*;
     use crate::StopFlag;
-use crate::schedules::Schedule;
+    use crate::schedules::Schedule;
 
     /// The traces of two actions after these visits, with γλ = 0.5.
     fn traces_after(kind: TraceKind, actions: &[usize]) -> [f64; 2] {
