@@ -19,7 +19,12 @@ def tables(draw):
     def outcomes():
         weights = draw(st.lists(st.integers(1, 3), min_size=1, max_size=3))
         return [
-            (weight / sum(weights), draw(st.integers(0, states - 1)), float(draw(st.integers(-2, 2))), draw(st.booleans()))
+            (
+                weight / sum(weights),
+                draw(st.integers(0, states - 1)),
+                float(draw(st.integers(-2, 2))),
+                draw(st.booleans()),
+            )
             for weight in weights
         ]
 

@@ -101,7 +101,7 @@ def test_a_reward_that_is_not_finite_is_refused(dtype, reward):
     assert np.isfinite(run_of(caught.value).tables).all()
 
 
-REWARD = "^step of <ScriptedEnv instance> must return a finite number as the reward, as Gymnasium's API says, got "
+REWARD = r"^step of <ScriptedEnv instance> must return a finite number as the reward, as Gymnasium's API says, got "
 
 
 @pytest.mark.parametrize("reward", [None, "1", b"1", 1j, [1.0], np.ones(2)])
@@ -136,7 +136,9 @@ class Answering(ScriptedEnv):
 @pytest.mark.parametrize(("place", "name"), [(2, "terminated"), (3, "truncated")])
 def test_a_flag_that_is_no_bool_is_refused(flag, place, name):
     env = Answering(step=lambda right: (*right[:place], flag, *right[place + 1 :]))
-    with pytest.raises(TypeError, match=f"^step of <Answering instance> must return a bool as {name}, .* got ") as caught:
+    with pytest.raises(
+        TypeError, match=rf"^step of <Answering instance> must return a bool as {name}, .* got "
+    ) as caught:
         train(env)
     assert run_of(caught.value).completed is False
 
@@ -157,7 +159,7 @@ def test_flags_of_these_types_are_taken(kind):
     ],
 )
 def test_a_reset_that_returns_something_else_is_refused(answer, error, got):
-    with pytest.raises(error, match=f"^reset of <Answering instance> must return {got}") as caught:
+    with pytest.raises(error, match=rf"^reset of <Answering instance> must return {got}") as caught:
         train(Answering(reset=lambda right: answer))
     assert run_of(caught.value).completed is False
 
@@ -182,7 +184,9 @@ def test_a_step_of_four_values_is_refused():
         def step(self, action):
             return super().step(action)[:4]
 
-    with pytest.raises(ValueError, match=r"^step of <Old instance> must return a tuple \(observation, reward, .* got a tuple of 4: "):
+    with pytest.raises(
+        ValueError, match=r"^step of <Old instance> must return a tuple \(observation, reward, .* got a tuple of 4: "
+    ):
         train(Old([ONE]))
 
 

@@ -19,7 +19,7 @@ def test_too_many_episodes_are_refused_before_the_first(episodes):
 
 
 def test_too_many_recordings_are_refused_before_the_first_episode():
-    with pytest.raises(MemoryError, match="^100000 episodes with 100000 recordings need"):
+    with pytest.raises(MemoryError, match=r"^100000 episodes with 100000 recordings need"):
         qtab.train(CAR, episodes=10**5, record=10**13, memory_limit=10**7)
 
 
@@ -28,7 +28,7 @@ def test_what_an_algorithm_keeps_for_each_value_counts(settings):
     table = 8 * 19 * 15 * 3
     if settings == {"schedule": "visits"}:
         settings = {"learning_rate_schedule": "visits", "learning_rate": 1.0}
-    with pytest.raises(MemoryError, match="^1 episodes need"):
+    with pytest.raises(MemoryError, match=r"^1 episodes need"):
         qtab.train(CAR, episodes=1, memory_limit=2 * table + 100, **settings)
     assert qtab.train(CAR, episodes=1, memory_limit=2 * table + 100, algorithm="sarsa").completed
 
@@ -58,7 +58,7 @@ def test_too_many_seeds_are_refused_without_a_list_of_them(seeds):
 
 
 def test_seeds_without_an_end_are_refused():
-    with pytest.raises(MemoryError, match="^more than 3906 runs need"):
+    with pytest.raises(MemoryError, match=r"^more than 3906 runs need"):
         qtab.train_many(CAR, itertools.count(), memory_limit=10**6)
 
 
