@@ -142,7 +142,12 @@ def test_an_invalid_range_of_initial_values_is_refused(value):
         qtab.train("MountainCar-v0", initial_q=value)
 
 
-@pytest.mark.parametrize("value", ["zeros", None, (0.0,), (0.0, "1"), (0, 1, 2), {"low": 0}, [["a"]], (True, False)])
+_TABLES = [np.ones((19, 15, 3), dtype) for dtype in (complex, str, bytes, bool, "M8[s]")]
+
+
+@pytest.mark.parametrize(
+    "value", [*_TABLES, "zeros", None, (0.0,), (0.0, "1"), (0, 1, 2), {"low": 0}, [["a"]], (True, False)]
+)
 def test_initial_values_of_another_type_are_refused(value):
     with pytest.raises(TypeError, match=r"^initial_q must be"):
         qtab.train("MountainCar-v0", initial_q=value)

@@ -1,5 +1,6 @@
 """An exception in an environment is raised unchanged, and carries the run so far."""
 
+import re
 from typing import Any
 
 import gymnasium as gym
@@ -94,16 +95,73 @@ def test_the_traceback_shows_the_environment():
 @pytest.mark.parametrize("reward", [float("nan"), float("inf"), float("-inf"), np.float32("nan")])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_a_reward_that_is_not_finite_is_refused(dtype, reward):
-    with pytest.raises(ValueError, match=r"reward is (NaN|-?inf)") as caught:
+    with pytest.raises(ValueError, match=r"must return a finite number as the reward.* got .*(nan|-?inf)") as caught:
         train(ScriptedEnv([ONE.astype(dtype)], dtype=dtype, rewards=[-1.0] * 20 + [reward]))
     assert run_of(caught.value).episode_lengths.tolist() == [8, 8]
     assert np.isfinite(run_of(caught.value).tables).all()
 
 
-@pytest.mark.parametrize("reward", [None, "much", [1.0], np.ones(2)])
-def test_a_reward_that_is_not_a_number_raises_a_type_error(reward):
-    with pytest.raises(TypeError):
-        train(ScriptedEnv([ONE], rewards=[reward]))
+REWARD = r"^step of <ScriptedEnv instance> must return a finite number as the reward, as Gymnasium's API says, got "
+
+
+@pytest.mark.parametrize("reward", [None, "1", b"1", 1j, [1.0], np.ones(2)])
+def test_a_reward_that_is_not_a_number_is_refused(reward):
+    with pytest.raises(TypeError, match=REWARD + re.escape(repr(reward))) as caught:
+        train(ScriptedEnv([ONE], rewards=[-1.0] * 20 + [reward]))
+    assert run_of(caught.value).episode_lengths.tolist() == [8, 8]
+
+
+def test_a_reward_beyond_the_range_of_floats_is_refused():
+    with pytest.raises(ValueError, match=REWARD + "1000"):
+        train(ScriptedEnv([ONE], rewards=[10**400]))
+
+
+class Answering(ScriptedEnv):
+    """Returns the given values instead of the right ones; None stands for a right one."""
+
+    def __init__(self, step=None, reset=None):
+        super().__init__([ONE])
+        self.answers = step, reset
+
+    def step(self, action):
+        right: Any = super().step(action)
+        return self.answers[0](right) if self.answers[0] else right
+
+    def reset(self, **kwargs):
+        right: Any = super().reset(**kwargs)
+        return self.answers[1](right) if self.answers[1] else right
+
+
+@pytest.mark.parametrize("flag", ["no", None, 2, 1.0, [], b""])
+@pytest.mark.parametrize(("place", "name"), [(2, "terminated"), (3, "truncated")])
+def test_a_flag_that_is_no_bool_is_refused(flag, place, name):
+    env = Answering(step=lambda right: (*right[:place], flag, *right[place + 1 :]))
+    with pytest.raises(
+        TypeError, match=rf"^step of <Answering instance> must return a bool as {name}, .* got "
+    ) as caught:
+        train(env)
+    assert run_of(caught.value).completed is False
+
+
+@pytest.mark.parametrize("kind", [bool, np.bool_, int, np.int64, np.array])
+def test_flags_of_these_types_are_taken(kind):
+    env = Answering(step=lambda right: (*right[:2], kind(right[2]), kind(right[3]), right[4]))
+    assert_same_run(train(env), train(ScriptedEnv([ONE])))
+
+
+@pytest.mark.parametrize(
+    ("answer", "error", "got"),
+    [
+        (5, TypeError, r"a tuple \(observation, info\), .* got 5"),
+        (ONE, TypeError, r"a tuple \(observation, info\), .* got array"),
+        ((ONE, {}, 1), ValueError, r"a tuple \(observation, info\), .* got a tuple of 3"),
+        ((ONE, ONE), TypeError, "a dict as the info, .* got array"),
+    ],
+)
+def test_a_reset_that_returns_something_else_is_refused(answer, error, got):
+    with pytest.raises(error, match=rf"^reset of <Answering instance> must return {got}") as caught:
+        train(Answering(reset=lambda right: answer))
+    assert run_of(caught.value).completed is False
 
 
 @pytest.mark.parametrize(
@@ -126,7 +184,9 @@ def test_a_step_of_four_values_is_refused():
         def step(self, action):
             return super().step(action)[:4]
 
-    with pytest.raises(ValueError, match="expected tuple of length 5, but got tuple of length 4"):
+    with pytest.raises(
+        ValueError, match=r"^step of <Old instance> must return a tuple \(observation, reward, .* got a tuple of 4: "
+    ):
         train(Old([ONE]))
 
 

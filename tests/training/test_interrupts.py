@@ -105,3 +105,30 @@ except KeyboardInterrupt as interrupt:
     report(interrupt.run)
 """)
     assert json.loads(done.stdout)["learned"] > 10
+
+
+def test_a_run_that_was_interrupted_within_a_step_goes_on_to_the_same_table():
+    # Each step plans for some 20 ms; an alarm interrupts it again and again.
+    done = in_a_process("""
+from qtab import _core
+from qtab.training.resolve import resolve
+settings = {"algorithm": "dyna_q", "planning_steps": 10**6, "episodes": 2, "max_episode_steps": 3, "seed": 0}
+resolved = resolve("CliffWalking-v1", settings)
+signal.signal(signal.SIGALRM, signal.default_int_handler)
+trainer = _core.Trainer(resolved.spec(), resolved.seed)
+interrupts = 0
+while True:
+    signal.setitimer(signal.ITIMER_REAL, 0.02)
+    try:
+        trainer.advance(2)
+        break
+    except KeyboardInterrupt:
+        interrupts += 1
+signal.setitimer(signal.ITIMER_REAL, 0)
+whole = qtab.train("CliffWalking-v1", **settings)
+print(json.dumps([interrupts, trainer.tables().tobytes() == whole.tables.tobytes(),
+                  trainer.episodes()[0].tobytes() == whole.episode_returns.tobytes()]))
+""")
+    interrupts, *same = json.loads(done.stdout)
+    assert interrupts > 2
+    assert same == [True, True]

@@ -117,9 +117,11 @@ def test_a_failing_process_is_reported_with_its_seed_and_keeps_the_finished_runs
     assert run_of(caught.value).episode_returns[0].tobytes() == single.episode_returns.tobytes()
 
 
-def test_ctrl_c_stops_the_processes_too():
+@pytest.mark.slow
+@pytest.mark.parametrize("settings", ["episodes=50", "max_episode_steps=10**12, env_kwargs={'goal_velocity': 1.0}"])
+def test_ctrl_c_stops_the_processes_too(settings):
     said = run_until_ready_then_interrupt(
-        """
+        f"""
         import multiprocessing, threading, time, qtab
         def ready():
             while not multiprocessing.active_children():
@@ -129,7 +131,7 @@ def test_ctrl_c_stops_the_processes_too():
         if __name__ == "__main__":
             threading.Thread(target=ready, daemon=True).start()
             try:
-                qtab.train_many("MountainCar-v0", 1000, threads=2, backend="gymnasium", episodes=50)
+                qtab.train_many("MountainCar-v0", 1000, threads=2, backend="gymnasium", {settings})
             except KeyboardInterrupt as error:
                 print(error.run.completed, multiprocessing.active_children() == [])
         """

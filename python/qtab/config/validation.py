@@ -167,15 +167,26 @@ def _initial_q(name: str, value: Any) -> float | tuple[float, float] | NDArray[n
     if not isinstance(value, np.ndarray | list):
         raise TypeError(f"{name} must be a range (low, high), a number or a table, got {shown(value)}")
     try:
-        table = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} must be a range (low, high) or a table of numbers, got {shown(value)}") from None
+        given = np.asarray(value)
+        if not _holds_numbers(given):
+            raise TypeError
+        table = np.array(given, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        what = f"an array of {value.dtype}" if isinstance(value, np.ndarray) else shown(value)
+        raise TypeError(f"{name} must be a range (low, high) or a table of numbers, got {what}") from None
     if not (np.isfinite(table) | np.isneginf(table)).all():
         raise ValueError(f"{name} must hold finite numbers (or -inf: no such action), got a table with nan or infinity")
     if table.size and table.ndim and np.isneginf(table).all(axis=-1).any():
         raise ValueError(f"{name} must leave every state at least one action, got a row of -inf only")
     table.flags.writeable = False
     return table
+
+
+def _holds_numbers(array: NDArray[Any]) -> bool:
+    """Whether NumPy converts an array to floats without a change of meaning, as it would make of texts and dates."""
+    if array.dtype.kind == "O":
+        return all(hasattr(part, "__float__") and not isinstance(part, str | bytes) for part in array.flat)
+    return array.dtype.kind in "iuf"
 
 
 _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {

@@ -36,6 +36,8 @@ class Identity(Discretizer):
                 f"'identity', got {space}"
             )
         low, high = bounds
+        if not low.size:
+            raise ValueError(f"the observation space must have at least one component, got {space}")
         values = float(np.prod((high - low + 1).astype(np.float64))) * n_actions
         check_table_size("the observation space", space, values)
         return cls(low, high)

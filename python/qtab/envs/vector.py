@@ -155,7 +155,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
     def autoreset_mode(self, mode: AutoresetMode | str) -> None:
         raise AttributeError(
             "autoreset_mode cannot be assigned: it is chosen when the vector environment is made, with "
-            f"make_vec(..., vector_kwargs={{'autoreset_mode': {getattr(mode, 'value', mode)!r}}})"
+            f"gymnasium.make_vec(..., autoreset_mode={getattr(mode, 'value', mode)!r})"
         )
 
     @property  # type: ignore[misc]

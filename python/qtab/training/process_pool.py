@@ -1,10 +1,12 @@
 """Runs whose environments are stepped in Python, in worker processes of their own."""
 
+import _thread
 import multiprocessing
 import os
 import pickle
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -20,7 +22,8 @@ from qtab.envs.registry import spec_of
 from qtab.training.resolve import resolve
 
 POLL_SECONDS = 0.2
-"""How often to look for Ctrl-C, which does not interrupt a wait on Windows."""
+"""How often to look for Ctrl-C, which does not interrupt a wait on Windows, and in a worker for the pool's end."""
+STOPPED = "the other runs were stopped"
 
 
 def train_in_processes(
@@ -80,10 +83,14 @@ def train_unless_stopped(trainer: _core.Trainer, episodes: int) -> None:
     Raises:
         InterruptedError: if it does.
     """
-    for episode in range(episodes):
-        if _Worker.stop is not None and _Worker.stop.is_set():
-            raise InterruptedError("the other runs were stopped")
-        trainer.advance(episode + 1)
+    _Worker.training = True
+    try:
+        for episode in range(episodes):
+            if _Worker.stop is not None and _Worker.stop.is_set():
+                raise InterruptedError(STOPPED)
+            trainer.advance(episode + 1)
+    finally:
+        _Worker.training = False
 
 
 def picklable(error: Exception) -> Exception:
@@ -120,6 +127,8 @@ class _Worker:
     """What a worker process was given at its start."""
 
     stop: Any = None
+    training = False
+    """Whether a run is under way, which the pool's end interrupts."""
     env: Any
     settings: Mapping[str, Any]
 
@@ -127,7 +136,9 @@ class _Worker:
 def _start_worker(stop: Any, task: bytes | None) -> None:
     # Ctrl-C reaches the whole group of processes; the parent decides.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _interrupt)
     threading.Thread(target=_end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
+    threading.Thread(target=_interrupt_after, args=(stop,), daemon=True).start()
     _Worker.stop = stop
     if task is not None:
         _Worker.env, _Worker.settings = pickle.loads(task)  # noqa: S301 - from the parent process
@@ -137,6 +148,23 @@ def _end_with(parent: Any) -> None:
     """Ends this process when its parent ends, even if the parent was killed."""
     parent.join()
     os._exit(1)
+
+
+def _interrupt_after(stop: Any) -> None:
+    """Interrupts the run that is under way when the pool ends: its episode may take for ever."""
+    # Not stop.wait(): the parent's stop.set() would wait for a waiting process that was killed.
+    while not stop.is_set():
+        time.sleep(POLL_SECONDS)
+    _thread.interrupt_main(signal.SIGTERM)
+
+
+def _interrupt(number: int, _frame: Any) -> None:
+    """Handles SIGTERM: one of the pool's end stops the run, any other one ends the process as usual."""
+    if _Worker.stop is None or not _Worker.stop.is_set():
+        signal.signal(number, signal.SIG_DFL)
+        signal.raise_signal(number)
+    elif _Worker.training:
+        raise InterruptedError(STOPPED)
 
 
 def _train(seed: int, keep_tables: bool) -> Any:

@@ -51,6 +51,10 @@ pub(crate) fn run_interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Stop
 pub(crate) fn run_polling<T>(work: impl FnOnce(&StopFlag<'_>) -> T) -> PyResult<T> {
     let raised = Mutex::new(None);
     let poll = || {
+        #[expect(
+            clippy::redundant_closure_for_method_calls,
+            reason = "the method is not general enough in its lifetime"
+        )]
         let signal = Python::attach(|py| py.check_signals());
         let stopped = signal.is_err();
         if let Err(error) = signal {

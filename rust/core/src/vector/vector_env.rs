@@ -130,11 +130,11 @@ impl<E: Env> VectorEnv<E> {
             .collect();
         thread::scope(|scope| {
             let mut refused = false;
-            for job in &jobs[1..] {
+            for job in jobs.iter().skip(1) {
                 // Threads may run out. The calling thread then does their share.
                 refused |= thread::Builder::new().spawn_scoped(scope, || run_once(job)).is_err();
             }
-            jobs[..if refused { jobs.len() } else { 1 }].iter().for_each(run_once);
+            jobs.iter().take(if refused { jobs.len() } else { 1 }).for_each(run_once);
         });
     }
 }

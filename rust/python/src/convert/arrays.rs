@@ -45,10 +45,10 @@ impl FromNumber for f64 {
 }
 
 /// A new array of these values. `PyArray1::from_slice` would panic where memory runs out.
-pub(crate) fn array_of<'py, T: numpy::Element + Copy>(
-    py: Python<'py>,
+pub(crate) fn array_of<T: numpy::Element + Copy>(
+    py: Python<'_>,
     values: impl ExactSizeIterator<Item = T>,
-) -> PyResult<Bound<'py, PyArray1<T>>> {
+) -> PyResult<Bound<'_, PyArray1<T>>> {
     Ok(PyArray1::from_vec(py, collect(values).map_err(allocation)?))
 }
 

@@ -39,7 +39,6 @@ impl PyVectorEnv {
 
     /// Makes `num_envs` sub-environments that equal `env`, with seeds from the operating system. Returns False, and does
     /// nothing, where Rust has no vector environment of that kind.
-    #[expect(clippy::too_many_arguments, reason = "there is one caller, which names them")]
     fn start(
         slf: &Bound<'_, Self>,
         env: &PyNativeEnv,
@@ -183,7 +182,7 @@ fn busy() -> PyErr {
     )
 }
 
-/// Seeds from the operating system, each of as many bytes of entropy as NumPy takes.
+/// Seeds from the operating system, each of as many bytes of entropy as `NumPy` takes.
 fn random_seeds(py: Python<'_>, count: usize) -> PyResult<Vec<Seed>> {
     let entropy = py.import("os")?.call_method1("urandom", (count.saturating_mul(ENTROPY_BYTES),))?;
     let entropy = entropy.cast_into::<PyBytes>()?;

@@ -77,7 +77,7 @@ fn finite(env: &Bound<'_, PyAny>, reward: &Bound<'_, PyAny>) -> PyResult<f64> {
     Err(PyValueError::new_err(message(env, "step", expected, &shortened(reward))))
 }
 
-/// A bool, of Python's or NumPy's or of an array library without dimensions, or the integers 0 and 1.
+/// A bool, of Python's or `NumPy`'s or of an array library without dimensions, or the integers 0 and 1.
 fn flag(env: &Bound<'_, PyAny>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
     if let Ok(flag) = value.cast_exact::<PyBool>() {
         return Ok(flag.is_true());

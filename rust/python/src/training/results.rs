@@ -87,23 +87,18 @@ impl<'a> Iterator for Rows<'a> {
         let [episodes, values] = self.widths;
         let (finished, rest) = take(&mut self.finished).split_first_mut()?;
         self.finished = rest;
+        let (returns, rest) = take(&mut self.returns).split_at_mut(episodes);
+        self.returns = rest;
+        let (lengths, rest) = take(&mut self.lengths).split_at_mut(episodes);
+        self.lengths = rest;
+        let (terminated, rest) = take(&mut self.terminated).split_at_mut(episodes);
+        self.terminated = rest;
+        let (tables, rest) = take(&mut self.tables).split_at_mut(values);
+        self.tables = rest;
         let index = self.next;
         self.next += 1;
-        Some(Row {
-            index,
-            returns: split_off(&mut self.returns, episodes),
-            lengths: split_off(&mut self.lengths, episodes),
-            terminated: split_off(&mut self.terminated, episodes),
-            tables: split_off(&mut self.tables, values),
-            finished,
-        })
+        Some(Row { index, returns, lengths, terminated, tables, finished })
     }
-}
-
-fn split_off<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
-    let (row, after) = take(rest).split_at_mut(count);
-    *rest = after;
-    row
 }
 
 impl Results<'_> {

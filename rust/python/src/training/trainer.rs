@@ -108,7 +108,9 @@ impl PyTrainer {
         let tables = built.run.tables();
         let size = tables.iter().map(|table| table.len()).sum();
         let mut values = with_capacity(size).map_err(allocation)?;
-        tables.iter().for_each(|table| values.extend_from_slice(table));
+        for table in tables {
+            values.extend_from_slice(table);
+        }
         Ok(PyArray1::from_vec(py, values))
     }
 

@@ -5,8 +5,13 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use qtab_core::Env;
 use qtab_core::envs::tabular::{Outcome, TabularMdp};
+use qtab_core::memory::reserve;
 
 use crate::convert::double;
+use crate::error::allocation;
+
+/// How many states of a table are read between two checks for signals.
+const STATES_BETWEEN_CHECKS: usize = 1024;
 
 /// The table of an environment. It is an error where `NumPy` would add its probabilities differently than Python floats.
 pub(super) fn table_of(env: &Bound<'_, PyAny>) -> PyResult<TabularMdp> {
@@ -31,6 +36,9 @@ fn parse_table(table: &Bound<'_, PyAny>, initial: &[f64], floats_only: bool) -> 
     for state in 0..states {
         let missing =
             |_| PyValueError::new_err(format!("P must have the states 0 to {}, it lacks {state}", states - 1));
+        if state % STATES_BETWEEN_CHECKS == 0 {
+            table.py().check_signals()?;
+        }
         let row = table.get_item(state).map_err(missing)?;
         let count = row.len().map_err(wrong_type)?;
         if state == 0 {
@@ -49,6 +57,7 @@ fn parse_table(table: &Bound<'_, PyAny>, initial: &[f64], floats_only: bool) -> 
                 ))
             };
             let path = || format!("P[{state}][{action}]");
+            reserve(&mut rows, 1).map_err(allocation)?;
             rows.push(parse_outcomes(path, &row.get_item(action).map_err(missing)?, floats_only)?);
         }
     }

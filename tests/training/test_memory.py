@@ -1,0 +1,99 @@
+"""Memory is checked before training, and running out of it raises MemoryError with what was learned."""
+
+import itertools
+import json
+
+import pytest
+
+import qtab
+from support.interrupts import in_a_process
+from support.parity import run_of
+
+CAR = "MountainCar-v0"
+
+
+@pytest.mark.parametrize("episodes", [10**13, 2**62])
+def test_too_many_episodes_are_refused_before_the_first(episodes):
+    with pytest.raises(MemoryError, match=rf"^{episodes} episodes need \S+ TiB, more than memory_limit="):
+        qtab.train(CAR, episodes=episodes)
+
+
+def test_too_many_recordings_are_refused_before_the_first_episode():
+    with pytest.raises(MemoryError, match=r"^100000 episodes with 100000 recordings need"):
+        qtab.train(CAR, episodes=10**5, record=10**13, memory_limit=10**7)
+
+
+@pytest.mark.parametrize("settings", [{"algorithm": "dyna_q"}, {"algorithm": "sarsa_lambda"}, {"schedule": "visits"}])
+def test_what_an_algorithm_keeps_for_each_value_counts(settings):
+    table = 8 * 19 * 15 * 3
+    if settings == {"schedule": "visits"}:
+        settings = {"learning_rate_schedule": "visits", "learning_rate": 1.0}
+    with pytest.raises(MemoryError, match=r"^1 episodes need"):
+        qtab.train(CAR, episodes=1, memory_limit=2 * table + 100, **settings)
+    assert qtab.train(CAR, episodes=1, memory_limit=2 * table + 100, algorithm="sarsa").completed
+
+
+@pytest.mark.parametrize(("limit", "error"), [(0, ValueError), (1.5, TypeError), (True, TypeError)])
+def test_a_memory_limit_is_a_positive_integer(limit, error):
+    with pytest.raises(error, match="memory_limit must be an integer of at least 1"):
+        qtab.train(CAR, episodes=1, memory_limit=limit)
+
+
+def test_recordings_stop_at_the_memory_limit():
+    limits: dict = {"env_kwargs": {"goal_velocity": 1.0}, "max_episode_steps": 1000, "episodes": 50}
+    with pytest.raises(MemoryError) as caught:
+        qtab.train(CAR, record=50, memory_limit=500_000, seed=0, **limits)
+    run = run_of(caught.value)
+    assert 10 < len(run.episode_returns) == len(run.recordings) < 50
+    # Those that are not kept make room for later ones.
+    assert qtab.train(CAR, record=2, memory_limit=500_000, seed=0, **limits).completed
+
+
+@pytest.mark.parametrize("seeds", [10**9, 10**12, 10**30])
+def test_too_many_seeds_are_refused_without_a_list_of_them(seeds):
+    with pytest.raises(MemoryError, match=rf"^{seeds} runs need .* more than memory_limit="):
+        qtab.train_many(CAR, seeds)
+    with pytest.raises(MemoryError, match=rf"^{seeds} runs need .* more than memory_limit="):
+        qtab.sweep(CAR, {"discount": [0.9]}, seeds=seeds)
+
+
+def test_seeds_without_an_end_are_refused():
+    with pytest.raises(MemoryError, match=r"^more than 3906 runs need"):
+        qtab.train_many(CAR, itertools.count(), memory_limit=10**6)
+
+
+LIMIT = """
+import resource
+def limit_memory(more):
+    status = open("/proc/self/status").read()
+    used = int(status.split("VmSize:")[1].split()[0]) * 1024
+    resource.setrlimit(resource.RLIMIT_AS, (used + more, resource.RLIM_INFINITY))
+try:
+    import resource
+    open("/proc/self/status").close()
+except (ImportError, OSError):
+    sys.exit(77)
+threading.Thread(target=print).start()  # the stack and the arena of a thread
+qtab.train("MountainCar-v0", episodes=1)
+limit_memory(50 * 2**20)
+"""
+
+
+KEPT = "print(json.dumps([error.run.completed, bool(np.isfinite(error.run.tables).all()), str(error)]))"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "call",
+    [
+        "qtab.train('MountainCar-v0', episodes=10**9, max_episode_steps=1, memory_limit=2**60)",
+        "qtab.train('MountainCar-v0', record=10, memory_limit=2**60, **ENDLESS)",
+        "qtab.train('MountainCar-v0', algorithm='n_step_sarsa', n_steps=10**6, discretizer='tiles', tilings=32, "
+        "learning_rate=0.1, max_episode_steps=10**9, env_kwargs={'goal_velocity': 1.0})",
+    ],
+)
+def test_running_out_of_memory_raises_and_keeps_the_run(call):
+    done = in_a_process(LIMIT + f"try:\n    {call}\nexcept MemoryError as error:\n    {KEPT}")
+    completed, finite, text = json.loads(done.stdout.splitlines()[-1])
+    assert (completed, finite) == (False, True)
+    assert text.startswith("out of memory: ")
