@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab._utils.progress import ProgressBar
 from qtab.cli import main
 from support.environments import make_brittle
 
@@ -172,3 +173,21 @@ def test_a_study_that_cannot_be_read_is_an_error_without_a_number(tmp_path, caps
     said = capsys.readouterr().err
     assert "study must be a file that can be read, got" in said
     assert "Errno" not in said
+
+
+def test_an_interrupted_sweep_says_what_is_kept(tmp_path, capsys, monkeypatch, small_chunks):
+    study = tmp_path / "study.toml"
+    study.write_text(STUDY)
+
+    def interrupt(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ProgressBar, "move_to", interrupt)
+    assert main(["sweep", str(study)]) == 130
+    kept = len(qtab.load_sweep(tmp_path / "study.db"))
+    assert 0 < kept < 16
+    said = capsys.readouterr().out
+    assert said.startswith(f"interrupted: kept {kept} run")
+    assert said.endswith(f"in {tmp_path / 'study.db'}; the same command resumes\n")
+    monkeypatch.undo()
+    assert main(["sweep", str(study)]) == 0

@@ -135,7 +135,7 @@ def test_the_survivor_of_two_processes_resumes_in_seconds(tmp_path, no_sleep):
     holder = subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE, text=True)
     assert holder.stdout is not None
     assert holder.stdout.readline() == "range(0, 7)\n"
-    killed = []
+    killed: list[int] = []
 
     # The other runs are finished then, and only those of the killed process are left.
     def kill(progress: qtab.SweepProgress) -> None:

@@ -51,12 +51,12 @@ def run(arguments: list[str]) -> int:
         given = {"seeds": DEFAULT_SEEDS, **study.options}
         if options.threads is not None:
             given["threads"] = options.threads
-        with _names_file(options.study), _Bar(options.study.stem) as bar:
+        with _names_file(options.study), _says_what_is_kept(store), _Bar(options.study.stem) as bar:
             result = sweep(study.env, study.grid, store=store, callback=bar.show, **given, **study.config)
     runs, settings = _counted(len(result), "run"), _counted(len(result.settings), "setting")
     print_above(f"{runs} of {settings} in {store}, {result.failed} failed")
     if options.confirm is not None:
-        with usage_errors(), _Bar("confirm") as bar:
+        with usage_errors(), _names_file(options.study), _Bar("confirm") as bar:
             confirmation = result.confirm(
                 options.confirm,
                 top=options.top,
@@ -96,8 +96,21 @@ def _names_file(path: Path) -> Iterator[None]:
         yield
     except StoreError:
         raise
+    except RuntimeError as error:  # a worker process was killed; the message tells how to resume
+        raise UsageError(one_line(error)) from error
     except (ValueError, TypeError, OverflowError, MemoryError, gym.error.Error) as error:
         raise UsageError(f"{path}: {one_line(error)}") from error
+
+
+@contextmanager
+def _says_what_is_kept(store: Path) -> Iterator[None]:
+    """Prints on Ctrl-C what is kept in the store."""
+    try:
+        yield
+    except KeyboardInterrupt as error:
+        runs = _counted(len(getattr(error, "run", ())), "run")
+        print_above(f"interrupted: kept {runs} in {store}; the same command resumes")
+        raise
 
 
 def _counted(count: int, unit: str) -> str:

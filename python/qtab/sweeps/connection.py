@@ -37,6 +37,11 @@ _LIMITS = {
 }
 """What the statements of this package need at most; SQLite's documentation recommends such limits."""
 
+_OPTIONS = {
+    "SQLITE_DBCONFIG_DEFENSIVE": True,
+    "SQLITE_DBCONFIG_ENABLE_TRIGGER": False,
+    "SQLITE_DBCONFIG_ENABLE_VIEW": False,
+}
 _ENVIRONMENT = ("locked", "is full", "readonly", "unable to open", "disk I/O", "out of memory", "access permission")
 """Parts of the messages of SQLite's errors that are due to the machine and not to the content of the file.
 
@@ -95,9 +100,8 @@ def connect(path: Path | None, mode: str = "rwc", **parameters: str) -> sqlite3.
             for limit, most in _LIMITS.items():
                 connection.setlimit(getattr(sqlite3, limit), most)
         if hasattr(connection, "setconfig"):  # from Python 3.12
-            connection.setconfig(sqlite3.SQLITE_DBCONFIG_DEFENSIVE, True)
-            connection.setconfig(sqlite3.SQLITE_DBCONFIG_ENABLE_TRIGGER, False)
-            connection.setconfig(sqlite3.SQLITE_DBCONFIG_ENABLE_VIEW, False)
+            for option, value in _OPTIONS.items():
+                connection.setconfig(getattr(sqlite3, option), value)
     except BaseException:
         connection.close()
         raise

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from qtab._utils.files import replacing
 from qtab.sweeps.report_page import page
@@ -59,14 +60,17 @@ def settings_table(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
         runs = np.flatnonzero(sweep.columns["setting"] == setting)
         cells = [sweep.columns[name][runs[0]] for name in names]
         numbers: list[Any] = [None] * 5
-        if len(values) > 1:
-            mean = stats.mean(values)
-            numbers = [mean.estimate, mean.low, mean.high]
-            numbers += [stats.median(values).estimate, stats.iqm(values).estimate]
-        elif len(values):
-            numbers = [values[0], None, None, values[0], values[0]]
+        if len(values):
+            interval = stats.mean(values) if len(values) > 1 else None
+            bounds = [None, None] if interval is None else [interval.low, interval.high]
+            numbers = [float(values.mean()), *bounds, float(np.median(values)), _interquartile_mean(values)]
         rows.append([setting, *cells, len(values), len(runs) - len(values), ranked[setting], *numbers])
     return header, rows
+
+
+def _interquartile_mean(values: NDArray[np.float64]) -> float:
+    cut = len(values) // 4
+    return float(np.sort(values)[cut : len(values) - cut].mean())
 
 
 def _csv(header: list[str], rows: Any) -> str:
