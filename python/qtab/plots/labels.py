@@ -1,7 +1,6 @@
 """Titles, labels and legends that fit axes of every size, and cover neither each other nor the data."""
 
 import re
-import textwrap
 from typing import TYPE_CHECKING, Any
 
 from qtab.plots.colors import text_color
@@ -66,14 +65,7 @@ def category_ticks(ax: "Axes", names: list[str]) -> None:
     ax.set_xlim(-0.5, len(names) - 0.5)
     size: float = ax.xaxis.label.get_size()
     room = int(width / len(names) / (CHARACTER * size)) - 1
-    broken = []
-    for name in names:
-        lines = [""]
-        for part in re.findall(r"[^_\s]+[_\s]*", name):
-            if lines[-1] and len(lines[-1]) + len(part) > room:
-                lines.append("")
-            lines[-1] += part
-        broken.append("\n".join(lines))
+    broken = [_broken(name, room) for name in names]
     if max(len(line) for name in broken for line in name.split("\n")) > room + 1:
         ax.set_xticks(range(len(names)), names, rotation=90)
     else:
@@ -82,7 +74,23 @@ def category_ticks(ax: "Axes", names: list[str]) -> None:
 
 def fitted(text: str, points: float, size: float) -> str:
     """Returns a text broken into lines of at most a width, in points, for a font size."""
-    return "\n".join(textwrap.wrap(text, max(10, int(points / (CHARACTER * size))), break_long_words=False))
+    return _broken(text, max(10, int(points / (CHARACTER * size))))
+
+
+def _broken(text: str, room: int) -> str:
+    """Returns a text broken into lines of at most ``room`` characters at spaces, and in longer words at underscores."""
+    lines = [""]
+    for word in text.split():
+        space = " " if lines[-1] else ""
+        if len(lines[-1]) + len(space) + len(word) <= room:
+            lines[-1] += space + word
+            continue
+        lines.append("")
+        for part in re.findall(r"[^_]+_*|_+", word):
+            if len(lines[-1]) + len(part) > room:
+                lines.append("")
+            lines[-1] += part
+    return "\n".join(filter(None, lines))
 
 
 def add_titles(ax: "Axes", title: str, note: str) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from qtab._utils.files import replacing
+from qtab.plots.axes import not_shown
 from qtab.sweeps.results import Sweep
 
 BEST_SETTINGS = 5
@@ -40,7 +41,8 @@ def report(sweep: Sweep, folder: Path) -> list[Path]:
         raise ValueError("the store must have at least one run that succeeded, got none")
     folder.mkdir(parents=True, exist_ok=True)
     header, rows = _settings_table(sweep)
-    plots = _plots(sweep, [row[0] for row in rows])
+    with not_shown():
+        plots = _plots(sweep, [row[0] for row in rows])
     written = [
         _write(folder / "runs.csv", _csv(list(sweep.columns), zip(*sweep.columns.values(), strict=True)).encode()),
         _write(folder / "settings.csv", _csv(header, rows).encode()),
@@ -52,6 +54,7 @@ def report(sweep: Sweep, folder: Path) -> list[Path]:
 def _settings_table(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
     """Returns the header and one row per setting, sorted by the mean final return, best first."""
     from qtab import stats
+    from qtab.stats.intervals import interquartile_mean
 
     names = list(sweep.settings[0])
     header = ["setting", *names, "runs", "failed", "mean", "low", "high", "median", "iqm"]
@@ -60,11 +63,12 @@ def _settings_table(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
         values = sweep.values("final_return", setting)
         runs = np.flatnonzero(sweep.columns["setting"] == setting)
         if len(values):
-            mean = stats.mean(values)
+            interval = stats.mean(values) if len(values) > 1 else None  # a single run has none
+            bounds = ["", ""] if interval is None else [interval.low, interval.high]
             cells = [sweep.columns[name][runs[0]] for name in names]
-            others = [stats.median(values).estimate, stats.iqm(values).estimate]
+            estimates = [float(np.median(values)), float(interquartile_mean(values))]
             failed = len(runs) - len(values)
-            rows.append([setting, *cells, len(values), failed, mean.estimate, mean.low, mean.high, *others])
+            rows.append([setting, *cells, len(values), failed, float(np.mean(values)), *bounds, *estimates])
     mean_column = header.index("mean")
     return header, sorted(rows, key=lambda row: -row[mean_column])
 
@@ -128,8 +132,9 @@ def _page(sweep: Sweep, header: list[str], rows: list[list[Any]], plots: dict[st
     return (
         f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{env}</title><style>{_STYLE}</style>\n'
         f"<h1>{env}</h1>\n<p>{len(sweep)} runs: {len(sweep.settings)} settings, {len(sweep.seeds)} seeds each, "
-        f"{sweep.failed} failed. Final returns are means of the last 100 episodes; the interval of the mean is the "
-        f"95% bootstrap (BCa) one.</p>\n<table><tr>{head}</tr>\n{body}</table>\n{images}\n</html>\n"
+        f"{sweep.failed} failed. Final returns are means of the last 100 episodes; the 95% interval of the mean "
+        f"is Student's t interval for fewer than 30 runs, else the bootstrap's.</p>\n"
+        f"<table><tr>{head}</tr>\n{body}</table>\n{images}\n</html>\n"
     )
 
 
