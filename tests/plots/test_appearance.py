@@ -45,7 +45,8 @@ def test_a_legend_covers_neither_labels_nor_data_and_stays_in_the_figure(draw: A
     figure, ax = plt.subplots(figsize=size, layout=layout)
     draw(ax)
     figure.canvas.draw()
-    legend = ax.get_legend().get_window_extent()
+    drawn: Any = ax.get_legend()
+    legend = drawn.get_window_extent()
     texts = [ax.xaxis.label, ax.yaxis.label, ax.title, ax._left_title, ax._right_title, *ax.get_xticklabels()]  # type: ignore[attr-defined]
     for text in [*texts, *ax.texts]:
         if text.get_text() and text.get_visible():
@@ -92,7 +93,7 @@ def test_an_algorithm_has_the_same_color_in_every_plot() -> None:
     runs = {
         name: qtab.train_many("CliffWalking-v1", 2, algorithm=name, episodes=20, max_episode_steps=50)
         for name in ("sarsa", "dyna_q")
-    }  # type: ignore[arg-type]
+    }
     sarsa, dyna = COLORS[1], COLORS[8]
     reordered = {"dyna": runs["dyna_q"], "sarsa": runs["sarsa"]}
     for ax in (plots.learning_curves(runs), plots.learning_curves(reordered), plots.profile(reordered)):
@@ -115,7 +116,8 @@ def test_an_algorithm_has_the_same_color_in_every_plot() -> None:
 
 def test_ordered_values_have_sequential_colors() -> None:
     ax = plots.sensitivity(STUDY, "algorithm", by="learning_rate")
-    hues = [container.lines[0].get_color() for container in ax.containers]
+    containers: list[Any] = ax.containers
+    hues = [container.lines[0].get_color() for container in containers]
     lightness = [luminance(hue) for hue in hues]
     assert len(hues) == 3
     assert lightness == sorted(lightness)

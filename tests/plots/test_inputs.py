@@ -74,7 +74,7 @@ def test_a_known_threshold_is_marked_where_it_is_near_the_returns() -> None:
     assert "threshold 0" in labels(plots.learning_curves(RETURNS, threshold=0))
 
 
-ALL = [qtab.plot, plots.learning_curves, plots.distribution, plots.profile]
+ALL: list[Any] = [qtab.plot, plots.learning_curves, plots.distribution, plots.profile]
 MANY = ALL[1:]
 ARRAY = RETURNS[:, :8]
 NAN = np.where(ARRAY[0, 0] < ARRAY, np.nan, ARRAY)

@@ -72,7 +72,7 @@ def test_the_interval_of_a_sensitivity_is_over_the_seeds_of_one_setting():
         if (values["epsilon"], values["terminal_update"]) == (0.9, "target")
     ]
     intervals = [stats.mean(STUDY.values("final_return", setting)) for setting in settings]
-    corners = ax.collections[0].get_paths()[0].vertices
+    corners: Any = ax.collections[0].get_paths()[0].vertices
     for rate, interval in zip((0.01, 0.1, 1.0), intervals, strict=True):
         assert {interval.low, interval.high} <= set(corners[corners[:, 0] == rate, 1])
 
@@ -80,7 +80,7 @@ def test_the_interval_of_a_sensitivity_is_over_the_seeds_of_one_setting():
 def test_a_sensitivity_of_one_seed_has_no_interval():
     one = qtab.sweep("MountainCar-v0", {"discount": [0.5, 0.9]}, seeds=1, episodes=5, max_episode_steps=20)
     ax = plots.sensitivity(one, "discount", threshold=-110, optimum=-97)
-    assert not any(np.isfinite(path.vertices[:, 1]).any() for path in ax.collections[0].get_paths())
+    assert not any(np.isfinite(np.array(path.vertices)[:, 1]).any() for path in ax.collections[0].get_paths())
     assert "threshold -110" in lines(ax)
     assert "optimum -97" in lines(ax)
 
@@ -106,14 +106,14 @@ def test_a_bad_sensitivity_is_refused_by_name(arguments, error, message):
     with pytest.raises(error, match=message):
         plots.sensitivity(STUDY, parameter, ax, **options)
     with pytest.raises(TypeError, match="sweep must be a Sweep, got 3"):
-        plots.sensitivity(3, parameter)
+        plots.sensitivity(3, parameter)  # type: ignore[arg-type]
 
 
 def test_a_profile_has_the_intervals_of_its_statistic():
     scores = {"a": RETURNS[:, -1], "b": RETURNS[:, 0]}
     levels = np.linspace(-50, 50, 5)
     ax = plots.profile(scores, thresholds=levels)
-    band = ax.collections[0].get_paths()[0].vertices
+    band: Any = ax.collections[0].get_paths()[0].vertices
     for point in stats.profile({"": scores["a"]}, levels):
         assert {point.low, point.high} <= set(band[:, 1])
     assert len(plots.profile({"a": [1.0]}).collections) == 0

@@ -39,7 +39,7 @@ def test_every_preset_is_plotted_with_every_way_of_exploring(env: str) -> None:
     rates = itertools.cycle(RATES)
     for preset in qtab.presets(env).values():
         # Missing actions, which -inf stands for, have no softmax.
-        has_all_actions = not np.isneginf(preset.get("initial_q", 0.0)).any()
+        has_all_actions = not np.isneginf(np.array(preset.get("initial_q", 0.0))).any()
         for exploration in EXPLORATIONS if has_all_actions else [{}]:
             check(env if env in gym.registry else f"qtab/{env}", preset, exploration, next(rates))
 

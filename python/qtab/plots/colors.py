@@ -35,7 +35,8 @@ def readable(chosen: str, ax: "Axes | None") -> Any:
         return chosen
     from matplotlib.colors import to_hex, to_rgb
 
-    return to_hex(np.array(to_rgb(chosen)) * (1 - _LIGHTENED) + _LIGHTENED)
+    red, green, blue = (part * (1 - _LIGHTENED) + _LIGHTENED for part in to_rgb(chosen))
+    return to_hex((red, green, blue))
 
 
 def text_color() -> Any:
@@ -76,7 +77,7 @@ def palette(
         ValueError: if it holds what is no color, or too few colors.
     """
     if colors is not None:
-        return _chosen(keys if labels is None else labels, colors)
+        return _given(keys if labels is None else labels, colors)
     if first is None and len(set(keys)) == len(keys):
         if all(key in CHOICES["algorithm"] for key in keys):
             return [color(CHOICES["algorithm"].index(key), ax) for key in keys]
@@ -96,7 +97,7 @@ def _sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:
     return [to_hex(colormaps[SEQUENTIAL](positions[rank])) for rank in ranks]
 
 
-def _chosen(labels: Sequence[Any], colors: Any) -> list[Any]:
+def _given(labels: Sequence[Any], colors: Any) -> list[Any]:
     from matplotlib.colors import is_color_like
 
     if is_color_like(colors):
