@@ -9,6 +9,7 @@ from matplotlib.colors import to_rgb
 
 import qtab
 from qtab import plots
+from qtab.config.choices import CHOICES
 from qtab.plots.colors import COLORS
 
 RETURNS = np.cumsum(np.random.default_rng(0).normal(1, 5, size=(12, 300)), axis=1)
@@ -112,6 +113,23 @@ def test_an_algorithm_has_the_same_color_in_every_plot() -> None:
         COLORS[0],
         COLORS[6],
     ]
+
+
+@pytest.mark.parametrize(
+    ("label", "algorithm"),
+    [
+        *(("Sarsa", "sarsa"), ("Sarsa(λ)", "sarsa_lambda"), ("true online Sarsa(λ)", "true_online_sarsa_lambda")),
+        *(
+            ("Watkins's Q(λ)", "watkins_q_lambda"),
+            ("Dyna-Q+", "dyna_q_plus"),
+            ("Double Q-learning", "double_q_learning"),
+        ),
+    ],
+)
+def test_an_algorithm_is_known_by_its_name_in_the_book(label: str, algorithm: str) -> None:
+    [line] = plots.profile({label: [1.0, 2.0]}).lines
+    assert line.get_color() == COLORS[CHOICES["algorithm"].index(algorithm)]
+    assert plots.profile({"mine": [1.0], label: [2.0]}).lines[1].get_color() == COLORS[1]
 
 
 def test_ordered_values_have_sequential_colors() -> None:

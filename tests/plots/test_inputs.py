@@ -1,13 +1,17 @@
 """What plots take, and what they refuse by name and value."""
 
+import re
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
 import qtab
 from qtab import plots
+from qtab.plots.axes import not_shown
 
 RETURNS = np.cumsum(np.random.default_rng(0).normal(1, 5, size=(12, 300)), axis=1)
 RUN = qtab.train("MountainCar-v0", seed=0, episodes=50)
@@ -124,6 +128,10 @@ NAN = np.where(ARRAY[0, 0] < ARRAY, np.nan, ARRAY)
         (plots.learning_curves, {"a": RUNS}, {"label": "b"}, ValueError, "label must be None where returns has names"),
         (plots.learning_curves, RUNS, {"index": -1}, ValueError, "index must be an integer of at least 0"),
         (plots.distribution, RUNS, {"bins": 10**8}, ValueError, "bins must be an integer from 1 to 1000"),
+        *((draw, RUNS, {"title": 3}, TypeError, "title must be a str, got 3") for draw in MANY),
+        (plots.learning_curves, RUN, {"label": 3}, TypeError, "label must be a str, got 3"),
+        (plots.learning_curves, RUN, {"confidence": "x"}, TypeError, "confidence must be a number"),
+        (plots.profile, RUN, {"confidence": 95}, ValueError, "confidence must lie in"),
         (plots.distribution, RUNS, {"bins": 0}, ValueError, "bins must be an integer from 1 to 1000"),
         (plots.profile, RUNS, {"thresholds": [np.nan]}, ValueError, "thresholds must be finite"),
     ],
@@ -131,6 +139,40 @@ NAN = np.where(ARRAY[0, 0] < ARRAY, np.nan, ARRAY)
 def test_bad_input_is_refused_by_name(draw: Any, data: Any, options: Any, error: Any, message: str) -> None:
     with pytest.raises(error, match=message):
         draw(data, **options)
+
+
+numbers = st.one_of(st.floats(), st.floats(-1e3, 1e3), st.integers(), st.none(), st.booleans(), st.complex_numbers())
+names = st.text("ab /_", max_size=3)
+OBJECTS: dict[str, Any] = {"run": RUN, "runs": RUNS, "sweep": SWEEP, "2d": RETURNS[:2, :3], "1d": RETURNS[0, :3]}
+leaves = st.one_of(numbers, names, st.sampled_from(sorted(OBJECTS)))
+anything = st.recursive(
+    leaves,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(names | st.floats(), inner, max_size=3),
+    max_leaves=8,
+)
+
+
+def with_objects(data: Any) -> Any:
+    """The data with objects in place of their names, whose representations are short."""
+    if isinstance(data, dict):
+        return {key: with_objects(value) for key, value in data.items()}
+    if isinstance(data, list):
+        return [with_objects(value) for value in data]
+    return OBJECTS.get(data, data) if isinstance(data, str) else data
+
+
+@pytest.mark.parametrize("draw", MANY)
+@settings(max_examples=settings.default.max_examples // 3)  # type: ignore[union-attr]
+@given(data=anything)
+def test_anything_is_drawn_or_refused_in_one_line(draw: Any, data: Any) -> None:
+    message = "returns must be drawn"
+    with not_shown():
+        try:
+            draw(with_objects(data)).figure.canvas.draw()
+        except (TypeError, ValueError) as error:
+            message = str(error)
+    assert re.match(r"(returns|scores)[^\n]* must ", message)
+    assert len(message) < 250
 
 
 def test_runs_without_an_episode_and_sweeps_without_a_run_are_refused() -> None:

@@ -66,7 +66,8 @@ def palette(
     order. Everything else has the colors in the order of the lines.
 
     Args:
-        keys: For each line the name of its algorithm, a number, or anything else.
+        keys: For each line the name of its algorithm, as in the settings or as in ``"Sarsa(λ)"``, a number, or anything
+            else.
         ax: The axes to draw on.
         first: The index of the first line's color, whatever the keys; None lets the keys decide.
         colors: The user's choice: a color, a sequence of colors or a mapping of labels to colors; None chooses.
@@ -79,11 +80,19 @@ def palette(
     if colors is not None:
         return _given(keys if labels is None else labels, colors)
     if first is None and len(set(keys)) == len(keys):
-        if all(key in CHOICES["algorithm"] for key in keys):
-            return [color(CHOICES["algorithm"].index(key), ax) for key in keys]
+        algorithms = [_algorithm(key) for key in keys]
+        if None not in algorithms:
+            return [color(CHOICES["algorithm"].index(str(name)), ax) for name in algorithms]
         if len(keys) > 2 and all(isinstance(key, int | float) and not isinstance(key, bool) for key in keys):
             return _sequential(keys, ax)
     return [color((first or 0) + index, ax) for index in range(len(keys))]
+
+
+def _algorithm(key: Any) -> str | None:
+    """Returns the algorithm that a label names, such as ``"sarsa"`` or ``"True online Sarsa(λ)"``; None for others."""
+    words = str(key).lower().replace("(λ)", " lambda").replace("+", " plus").replace("-", " ").split()
+    name = "_".join(words).replace("'s", "")
+    return name if name in CHOICES["algorithm"] else None
 
 
 def _sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:
