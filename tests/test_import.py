@@ -113,6 +113,13 @@ def test_only_public_names_are_shown():
     assert dir(qtab) == sorted(set(dir(qtab)))
 
 
+@pytest.mark.parametrize("name", MODULES)
+def test_only_public_names_of_the_modules_are_shown(name):
+    module = getattr(qtab, name)
+    assert [shown for shown in dir(module) if not shown.startswith("__")] == sorted(module.__all__)
+    assert "__doc__" in dir(module)
+
+
 def test_an_unknown_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="module 'qtab' has no attribute 'trian'"):
         _ = qtab.trian  # type: ignore[attr-defined]

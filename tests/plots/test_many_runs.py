@@ -9,10 +9,20 @@ import qtab
 from qtab import plots, stats
 
 RETURNS = np.cumsum(np.random.default_rng(0).normal(1, 5, size=(12, 300)), axis=1)
+GRID: dict[str, Any] = {
+    "learning_rate": [0.01, 0.1, 1.0],
+    "epsilon": [0.1, 0.9],
+    "terminal_update": ["assign", "target"],
+}
+STUDY = qtab.sweep("MountainCar-v0", GRID, seeds=3, episodes=30)
 
 
 def lines(ax):
     return {line.get_label(): line for line in ax.get_lines()}
+
+
+def legend_title(ax):
+    return ax.get_legend().get_title().get_text().replace("\n", " ")
 
 
 def test_learning_curves_show_the_mean_its_interval_and_every_run():
@@ -40,28 +50,79 @@ def test_every_function_draws_on_the_axes_it_is_given():
         assert ax.get_ylabel()
 
 
-def test_sensitivity_pools_the_other_settings_and_colours_by_a_second():
-    grid: dict[str, Any] = {
-        "learning_rate": [0.01, 0.1, 1.0],
-        "epsilon": [0.1, 0.9],
-        "terminal_update": ["assign", "target"],
-    }
-    study = qtab.sweep("MountainCar-v0", grid, seeds=3, episodes=30)
-    ax = plots.sensitivity(study, "learning_rate", by="epsilon", column="mean_return")
+def test_sensitivity_shows_the_best_of_the_other_settings_and_colours_by_a_second():
+    ax = plots.sensitivity(STUDY, "learning_rate", by="epsilon", column="mean_return")
     assert ax.get_xscale() == "log"
-    frame = study.to_pandas()
-    means = frame[frame.epsilon == 0.9].groupby("learning_rate")["mean_return"].mean()
-    np.testing.assert_allclose(lines(ax)["epsilon = 0.9"].get_ydata(), means.to_numpy())
-    named = plots.sensitivity(study, "terminal_update")
+    frame = STUDY.to_pandas()
+    means = frame[frame.epsilon == 0.9].groupby(["learning_rate", "terminal_update"])["mean_return"].mean()
+    shown = lines(ax)["epsilon = 0.9"]
+    np.testing.assert_allclose(shown.get_ydata(), means.groupby("learning_rate").max().to_numpy())
+    assert "best terminal_update for each point" in legend_title(ax)
+    named = plots.sensitivity(STUDY, "terminal_update")
     assert [text.get_text() for text in named.get_xticklabels()] == ["assign", "target"]
-    with pytest.raises(KeyError):
-        plots.sensitivity(study, "discount")
+
+
+def test_the_interval_of_a_sensitivity_is_over_the_seeds_of_one_setting():
+    ax = plots.sensitivity(STUDY, "learning_rate", fixed={"epsilon": 0.9, "terminal_update": "target"})
+    assert "epsilon = 0.9, terminal_update = target" in legend_title(ax)
+    assert "best" not in legend_title(ax)
+    settings = [
+        setting
+        for setting, values in enumerate(STUDY.settings)
+        if (values["epsilon"], values["terminal_update"]) == (0.9, "target")
+    ]
+    intervals = [stats.mean(STUDY.values("final_return", setting)) for setting in settings]
+    corners: Any = ax.collections[0].get_paths()[0].vertices
+    for rate, interval in zip((0.01, 0.1, 1.0), intervals, strict=True):
+        assert {interval.low, interval.high} <= set(corners[corners[:, 0] == rate, 1])
+
+
+def test_a_sensitivity_of_one_seed_has_no_interval():
+    one = qtab.sweep("MountainCar-v0", {"discount": [0.5, 0.9]}, seeds=1, episodes=5, max_episode_steps=20)
+    ax = plots.sensitivity(one, "discount", threshold=-110, optimum=-97)
+    assert not any(np.isfinite(np.array(path.vertices)[:, 1]).any() for path in ax.collections[0].get_paths())
+    assert "threshold -110" in lines(ax)
+    assert "optimum -97" in lines(ax)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        (("alpha",), ValueError, "parameter must be one of 'learning_rate', 'epsilon', 'terminal_update', got 'alpha'"),
+        (("epsilom",), ValueError, r"got 'epsilom' \(did you mean 'epsilon'\?\)"),
+        ((3,), TypeError, "parameter must be one of .* got 3"),
+        (("epsilon", None, {"by": "epsilon"}), ValueError, "by must be another parameter than 'epsilon'"),
+        (("epsilon", None, {"column": "final_returns"}), ValueError, r"column .* \(did you mean 'final_return'\?\)"),
+        (("epsilon", None, {"column": "error"}), ValueError, "column must be one of"),
+        (("epsilon", None, {"statistic": "mode"}), ValueError, "statistic must be one of"),
+        (("epsilon", None, {"fixed": 3}), TypeError, "fixed must map names of parameters to values, got 3"),
+        (("epsilon", None, {"fixed": {"learning_rates": 1}}), ValueError, r"\(did you mean 'learning_rate'\?\)"),
+        (("epsilon", None, {"fixed": {"epsilon": 0.1}}), ValueError, "a name in fixed must be one of"),
+        (("epsilon", None, {"fixed": {"learning_rate": 0.2}}), ValueError, r"must be one of 0.01, 0.1, 1, got 0.2"),
+    ],
+)
+def test_a_bad_sensitivity_is_refused_by_name(arguments, error, message):
+    parameter, ax, options = (*arguments, None, {})[:3] if len(arguments) == 1 else arguments
+    with pytest.raises(error, match=message):
+        plots.sensitivity(STUDY, parameter, ax, **options)
+    with pytest.raises(TypeError, match="sweep must be a Sweep, got 3"):
+        plots.sensitivity(3, parameter)  # type: ignore[arg-type]
+
+
+def test_a_profile_has_the_intervals_of_its_statistic():
+    scores = {"a": RETURNS[:, -1], "b": RETURNS[:, 0]}
+    levels = np.linspace(-50, 50, 5)
+    ax = plots.profile(scores, thresholds=levels)
+    band: Any = ax.collections[0].get_paths()[0].vertices
+    for point in stats.profile({"": scores["a"]}, levels):
+        assert {point.low, point.high} <= set(band[:, 1])
+    assert len(plots.profile({"a": [1.0]}).collections) == 0
 
 
 def test_a_profile_falls_from_all_to_none():
-    ax = plots.profile({"a": RETURNS})
+    ax = plots.profile({"a": RETURNS[:, :5]})
     shares = lines(ax)["a"].get_ydata()
-    assert shares[-1] == 0
+    assert (shares[0], shares[-1]) == (1, 0)
     assert (np.diff(shares) <= 0).all()
 
 

@@ -42,12 +42,6 @@ def test_an_axis_is_drawn_on_and_returned() -> None:
     assert qtab.plot(qtab.train("MountainCar-v0", episodes=100, seed=0), ax) is ax
 
 
-def test_a_run_shorter_than_a_block_has_dots_and_no_curve(tmp_path: Path) -> None:
-    run = qtab.train("MountainCar-v0", episodes=3, seed=0)
-    assert len(qtab.plot(run).lines) == 1
-    save_plot(run, tmp_path / "a.png")
-
-
 def test_a_run_stopped_before_its_first_episode_can_be_drawn(tmp_path: Path) -> None:
     run = qtab.train("MountainCar-v0", episodes=3, seed=0)
     nothing = {"episode_returns": np.zeros(0), "episode_lengths": np.zeros(0, np.int64)}

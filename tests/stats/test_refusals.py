@@ -1,10 +1,14 @@
 """Bad input of the statistics is refused by name and value."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
+import qtab
 from qtab import stats
 
+RUNS: Any = qtab.train_many("MountainCar-v0", 2, episodes=3)
 SAMPLE = np.random.default_rng(1).gamma(2.0, 3.0, size=60)
 
 
@@ -57,6 +61,7 @@ def test_numbers_that_are_not_finite_are_refused_and_counted(call, name, values)
         (lambda: stats.area_under_curve([]), ValueError, "returns must have the shape .* and not be empty"),
         (lambda: stats.solved_rate([], 0), ValueError, "returns must hold at least 1 number, got 0"),
         (lambda: stats.probability_of_improvement([1, 2], [[1, 2]] * 2), ValueError, "a and b must have the same env"),
+        (lambda: stats.mean(RUNS), TypeError, r"got <Runs .*; its episode_returns and final_returns\(\) do"),
         (lambda: stats.mean("abc"), TypeError, "values must hold numbers"),
         (lambda: stats.mean([1.0, 2.0], confidence=2), ValueError, "confidence must lie in"),
         (lambda: stats.mean([1.0, 2.0], resamples=0), ValueError, "resamples must be an integer from 1 to"),

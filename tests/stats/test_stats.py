@@ -143,6 +143,7 @@ def test_a_paired_comparison_detects_a_consistent_difference():
     a, b = luck + rng.normal(1, 0.5, size=40), luck
     found = stats.compare(a, b)
     assert 0.7 < found.difference.low < found.difference.estimate < found.difference.high < 1.3
+    assert found.effect_size is not None
     assert found.effect_size == pytest.approx(np.mean(a - b) / np.std(a - b, ddof=1))
     assert found.p_value < 0.001
     assert found.better > 0.9

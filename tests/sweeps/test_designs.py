@@ -1,6 +1,7 @@
 """Designs: settings drawn from a space."""
 
 import itertools
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -9,6 +10,9 @@ from hypothesis import strategies as st
 import qtab
 from qtab import designs
 from support.sweeps import CAR
+
+not_a_mapping: Any = 3
+endless: Any = itertools.count()
 
 
 def test_a_design_can_be_used_as_a_grid():
@@ -54,13 +58,13 @@ def test_bounds_too_far_apart_for_a_float_are_refused(design, axis):
 @pytest.mark.parametrize(
     ("call", "error", "message"),
     [
-        (lambda: designs.random(3, 4), TypeError, "space must map at least one name .* got 3"),
-        (lambda: designs.sobol(3, 4), TypeError, "space must map at least one name .* got 3"),
+        (lambda: designs.random(not_a_mapping, 4), TypeError, "space must map at least one name .* got 3"),
+        (lambda: designs.sobol(not_a_mapping, 4), TypeError, "space must map at least one name .* got 3"),
         (lambda: designs.sobol({}, 4), ValueError, "space must map at least one name .* got {}"),
         (lambda: designs.random({"a": (0, 1)}, 10**12), ValueError, "points must be an integer from 1 to 1000000"),
-        (lambda: designs.grid(3), TypeError, "grid must map names of settings to lists of values, got 3"),
+        (lambda: designs.grid(not_a_mapping), TypeError, "grid must map names of settings to lists of values, got 3"),
         (lambda: designs.grid({str(n): range(10) for n in range(12)}), ValueError, "grid must have at most 1,000,000"),
-        (lambda: designs.grid({"a": itertools.count()}), ValueError, "grid must have at most 1,000,000"),
+        (lambda: designs.grid({"a": endless}), ValueError, "grid must have at most 1,000,000"),
     ],
 )
 def test_bad_designs_are_refused_by_name(call, error, message):

@@ -45,7 +45,9 @@ def test_an_environment_with_other_spaces_is_refused(car, function, env, other):
 
 @pytest.mark.parametrize("function", [qtab.evaluate, qtab.verify])
 def test_a_run_on_an_environment_without_an_id_asks_for_it(walk, function):
-    with pytest.raises(gym.error.UnregisteredEnv, match="environment 'Walk' is not registered with Gymnasium: pass env="):
+    with pytest.raises(
+        gym.error.UnregisteredEnv, match="environment 'Walk' is not registered with Gymnasium: pass env="
+    ):
         function(walk)
     with pytest.raises(TypeError, match=r"env must be an environment id, an EnvSpec or an environment, got 3"):
         function(walk, env=3)

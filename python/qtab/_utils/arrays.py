@@ -13,6 +13,12 @@ _SHORT = reprlib.Repr()
 _SHORT.maxother = _SHORT.maxstring = 80
 
 
+def shortened(value: Any) -> str:
+    """Returns what a value looks like in an error message: one line of at most 100 characters."""
+    line = " ".join(_SHORT.repr(value).split())
+    return line if len(line) <= 100 else f"{line[:97]}..."
+
+
 def numbers(name: str, values: Any) -> NDArray[np.float64]:
     """Returns the values of the argument ``name`` as a float64 array of any shape.
 
@@ -30,7 +36,7 @@ def numbers(name: str, values: Any) -> NDArray[np.float64]:
         with np.errstate(over="ignore"):
             array = array.astype(np.float64)
     except (TypeError, ValueError, OverflowError):
-        raise TypeError(f"{name} must hold numbers, got {_SHORT.repr(values)}{hint}") from None
+        raise TypeError(f"{name} must hold numbers, got {shortened(values)}{hint}") from None
     not_finite = array.size - np.count_nonzero(np.isfinite(array))
     if not_finite:
         raise ValueError(f"{name} must be finite, got {not_finite:,} of {array.size:,} NaN or infinite")

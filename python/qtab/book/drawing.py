@@ -9,7 +9,7 @@ import numpy as np
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.plots.axes import axes_or_new, not_shown, save_figure, shown_figure
-from qtab.plots.colors import color
+from qtab.plots.colors import palette
 from qtab.plots.labels import finish
 
 if TYPE_CHECKING:
@@ -24,12 +24,13 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
     """Draws the lines of a result with bands of two standard errors on each side, and returns the axes."""
     experiment = result.experiment
     ax = axes_or_new(ax)
-    for index, line in enumerate(line for line in result.lines if line.drawn):
+    drawn = [line for line in result.lines if line.drawn]
+    for line, hue in zip(drawn, palette([line.name for line in drawn], ax), strict=True):
         marker: dict[str, Any] = {"marker": "o", "markersize": 4} if len(line.x) <= MAX_MARKERS else {}
         error = np.nan_to_num(line.error)
         low, high = line.mean - 2 * error, line.mean + 2 * error
-        ax.fill_between(line.x, low, high, color=color(index, ax), alpha=0.25, linewidth=0)
-        ax.plot(line.x, line.mean, color=color(index, ax), linewidth=1.6, label=line.name, **marker)
+        ax.fill_between(line.x, low, high, color=hue, alpha=0.25, linewidth=0)
+        ax.plot(line.x, line.mean, color=hue, linewidth=1.6, label=line.name, **marker)
     if experiment.log_y:
         ax.set_yscale("log")
         for axis in ("set_major_formatter", "set_minor_formatter"):

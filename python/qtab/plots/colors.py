@@ -35,7 +35,8 @@ def readable(chosen: str, ax: "Axes | None") -> Any:
         return chosen
     from matplotlib.colors import to_hex, to_rgb
 
-    return to_hex(np.array(to_rgb(chosen)) * (1 - _LIGHTENED) + _LIGHTENED)
+    red, green, blue = (part * (1 - _LIGHTENED) + _LIGHTENED for part in to_rgb(chosen))
+    return to_hex((red, green, blue))
 
 
 def text_color() -> Any:
@@ -65,7 +66,8 @@ def palette(
     order. Everything else has the colors in the order of the lines.
 
     Args:
-        keys: For each line the name of its algorithm, a number, or anything else.
+        keys: For each line the name of its algorithm, as in the settings or as in ``"Sarsa(λ)"``, a number, or anything
+            else.
         ax: The axes to draw on.
         first: The index of the first line's color, whatever the keys; None lets the keys decide.
         colors: The user's choice: a color, a sequence of colors or a mapping of labels to colors; None chooses.
@@ -76,13 +78,21 @@ def palette(
         ValueError: if it holds what is no color, or too few colors.
     """
     if colors is not None:
-        return _chosen(keys if labels is None else labels, colors)
+        return _given(keys if labels is None else labels, colors)
     if first is None and len(set(keys)) == len(keys):
-        if all(key in CHOICES["algorithm"] for key in keys):
-            return [color(CHOICES["algorithm"].index(key), ax) for key in keys]
+        algorithms = [_algorithm(key) for key in keys]
+        if None not in algorithms:
+            return [color(CHOICES["algorithm"].index(str(name)), ax) for name in algorithms]
         if len(keys) > 2 and all(isinstance(key, int | float) and not isinstance(key, bool) for key in keys):
             return _sequential(keys, ax)
     return [color((first or 0) + index, ax) for index in range(len(keys))]
+
+
+def _algorithm(key: Any) -> str | None:
+    """Returns the algorithm that a label names, such as ``"sarsa"`` or ``"True online Sarsa(λ)"``; None for others."""
+    words = str(key).lower().replace("(λ)", " lambda").replace("+", " plus").replace("-", " ").split()
+    name = "_".join(words).replace("'s", "")
+    return name if name in CHOICES["algorithm"] else None
 
 
 def _sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:
@@ -96,7 +106,7 @@ def _sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:
     return [to_hex(colormaps[SEQUENTIAL](positions[rank])) for rank in ranks]
 
 
-def _chosen(labels: Sequence[Any], colors: Any) -> list[Any]:
+def _given(labels: Sequence[Any], colors: Any) -> list[Any]:
     from matplotlib.colors import is_color_like
 
     if is_color_like(colors):

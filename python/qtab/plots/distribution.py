@@ -51,6 +51,7 @@ def distribution(
         ValueError: for an argument out of range, empty data, or returns that are not finite.
     """
     check_axes(ax)
+    checks.instance("title", title, str)
     check_threshold(threshold)
     if bins is not None:
         checks.integer("bins", bins, least=1, most=MAX_BINS)

@@ -101,7 +101,9 @@ def final_returns(name: str, value: Any) -> NDArray[np.float64]:
 def _entry(argument: str, key: Any, value: Any, kind: Kind) -> Entry:
     is_result = isinstance(value, Run | Runs)
     if not is_result and (isinstance(value, str | bytes | Mapping) or not hasattr(value, "__len__")):
-        raise TypeError(f"{argument} must be a Run, Runs, a Sweep or an array of returns, got {_shortened(value)}")
+        raise TypeError(
+            f"{argument} must be a Run, Runs, a Sweep or an array of returns, got {arrays.shortened(value)}"
+        )
     if kind == "final returns":
         values = final_returns(argument, value)
     elif is_result:
@@ -117,11 +119,6 @@ def _entry(argument: str, key: Any, value: Any, kind: Kind) -> Entry:
 def _require_episodes(argument: str, value: Run | Runs) -> None:
     if not value.episode_returns.size:
         raise ValueError(f"{argument} must have at least one finished episode, got {value!r}")
-
-
-def _shortened(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 80 else f"{text[:77]}..."
 
 
 def _chosen_settings(argument: str, sweep: Sweep, settings: Any) -> tuple[list[int], str]:

@@ -1,13 +1,13 @@
 """Titles, labels and legends that fit axes of every size, and cover neither each other nor the data."""
 
 import re
-import textwrap
 from typing import TYPE_CHECKING, Any
 
 from qtab.plots.colors import text_color
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.text import Text
 
 CHARACTER = 0.6
 """The mean width of a character, in font sizes."""
@@ -34,8 +34,8 @@ def finish(
         legend_title: The title of the legend.
     """
     width, height = _size(ax)
-    ax.set_xlabel(fitted(x_label, width, ax.xaxis.label.get_size()))
-    ax.set_ylabel(fitted(y_label, height, ax.yaxis.label.get_size()))
+    ax.set_xlabel(fitted(x_label, width, _font_size(ax.xaxis.label)))
+    ax.set_ylabel(fitted(y_label, height, _font_size(ax.yaxis.label)))
     add_titles(ax, title, note)
     ax.grid(alpha=0.25)
     ax.spines[["top", "right"]].set_visible(False)
@@ -54,7 +54,7 @@ def episode_ticks(ax: "Axes") -> None:
 
     width, _ = _size(ax)
     longest = len(f"{max(ax.get_xlim()):,.0f}") + 2
-    size: float = ax.xaxis.get_ticklabels()[0].get_fontsize() if ax.xaxis.get_ticklabels() else 10.0  # type: ignore[assignment]
+    size = _font_size(ax.xaxis.label)
     count = max(1, min(10, int(width / (longest * CHARACTER * size))))
     ax.xaxis.set_major_locator(MaxNLocator(count, integer=True, steps=[1, 2, 2.5, 5, 10]))
     ax.xaxis.set_major_formatter("{x:,.0f}")
@@ -64,16 +64,9 @@ def category_ticks(ax: "Axes", names: list[str]) -> None:
     """Labels the positions 0, 1, ... of the x axis with names, broken at underscores if there is little room."""
     width, _ = _size(ax)
     ax.set_xlim(-0.5, len(names) - 0.5)
-    size: float = ax.xaxis.label.get_size()
+    size = _font_size(ax.xaxis.label)
     room = int(width / len(names) / (CHARACTER * size)) - 1
-    broken = []
-    for name in names:
-        lines = [""]
-        for part in re.findall(r"[^_\s]+[_\s]*", name):
-            if lines[-1] and len(lines[-1]) + len(part) > room:
-                lines.append("")
-            lines[-1] += part
-        broken.append("\n".join(lines))
+    broken = [_broken(name, room) for name in names]
     if max(len(line) for name in broken for line in name.split("\n")) > room + 1:
         ax.set_xticks(range(len(names)), names, rotation=90)
     else:
@@ -82,7 +75,23 @@ def category_ticks(ax: "Axes", names: list[str]) -> None:
 
 def fitted(text: str, points: float, size: float) -> str:
     """Returns a text broken into lines of at most a width, in points, for a font size."""
-    return "\n".join(textwrap.wrap(text, max(10, int(points / (CHARACTER * size))), break_long_words=False))
+    return _broken(text, max(10, int(points / (CHARACTER * size))))
+
+
+def _broken(text: str, room: int) -> str:
+    """Returns a text broken into lines of at most ``room`` characters at spaces, and in longer words at underscores."""
+    lines = [""]
+    for word in text.split():
+        space = " " if lines[-1] else ""
+        if len(lines[-1]) + len(space) + len(word) <= room:
+            lines[-1] += space + word
+            continue
+        lines.append("")
+        for part in re.findall(r"[^_]+_*|_+", word):
+            if len(lines[-1]) + len(part) > room:
+                lines.append("")
+            lines[-1] += part
+    return "\n".join(filter(None, lines))
 
 
 def add_titles(ax: "Axes", title: str, note: str) -> None:
@@ -93,7 +102,7 @@ def add_titles(ax: "Axes", title: str, note: str) -> None:
         if text.get_gid() == _NOTE:
             text.remove()
     room, _ = _size(ax)
-    size: float = ax.title.get_fontsize()  # type: ignore[assignment]
+    size = _font_size(ax.title)
     small = size / 1.2
     style: dict[str, Any] = {"fontsize": small, "color": text_color(), "alpha": 0.7}
     pad = rcParams["axes.titlepad"]
@@ -153,8 +162,8 @@ def _legend(ax: "Axes", handles: Any, names: list[str], title: str, size: float,
         "ncols": max(1, min(len(labels), int(width / ((longest * CHARACTER + HANDLE) * size)))),
     }
     if not has_layout:
-        place = "upper left" if ax.get_autoscaley_on() else "best"
-        return ax.legend(handles, labels, loc=place, borderaxespad=0.3, **style)
+        style |= {"loc": "upper left" if ax.get_autoscaley_on() else "best", "borderaxespad": 0.3}
+        return ax.legend(handles, labels, **style)
     style |= {"loc": "upper left", "bbox_to_anchor": (0, 0), "borderaxespad": 0, "borderpad": 0}
     return ax.legend(handles, labels, bbox_transform=_below(ax), **style)
 
@@ -186,3 +195,8 @@ def _size(ax: "Axes") -> tuple[float, float]:
     """Returns the width and the height of the axes in points."""
     box = ax.get_window_extent()
     return box.width * 72 / ax.figure.dpi, box.height * 72 / ax.figure.dpi
+
+
+def _font_size(text: "Text") -> float:
+    """Returns the size of a text in points; a name such as ``"small"`` is only what it was set with."""
+    return float(text.get_fontsize())

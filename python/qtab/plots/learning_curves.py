@@ -69,15 +69,19 @@ def learning_curves(
         ValueError: for an argument out of range, empty data, or returns that are not finite.
     """
     from qtab import stats
+    from qtab.stats.bootstrap import as_confidence
 
     check_axes(ax)
+    checks.instance("title", title, str)
     check_optimum(optimum)
     check_threshold(threshold)
     checks.choice("statistic", statistic, ("mean", "median", "iqm"))
     if index is not None:
         checks.integer("index", index, least=0)
     drawn, note = entries("returns", returns, "curves", settings)
+    confidence = as_confidence(confidence)
     if label is not None:
+        checks.instance("label", label, str)
         if isinstance(returns, Mapping) or len(drawn) > 1:
             raise ValueError(f"label must be None where returns has names or several settings, got {label!r}")
         drawn = [Entry(**{**vars(drawn[0]), "label": label})]

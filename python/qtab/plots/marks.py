@@ -1,6 +1,6 @@
 """Lines at known returns: an optimum, and the threshold at which Gymnasium considers an environment solved."""
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
 import gymnasium as gym
 
@@ -46,10 +46,9 @@ def mark_optimum(ax: "Axes", optimum: "Optimum | float | None") -> None:
     """Draws a dashed horizontal line at an optimum or a return, with the number in the legend."""
     if optimum is None:
         return
-    if hasattr(optimum, "expected_return"):
-        value, label = optimum.expected_return, optimum.label
-    else:
-        value, label = float(optimum), "optimum"
+    value, label = (
+        (float(optimum), "optimum") if isinstance(optimum, SupportsFloat) else (optimum.expected_return, optimum.label)
+    )
     style: dict[str, Any] = {"color": readable(OPTIMUM_COLOR, ax), "linestyle": (0, (5, 3)), "linewidth": 1.5}
     _line(ax, "y", value, f"{label} {value:.4g}", style)
 

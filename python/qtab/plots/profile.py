@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab._utils import arrays
+from qtab._utils import arrays, checks
 from qtab.plots.axes import axes_or_new, check_axes
 from qtab.plots.colors import palette
 from qtab.plots.inputs import color_keys, entries, final_returns
@@ -57,8 +57,11 @@ def profile(
         ValueError: for scores of another shape, empty data, or scores that are not finite.
     """
     from qtab import stats
+    from qtab.stats.bootstrap import as_confidence
 
     check_axes(ax)
+    checks.instance("title", title, str)
+    confidence = as_confidence(confidence)
     labels, keys, environments, note = _by_setting(scores, settings)
     pooled = np.concatenate([runs for setting in environments for runs in setting.values()])
     if thresholds is None:

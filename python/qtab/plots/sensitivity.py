@@ -67,8 +67,12 @@ def sensitivity(
         TypeError: for an argument of the wrong type.
         ValueError: if the sweep has no such parameter, column or value, or no run that succeeded.
     """
+    from qtab.stats.bootstrap import as_confidence
+
     checks.instance("sweep", sweep, Sweep)
     check_axes(ax)
+    checks.instance("title", title, str)
+    confidence = as_confidence(confidence)
     check_optimum(optimum)
     check_threshold(threshold)
     lines, note = slice_of(sweep, parameter, by, fixed, column, statistic, confidence)

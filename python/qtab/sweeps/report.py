@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qtab._utils.files import replacing
+from qtab.plots.axes import not_shown
 from qtab.sweeps.report_page import page
 from qtab.sweeps.report_plots import draw
 from qtab.sweeps.results import Sweep
@@ -34,7 +34,8 @@ def report(sweep: Sweep, folder: Path, command: str | None = None) -> list[Path]
         raise ValueError("the store must have at least one run that succeeded, got none")
     folder.mkdir(parents=True, exist_ok=True)
     header, rows = settings_table(sweep)
-    pictures = draw(sweep)
+    with not_shown():
+        pictures = draw(sweep)
     written = [
         _write(folder / "runs.csv", _csv(list(sweep.columns), zip(*sweep.columns.values(), strict=True)).encode()),
         _write(folder / "settings.csv", _csv(header, rows).encode()),
@@ -50,6 +51,7 @@ def settings_table(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
     out, and are empty if all failed. An interval needs two runs.
     """
     from qtab import stats
+    from qtab.stats.intervals import interquartile_mean
 
     names = list(sweep.settings[0])
     header = ["setting", *names, "runs", "failed", "ranked_mean", "mean", "low", "high", "median", "iqm"]
@@ -63,14 +65,9 @@ def settings_table(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
         if len(values):
             interval = stats.mean(values) if len(values) > 1 else None
             bounds = [None, None] if interval is None else [interval.low, interval.high]
-            numbers = [float(values.mean()), *bounds, float(np.median(values)), _interquartile_mean(values)]
+            numbers = [float(values.mean()), *bounds, float(np.median(values)), float(interquartile_mean(values))]
         rows.append([setting, *cells, len(values), len(runs) - len(values), ranked[setting], *numbers])
     return header, rows
-
-
-def _interquartile_mean(values: NDArray[np.float64]) -> float:
-    cut = len(values) // 4
-    return float(np.sort(values)[cut : len(values) - cut].mean())
 
 
 def _csv(header: list[str], rows: Any) -> str:
