@@ -103,7 +103,7 @@ def seed_numbers(seeds: Any) -> tuple[int, ...]:
     """
     if hasattr(seeds, "__index__") and not np.ndim(seeds):  # an array has an __index__ too
         return tuple(range(checks.integer("seeds", seeds, least=1)))
-    if isinstance(seeds, (str, bytes)) or not hasattr(seeds, "__iter__"):
+    if not checks.is_sequence(seeds):
         raise TypeError(f"seeds must be an integer or a sequence of integers, got {shown(seeds)}")
     numbers = tuple(checks.integer("seeds", seed, least=0) for seed in seeds)
     if not numbers:
