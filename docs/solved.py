@@ -1,40 +1,41 @@
-"""Prints the table of docs/environments.md: the results of every preset over 100 seeds. It takes a minute or two."""
+"""Prints the tables of docs/environments.md: the results of every preset over 100 seeds, which takes a few minutes.
+
+python docs/solved.py MountainCar-v0 solved --first-seed 10000 --seeds 1000 prints those of one preset over other seeds.
+"""
+
+import argparse
 
 import gymnasium as gym
 import numpy as np
 
 import qtab
 from qtab.envs.registry import ENTRIES
+from qtab.results.summary import best_mean_returns
 
-SEEDS = 100
 GREEDY_EPISODES = 1_000
 
-COLUMNS = ("environment", "preset", "algorithm", "episodes", "last 100", "seeds solved")
-COLUMNS += ("greedy", "threshold", "optimum")
+COLUMNS = ("environment", "preset", "algorithm", "episodes", "last 100", "worst seed")
+COLUMNS += ("seeds solved", "at the end", "greedy", "threshold", "optimum")
 
 
-def row(env: str, preset: str, optimum: qtab.Optimum | None) -> str:
+def row(env: str, preset: str, optimum: qtab.Optimum | None, seeds: range) -> str:
     """Trains a preset with every seed and returns its row of the table."""
-    runs = qtab.train_many(env, SEEDS, preset=preset, tables=True)
-    threshold = gym.spec(env).reward_threshold
+    runs = qtab.train_many(env, seeds, preset=preset, tables=True)
+    threshold, last = gym.spec(env).reward_threshold, runs.final_returns(100)
     cells = (
         env,
         preset,
         runs.config.algorithm,
         f"{runs.config.episodes:,}",
-        average(runs.final_returns(100)),
-        "" if threshold is None else str(np.count_nonzero(best_hundreds(runs) >= threshold)),
+        average(last),
+        f"{last.min():.4g}",
+        "" if threshold is None else str(np.count_nonzero(best_mean_returns(runs.episode_returns) >= threshold)),
+        "" if threshold is None else str(np.count_nonzero(last >= threshold)),
         average(greedy_returns(runs, optimum)),
         "" if threshold is None else f"{threshold:g}",
         "" if optimum is None else f"{optimum.expected_return:.4g}" + ("" if optimum.exact else f" ({optimum.label})"),
     )
     return "| " + " | ".join(cells) + " |"
-
-
-def best_hundreds(runs: qtab.Runs) -> np.typing.NDArray[np.float64]:
-    """Returns each run's best mean return over 100 consecutive episodes."""
-    sums = np.cumsum(np.pad(runs.episode_returns, ((0, 0), (1, 0))), axis=1)
-    return np.max((sums[:, 100:] - sums[:, :-100]) / 100, axis=1)
 
 
 def greedy_returns(runs: qtab.Runs, optimum: qtab.Optimum | None) -> np.typing.ArrayLike:
@@ -47,7 +48,7 @@ def greedy_returns(runs: qtab.Runs, optimum: qtab.Optimum | None) -> np.typing.A
 
 def average(values: np.typing.ArrayLike) -> str:
     """Formats the mean over seeds and its standard error."""
-    error = np.std(values, ddof=1) / np.sqrt(SEEDS)
+    error = np.std(values, ddof=1) / np.sqrt(np.size(values))
     return f"{np.mean(values):.4g}" + (f" ± {error:.1g}" if error > 1e-9 else "")
 
 
@@ -59,10 +60,17 @@ def known_optimum(env: str) -> qtab.Optimum | None:
         return None
 
 
+parser = argparse.ArgumentParser()
+parser.add_argument("env", nargs="?")
+parser.add_argument("preset", nargs="?")
+parser.add_argument("--first-seed", type=int, default=0)
+parser.add_argument("--seeds", type=int, default=100)
+asked = parser.parse_args()
+seeds = range(asked.first_seed, asked.first_seed + asked.seeds)
 print("| " + " | ".join(COLUMNS) + " |")
 print("|---" * len(COLUMNS) + "|")
-for env in ENTRIES:
+for env in ENTRIES if asked.env is None else [asked.env]:
     if presets := qtab.presets(env):
         optimum = known_optimum(env)
-        for preset in presets:
-            print(row(env, preset, optimum), flush=True)
+        for preset in presets if asked.preset is None else [asked.preset]:
+            print(row(env, preset, optimum, seeds), flush=True)

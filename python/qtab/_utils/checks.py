@@ -2,7 +2,7 @@
 
 import math
 import operator
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Set
 from os import PathLike
 from typing import Any, TypeVar
 
@@ -99,6 +99,11 @@ def threads(value: Any) -> int:
         ValueError: if it is too small or too large.
     """
     return integer("threads", value, least=1, most=MAX_THREADS)
+
+
+def is_sequence(value: Any) -> bool:
+    """Returns whether a value holds others in an order: not a text, a mapping or a set."""
+    return hasattr(value, "__iter__") and not isinstance(value, str | bytes | Mapping | Set)
 
 
 def boolean(name: str, value: Any) -> bool:

@@ -1,6 +1,11 @@
 """Optional libraries: the error where one is not installed, with the command that installs it."""
 
+import re
+import sys
 from importlib.metadata import PackageNotFoundError, requires
+
+_PYTHON_BELOW = re.compile(r"python(?:_full)?_version < '(\d+)\.(\d+)'")
+"""The only condition that requirements of extras have besides the name of the extra."""
 
 
 def missing(error: ModuleNotFoundError, extra: str | None = None) -> ModuleNotFoundError:
@@ -18,7 +23,7 @@ def missing(error: ModuleNotFoundError, extra: str | None = None) -> ModuleNotFo
 
 
 def _requirements(extra: str | None) -> list[str]:
-    """Returns the requirements of an extra, quoted for a shell."""
+    """Returns the requirements of an extra for this version of Python, quoted for a shell."""
     try:
         declared = requires("qtab") or []
     except PackageNotFoundError:
@@ -26,6 +31,10 @@ def _requirements(extra: str | None) -> list[str]:
     names = []
     for requirement in declared:
         name, _, marker = requirement.partition(";")
-        if marker.strip().replace('"', "'") == f"extra == '{extra}'":
+        conditions = marker.replace('"', "'").replace("(", "").replace(")", "").split(" and ")
+        parts = {" ".join(condition.split()) for condition in conditions}
+        below = _PYTHON_BELOW.search(" ".join(parts))
+        applies = below is None or sys.version_info < (int(below[1]), int(below[2]))
+        if f"extra == '{extra}'" in parts and applies:
             names.append(f"'{name.strip()}'")
     return names

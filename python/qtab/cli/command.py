@@ -4,6 +4,7 @@ import os
 import sys
 from importlib import import_module
 
+from qtab._utils.extras import missing
 from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
 from qtab.cli.usage import USER_ERRORS, UsageError, one_line, with_origin
@@ -48,6 +49,9 @@ def run(arguments: list[str]) -> int:
         # The reader of the output has closed it. Python would report that once more when it flushes at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_ERROR
+    except ModuleNotFoundError as error:
+        # Python 3.10 has no parser of TOML.
+        return _fail(name, one_line(missing(error, "cli") if error.name == "tomli" else error), EXIT_ERROR)
     except USER_ERRORS as error:
         return _fail(name, one_line(error), EXIT_ERROR)
     except KeyboardInterrupt:

@@ -104,7 +104,7 @@ def _keywords(name: str, value: Any) -> dict[str, Any]:
 
 def _each(check: Callable[[str, Any], Any]) -> Callable[[str, Any], tuple[Any, ...]]:
     def checked(name: str, value: Any) -> tuple[Any, ...]:
-        if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+        if not checks.is_sequence(value):
             raise TypeError(f"{name} must hold a number for each component of the observation, got {shown(value)}")
         return tuple(check(name, number) for number in value)
 
@@ -129,7 +129,7 @@ def _counts(least: int, most: int | None) -> Callable[[str, Any], tuple[int, ...
 
 
 def _edges(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
-    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+    if not checks.is_sequence(value):
         raise TypeError(f"{name} must hold a row of numbers for each component of the observation, got {shown(value)}")
     rows = tuple(_each(checks.finite)(name, row) for row in value)
     if any(left >= right for row in rows for left, right in pairwise(row)):
@@ -146,7 +146,7 @@ def _action(name: str, action: Any) -> float | tuple[float, ...]:
 def _actions(name: str, value: Any) -> Any:
     if hasattr(value, "__index__") and not np.ndim(value):
         return checks.integer(name, value, least=2, most=MAX_ACTIONS)
-    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+    if not checks.is_sequence(value):
         raise TypeError(f"{name} must be an integer, or hold the actions themselves, got {shown(value)}")
     listed = tuple(_action(name, action) for action in value)
     if not listed:

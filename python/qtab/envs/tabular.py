@@ -10,6 +10,7 @@ from gymnasium.envs.toy_text.utils import categorical_sample
 from numpy.typing import ArrayLike
 
 from qtab import _core
+from qtab._utils.shown import shown
 from qtab.envs.toy_text import ToyTextMixin
 
 Transition: TypeAlias = tuple[float, int, float, bool]
@@ -40,7 +41,9 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
         try:
             self.initial_state_distrib = np.array(initial_state_distrib, np.float64)
         except (TypeError, ValueError):
-            raise TypeError(f"initial_state_distrib must hold numbers, got {initial_state_distrib!r}") from None
+            raise TypeError(f"initial_state_distrib must hold numbers, got {shown(initial_state_distrib)}") from None
+        if initial_state_distrib is None:
+            raise TypeError("initial_state_distrib must hold numbers, got None")
         if self.initial_state_distrib.ndim != 1:
             raise ValueError(f"initial_state_distrib must have one axis, got {self.initial_state_distrib.ndim}")
         checked = _core.TransitionTable(P, self.initial_state_distrib)

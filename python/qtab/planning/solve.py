@@ -78,6 +78,8 @@ def optimum(
         return _optimum_for_env(name, env, max_episode_steps, discount, method)
     if not isinstance(env, str | EnvSpec):
         raise TypeError(f"env must be an environment id, an EnvSpec, an environment or a run, got {shown(env)}")
+    if env_kwargs is not None and not isinstance(env_kwargs, Mapping):
+        raise TypeError(f"env_kwargs must map names to values, got {shown(env_kwargs)}")
     name = env.id if isinstance(env, EnvSpec) else versioned(env)
     spec = env if isinstance(env, EnvSpec) else spec_of(name)
     made = gym.make(spec, **(env_kwargs or {}))

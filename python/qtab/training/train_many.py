@@ -127,7 +127,7 @@ def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
         count = checks.integer("seeds", seeds, least=1)
         check_memory(f"{count} runs", count * BYTES_PER_RUN, limit)
         return range(count)
-    if isinstance(seeds, (str, bytes)) or not hasattr(seeds, "__iter__"):
+    if not checks.is_sequence(seeds):
         raise TypeError(f"seeds must be an integer or a sequence of integers, got {shown(seeds)}")
     numbers: dict[int, None] = {}
     for seed in seeds:
