@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.plots.arrangements import Raster
+from qtab.plots.arrangements.raster import DARK, LIGHT
 from qtab.plots.axes import axes_or_new, new_figure
 from qtab.plots.subject import Subject, subject_of
 
@@ -69,7 +70,7 @@ def brightness(color: Any) -> float:
 
 def ink(ax: "Axes") -> str:
     """Returns the color of letters and lines on the background."""
-    return "#f2f2f2" if is_dark(ax) else "#1a1a1a"
+    return LIGHT if is_dark(ax) else DARK
 
 
 def shade_unknown(ax: "Axes", raster: Raster, values: NDArray[Any]) -> None:
@@ -112,7 +113,7 @@ def finish_panel(ax: "Axes", raster: Raster, title: str, note: str = "") -> None
     raster.frame(ax, ink(ax))
 
 
-def color_bar(axes: "Sequence[Axes]", raster: Raster, image: Any, label: str) -> Any:
+def color_bar(axes: "Sequence[Axes]", raster: Raster, image: Any, label: str, extend: str = "neither") -> Any:
     """Draws a color bar beside a panel, of its height, or one beside all panels."""
     figure: Any = axes[0].figure
     if len(axes) == 1:
@@ -120,7 +121,7 @@ def color_bar(axes: "Sequence[Axes]", raster: Raster, image: Any, label: str) ->
         place = {"cax": axes[0].inset_axes((raster.bar_at, 0.0, 0.03, 1.0))}
     else:
         place = {"ax": list(axes), "pad": 0.02, "fraction": 0.05}
-    bar = figure.colorbar(image, label=label, **place)
+    bar = figure.colorbar(image, label=label, extend=extend, **place)
     bar.outline.set_visible(False)
     return bar
 

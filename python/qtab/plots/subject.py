@@ -98,7 +98,7 @@ def subject_of(name: str, source: Any) -> Subject:
         if not len(source):
             raise ValueError(f"{name} must hold at least one run, got none")
         names = action_names(source.config.env, source.actions)
-        return _of_runs(source, source.config, source.tables, names, f"mean of {len(source):,} seeds")
+        return _of_runs(source, source.config, source.tables, names, f"{len(source):,} seeds")
     if isinstance(source, Optimum):
         return _of_optimum(source)
     raise TypeError(f"{name} must be a Run, Runs or an Optimum, got {source!r}")

@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.plots.arrangements.raster import Raster
+from qtab.plots.arrangements.raster import Raster, outline
 from qtab.plots.subject import Subject
 
 if TYPE_CHECKING:
@@ -102,12 +102,9 @@ def grid_map(subject: Subject, layout: tuple[str, ...]) -> Raster:
 
 def _draw_letters(ax: "Axes", letters: NDArray[np.str_], ink: str) -> None:
     from matplotlib.patches import Rectangle
-    from matplotlib.patheffects import withStroke
 
     size = max(7.0, min(11.0, 110 / max(letters.shape)))
-    # An outline, because a letter can stand on any color.
-    outline = [withStroke(linewidth=2, foreground="#101010" if ink == "#f2f2f2" else "#ffffff")]
-    style: dict[str, Any] = {"color": ink, "fontsize": size, "zorder": 7, "path_effects": outline}
+    style: dict[str, Any] = {"color": ink, "fontsize": size, "zorder": 7, "path_effects": outline(ink)}
     for (row, column), letter in np.ndenumerate(letters):
         if letter == "#":
             ax.add_patch(Rectangle((column, row), 1, 1, facecolor=ink, alpha=0.75, linewidth=0))
