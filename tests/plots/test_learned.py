@@ -211,8 +211,8 @@ def test_a_path_leads_through_the_observations(car: qtab.Run) -> None:
         observation, _, terminated, truncated, _ = env.step(car.predict(observation)[0])
         observations.append(observation)
         over = terminated or truncated
-    path = max(plots.trajectory(car, episodes=1, seed=3).lines, key=lambda line: np.size(line.get_xdata()))
-    np.testing.assert_allclose(np.transpose(path.get_data()), observations, rtol=1e-6)
+    path: Any = max(plots.trajectory(car, episodes=1, seed=3).lines, key=lambda line: np.size(line.get_xdata()))
+    np.testing.assert_allclose(np.stack(path.get_data(), axis=-1), observations, rtol=1e-6)
 
 
 def test_a_picture_of_visits_needs_visits() -> None:

@@ -71,7 +71,7 @@ class Unknown(gym.Env[Any, Any]):
         self.observation_space = gym.spaces.Box(-1, 1, (3,))
         self.action_space = gym.spaces.Discrete(2, start=1)
 
-    def reset(self, **_: Any) -> Any:  # type: ignore[override]
+    def reset(self, **_: Any) -> Any:
         return np.zeros(3, np.float32), {}
 
     def step(self, action: Any) -> Any:

@@ -53,7 +53,9 @@ def visits_of_the_reference(run: qtab.Run) -> Any:
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("env", TRAINED)
 def test_visits_are_those_of_the_reference(algorithm: Any, env: str) -> None:
-    @settings(max_examples=max(1, settings.default.max_examples // (10 if env == CAR else 50)), deadline=None)
+    profile: Any = settings.default
+
+    @settings(max_examples=max(1, profile.max_examples // (20 if env == CAR else 50)), deadline=None)
     @given(run_settings(algorithm, env))
     def check(chosen: dict[str, Any]) -> None:
         try:

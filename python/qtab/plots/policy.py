@@ -182,11 +182,12 @@ def _name_cells(
     ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str], colors: Sequence[Any]
 ) -> None:
     """Writes the action into each cell."""
-    xs, ys = raster.centers
-    for (row, column), action in np.ndenumerate(greedy):
-        if action >= 0:
-            color = "#ffffff" if brightness(colors[action]) < 0.5 else "#101010"
-            ax.text(xs[column], ys[row], names[action], color=color, ha="center", va="center", fontsize="small")
+    xs, ys = (middles.tolist() for middles in raster.centers)
+    for row, line in enumerate(greedy.tolist()):
+        for column, action in enumerate(line):
+            if action >= 0:
+                color = "#ffffff" if brightness(colors[action]) < 0.5 else "#101010"
+                ax.text(xs[column], ys[row], names[action], color=color, ha="center", va="center", fontsize="small")
 
 
 def _label_regions(

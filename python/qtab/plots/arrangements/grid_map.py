@@ -78,11 +78,9 @@ def grid_map(subject: Subject, layout: tuple[str, ...]) -> Raster:
 
     def decorate(ax: "Axes", ink: str) -> None:
         _draw_letters(ax, letters, ink)
-        line: dict[str, Any] = {"color": ink, "linewidth": 0.6, "alpha": 0.5, "zorder": 5}
-        for y in range(height + 1):
-            ax.plot([0, width], [y, y], scalex=False, scaley=False, **line)
-        for x in range(width + 1):
-            ax.plot([x, x], [0, height], scalex=False, scaley=False, **line)
+        line: dict[str, Any] = {"colors": ink, "linewidth": 0.6, "alpha": 0.5, "zorder": 5}
+        ax.hlines(np.arange(height + 1), 0, width, **line)
+        ax.vlines(np.arange(width + 1), 0, height, **line)
         ax.set_xticks(np.arange(width) + 0.5, [str(x) for x in range(width)])
         ax.set_yticks(np.arange(height) + 0.5, [str(y) for y in range(height)])
 
