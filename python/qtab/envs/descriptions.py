@@ -100,7 +100,7 @@ DESCRIPTIONS: Mapping[str, Description] = {
         ),
         ("torque -1", "torque 0", "torque +1"),
         angles=(Angle(Quantity("θ1", "rad"), 0, 1), Angle(Quantity("θ2", "rad"), 2, 3)),
-        plane=("θ1", "angular velocity of θ1"),
+        plane=("θ1", "θ2"),
     ),
     "Pendulum": Description(
         (Quantity("cos θ"), Quantity("sin θ"), Quantity("angular velocity", "rad/s")),

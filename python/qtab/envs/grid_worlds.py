@@ -15,12 +15,23 @@ UP, RIGHT, DOWN, LEFT = range(4)
 _MOVES = {UP: (-1, 0), RIGHT: (0, 1), DOWN: (1, 0), LEFT: (0, -1)}
 
 ACTION_NAMES = ("up", "right", "down", "left")
-"""Their names, as pictures take them: ``qtab.plots.policy(run, layout=(7, 10), action_names=ACTION_NAMES)``."""
+"""The names of the actions, which pictures draw as arrows: ``qtab.plots.policy(..., action_names=ACTION_NAMES)``."""
+
+WINDY_GRID_WORLD = (
+    "..........",
+    "..........",
+    "..........",
+    "S......G..",
+    "..........",
+    "..........",
+    "..........",
+)
+"""The map of the windy grid world, for ``layout=`` of pictures."""
 
 _WIND = (0, 0, 0, 1, 1, 1, 2, 2, 1, 0)
 """The number of cells by which the wind of each column shifts a move upwards."""
 
-_MAZE = (
+DYNA_MAZE = (
     ".......#G",
     "..#....#.",
     "S.#....#.",
@@ -28,7 +39,7 @@ _MAZE = (
     ".....#...",
     ".........",
 )
-"""The Dyna maze: obstacles, start and goal."""
+"""The map of the Dyna maze: obstacles, start and goal."""
 
 
 def windy_grid_world() -> TabularEnv:
@@ -51,13 +62,13 @@ def dyna_maze() -> TabularEnv:
 
     A move into an obstacle or off the grid leaves the agent in its cell. The shortest path takes 14 steps.
     """
-    rows, columns = len(_MAZE), len(_MAZE[0])
-    markers = {_MAZE[row][column]: (row, column) for row in range(rows) for column in range(columns)}
+    rows, columns = len(DYNA_MAZE), len(DYNA_MAZE[0])
+    markers = {DYNA_MAZE[row][column]: (row, column) for row in range(rows) for column in range(columns)}
 
     def step(cell: Cell, action: int) -> Cell:
         down, right = _MOVES[action]
         row, column = _clip(cell[0] + down, rows), _clip(cell[1] + right, columns)
-        return cell if _MAZE[row][column] == "#" else (row, column)
+        return cell if DYNA_MAZE[row][column] == "#" else (row, column)
 
     return _grid_world(rows, columns, markers["S"], markers["G"], step, step_reward=0.0, goal_reward=1.0)
 

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 EXACT = 1e-9
 """A smaller cost, relative to the largest value, is a tie between actions."""
+APPROXIMATE = 1.0
+"""For MountainCar's values, which are interpolated in a grid, a cost of up to one step is none."""
 
 
 def difference(
@@ -35,7 +37,7 @@ def difference(
 
     The cost is that of one such action, followed by optimal ones. It is 0 where the action is optimal, also where
     several are; these states stay blank. Grey is where the run has learned nothing, as in :func:`qtab.plots.values`.
-    For MountainCar the values are those of the best known policy, so costs are approximate.
+    For MountainCar the values are those of the best known policy, accurate to about a step: lower costs count as 0.
 
     Args:
         run: A run, or the runs of many seeds with their tables, whose most frequent greedy action is taken.
@@ -54,7 +56,8 @@ def difference(
         TypeError: for an argument of the wrong type.
         ValueError: if the optimum is that of another environment, or an argument does not fit it.
     """
-    from matplotlib.colors import Normalize
+    from matplotlib import colormaps
+    from matplotlib.colors import ListedColormap, Normalize
 
     if not isinstance(run, Run | Runs):
         raise TypeError(f"run must be a Run or Runs, got {run!r}")
@@ -69,16 +72,21 @@ def difference(
     wrong = known & (cost > 0)
     share = wrong.sum() / max(known.sum(), 1)
     if title is None:
-        title = f"{subject.env}: cost against the {optimum.label}"
+        policy = "an optimal policy" if optimum.exact else "the best known policy"
+        title = f"{subject.env}: cost against {policy}"
     shade_unknown(ax, raster, cost)
-    cmap = "magma" if is_dark(ax) else "magma_r"
-    norm = Normalize(0, float(cost[wrong].max(initial=0.0)) or 1.0)
+    # Without the end of the map that looks like the background.
+    cmap = ListedColormap(colormaps["magma" if is_dark(ax) else "magma_r"](np.linspace(0.25, 1.0, 256)))
+    # A few states of very high costs would leave all others pale.
+    highest = float(np.quantile(cost[wrong], 0.99)) if wrong.any() else 1.0
+    norm = Normalize(0, highest)
     image = draw_cells(ax, raster, np.where(wrong, cost, np.nan), cmap, norm)
     if raster.has_numbers:
         write_numbers(ax, raster, np.where(wrong, cost, np.nan), image, lambda value: f"{value:.2g}")
     note = f"{share:.1%} of the states have a worse action"
     finish_panel(ax, raster, title, ", ".join(filter(None, [note, raster.note])))
-    color_bar([ax], raster, image, "cost of the action, V*(s) - Q*(s, a)")
+    extend = "max" if (cost[wrong] > highest).any() else "neither"
+    color_bar([ax], raster, image, "cost of the action, V*(s) - Q*(s, a)", extend)
     return ax
 
 
@@ -95,8 +103,9 @@ def costs(subject: Subject, best: Subject, raster: Raster) -> NDArray[np.float64
     optimal = best.action_values(rows)[0]
     taken = np.take_along_axis(optimal, np.maximum(greedy, 0)[..., np.newaxis], axis=-1)[..., 0]
     cost = optimal.max(axis=-1) - taken
-    scale = np.nanmax(np.abs(optimal), initial=1.0)
-    return np.where(greedy < 0, np.nan, np.where(cost > EXACT * scale, cost, 0.0))
+    exact = isinstance(best.source, Optimum) and best.source.exact
+    tolerance = EXACT * np.nanmax(np.abs(optimal), initial=1.0) if exact else APPROXIMATE
+    return np.where(greedy < 0, np.nan, np.where(cost > tolerance, cost, 0.0))
 
 
 def _check_same(subject: Subject, best: Subject) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.plots.arrangements import Raster
+from qtab.plots.arrangements.raster import DARK, LIGHT
 from qtab.plots.axes import axes_or_new, shown_figure
 from qtab.plots.subject import Subject, subject_of
 
@@ -69,7 +70,7 @@ def brightness(color: Any) -> float:
 
 def ink(ax: "Axes") -> str:
     """Returns the color of letters and lines on the background."""
-    return "#f2f2f2" if is_dark(ax) else "#1a1a1a"
+    return LIGHT if is_dark(ax) else DARK
 
 
 def shade_unknown(ax: "Axes", raster: Raster, values: NDArray[Any]) -> None:
@@ -95,7 +96,7 @@ def write_numbers(
     ax: "Axes", raster: Raster, values: NDArray[np.float64], image: Any, text: Callable[[float], str]
 ) -> None:
     """Writes the number of each cell in a color that is readable on the cell's."""
-    xs, ys = raster.centers
+    xs, ys = (middles.tolist() for middles in raster.centers)
     size = cell_font_size(ax, raster)
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
@@ -112,15 +113,15 @@ def finish_panel(ax: "Axes", raster: Raster, title: str, note: str = "") -> None
     raster.frame(ax, ink(ax))
 
 
-def color_bar(axes: "Sequence[Axes]", raster: Raster, image: Any, label: str) -> Any:
+def color_bar(axes: "Sequence[Axes]", raster: Raster, image: Any, label: str, extend: str = "neither") -> Any:
     """Draws a color bar beside a panel, of its height, or one beside all panels."""
     figure: Any = axes[0].figure
     if len(axes) == 1:
         # Inset: a bar of a map, whose cells are square, would else be higher than the map.
-        place = {"cax": axes[0].inset_axes((raster.bar_at, 0.0, 0.03, 1.0))}
+        place: dict[str, Any] = {"cax": axes[0].inset_axes((raster.bar_at, 0.0, 0.03, 1.0))}
     else:
         place = {"ax": list(axes), "pad": 0.02, "fraction": 0.05}
-    bar = figure.colorbar(image, label=label, **place)
+    bar = figure.colorbar(image, label=label, extend=extend, **place)
     bar.outline.set_visible(False)
     return bar
 
@@ -143,4 +144,4 @@ def cell_font_size(ax: "Axes", raster: Raster) -> float:
     figure: Any = ax.figure
     width = ax.get_position().width * figure.get_figwidth() * 72 / len(raster.x_edges)
     height = ax.get_position().height * figure.get_figheight() * 72 / len(raster.y_edges)
-    return max(4.0, min(11.0, width / 3.3, height / 1.6))
+    return max(4.0, min(11.0, float(width) / 3.3, float(height) / 1.6))

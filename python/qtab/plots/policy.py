@@ -70,7 +70,8 @@ def policy(
             _draw_map(panel, raster, greedy, named)
         else:
             _draw_colors(panel, raster, greedy, named)
-        finish_panel(panel, raster, subject.name if title is None else title)
+        note = "; ".join(filter(None, [raster.note, _initials(named) if raster.is_map else ""]))
+        finish_panel(panel, raster, subject.name if title is None else title, note)
     return axes[0]
 
 
@@ -117,11 +118,20 @@ def _draw_map(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequ
                 zorder=4,
             )
         else:
-            letters = "".join(word[0].upper() for word in name.split()) if " " in name else name[:3]
+            letters = _letters(name)
             size = max(5.0, cell_font_size(ax, raster))
             style: dict[str, Any] = {"color": letter_color, "fontsize": size, "fontweight": "bold"}
             for x, y in zip(xs[chosen], ys[chosen], strict=True):
                 ax.text(x, y, letters, ha="center", va="center", zorder=7, **style)
+
+
+def _initials(names: Sequence[str]) -> str:
+    """Returns what the letters in the cells of a map mean."""
+    return ", ".join(f"{_letters(name)}: {name}" for name in names if name not in DIRECTIONS and " " in name)
+
+
+def _letters(name: str) -> str:
+    return "".join(word[0].upper() for word in name.split()) if " " in name else name[:3]
 
 
 def action_colors(count: int, ordered: bool) -> list[Any]:
@@ -151,6 +161,9 @@ def _draw_colors(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: S
     if raster.parts:
         _label_regions(ax, raster, greedy, names, colors)
         return
+    if raster.has_numbers:
+        _name_cells(ax, raster, greedy, names, colors)
+        return
     present = [index for index in range(len(names)) if (greedy == index).any() or len(names) <= 8]
     handles = [Patch(color=colors[index], label=names[index]) for index in present]
     ax.legend(
@@ -165,18 +178,38 @@ def _draw_colors(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: S
     )
 
 
+def _name_cells(
+    ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str], colors: Sequence[Any]
+) -> None:
+    """Writes the action into each cell."""
+    xs, ys = (middles.tolist() for middles in raster.centers)
+    for row, line in enumerate(greedy.tolist()):
+        for column, action in enumerate(line):
+            if action >= 0:
+                color = "#ffffff" if brightness(colors[action]) < 0.5 else "#101010"
+                ax.text(xs[column], ys[row], names[action], color=color, ha="center", va="center", fontsize="small")
+
+
 def _label_regions(
     ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str], colors: Sequence[Any]
 ) -> None:
-    """Writes the action into the middle of its region, in each part of the picture, as the book does."""
+    """Writes the action into its region, where that is widest, in each part of the picture, as the book does."""
     xs, ys = raster.centers
     for part in raster.parts.values():
         for action, name in enumerate(names):
-            lines, columns = np.nonzero(greedy[part] == action)
-            if len(lines):
-                line = int(np.bincount(lines).argmax())
-                x = xs[columns[lines == line]].mean()
-                color = "#ffffff" if brightness(colors[action]) < 0.6 else "#101010"
-                ax.text(
-                    x, ys[part][line], name.upper(), color=color, ha="center", va="center", fontweight="bold", zorder=7
-                )
+            spans = [_longest(line == action) for line in greedy[part]]
+            length = max(stop - start for start, stop in spans)
+            if length > 0:
+                widest = [row for row, (start, stop) in enumerate(spans) if stop - start == length]
+                row = widest[len(widest) // 2]
+                dark = brightness(colors[action]) < 0.6
+                style: dict[str, Any] = {"color": "#ffffff" if dark else "#101010", "ha": "center", "va": "center"}
+                x = xs[slice(*spans[row])].mean()
+                ax.text(x, ys[part][row], name.upper(), fontweight="bold", zorder=7, **style)
+
+
+def _longest(matches: NDArray[np.bool_]) -> tuple[int, int]:
+    """Returns where the longest stretch of True begins and ends."""
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], matches, [False]]).astype(np.int8)))
+    stretches = list(zip(ends[::2].tolist(), ends[1::2].tolist(), strict=True))
+    return max(stretches, key=lambda stretch: stretch[1] - stretch[0], default=(0, 0))

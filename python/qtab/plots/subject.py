@@ -69,7 +69,8 @@ class Subject:
         largest = self.action_values(rows).max(axis=-1)
         count = (~np.isnan(largest)).sum(axis=0)
         total = np.nansum(largest, axis=0)
-        return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+        mean: NDArray[np.float64] = np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+        return mean
 
     def greedy_actions(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
         """Returns (ny, nx): the greedy action, of several seeds the most frequent one; -1 where none is known."""
@@ -98,7 +99,7 @@ def subject_of(name: str, source: Any) -> Subject:
         if not len(source):
             raise ValueError(f"{name} must hold at least one run, got none")
         names = action_names(source.config.env, source.actions)
-        return _of_runs(source, source.config, source.tables, names, f"mean of {len(source):,} seeds")
+        return _of_runs(source, source.config, source.tables, names, f"{len(source):,} seeds")
     if isinstance(source, Optimum):
         return _of_optimum(source)
     raise TypeError(f"{name} must be a Run, Runs or an Optimum, got {source!r}")
@@ -124,7 +125,8 @@ def _of_runs(
 def _known(source: Run | Runs, config: Config, tables: NDArray[np.float64]) -> NDArray[np.bool_] | None:
     """Where a table was updated: by its visits, or else where it is no longer at its first value."""
     if isinstance(source, Run) and source.visits is not None:
-        return source.visits.reshape(1, -1, source.visits.shape[-1]).any(axis=-1)
+        visited: NDArray[np.bool_] = source.visits.reshape(1, -1, source.visits.shape[-1]) > 0
+        return np.asarray(visited.any(axis=-1))
     if isinstance(config.initial_q, int | float):
         changed: NDArray[np.bool_] = (tables != config.initial_q).any(axis=(1, 3))
         return changed

@@ -112,7 +112,7 @@ def _draw_path(
     ax.plot(*path.T, color="#ffffff", linewidth=width, solid_joinstyle="round", zorder=8)
     marks: dict[str, Any] = {"linestyle": "none", "markeredgecolor": "#101010", "zorder": 9}
     ax.plot(*middle[0], marker="o", markersize=6, markerfacecolor="#ffffff", **marks)
-    end = {"marker": "*", "markersize": 13} if terminated else {"marker": "X", "markersize": 8}
+    end: dict[str, Any] = {"marker": "*", "markersize": 13} if terminated else {"marker": "X", "markersize": 8}
     ax.plot(*middle[-1], markerfacecolor="#ff8a3d", **end, **marks)
 
 

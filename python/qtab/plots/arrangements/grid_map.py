@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.plots.arrangements.raster import Raster
+from qtab.plots.arrangements.raster import Raster, outline
 from qtab.plots.subject import Subject
 
 if TYPE_CHECKING:
@@ -78,11 +78,9 @@ def grid_map(subject: Subject, layout: tuple[str, ...]) -> Raster:
 
     def decorate(ax: "Axes", ink: str) -> None:
         _draw_letters(ax, letters, ink)
-        line: dict[str, Any] = {"color": ink, "linewidth": 0.6, "alpha": 0.5, "zorder": 5}
-        for y in range(height + 1):
-            ax.plot([0, width], [y, y], scalex=False, scaley=False, **line)
-        for x in range(width + 1):
-            ax.plot([x, x], [0, height], scalex=False, scaley=False, **line)
+        line: dict[str, Any] = {"colors": ink, "linewidth": 0.6, "alpha": 0.5, "zorder": 5}
+        ax.hlines(np.arange(height + 1), 0, width, **line)
+        ax.vlines(np.arange(width + 1), 0, height, **line)
         ax.set_xticks(np.arange(width) + 0.5, [str(x) for x in range(width)])
         ax.set_yticks(np.arange(height) + 0.5, [str(y) for y in range(height)])
 
@@ -102,12 +100,9 @@ def grid_map(subject: Subject, layout: tuple[str, ...]) -> Raster:
 
 def _draw_letters(ax: "Axes", letters: NDArray[np.str_], ink: str) -> None:
     from matplotlib.patches import Rectangle
-    from matplotlib.patheffects import withStroke
 
     size = max(7.0, min(11.0, 110 / max(letters.shape)))
-    # An outline, because a letter can stand on any color.
-    outline = [withStroke(linewidth=2, foreground="#101010" if ink == "#f2f2f2" else "#ffffff")]
-    style: dict[str, Any] = {"color": ink, "fontsize": size, "zorder": 7, "path_effects": outline}
+    style: dict[str, Any] = {"color": ink, "fontsize": size, "zorder": 7, "path_effects": outline(ink)}
     for (row, column), letter in np.ndenumerate(letters):
         if letter == "#":
             ax.add_patch(Rectangle((column, row), 1, 1, facecolor=ink, alpha=0.75, linewidth=0))

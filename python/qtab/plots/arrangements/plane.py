@@ -1,7 +1,6 @@
 """Two components of the observation along the axes of the picture, and the others held fixed."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,56 +9,12 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.suggestions import did_you_mean
 from qtab.envs.descriptions import describe
-from qtab.plots.arrangements.raster import Raster
+from qtab.plots.arrangements.coordinates import Coordinate, coordinates
+from qtab.plots.arrangements.raster import Raster, outline
 from qtab.plots.subject import Subject
-from qtab.results.axes import Axis
 
 RESOLUTION = 200
 """The points along each axis, where cells cannot be drawn as they are."""
-
-
-@dataclass(frozen=True, eq=False)
-class Coordinate:
-    """A quantity that can be an axis: a component of the observation, or an angle of which it has cosine and sine."""
-
-    name: str
-    label: str
-    low: float
-    high: float
-    components: tuple[int, ...]
-    """The component, or those of the cosine and the sine."""
-    edges: NDArray[np.float64] | None
-    """The edges of its cells; None for an angle."""
-
-    @property
-    def default(self) -> float:
-        """Zero, or else the bound that is nearest."""
-        return float(np.clip(0.0, self.low, self.high))
-
-
-def coordinates(subject: Subject) -> tuple[Coordinate, ...]:
-    """Returns the quantities that can be axes: angles first, then the remaining components in their order."""
-    axes = subject.axes
-    description = describe(subject.env)
-    angles = description.angles if len(description.observation) == len(axes) else ()
-    used = {index for angle in angles for index in (angle.cosine, angle.sine)}
-    turns = [
-        Coordinate(angle.quantity.name, angle.quantity.label, -np.pi, np.pi, (angle.cosine, angle.sine), None)
-        for angle in angles
-    ]
-    return (*turns, *(_component(index, axis) for index, axis in enumerate(axes) if index not in used))
-
-
-def _component(index: int, axis: Axis) -> Coordinate:
-    """Outer bins without an outer edge are drawn as wide as their neighbors."""
-    edges = axis.edges.copy()
-    inner = edges[np.isfinite(edges)]
-    width = float(np.diff(inner).mean()) if len(inner) > 1 else 1.0
-    for end, step in ((0, -width), (-1, width)):
-        if not np.isfinite(edges[end]):
-            nearest = inner[end] if len(inner) else step / 2 + 0.0
-            edges[end] = nearest + step
-    return Coordinate(axis.name, axis.label, float(edges[0]), float(edges[-1]), (index,), edges)
 
 
 def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = False) -> Raster:
@@ -92,7 +47,7 @@ def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = Fals
     def locate(observed: NDArray[Any]) -> NDArray[np.float64]:
         points = np.asarray(observed, np.float64)
         points = points[:, np.newaxis] if points.ndim == 1 else points
-        columns = [_read(one, points) for one in chosen]
+        columns = [one.read(points) for one in chosen]
         return np.stack(columns if len(columns) == 2 else [*columns, np.full(len(points), 0.5)], axis=-1)
 
     def decorate(ax: Any, ink: str) -> None:
@@ -101,10 +56,9 @@ def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = Fals
                 if one.name == mark.name:
                     line(mark.value, color=ink, linewidth=1, linestyle=(0, (4, 3)), zorder=3)
                     # Inside the axes, at the left of the line.
-                    ax.annotate(
-                        mark.text, (mark.value, 0.02), (-3, 0), xycoords=("data", "axes fraction"),
-                        textcoords="offset points", ha="right", va="bottom", color=ink, fontsize="small",
-                    )  # fmt: skip
+                    style = {"color": ink, "fontsize": "small", "path_effects": outline(ink), "zorder": 6}
+                    ends: Any = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
+                    ax.annotate(mark.text, (mark.value, 0.02), (-3, 0), ha="right", va="bottom", **ends, **style)
         for axis, one in zip((ax.xaxis, ax.yaxis), chosen, strict=False):
             values = next((known_axis.values for known_axis in subject.axes if known_axis.name == one.name), ())
             if values and len(values) <= round(one.high - one.low):
@@ -194,10 +148,3 @@ def _cell_rows(
         elif one.edges is not None:
             index[component] = int(np.searchsorted(one.edges[1:-1], fixed[one.name], side="right"))
     return np.ravel_multi_index(np.broadcast_arrays(*index), shape)[..., np.newaxis]
-
-
-def _read(one: Coordinate, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    if len(one.components) == 2:
-        cosine, sine = one.components
-        return np.arctan2(points[:, sine], points[:, cosine])
-    return points[:, one.components[0]]

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+LIGHT, DARK = "#f2f2f2", "#1a1a1a"
+"""The colors of letters and lines in dark and in light styles."""
 DIRECTIONS: Mapping[str, tuple[int, int]] = {
     "left": (-1, 0),
     "right": (1, 0),
@@ -21,6 +23,13 @@ DIRECTIONS: Mapping[str, tuple[int, int]] = {
     "south": (0, 1),
 }
 """The actions that are moves on a map: to the right and downwards, in cells."""
+
+
+def outline(ink: str) -> list[Any]:
+    """Returns the path effects of letters that can stand on any color: an outline of the other brightness."""
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=2, foreground="#101010" if ink == LIGHT else "#ffffff")]
 
 
 def _nothing(ax: "Axes", ink: str) -> None:

@@ -28,7 +28,8 @@ def taxi() -> Raster:
         rows[int(y), int(x)] = state
 
     def locate(observed: NDArray[Any]) -> NDArray[np.float64]:
-        return np.stack(_place(np.asarray(observed).ravel()), axis=-1) + 0.5
+        places: NDArray[np.float64] = np.stack(_place(np.asarray(observed).ravel()), axis=-1) + np.float64(0.5)
+        return places
 
     return Raster(
         x_edges=np.arange(width + 1.0),
@@ -53,19 +54,20 @@ def _place(states: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int
 
 
 def _decorate(ax: "Axes", ink: str) -> None:
-    walls = [
-        (row, column) for row, line in enumerate(MAP[1:-1]) for column in range(1, SIDE) if line[2 * column] == "|"
-    ]
-    line: dict[str, Any] = {"color": ink, "zorder": 5, "scalex": False, "scaley": False}
-    for destination in range(DESTINATIONS):
-        for passenger in range(PASSENGERS):
-            x, y = PITCH * passenger, PITCH * destination
-            ax.plot([x, x + 5, x + 5, x, x], [y, y, y + 5, y + 5, y], linewidth=0.8, **line)
-            for row, column in walls:
-                ax.plot([x + column] * 2, [y + row, y + row + 1], linewidth=1.6, **line)
-            for index, (row, column) in enumerate(LOCATIONS):
-                if index in (destination, passenger):
-                    _draw_square(ax, x + column, y + row, ink, "-" if index == destination else (0, (2, 1.5)))
+    from matplotlib.collections import LineCollection
+
+    columns = range(1, SIDE)
+    walls = [(row, column) for row, line in enumerate(MAP[1:-1]) for column in columns if line[2 * column] == "|"]
+    corners = [(PITCH * passenger, PITCH * destination) for destination in range(4) for passenger in range(5)]
+    frames = [[(x, y), (x + SIDE, y), (x + SIDE, y + SIDE), (x, y + SIDE), (x, y)] for x, y in corners]
+    inner = [[(x + column, y + row), (x + column, y + row + 1)] for x, y in corners for row, column in walls]
+    for lines, width in ((frames, 0.8), (inner, 1.6)):
+        ax.add_collection(LineCollection(lines, colors=ink, linewidths=width, zorder=5), autolim=False)
+    for x, y in corners:
+        for index, (row, column) in enumerate(LOCATIONS):
+            if index in (x // PITCH, y // PITCH):
+                style = "-" if index == y // PITCH else (0, (2, 1.5))
+                _draw_square(ax, x + column, y + row, ink, style)
     ax.set_xticks(PITCH * np.arange(PASSENGERS) + 2.5, [*PLACES, "in the taxi"])
     ax.set_yticks(PITCH * np.arange(DESTINATIONS) + 2.5, PLACES)
 

@@ -1,0 +1,128 @@
+"""Names of observations and actions, the edges of cells, and values in batches."""
+
+import warnings
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from qtab.discretizers import Discretizer, Identity
+from qtab.envs.descriptions import DESCRIPTIONS, describe
+from qtab.envs.registry import ENTRIES, EXTRA
+
+IDS = [*ENTRIES, *EXTRA]
+
+
+@pytest.mark.parametrize("env", IDS)
+def test_every_environment_is_described_as_its_spaces_are(env: str) -> None:
+    described = describe(env)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # an old version of CartPole
+        made = gym.make(env)
+    space: Any = made.observation_space
+    components = (
+        1
+        if isinstance(space, gym.spaces.Discrete)
+        else len(space)
+        if isinstance(space, gym.spaces.Tuple)
+        else space.shape[0]
+    )
+    assert len(described.observation) == components
+    actions: Any = made.action_space
+    if isinstance(actions, gym.spaces.Discrete):
+        assert len(described.actions) == (2 if "Bias" in env else actions.n)
+    else:
+        assert len(described.continuous_actions) == actions.shape[0]
+    made.close()
+
+
+def test_no_description_is_for_an_environment_that_does_not_exist() -> None:
+    assert set(DESCRIPTIONS) == {env.partition("-v")[0] for env in IDS}
+
+
+@pytest.mark.parametrize("env", ["MountainCar-v0", "qtab/MountainCar-v0"])
+def test_a_run_names_its_axes_and_actions(env: str) -> None:
+    run = qtab.train(env, episodes=1, seed=0)
+    assert [axis.label for axis in run.axes] == ["position (m)", "velocity (m/step)"]
+    assert run.action_names == ("push left", "no push", "push right")
+    assert [len(axis.edges) for axis in run.axes] == [20, 16]
+
+
+@pytest.mark.parametrize(
+    ("env", "chosen", "names"),
+    [
+        ("Taxi-v4", {}, ("south", "north", "east", "west", "pick up", "drop off")),
+        ("Blackjack-v1", {}, ("stick", "hit")),
+        ("FrozenLake-v1", {}, ("left", "down", "right", "up")),
+        ("Pendulum-v1", {"actions": (-2.0, 0.0, 2.0)}, ("torque -2 N m", "torque 0 N m", "torque 2 N m")),
+        ("qtab/MaximizationBias-v0", {"env_kwargs": {"actions": 3}, "initial_q": 0.0}, ("right", "left", "action 2")),
+    ],
+)
+def test_actions_have_gymnasiums_words(env: str, chosen: dict[str, Any], names: tuple[str, ...]) -> None:
+    assert qtab.train(env, episodes=1, seed=0, **chosen).action_names == names
+
+
+class Unknown(gym.Env[Any, Any]):
+    """An environment with a box of three components and actions from 1 on."""
+
+    def __init__(self) -> None:
+        self.observation_space = gym.spaces.Box(-1, 1, (3,))
+        self.action_space = gym.spaces.Discrete(2, start=1)
+
+    def reset(self, **_: Any) -> Any:
+        return np.zeros(3, np.float32), {}
+
+    def step(self, action: Any) -> Any:
+        return np.zeros(3, np.float32), 0.0, bool(action == 1), False, {}
+
+
+def test_an_unknown_environment_has_neutral_names() -> None:
+    run = qtab.train(Unknown(), discretizer="bins", bins=2, episodes=2, seed=0, max_episode_steps=5)
+    assert [axis.name for axis in run.axes] == ["observation[0]", "observation[1]", "observation[2]"]
+    assert run.action_names == ("action 1", "action 2")
+
+
+@pytest.mark.parametrize(
+    "chosen",
+    [
+        {"discretizer": "round", "scale": (10, 100)},
+        {"discretizer": "bins", "bins": (5, 4)},
+        {"discretizer": "edges", "edges": ((-0.5, 0.1), (0.0,))},
+    ],
+)
+def test_the_middle_of_a_cell_is_in_the_cell(chosen: dict[str, Any]) -> None:
+    run = qtab.train("MountainCar-v0", episodes=1, seed=0, **chosen)
+    edges = [axis.edges for axis in run.axes]
+    assert [len(row) - 1 for row in edges] == list(run.discretizer.shape)
+    middles = [(row[1:] + row[:-1]) / 2 for row in edges]
+    for cell in np.ndindex(*run.discretizer.shape):
+        observation = np.array([row[index] for row, index in zip(middles, cell, strict=True)], np.float32)
+        assert run.discretizer.cell(observation) == cell
+
+
+def test_integers_lie_between_their_edges() -> None:
+    discretizer: Discretizer = Identity(np.array([4, 0]), np.array([6, 1]))
+    assert [edges.tolist() for edges in discretizer.cell_edges()] == [[3.5, 4.5, 5.5, 6.5], [-0.5, 0.5, 1.5]]
+
+
+def test_bins_without_outer_edges_have_those_of_the_space() -> None:
+    edges = ((0.0,), (0.0,), (-0.1, 0.1), (0.0,))
+    run = qtab.train("CartPole-v1", discretizer="edges", edges=edges, episodes=1, seed=0)
+    assert run.axes[1].edges.tolist() == [-np.inf, 0.0, np.inf]
+    assert run.axes[2].edges[[1, 2]].tolist() == [-0.1, 0.1]
+
+
+@pytest.mark.parametrize(
+    "chosen", [{"preset": "article"}, {"preset": "solved"}, {"algorithm": "double_q_learning", "initial_q": 0.5}]
+)
+def test_values_are_the_largest_action_values(chosen: dict[str, Any]) -> None:
+    run = qtab.train("MountainCar-v0", episodes=5, seed=0, **chosen)
+    observations = np.array([[-0.5, 0.01], [0.3, -0.02], [-1.2, 0.0]], np.float32)
+    values = run.values(observations)
+    assert values.shape == (3,)
+    assert values.tolist() == (run.q_values(observations).max(axis=1) / len(run.tables)).tolist()
+    one = run.values(observations[1])
+    assert isinstance(one, float)
+    assert one == values[1]
