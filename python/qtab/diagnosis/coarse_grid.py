@@ -69,7 +69,10 @@ def _finer(facts: Facts) -> tuple[Mapping[str, Any], ...]:
 
 def _tiles(facts: Facts) -> tuple[Mapping[str, Any], ...]:
     discretizer: Any = facts.run.discretizer
-    if facts.config.algorithm in TABLES_ONLY or not (np.isfinite(discretizer.low) & np.isfinite(discretizer.high)).all():
+    if (
+        facts.config.algorithm in TABLES_ONLY
+        or not (np.isfinite(discretizer.low) & np.isfinite(discretizer.high)).all()
+    ):
         return ()
     # The article's grid has 15 to 19 cells along each component; with more components tables become large.
     change: dict[str, Any] = {"discretizer": "tiles"} | ({"tiles": (16,)} if len(discretizer.low) <= 2 else {})

@@ -78,8 +78,10 @@ class Watcher(Observer):
         if not self.active:
             return
         table = next(index for index, known in enumerate(self.tables) if known is Q)
+        step: int | None
+        rewards: tuple[float, ...]
         if self.config.algorithm in ("dyna_q", "dyna_q_plus") and self.steps[-1].updates:
-            step, rewards, following = None, (), None
+            step, rewards, following = None, (), None  # planning
         else:
             step, rewards, following = self._target(table)
         self._begun = Begun(step, table, tuple(state), action, rewards, following, target, self._weights(table, state))
