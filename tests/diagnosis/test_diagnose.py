@@ -59,7 +59,7 @@ def test_following_the_advice_solves_the_articles_task(article: qtab.Run) -> Non
         found = qtab.diagnose(run, seeds=0)
         if found.solved:
             break
-        trials = [trial for trial in found.what_if(2).trials if "preset" not in trial.change]
+        trials = [trial for trial in found.what_if(2).results if "preset" not in trial.change]
         assert trials[0].comparison is not None
         assert trials[0].comparison.difference.estimate > 0
         returns.append(trials[0].returns.mean())
@@ -74,19 +74,19 @@ def test_what_if_compares_each_change_over_the_same_seeds() -> None:
     tried = qtab.diagnose(run).what_if(seeds=[3, 4, 5, 6])
     assert tried.seeds == (3, 4, 5, 6)
     assert tried.returns.tolist() == qtab.train_many(config=run.config, seeds=[3, 4, 5, 6]).final_returns().tolist()
-    (trial,) = (trial for trial in tried.trials if trial.finding == "exploration")
+    (trial,) = (trial for trial in tried.results if trial.finding == "exploration")
     changed = qtab.train_many(config=run.config, seeds=[3, 4, 5, 6], **trial.change)
     assert trial.returns.tolist() == changed.final_returns().tolist()
     assert trial.comparison is not None
     assert trial.comparison.difference.estimate == pytest.approx((trial.returns - tried.returns).mean())
     assert trial.comparison.difference.low > 0
-    means = [trial.returns.mean() for trial in tried.trials]
+    means = [trial.returns.mean() for trial in tried.results]
     assert means == sorted(means, reverse=True)
-    assert tried.best is tried.trials[0]
+    assert tried.best is tried.results[0]
     lines = str(tried).splitlines()
-    assert len(lines) == 3 + len(tried.trials)
+    assert len(lines) == 3 + len(tried.results)
     assert "preset='solved'" in str(tried)
-    assert tried._repr_html_().count("<tr>") == 2 + len(tried.trials)
+    assert tried._repr_html_().count("<tr>") == 2 + len(tried.results)
 
 
 def test_a_diagnosis_prints_and_can_be_searched(diagnosis: qtab.Diagnosis) -> None:

@@ -48,7 +48,7 @@ class WhatIf:
     """(seeds,): the mean return of the last 100 episodes without a change; NaN if a run diverged."""
     solved: int | None
     """The number of seeds that solved the environment without a change; None where that is not known."""
-    trials: tuple[Trial, ...]
+    results: tuple[Trial, ...]
     """The changes, by their mean return."""
     failed: Mapping[str, str]
     """The changes that could not be trained, with the reason."""
@@ -56,7 +56,7 @@ class WhatIf:
     @property
     def best(self) -> Trial:
         """The change with the largest mean return."""
-        return self.trials[0]
+        return self.results[0]
 
     def __repr__(self) -> str:
         """The whole table, so that it appears where Python is used interactively."""
@@ -93,7 +93,7 @@ class WhatIf:
         rows.append(
             ["none", "diverged" if diverged else shown(float(self.returns.mean())), "", self._share(self.solved)]
         )
-        for trial in self.trials:
+        for trial in self.results:
             difference = ""
             if trial.comparison is not None:
                 interval = trial.comparison.difference
@@ -130,7 +130,7 @@ def try_changes(facts: Facts, findings: Sequence[Finding], seeds: int | Iterable
         before = train_many(config=config, seeds=numbers).final_returns()
     except OverflowError:
         before = np.full(len(numbers), np.nan)
-    trials, failed = [], {}
+    results, failed = [], {}
     for text, (name, change) in changes.items():
         try:
             runs = _changed(config, change, numbers)
@@ -139,9 +139,9 @@ def try_changes(facts: Facts, findings: Sequence[Finding], seeds: int | Iterable
             continue
         returns = runs.final_returns()
         comparison = None if np.isnan(before).any() else compare(returns, before)
-        trials.append(Trial(change, name, returns, comparison, _solved(facts, returns)))
-    trials.sort(key=lambda trial: -float(trial.returns.mean()))
-    return WhatIf(config, numbers, before, _solved(facts, before), tuple(trials), failed)
+        results.append(Trial(change, name, returns, comparison, _solved(facts, returns)))
+    results.sort(key=lambda trial: -float(trial.returns.mean()))
+    return WhatIf(config, numbers, before, _solved(facts, before), tuple(results), failed)
 
 
 def _changed(config: Config, change: Mapping[str, Any], seeds: Sequence[int]) -> Runs:
