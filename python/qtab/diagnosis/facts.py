@@ -186,7 +186,7 @@ class Facts:
     @cached_property
     def changed(self) -> NDArray[np.bool_]:
         """(rows, actions): whether a value has changed since the start, in either table."""
-        unequal: NDArray[np.bool_] = np.any(self.run.tables != self.initial_tables, axis=0)
+        unequal: NDArray[np.bool_] = np.logical_or.reduce(self.run.tables != self.initial_tables, axis=0)
         return unequal
 
     @cached_property
