@@ -16,6 +16,7 @@ from support.learner_settings import run_settings
 
 CAR = "MountainCar-v0"
 ALGORITHMS = get_args(Algorithm)
+EXAMPLES = max(1, (settings.default or settings()).max_examples // 20)
 TRACED = "sarsa_lambda", "true_online_sarsa_lambda", "watkins_q_lambda"
 SMALL: dict[str, Any] = {"seed": 3, "episodes": 6, "max_episode_steps": 60, "epsilon": 0.5}
 
@@ -101,7 +102,7 @@ def test_the_numbers_of_an_episode_give_the_table_after_it(algorithm: Any, discr
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_random_settings_are_explained_to_the_bit(algorithm: Any) -> None:
-    @settings(max_examples=max(1, settings.default.max_examples // 20), deadline=None)
+    @settings(max_examples=EXAMPLES, deadline=None)
     @given(run_settings(algorithm))
     def follow(chosen: dict[str, Any]) -> None:
         try:
@@ -239,7 +240,7 @@ def test_bad_arguments_are_named() -> None:
     with pytest.raises(TypeError, match="env must be an environment, got 3"):
         qtab.explain(run, env=3)  # type: ignore[arg-type]
     other = replace(run, episode_returns=run.episode_returns + 1.0)
-    with pytest.raises(RuntimeError, match="does not repeat this run: episode 0 differs"):
+    with pytest.raises(RuntimeError, match="does not repeat this run: episode 2 differs"):
         qtab.explain(other, 2)
     nothing = replace(run, episode_returns=np.empty(0), completed=False)
     with pytest.raises(ValueError, match="run must have a finished episode"):

@@ -21,7 +21,7 @@ class Arguments:
     run: tyro.conf.Positional[Path]
     """A file written by qtab train --save."""
     episode: int = 0
-    """The number of the episode, from 0. Later episodes take longer: the run is repeated up to there."""
+    """The number of the episode, from 0."""
     steps: int = 5
     """How many steps to show."""
     start: int = 0

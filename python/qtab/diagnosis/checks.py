@@ -13,6 +13,7 @@ from qtab.diagnosis.horizon import horizon
 from qtab.diagnosis.initial_values import too_optimistic, too_pessimistic
 from qtab.diagnosis.learning_rate import noisy_values, slow_learning
 from qtab.diagnosis.not_solved import not_solved
+from qtab.diagnosis.too_short import too_short
 from qtab.diagnosis.truncation import truncation
 from qtab.diagnosis.unlucky_seed import unlucky_seed
 
@@ -39,6 +40,7 @@ CHECKS: Mapping[str, Check] = {
     "lasting exploration": Check(lasting_exploration),
     "slow learning": Check(slow_learning),
     "noisy values": Check(noisy_values, repeats=True),
+    "too short": Check(too_short),
     "too optimistic": Check(too_optimistic),
     "too pessimistic": Check(too_pessimistic),
     "time-outs treated as terminal": Check(truncation, if_solved=True),

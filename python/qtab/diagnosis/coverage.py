@@ -1,5 +1,8 @@
 """Coverage: entries of the table that were never updated."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from qtab.diagnosis.facts import Facts
@@ -36,9 +39,18 @@ def coverage(facts: Facts) -> Finding | None:
         },
         meaning=f"{percent(untried)} of the values in visited states are still the initial ones, such as in {where}. "
         "The greedy policy compares them with learned values.",
-        advice=f"train longer, such as episodes={more}, or explore more",
-        changes=({"episodes": more},),
+        advice=f"train longer, such as episodes={more}, explore more, or use fewer cells",
+        changes=({"episodes": more}, *_coarser(facts)),
     )
+
+
+def _coarser(facts: Facts) -> tuple[Mapping[str, Any], ...]:
+    config = facts.config
+    if config.discretizer == "round" and config.scale is not None:
+        return ({"scale": tuple(scale / 2 for scale in config.scale)},)
+    if config.discretizer == "bins" and config.bins is not None and max(config.bins) > 1:
+        return ({"bins": tuple(max(1, count // 2) for count in config.bins)},)
+    return ()
 
 
 def _place(facts: Facts, row: int) -> str:

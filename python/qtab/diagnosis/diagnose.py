@@ -54,6 +54,8 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
                 unremarkable.append(name)
             else:
                 findings.append(finding)
+                if name == "divergence":
+                    break  # no other check means anything then
     return Diagnosis(
         run=run,
         solved=facts.solved,

@@ -95,11 +95,12 @@ class Diagnosis:
         """Tries the advised changes, one at a time, over the same seeds, and compares each with the run's settings.
 
         Args:
-            seeds: The seeds, as for :func:`qtab.train_many`.
+            seeds: The seeds, at least two, as for :func:`qtab.train_many`.
 
         Raises:
             ModuleNotFoundError: if SciPy, which the intervals need, is not installed.
-            ValueError: if no finding advises a change, or the run's environment cannot be made from its id.
+            ValueError: for fewer than two seeds, if no finding advises a change, or if the run's environment cannot be
+                made from its id.
         """
         return try_changes(self.facts, self.findings, seeds)
 

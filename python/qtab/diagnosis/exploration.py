@@ -7,7 +7,7 @@ import numpy as np
 
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, percent
-from qtab.reference.schedules import epsilon_schedule
+from qtab.diagnosis.rates import epsilons
 
 LEAST_REACHED = 0.01
 """A smaller share of the first half's episodes that reach the goal is reported."""
@@ -42,6 +42,8 @@ def exploration(facts: Facts) -> Finding | None:
         change = _optimistic(facts)
         advice = f"explore by optimism: {', '.join(f'{name}={value:g}' for name, value in change.items())}"
         meaning = f"{when}. Random actions hardly ever find it, so a larger epsilon does not help."
+    if all(getattr(facts.config, name) == value for name, value in change.items()):
+        return None  # it explores like this already: something else is wrong
     return Finding(
         name="exploration",
         title="Exploration hardly ever reaches the goal.",
@@ -57,16 +59,14 @@ def lasting_exploration(facts: Facts) -> Finding | None:
     config = facts.config
     if config.exploration != "epsilon_greedy":
         return None
-    schedule = epsilon_schedule(config)
-    for _ in range(len(facts.run.episode_returns) - 1):
-        schedule.end_episode()
-    if schedule.value <= MOST_EPSILON:
+    last = float(epsilons(config, len(facts.run.episode_returns))[1][-1])
+    if last <= MOST_EPSILON:
         return None
     return Finding(
         name="lasting exploration",
         title="The agent still explores a lot at the end.",
-        evidence={"epsilon of the last episode": schedule.value, "steps between random actions": 1.0 / schedule.value},
-        meaning=f"One step in {1.0 / schedule.value:.2g} is random to the end. Episodes that need many right steps in "
+        evidence={"epsilon of the last episode": last, "steps between random actions": 1.0 / last},
+        meaning=f"One step in {1.0 / last:.2g} is random to the end. Episodes that need many right steps in "
         "a row fail, and values learned from the actions taken are those of a clumsy policy.",
         advice="let epsilon fall to 0: epsilon_schedule='linear', min_epsilon=0.0",
         changes=({"epsilon_schedule": "linear", "min_epsilon": 0.0},),

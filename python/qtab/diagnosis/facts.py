@@ -15,14 +15,13 @@ from qtab.planning.optimum import Optimum
 from qtab.planning.solve import optimum as solve
 from qtab.reference.streams import agent_stream
 from qtab.results.run import Run
-from qtab.results.runs import Runs
 from qtab.results.summary import FINAL_EPISODES
 from qtab.training.evaluate import Evaluation, evaluate
 from qtab.training.train import train
 from qtab.training.train_many import train_many
 
 EVALUATION_EPISODES = 100
-RANDOM_EPISODES = 100
+RANDOM_EPISODES = 500
 MAX_QUICK_UPDATES = 10**8
 """The optimum of a table takes less than a second with at most so many updates, and is then computed."""
 BEST_KNOWN_MOUNTAIN_CAR = -97.668
@@ -133,14 +132,21 @@ class Facts:
         """Whether the greedy policy, or the last episodes of training, reach the goal; None where none is known."""
         if self.goal_return is None or not self.is_finite:
             return None if self.is_finite else False
+        if self.greedy_is_exact:
+            return self.greedy_return >= self.goal_return
         if self.final_return >= self.goal_return:
             return True
         return self.greedy is not None and self.greedy_return >= self.goal_return
 
     @cached_property
+    def greedy_is_exact(self) -> bool:
+        """Whether the return of a greedy policy is computed exactly, from a transition table."""
+        return self.optimum is not None and self.optimum.exact and self.is_finite
+
+    @cached_property
     def greedy_return(self) -> float:
         """The return of the greedy policy: exact with a transition table; NaN where it is not known."""
-        if self.optimum is not None and self.optimum.exact and self.is_finite:
+        if self.optimum is not None and self.greedy_is_exact:
             return float(self.optimum.gap(self.run).greedy_return)
         return float("nan") if self.greedy is None else self.greedy.mean_return
 
@@ -180,7 +186,7 @@ class Facts:
     @cached_property
     def changed(self) -> NDArray[np.bool_]:
         """(rows, actions): whether a value has changed since the start, in either table."""
-        unequal: NDArray[np.bool_] = (self.run.tables != self.initial_tables).any(axis=0)
+        unequal: NDArray[np.bool_] = np.logical_or.reduce(self.run.tables != self.initial_tables, axis=0)
         return unequal
 
     @cached_property
@@ -201,16 +207,24 @@ class Facts:
         return sample_steps(self.run) if self.can_repeat and self.is_finite else None
 
     @cached_property
-    def other_seeds(self) -> Runs | None:
-        """The same config with other seeds; None where they would take too long."""
-        count = self.given_seeds
-        if count is None:
-            work = int(self.run.episode_lengths.sum()) * self.run.discretizer.n_active
-            count = OTHER_SEEDS_STEPS // max(work, 1)
-            # A few seeds are worth waiting a little longer.
-            count = min(count, MOST_SEEDS) if 2 * count >= FEWEST_SEEDS else 0
-            count = max(count, FEWEST_SEEDS) if count else 0
+    def other_returns(self) -> NDArray[np.float64] | None:
+        """(seeds,): the returns of the same config with other seeds; None where they would take too long.
+
+        They are those of the greedy policies where these are exact, else of the last 100 episodes.
+        """
+        count = self._other_seeds()
         if not self.can_repeat or count == 0 or not self.run.completed:
             return None
         seeds = [seed for seed in range(count + 1) if seed != self.config.seed][:count]
-        return train_many(config=self.config, seeds=seeds)
+        runs = train_many(config=self.config, seeds=seeds, tables=self.greedy_is_exact)
+        if self.optimum is not None and self.greedy_is_exact:
+            return self.optimum.gap(runs).greedy_return
+        return runs.final_returns()
+
+    def _other_seeds(self) -> int:
+        if self.given_seeds is not None:
+            return self.given_seeds
+        work = int(self.run.episode_lengths.sum()) * self.run.discretizer.n_active
+        affordable = min(OTHER_SEEDS_STEPS // max(work, 1), MOST_SEEDS)
+        # A few seeds are worth waiting a little longer.
+        return max(affordable, FEWEST_SEEDS) if 2 * affordable >= FEWEST_SEEDS else 0

@@ -4,7 +4,7 @@ import numpy as np
 
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, percent
-from qtab.reference.schedules import epsilon_schedule
+from qtab.diagnosis.rates import epsilons
 
 MOST_STATES = 0.3
 """A larger share of visited states is reported."""
@@ -42,12 +42,7 @@ def too_pessimistic(facts: Facts) -> Finding | None:
     config, visited = facts.config, facts.visited
     if config.exploration != "epsilon_greedy" or not visited.any():
         return None
-    schedule = epsilon_schedule(config)
-    rates = []
-    for _ in range(min(len(facts.run.episode_returns), 10_000)):
-        rates.append(schedule.value)
-        schedule.end_episode()
-    epsilon = float(np.mean(rates))
+    epsilon = float(epsilons(config, len(facts.run.episode_returns))[1].mean())
     if epsilon > LITTLE_EPSILON:
         return None
     untried = ~facts.changed & np.isfinite(facts.initial_tables).all(axis=0)

@@ -5,29 +5,37 @@ from numpy.typing import NDArray
 
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, percent
-from qtab.reference.schedules import LearningRate
+from qtab.diagnosis.rates import learning_rates
+from qtab.diagnosis.too_short import still_improving
 from qtab.training.train import train
 
 MOST_LEFT = 0.3
 """A larger share of the initial values that is still in the values is reported."""
-MOST_NOISE = 0.15
+ENOUGH_LEFT = 0.05
+MOST_NOISE = 0.12
 """A larger change of the values over the last tenth of the episodes, relative to their spread, is reported."""
+MOST_DRIFT = 0.95
+"""Where nearly all values still move in one direction, they are not noisy: they are not yet learned."""
+LEAST_CHANCE = 0.05
+"""Where fewer steps than this share have a result that varies, any learning rate is fine."""
 LEAST_RATE = 0.05
 """A smaller learning rate does not cause noise."""
 
 
 def slow_learning(facts: Facts) -> Finding | None:
     """Finds that the learning rate is too small for the number of updates."""
-    rates = _rates(facts)
+    episodes, rates = learning_rates(facts.config, len(facts.run.episode_returns))
     changed = int(facts.changed.sum())
     if changed == 0 or facts.config.learning_rate_schedule == "visits":
         return None
     updates = float(facts.run.episode_lengths.sum()) * facts.run.discretizer.n_active / changed
-    rate = float(np.average(rates, weights=facts.run.episode_lengths))
+    rate = float(np.average(rates, weights=facts.run.episode_lengths[episodes]))
     left = (1.0 - min(rate, 1.0)) ** updates
     if left <= MOST_LEFT:
         return None
-    faster = min(10 * facts.config.learning_rate, 0.5)
+    # So large that little of the initial value is left, at the same schedule.
+    needed = (1.0 - ENOUGH_LEFT ** (1.0 / updates)) * facts.config.learning_rate / rate if rate > 0 else 1.0
+    faster = min(float(f"{1.2 * needed:.1g}"), 1.0)
     return Finding(
         name="slow learning",
         title="The learning rate is too small for so few updates.",
@@ -41,11 +49,13 @@ def slow_learning(facts: Facts) -> Finding | None:
 def noisy_values(facts: Facts) -> Finding | None:
     """Finds that the values still jump up and down, because the learning rate stays high where there is chance."""
     run, config = facts.run, facts.config
-    rate = float(_rates(facts)[-1])
+    rate = float(learning_rates(config, len(run.episode_returns))[1][-1])
     before = len(run.episode_returns) * 9 // 10
     if not facts.can_repeat or not facts.is_finite or rate < LEAST_RATE or before == 0:
         return None
-    if config.learning_rate_schedule == "visits":
+    if config.learning_rate_schedule == "visits" or still_improving(facts):
+        return None
+    if facts.sample is None or facts.sample.mixed_outcomes < LEAST_CHANCE:
         return None
     earlier = train(
         config=config, callback=lambda done: done.episodes < before, callback_every=before, progress=False
@@ -56,7 +66,7 @@ def noisy_values(facts: Facts) -> Finding | None:
         return None
     spread = _spread(facts.q_values[facts.changed])
     change, drift = float(np.abs(differences[moved]).mean()), float(np.abs(differences[moved].mean()))
-    if spread == 0.0 or change / spread <= MOST_NOISE or drift > 0.8 * change:
+    if spread == 0.0 or change / spread <= MOST_NOISE or drift > MOST_DRIFT * change:
         return None
     return Finding(
         name="noisy values",
@@ -71,16 +81,6 @@ def noisy_values(facts: Facts) -> Finding | None:
         advice="let the learning rate fall: learning_rate_schedule='linear'",
         changes=({"learning_rate_schedule": "linear"}, {"learning_rate": config.learning_rate / 10}),
     )
-
-
-def _rates(facts: Facts) -> NDArray[np.float64]:
-    """(episodes,): the learning rate in each episode."""
-    schedule = LearningRate(facts.config, (1, 1), 1).schedule
-    rates = []
-    for _ in range(len(facts.run.episode_returns)):
-        rates.append(schedule.value)
-        schedule.end_episode()
-    return np.array(rates)
 
 
 def _spread(values: NDArray[np.float64]) -> float:

@@ -1,7 +1,11 @@
 """Not solved: the returns against the threshold and the optimum."""
 
+import math
+
+from qtab.config.presets import presets
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding
+from qtab.results.summary import FINAL_EPISODES
 
 
 def not_solved(facts: Facts) -> Finding | None:
@@ -9,23 +13,20 @@ def not_solved(facts: Facts) -> Finding | None:
     goal = facts.goal_return
     if facts.solved is not False or goal is None:
         return None
-    evidence = {"last 100 episodes": facts.final_return, "greedy policy": facts.greedy_return}
+    last = min(len(facts.run.episode_returns), FINAL_EPISODES)
+    evidence = {f"last {last} episodes": facts.final_return}
+    if not math.isnan(facts.greedy_return):
+        evidence["greedy policy"] = facts.greedy_return
     if facts.threshold is not None:
         evidence["threshold"] = facts.threshold
     if facts.best_return is not None:
         evidence["best known"] = facts.best_return
-    changes = () if facts.config.preset == "solved" else ({"preset": "solved"},)
+    has_better = facts.config.preset != "solved" and "solved" in presets(facts.config.env)
     return Finding(
         name="not solved",
         title="The run did not solve its environment.",
         evidence=evidence,
         meaning=f"A return of {goal:.4g} or more counts as solved here.",
         advice="see the findings below; what_if() tries each change over many seeds",
-        changes=changes if _has_solved_preset(facts) else (),
+        changes=({"preset": "solved"},) if has_better else (),
     )
-
-
-def _has_solved_preset(facts: Facts) -> bool:
-    from qtab.config.presets import presets
-
-    return "solved" in presets(facts.config.env)

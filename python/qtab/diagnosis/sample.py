@@ -21,12 +21,22 @@ class Sample:
 
     rows: NDArray[np.int64]
     """(steps, n_active): the active rows of the state."""
+    columns: NDArray[np.int64]
+    """(steps,): the column of the action."""
     next_rows: NDArray[np.int64]
     """(steps, n_active): the active rows of the next state."""
     rewards: NDArray[np.float64]
     """(steps,): the reward of each step."""
     observations: NDArray[Any]
     """(steps, ...): the state's observation."""
+
+    @property
+    def mixed_outcomes(self) -> float:
+        """The share of steps whose state and action led elsewhere, or paid otherwise, at another step."""
+        _, pairs = np.unique(np.column_stack([self.rows, self.columns]), axis=0, return_inverse=True)
+        _, ends = np.unique(np.column_stack([self.next_rows, self.rewards]), axis=0, return_inverse=True)
+        kinds = np.unique(np.column_stack([pairs, ends]), axis=0)[:, 0]
+        return float(np.mean(np.bincount(kinds)[pairs] > 1))
 
 
 def sample_steps(run: Run) -> Sample:
@@ -43,7 +53,8 @@ def sample_steps(run: Run) -> Sample:
     )
     name, config = gymnasium_id(run.config.env), run.config
     env = gym.make(f"qtab/{name}" if name in ENTRIES else config.env, disable_env_checker=True, **config.env_kwargs)
-    visited, following, rewards = [], [], []
+    visited, columns, following, rewards = [], [], [], []
+    column_of = {_key(run.actions[column]): column for column in range(len(run.actions))}
     try:
         plain: Any = env.unwrapped
         for recording in repeated.recordings:
@@ -53,6 +64,7 @@ def sample_steps(run: Run) -> Sample:
             observation, _ = plain.reset()
             for action in recording.actions[:SAMPLE_STEPS]:
                 visited.append(observation)
+                columns.append(column_of[_key(action)])
                 observation, reward, *_ = plain.step(action)
                 following.append(observation)
                 rewards.append(float(reward))
@@ -60,4 +72,8 @@ def sample_steps(run: Run) -> Sample:
         env.close()
     observations = np.array(visited)
     active = run.discretizer.active_rows
-    return Sample(active(observations), active(np.array(following)), np.array(rewards), observations)
+    return Sample(active(observations), np.array(columns), active(np.array(following)), np.array(rewards), observations)
+
+
+def _key(action: Any) -> tuple[float, ...]:
+    return tuple(np.ravel(action).tolist())

@@ -11,14 +11,14 @@ MOST_BELOW = 0.2
 
 def unlucky_seed(facts: Facts) -> Finding | None:
     """Finds that most other seeds solve the environment with the same settings, and this one is among the worst."""
-    others, goal = facts.other_seeds, facts.goal_return
-    if others is None or goal is None:
+    returns, goal = facts.other_returns, facts.goal_return
+    if returns is None or goal is None:
         return None
-    returns = others.final_returns()
-    solved, below = float(np.mean(returns >= goal)), float(np.mean(returns < facts.final_return))
+    own = facts.greedy_return if facts.greedy_is_exact else facts.final_return
+    solved, below = float(np.mean(returns >= goal)), float(np.mean(returns < own))
     if solved <= 0.5 or below > MOST_BELOW:
         return None
-    rank = len(returns) + 1 - int(np.sum(returns < facts.final_return))
+    rank = len(returns) + 1 - int(np.sum(returns < own))
     return Finding(
         name="unlucky seed",
         title="The seed was unlucky.",

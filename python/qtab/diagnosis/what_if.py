@@ -5,16 +5,16 @@ from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils.extras import missing
 from qtab.config import Config
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, as_keywords, shown
 from qtab.envs.registry import spec_of
 from qtab.results.runs import Runs
-from qtab.training.train_many import train_many
+from qtab.training.train_many import seed_numbers, train_many
 
 if TYPE_CHECKING:
     from qtab.stats.comparisons import Comparison
@@ -30,8 +30,8 @@ class Trial:
     """The name of the finding that advises it."""
     returns: NDArray[np.float64]
     """(seeds,): the mean return of the last 100 episodes, for each seed."""
-    comparison: "Comparison"
-    """The change against the run's settings, paired by seed."""
+    comparison: "Comparison | None"
+    """The change against the run's settings, paired by seed; None where those diverge."""
     solved: int | None
     """The number of seeds that solved the environment; None where neither threshold nor optimum is known."""
 
@@ -45,18 +45,18 @@ class WhatIf:
     seeds: tuple[int, ...]
     """The seeds of all runs."""
     returns: NDArray[np.float64]
-    """(seeds,): the mean return of the last 100 episodes without a change."""
+    """(seeds,): the mean return of the last 100 episodes without a change; NaN if a run diverged."""
     solved: int | None
     """The number of seeds that solved the environment without a change; None where that is not known."""
-    trials: tuple[Trial, ...]
-    """The changes, by their mean difference."""
+    results: tuple[Trial, ...]
+    """The changes, by their mean return."""
     failed: Mapping[str, str]
     """The changes that could not be trained, with the reason."""
 
     @property
     def best(self) -> Trial:
-        """The change with the largest mean difference."""
-        return self.trials[0]
+        """The change with the largest mean return."""
+        return self.results[0]
 
     def __repr__(self) -> str:
         """The whole table, so that it appears where Python is used interactively."""
@@ -89,10 +89,15 @@ class WhatIf:
 
     def _rows(self) -> list[list[str]]:
         rows = [["change", "return", "difference, 95 % interval", "solved"]]
-        rows.append(["none", shown(float(self.returns.mean())), "", self._share(self.solved)])
-        for trial in self.trials:
-            interval = trial.comparison.difference
-            difference = f"{interval.estimate:+.4g} [{interval.low:+.4g}, {interval.high:+.4g}]"
+        diverged = bool(np.isnan(self.returns).any())
+        rows.append(
+            ["none", "diverged" if diverged else shown(float(self.returns.mean())), "", self._share(self.solved)]
+        )
+        for trial in self.results:
+            difference = ""
+            if trial.comparison is not None:
+                interval = trial.comparison.difference
+                difference = f"{interval.estimate:+.4g} [{interval.low:+.4g}, {interval.high:+.4g}]"
             mean = shown(float(trial.returns.mean()))
             rows.append([as_keywords(trial.change), mean, difference, self._share(trial.solved)])
         return rows
@@ -106,29 +111,37 @@ class WhatIf:
 
 def try_changes(facts: Facts, findings: Sequence[Finding], seeds: int | Iterable[int]) -> WhatIf:
     """Trains the settings of a run, and each change that the findings advise; see :meth:`qtab.Diagnosis.what_if`."""
-    try:
-        from qtab.stats.comparisons import compare
-    except ModuleNotFoundError as error:
-        raise missing(error, "stats") from None
+    from qtab.stats import compare
 
     config = facts.config
     changes = {as_keywords(change): (finding.name, change) for finding in findings for change in finding.changes}
     if not changes:
         raise ValueError("no finding advises a change of the settings: there is nothing to try")
-    spec_of(config.env)  # an environment object has no id to make others from
-    base = train_many(config=config, seeds=seeds)
-    before = base.final_returns()
-    trials, failed = [], {}
+    try:
+        spec_of(config.env)
+    except gym.error.Error:
+        raise ValueError(
+            f"what_if needs an environment with an id to make it again, and {config.env} has none"
+        ) from None
+    numbers = seed_numbers(seeds)
+    if len(numbers) < 2:
+        raise ValueError(f"seeds must be at least 2, to compare them in pairs, got {len(numbers)}")
+    try:
+        before = train_many(config=config, seeds=numbers).final_returns()
+    except OverflowError:
+        before = np.full(len(numbers), np.nan)
+    results, failed = [], {}
     for text, (name, change) in changes.items():
         try:
-            runs = _changed(config, change, base.seeds)
+            runs = _changed(config, change, numbers)
         except (OverflowError, ValueError) as error:
             failed[text] = str(error)
             continue
         returns = runs.final_returns()
-        trials.append(Trial(change, name, returns, compare(returns, before), _solved(facts, returns)))
-    trials.sort(key=lambda trial: -trial.comparison.difference.estimate)
-    return WhatIf(config, base.seeds, before, _solved(facts, before), tuple(trials), failed)
+        comparison = None if np.isnan(before).any() else compare(returns, before)
+        results.append(Trial(change, name, returns, comparison, _solved(facts, returns)))
+    results.sort(key=lambda trial: -float(trial.returns.mean()))
+    return WhatIf(config, numbers, before, _solved(facts, before), tuple(results), failed)
 
 
 def _changed(config: Config, change: Mapping[str, Any], seeds: Sequence[int]) -> Runs:

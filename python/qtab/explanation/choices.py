@@ -14,7 +14,12 @@ class ObservedStream:
     """The same random numbers; the last float is kept."""
 
     def __init__(self, stream: AgentStream, kept: list[float]) -> None:
-        self._stream, self._kept = stream, kept
+        self._kept = kept
+        self.draw_from(stream)
+
+    def draw_from(self, stream: AgentStream) -> None:
+        """Draws from another stream from now on."""
+        self._stream = stream
         self.integers, self.uniform = stream.integers, stream.uniform
 
     def random(self) -> float:

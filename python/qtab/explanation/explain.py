@@ -2,16 +2,19 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
 from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.explanation.explanation import Explanation
+from qtab.explanation.fast_forward import Start, start_of
 from qtab.explanation.records import ExplainedStep
 from qtab.explanation.watcher import SeenStep, Watcher
 from qtab.explanation.words import action_name, map_columns, state_in_words
@@ -32,8 +35,11 @@ def explain(
 ) -> Explanation:
     """Explains steps of an episode: what the agent saw, why it chose its action, and how it learned from the result.
 
-    The reference learner in plain NumPy repeats the run from its first episode to the end of this one, with the same
-    numbers to the last bit. This takes tens of microseconds per step: later episodes take longer.
+    The reference learner in plain NumPy repeats the episode, with the same numbers to the last bit. Rust trains up to
+    its start, and the agent's random numbers are drawn up to there; values and actions are compared with Rust's. Where
+    only the steps before tell what was drawn or counted (ties broken at random, missing actions, a learning rate by
+    visits, Dyna-Q, environments in Python), the reference also repeats all episodes before, which takes tens of
+    microseconds per step, with traces over many tiles hundreds.
 
     Args:
         run: The run.
@@ -59,33 +65,60 @@ def explain(
         raise TypeError(f"env must be an environment, got {env!r}")
     began = time.perf_counter()
     config = run.config
-    watcher = Watcher(config, lambda row: _cell(run, row))
-    stepped = _environment(config, env)
-    columns = map_columns(stepped)
-    try:
-        with ProgressBar(episode + 1, "episode", progress, "repeating") as bar, observed_by(watcher):
-            watched = _Watched(stepped, run, watcher, episode, bar.move_to)
-            _, returns, lengths = LEARNERS[config.algorithm](watched, config, stop_after=episode + 1)
-            watcher.finish()
-    finally:
-        if env is None:
-            stepped.close()
-    for repeated, kept in ((returns, run.episode_returns), (lengths, run.episode_lengths)):
-        if repeated.tobytes() != kept[: episode + 1].tobytes():
-            first = int(np.argmax(repeated != kept[: episode + 1]))
+    beginning = start_of(run, episode) if env is None else None
+    repeated = _repeat(run, episode, env, beginning, progress)
+    if beginning is not None and not repeated.agrees_with(beginning):
+        repeated = _repeat(run, episode, env, None, progress)
+    watcher, first = repeated.watcher, episode + 1 - len(repeated.returns)
+    for theirs, ours in ((repeated.returns, run.episode_returns), (repeated.lengths, run.episode_lengths)):
+        kept = ours[first : episode + 1]
+        if theirs.tobytes() != kept.tobytes():
             raise RuntimeError(
-                f"the reference does not repeat this run: episode {first} differs. Was it trained on another "
-                "environment, machine or version? qtab.verify(run) compares them"
+                f"the reference does not repeat this run: episode {first + int(np.argmax(theirs != kept))} differs. "
+                "Was it trained on another environment, machine or version? qtab.verify(run) compares them"
             )
+    explained = range(len(watcher.steps))[start:][:steps]
     return Explanation(
         config=config,
         episode=episode,
-        steps=tuple(_explained(run, watcher, index, columns) for index in range(len(watcher.steps))[start:][:steps]),
+        steps=tuple(_explained(run, watcher, index, repeated.map_columns) for index in explained),
         episode_length=len(watcher.steps),
-        episode_return=float(returns[-1]),
+        episode_return=float(repeated.returns[-1]),
         learning_rate=_learning_rate(config, episode),
         seconds=time.perf_counter() - began,
     )
+
+
+@dataclass(frozen=True)
+class _Repeated:
+    """What the reference repeated: an episode, and those before it unless it started from there."""
+
+    watcher: Watcher
+    table: NDArray[np.float64]
+    returns: NDArray[np.float64]
+    lengths: NDArray[np.int64]
+    map_columns: int | None
+
+    def agrees_with(self, start: Start) -> bool:
+        """Whether the actions, and every value after the episode, are those of Rust."""
+        actions = tuple(choice.action for choice in self.watcher.choices[: len(self.watcher.steps)])
+        return actions == start.columns and self.table.tobytes() == start.tables_after.tobytes()
+
+
+def _repeat(run: Run, episode: int, env: gym.Env | None, start: Start | None, progress: bool | None) -> _Repeated:
+    """Repeats a run with the reference up to the end of an episode, from its first one or from the one itself."""
+    watcher = Watcher(run.config, lambda row: _cell(run, row), start)
+    stepped = _environment(run.config, env)
+    episodes = episode + 1 if start is None else 1
+    try:
+        with ProgressBar(episodes, "episode", progress, "repeating") as bar, observed_by(watcher):
+            watched = _Watched(stepped, run, watcher, episodes, bar.move_to)
+            table, returns, lengths = LEARNERS[run.config.algorithm](watched, run.config, stop_after=episodes)
+            watcher.finish()
+        return _Repeated(watcher, table, returns, lengths, map_columns(stepped))
+    finally:
+        if env is None:
+            stepped.close()
 
 
 def _environment(config: Config, env: gym.Env | None) -> gym.Env:
@@ -144,19 +177,28 @@ def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> E
 
 
 class _Watched(gym.Wrapper[Any, Any, Any, Any]):
-    """Shows the watcher the steps of one episode."""
+    """Shows the watcher the steps of the last of so many episodes."""
 
-    def __init__(self, env: gym.Env, run: Run, watcher: Watcher, episode: int, progress: Callable[[int], None]) -> None:
+    def __init__(
+        self, env: gym.Env, run: Run, watcher: Watcher, episodes: int, progress: Callable[[int], None]
+    ) -> None:
         super().__init__(env)
-        self._run, self._watcher, self._episode, self._progress = run, watcher, episode, progress
+        self._run, self._watcher, self._episodes, self._progress = run, watcher, episodes, progress
         self._begun = 0
         self._observation: Any = None
         self._rows: tuple[int, ...] = ()
 
     def reset(self, **kwargs: Any) -> Any:
         self._progress(self._begun)
-        self._watcher.active = self._begun == self._episode
         self._begun += 1
+        if self._begun == self._episodes:
+            self._watcher.begin()
+        start = self._watcher.start
+        if start is not None:
+            bit_generator = np.random.PCG64()
+            bit_generator.state = dict(start.env_generator)  # type: ignore[assignment]
+            self.env.unwrapped.np_random = np.random.Generator(bit_generator)
+            kwargs = {}
         observation, info = self.env.reset(**kwargs)
         if self._watcher.active:
             self._observation, self._rows = observation, self._active_rows(observation)

@@ -48,7 +48,8 @@ def discounted(rewards: Sequence[float], discount: float, following: float | Non
 
 
 def _expected(probabilities: Sequence[float], next_values: NDArray[np.float64]) -> float:
-    pairs = zip(probabilities, next_values.tolist(), strict=True)
+    following: list[float] = next_values.tolist()
+    pairs = zip(probabilities, following, strict=True)
     # Actions that a state does not have are worth -inf, and have a probability of 0.
     products = [p * q for p, q in pairs if (p, q) != (0.0, -math.inf)]
     total = products[0]

@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.explanation.choices import ObservedPolicy, ObservedStream, explained
+from qtab.explanation.fast_forward import Start
 from qtab.explanation.records import Choice, Trace, Update
 from qtab.explanation.targets import bootstrap, discounted
 from qtab.explanation.updates import Begun, finished
 from qtab.reference.observer import Observer
 from qtab.reference.policies import Policy
-from qtab.reference.schedules import LearningRate
+from qtab.reference.schedules import LearningRate, Schedule
 from qtab.reference.streams import AgentStream
 
 Table = NDArray[np.float64]
@@ -44,29 +45,44 @@ class SeenStep:
 class Watcher(Observer):
     """Records the steps of one episode, while ``active``; nothing of the episodes before it."""
 
-    def __init__(self, config: Config, cell: Callable[[int], Cell]) -> None:
-        """Takes the config of the run, and a function from a row to its cell."""
-        self.config, self.cell = config, cell
+    def __init__(self, config: Config, cell: Callable[[int], Cell], start: Start | None = None) -> None:
+        """Takes the config of the run, a function from a row to its cell, and the episode to start from, if any."""
+        self.config, self.cell, self.start = config, cell, start
         self.active = False
         self.tables: list[Table] = []
         self.choices: list[Choice] = []
         self.steps: list[SeenStep] = []
+        self._stream: ObservedStream
         self._policy: Policy | None = None
         self._begun: Begun | None = None
         self._draws: list[float] = []
 
     def stream(self, stream: AgentStream) -> AgentStream:
         """Returns a stream that keeps the last number that decided."""
-        return ObservedStream(stream, self._draws)
+        self._stream = ObservedStream(stream, self._draws)
+        return self._stream
 
     def policy(self, policy: Policy) -> Policy:
         """Returns a policy that keeps what it chooses."""
         self._policy = policy
+        self._skip(policy)
         return ObservedPolicy(policy, self._chose)
+
+    def learning_rate(self, rate: LearningRate) -> None:
+        """Lowers the rate to that of the episode to start from."""
+        self._skip(rate.schedule)
 
     def table(self, Q: Table) -> None:  # noqa: N803 - the book's name
         """Keeps the table, which the learner changes in place."""
         self.tables.append(Q)
+        if self.start is not None:
+            Q[:] = self.start.tables[len(self.tables) - 1]
+
+    def begin(self) -> None:
+        """Begins the episode to watch."""
+        self.active = True
+        if self.start is not None:
+            self._stream.draw_from(self.start.stream)
 
     def took(self, step: SeenStep) -> None:
         """Receives a step of the environment, before the learner learns from it."""
@@ -78,8 +94,10 @@ class Watcher(Observer):
         if not self.active:
             return
         table = next(index for index, known in enumerate(self.tables) if known is Q)
+        step: int | None
+        rewards: tuple[float, ...]
         if self.config.algorithm in ("dyna_q", "dyna_q_plus") and self.steps[-1].updates:
-            step, rewards, following = None, (), None
+            step, rewards, following = None, (), None  # planning
         else:
             step, rewards, following = self._target(table)
         self._begun = Begun(step, table, tuple(state), action, rewards, following, target, self._weights(table, state))
@@ -120,6 +138,10 @@ class Watcher(Observer):
                 for one in seen.traces
             )
             self._end()
+
+    def _skip(self, schedule: Policy | Schedule) -> None:
+        for _ in range(0 if self.start is None else self.start.episode):
+            schedule.end_episode()
 
     def _chose(self, values: NDArray[np.float64], action: int) -> None:
         if self.active and self._policy is not None:

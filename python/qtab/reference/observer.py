@@ -18,7 +18,7 @@ Table = NDArray[np.float64]
 
 
 class Observer:
-    """Sees the parts of a task and every update. This one does nothing with them; nothing it returns may differ."""
+    """Sees the parts of a task and every update. This one does nothing with them."""
 
     def stream(self, stream: AgentStream) -> AgentStream:
         """Returns the agent's random numbers, or the same numbers observed."""
@@ -27,6 +27,9 @@ class Observer:
     def policy(self, policy: "Policy") -> "Policy":
         """Returns the policy, or the same policy observed."""
         return policy
+
+    def learning_rate(self, rate: "LearningRate") -> None:
+        """Called with the learning rate of each table before the first episode."""
 
     def table(self, Q: Table) -> None:
         """Called with each table before the first episode."""

@@ -58,7 +58,9 @@ class Task:
 
     def new_learning_rate(self) -> LearningRate:
         """Returns the learning rate of a table."""
-        return LearningRate(self.config, (self.n_rows, self.n_actions), self.discretizer.n_active)
+        rate = LearningRate(self.config, (self.n_rows, self.n_actions), self.discretizer.n_active)
+        self.observer.learning_rate(rate)
+        return rate
 
     def table(self, index: int = 0, tables: int = 1) -> Table:
         """Returns one of the tables as it is before the first episode."""

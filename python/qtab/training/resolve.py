@@ -205,7 +205,8 @@ def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> 
         return both
     if initial_q.shape not in (shape, (count, discretizer.n_rows, n_actions)):
         raise ValueError(f"initial_q must have the table's shape {shape}, got {initial_q.shape}")
-    if len(np.unique(np.isneginf(initial_q.reshape(count, -1)), axis=0)) > 1:
+    missing = np.isneginf(initial_q.reshape(count, -1))
+    if (missing != missing[0]).any():
         raise ValueError("initial_q must have -inf in both tables or in none, got it in one")
     return initial_q
 

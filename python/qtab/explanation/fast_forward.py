@@ -1,0 +1,96 @@
+"""The start of a later episode, from Rust: the tables and the generators as the reference would have them there.
+
+Rust trains up to the episode, which gives the tables and the environment's generator. The agent's generator is brought
+there by drawing what the policy drew: where neither values nor a model decide how much that is, no step must be taken.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab import _core
+from qtab.config.options import TABLES_ONLY, n_tables
+from qtab.reference.schedules import epsilon_schedule
+from qtab.reference.streams import AgentStream, agent_stream
+from qtab.rendering.replay import generator_states
+from qtab.results.run import Run
+from qtab.training.resolve import resolve
+
+CHOOSE_FIRST = ("q_learning", "expected_sarsa", "double_q_learning")
+"""The algorithms that choose an action before each step; the others choose the next one after it."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """The start of an episode, and its end to compare with."""
+
+    episode: int
+    tables: NDArray[np.float64]
+    """(k, rows, actions): the tables before the episode."""
+    tables_after: NDArray[np.float64]
+    """(k, rows, actions): the tables after it."""
+    env_generator: Any
+    """The state of the environment's bit generator before its reset."""
+    columns: tuple[int, ...]
+    """The columns of the actions of the episode."""
+    stream: AgentStream
+    """The agent's random numbers from there on."""
+
+
+def start_of(run: Run, episode: int) -> Start | None:
+    """Returns the start of an episode; None where only the steps before it tell what the agent drew or counted."""
+    config = run.config
+    by_values = config.ties == "random" or (
+        isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q).any()
+    )
+    if config.backend != "rust" or config.algorithm in TABLES_ONLY or by_values:
+        return None
+    if episode == 0 or config.learning_rate_schedule == "visits":
+        return None
+    resolved = resolve(config.env, {name: value for name, value in vars(config).items() if name != "env"})
+    try:
+        trainer = _core.Trainer(resolved.spec(), resolved.seed, record=1)
+        trainer.advance(episode)
+        before = trainer.tables()
+        trainer.advance(episode + 1)
+        start, columns = trainer.recordings()[-1]
+        (env_generator,) = generator_states(resolved.config, [start])
+    finally:
+        resolved.close()
+    shape = run.tables.shape
+    return Start(
+        episode,
+        before.reshape(shape),
+        trainer.tables().reshape(shape),
+        env_generator,
+        tuple(columns),
+        _agent_stream(run, episode),
+    )
+
+
+def _agent_stream(run: Run, episode: int) -> AgentStream:
+    """The agent's random numbers after so many episodes: those that the tables and the policy drew are left out."""
+    config, n_actions = run.config, len(run.actions)
+    stream = agent_stream(config.seed or 0, config.bit_generator)
+    if isinstance(config.initial_q, tuple):
+        for _ in range(n_tables(config.algorithm)):
+            stream.uniform(*config.initial_q, size=run.tables.shape[1:])
+    epsilon = None if config.exploration == "softmax" else epsilon_schedule(config)
+    lengths, terminated = run.episode_lengths.tolist(), run.terminated.tolist()
+    draw, has_coin = stream.random, config.algorithm == "double_q_learning"
+    for number in range(episode):
+        choices = lengths[number]
+        if config.algorithm not in CHOOSE_FIRST:
+            is_terminal = terminated[number] or config.on_truncation == "terminate"
+            choices += 0 if is_terminal else 1
+        greedy_below = 1.0 if epsilon is None else 1.0 - epsilon.value
+        for _ in range(choices):
+            if not draw() < greedy_below:
+                stream.integers(0, n_actions)
+            if has_coin:
+                draw()
+        if epsilon is not None:
+            epsilon.end_episode()
+    return stream
