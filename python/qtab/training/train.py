@@ -14,7 +14,6 @@ from qtab import _core
 from qtab._utils import checks
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.progress import ProgressBar
-from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
