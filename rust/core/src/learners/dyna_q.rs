@@ -1,6 +1,7 @@
 //! Dyna-Q: Q-learning that also learns from a model (R. Sutton, 1990; Sutton & Barto, the box in section 8.2).
 
 use super::common::{Agent, Model, ModelEntry, UpdateRule, single_row};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -41,6 +42,10 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
             }
         }
         agent.next_action(next, rng)
+    }
+
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.model.persist(checkpoint)
     }
 }
 

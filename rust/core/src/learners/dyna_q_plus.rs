@@ -1,6 +1,7 @@
 //! Dyna-Q+: Dyna-Q with an exploration bonus (R. Sutton, 1990; Sutton & Barto, section 8.3).
 
 use super::common::{Agent, Model, ModelEntry, UpdateRule, single_row};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -55,6 +56,16 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
             agent.update_from_entry(row, action, ModelEntry { reward, next });
         }
         agent.next_action(next, rng)
+    }
+
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.model.persist(checkpoint)?;
+        self.now.persist(checkpoint)?;
+        self.last_tried.persist(checkpoint)?;
+        if self.last_tried.iter().any(|&step| step > self.now) {
+            return Err(CheckpointError::Invalid("step of a visit"));
+        }
+        Ok(())
     }
 }
 

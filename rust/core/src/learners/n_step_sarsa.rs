@@ -3,6 +3,8 @@
 use std::collections::VecDeque;
 
 use super::common::{Agent, UpdateRule};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::{ActiveRows, MAX_TILINGS};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -26,7 +28,7 @@ pub struct NStepSarsa<R> {
     visits: VecDeque<Visit<R>>,
 }
 
-impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
+impl<R: ActiveRows> NStepSarsa<R> {
     /// Targets of `n` rewards.
     ///
     /// # Panics
@@ -58,7 +60,7 @@ impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for NStepSarsa<R> {
+impl<R: ActiveRows> UpdateRule<R, Agent> for NStepSarsa<R> {
     #[inline]
     fn learn(
         &mut self,
@@ -77,6 +79,38 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for NStepSarsa<R> {
             self.update_oldest(agent, bootstrap);
         }
         bootstrap.map_or(0, |(_, next_action)| next_action)
+    }
+
+    fn persist(
+        &mut self,
+        (num_rows, num_actions): (usize, usize),
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        let mut count = self.visits.len();
+        checkpoint.index(&mut count, self.n, "number of steps")?;
+        let mut visits = VecDeque::with_capacity(self.n);
+        for index in 0..count {
+            let saved = self.visits.get(index).filter(|_| !checkpoint.is_restoring());
+            let mut rows = saved.map_or_else(Vec::new, |visit| visit.rows.as_ref().to_vec());
+            let (mut active, mut action) = (rows.len(), saved.map_or(0, |visit| visit.action));
+            let mut reward = saved.map_or(0.0, |visit| visit.reward);
+            checkpoint.index(&mut active, MAX_TILINGS + 1, "number of active rows")?;
+            rows.resize(active, 0);
+            for row in &mut rows {
+                checkpoint.index_u32(row, num_rows, "row")?;
+            }
+            checkpoint.index(&mut action, num_actions, "action")?;
+            reward.persist(checkpoint)?;
+            let rows = R::try_from(&rows).map_err(|_| CheckpointError::Invalid("number of active rows"))?;
+            visits.push_back(Visit { rows, action, reward });
+        }
+        self.visits = visits;
+        Ok(())
+    }
+
+    /// The pairs that await their updates are forgotten.
+    fn abandon_episode(&mut self) {
+        self.visits.clear();
     }
 }
 

@@ -1,6 +1,7 @@
 //! The learning rate α, chosen at run time.
 
 use super::{Schedule, StepSize};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
 /// A learning rate that follows a schedule, or falls with the number of visits of each weight.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +54,10 @@ impl StepSize for LearningRate {
     fn end_episode(&mut self) {
         self.schedule.end_episode();
         self.step_size = self.schedule.value() / self.n_active;
+    }
+
+    fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.visits.persist(checkpoint)
     }
 }
 

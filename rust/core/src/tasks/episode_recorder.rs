@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::{Next, RngSnapshot, Task, Transition};
+use crate::checkpoint::{Checkpoint, CheckpointError};
 
 /// A finished episode that can be replayed.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,5 +64,25 @@ impl<T: RngSnapshot> Task for EpisodeRecorder<T> {
             self.finish();
         }
         Ok(transition)
+    }
+
+    fn active_rows(&self, state: &T::State) -> Result<T::Active, T::Error> {
+        self.task.active_rows(state)
+    }
+
+    fn resumes_episodes(&self) -> bool {
+        self.task.resumes_episodes()
+    }
+
+    /// Recordings are not part of it: an episode that is resumed in the middle is not recorded.
+    fn persist(
+        &mut self,
+        state: Option<&mut T::State>,
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        if checkpoint.is_restoring() {
+            self.current = None;
+        }
+        self.task.persist(state, checkpoint)
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::features::MAX_TILINGS;
+use qtab_core::features::{ActiveRows, MAX_TILINGS};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
     TdLearner, Traces, TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
@@ -92,7 +92,7 @@ fn build_learner<R>(
     spec: &RunSpec,
 ) -> PyResult<Box<dyn Run>>
 where
-    R: Copy + AsRef<[u32]> + Send + 'static,
+    R: ActiveRows + Send + 'static,
 {
     let agent = generic_agent(spec, n_rows, n_active, &mut rng)?;
     let weights = agent.table.values().len();
@@ -127,7 +127,7 @@ where
 
 fn with_rule<R, U>(task: BoxedTask<R, RunError>, agent: Agent, rule: U, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>
 where
-    R: Copy + AsRef<[u32]> + Send + 'static,
+    R: ActiveRows + Send + 'static,
     U: UpdateRule<R, Agent> + Send + 'static,
 {
     into_run(task, TdLearner { agent, rule }, rng, spec)
@@ -135,7 +135,7 @@ where
 
 fn into_run<R, L>(task: BoxedTask<R, RunError>, learner: L, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>
 where
-    R: Copy + AsRef<[u32]> + Send + 'static,
+    R: ActiveRows + Send + 'static,
     L: Learner<R> + Send + 'static,
 {
     let learner = TruncationHandling { learner, terminate: spec.terminate_on_truncation };

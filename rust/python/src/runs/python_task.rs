@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use qtab_core::Features;
 use qtab_core::Task;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::features::MAX_TILINGS;
 use qtab_core::numeric::Float;
 use qtab_core::tasks::RngSnapshot;
@@ -152,6 +153,19 @@ impl<R: ObservationReader> Task for PythonTask<R> {
             };
             Ok(Transition { reward, next })
         })
+    }
+
+    fn active_rows(&self, _elapsed: &u64) -> Result<R::Active, RunError> {
+        unreachable!("an episode of a Python environment is never resumed in the middle")
+    }
+
+    fn resumes_episodes(&self) -> bool {
+        false
+    }
+
+    /// Whether the environment was seeded. Its generator is the caller's to restore.
+    fn persist(&mut self, _state: Option<&mut u64>, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.seeded.persist(checkpoint)
     }
 }
 

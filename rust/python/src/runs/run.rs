@@ -1,6 +1,7 @@
 //! A training run of any type.
 
 use pyo3::prelude::*;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::random::Rng;
 use qtab_core::tasks::Recordings;
 use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer};
@@ -17,13 +18,19 @@ pub(crate) trait Run: Send {
 
     /// The values of each table, rows first.
     fn tables(&self) -> Vec<&[f64]>;
+
+    /// Saves or restores all but the tables and the finished episodes.
+    fn persist(&mut self, num_actions: usize, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
+
+    /// Takes over the tables and the finished episodes of a run that is resumed.
+    fn resume(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError>;
 }
 
 impl<W, L, D> Run for Trainer<W, L, D>
 where
     W: Task<Error: Into<RunError>, State: Send, Active: Send> + Send,
     L: Learner<W::Active> + Send,
-    D: Rng + Clone + Send,
+    D: Rng + Clone + Persist + Send,
 {
     fn advance(&mut self, budget: Budget) -> Result<(), RunError> {
         Trainer::advance(self, budget).map_err(Into::into)?;
@@ -40,6 +47,14 @@ where
 
     fn tables(&self) -> Vec<&[f64]> {
         self.learner().tables()
+    }
+
+    fn persist(&mut self, num_actions: usize, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        Trainer::persist(self, num_actions, checkpoint)
+    }
+
+    fn resume(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError> {
+        Trainer::resume(self, episodes, tables)
     }
 }
 
@@ -58,6 +73,14 @@ impl Run for Box<dyn Run> {
 
     fn tables(&self) -> Vec<&[f64]> {
         (**self).tables()
+    }
+
+    fn persist(&mut self, num_actions: usize, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (**self).persist(num_actions, checkpoint)
+    }
+
+    fn resume(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError> {
+        (**self).resume(episodes, tables)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The parts that all learners share: the Q table, the policy and the constants of an update.
 
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::policies::{AnyPolicy, Policy};
 use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::Rng;
@@ -74,6 +75,11 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[inline]
     pub fn update_terminal(&mut self, rows: impl AsRef<[u32]>, action: usize, reward: f64) {
         self.table.update_terminal(rows.as_ref(), action, reward, self.terminal_update, &mut self.learning_rate);
+    }
+
+    /// Saves or restores what the learning rate has counted.
+    pub(crate) fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.learning_rate.persist_counts(checkpoint)
     }
 
     /// Moves the schedules on to the next episode.
