@@ -16,6 +16,7 @@ from qtab.config import Config
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.results import run_file
+from qtab.results.run_state import RunState
 from qtab.results.summary import FINAL_EPISODES
 
 
@@ -45,6 +46,8 @@ class Run:
     """The versions of qtab, Gymnasium, NumPy and Python, and the platform."""
     recordings: tuple["Recording", ...] = field(default=(), repr=False)
     """The last episodes, where ``record=`` asked for them, to be replayed. They are not saved."""
+    state: RunState | None = field(default=None, repr=False)
+    """What :func:`qtab.resume` needs; None for runs of ``train_many`` and from files of earlier versions."""
 
     def __repr__(self) -> str:
         """One line: the tables are not shown."""
@@ -144,6 +147,8 @@ class Run:
         if isinstance(self.config.initial_q, np.ndarray):
             arrays["initial_q"] = self.config.initial_q
             config["initial_q"] = None
+        if self.state is not None:
+            arrays["state"] = self.state.array()
         header = {
             "config": config,
             "actions": len(self.actions),
@@ -151,6 +156,7 @@ class Run:
             "completed": self.completed,
             "seconds": self.seconds,
             "versions": dict(self.versions),
+            "generator": None if self.state is None else self.state.generator,
         }
         try:
             text = run_file.encode(header)

@@ -14,6 +14,7 @@ from qtab.config.options import defaults, n_tables
 from qtab.discretizers.actions import Actions
 from qtab.results import run_file
 from qtab.results.run import Run
+from qtab.results.run_state import RunState
 
 
 def load(path: "str | os.PathLike[str]") -> Run:
@@ -52,6 +53,7 @@ def _run(header: Mapping[str, Any], stored: Mapping[str, NDArray[Any]]) -> Run:
         completed=len(arrays["episode_returns"]) == config.episodes,
         seconds=float(header["seconds"]),
         versions={str(key): str(value) for key, value in header["versions"].items()},
+        state=RunState.restore(stored["state"], header["generator"]) if "state" in stored else None,
         **arrays,
     )
     with np.errstate(all="raise"):

@@ -23,6 +23,7 @@ from qtab.results.run import Recording, Run
 from qtab.training.callbacks import Callback, EpisodeReader
 from qtab.training.resolve import log_default_limit, resolve
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.restore import restore, state_of
 
 CALLBACK_EVERY = 100
 
@@ -86,13 +87,17 @@ def train_resolved(
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
     progress: bool | None = None,
+    earlier: Run | None = None,
 ) -> Run:
-    """Trains a run that is already resolved; see :func:`train`."""
+    """Trains a run that is already resolved, or continues an earlier one; see :func:`train` and :func:`resume`."""
     total = resolved.config.episodes
     began = time.perf_counter()
     trainer = _core.Trainer(resolved.spec(), resolved.seed, record)
-    reader = EpisodeReader(trainer, total)
     done = 0
+    if earlier is not None:
+        restore(trainer, resolved, earlier)
+        done, began = len(earlier.episode_returns), began - earlier.seconds
+    reader = EpisodeReader(trainer, total)
     try:
         with ProgressBar(total, "episode", progress) as bar:
             while done < total:
@@ -154,4 +159,5 @@ def _run(resolved: ResolvedRun, trainer: _core.Trainer, began: float) -> Run:
         seconds=time.perf_counter() - began,
         versions=versions(),
         recordings=recordings,
+        state=state_of(trainer, resolved),
     )
