@@ -19,7 +19,7 @@ from support.parity import assert_same_run
 
 def stopped(env: Any, after: int, **config: Any) -> qtab.Run:
     """A run that a callback stopped after so many episodes."""
-    return qtab.train(env, callback=until(after), callback_every=1, **config)
+    return qtab.train(env, callback=until(after), callback_every=after, **config)
 
 
 def until(episodes: int) -> Callable[[qtab.Progress], bool]:
@@ -95,7 +95,7 @@ def test_a_run_stopped_in_the_middle_of_an_episode_resumes_exactly(env, bit_gene
     config = {"episodes": 2_000_000, "max_episode_steps": 1000, "seed": 3, "bit_generator": bit_generator, **LONG[env]}
     part = stopped_by_a_timer(0.03, env, **config)
     finished = len(part.episode_returns)
-    part = qtab.resume(part, callback=until(finished + 20), callback_every=1)
+    part = qtab.resume(part, callback=until(finished + 20), callback_every=20)
     assert_same_run(part, stopped(env, finished + 20, **config))
 
 
@@ -134,7 +134,7 @@ def test_a_resumed_run_may_be_stopped_and_resumed_again():
     config: dict[str, Any] = {"seed": 4, "episodes": 60, "algorithm": "sarsa_lambda"}
     part = stopped("MountainCar-v0", 10, **config)
     for episodes in (20, 30, 40):
-        part = qtab.resume(part, callback=until(episodes), callback_every=1)
+        part = qtab.resume(part, callback=until(episodes), callback_every=10)
         assert len(part.episode_returns) == episodes
     assert_resumed(qtab.resume(part), qtab.train("MountainCar-v0", **config))
 
