@@ -45,6 +45,7 @@ _MODULES = {
     "plot": "qtab.plots.run",
     "plots": "qtab.plots",
     "presets": "qtab.config.presets",
+    "resume": "qtab.training.resume",
     "stats": "qtab.stats",
     "sweep": "qtab.sweeps.sweep",
     "train": "qtab.training.train",
@@ -86,6 +87,7 @@ if TYPE_CHECKING:
     from qtab.training.callbacks import Progress as Progress
     from qtab.training.evaluate import Evaluation as Evaluation
     from qtab.training.evaluate import evaluate as evaluate
+    from qtab.training.resume import resume as resume
     from qtab.training.runs_progress import RunsProgress as RunsProgress
     from qtab.training.train import train as train
     from qtab.training.train_many import train_many as train_many

@@ -22,6 +22,7 @@ from qtab.results import behaviour, run_file
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
+from qtab.results.run_state import RunState
 from qtab.results.snapshots import Snapshots
 from qtab.results.summary import FINAL_EPISODES, default_block
 
@@ -63,6 +64,8 @@ class Run:
     they were not counted."""
     snapshots: Snapshots | None = field(default=None, repr=False)
     """The tables at several episodes, where ``snapshots=`` asked for them; None elsewhere."""
+    state: RunState | None = field(default=None, repr=False)
+    """What :func:`qtab.resume` needs; None for runs of ``train_many`` and from files of earlier versions."""
 
     def __repr__(self) -> str:
         """One line: the tables are not shown."""
@@ -245,6 +248,8 @@ class Run:
         if isinstance(self.config.initial_q, np.ndarray):
             arrays["initial_q"] = self.config.initial_q
             config["initial_q"] = None
+        if self.state is not None:
+            arrays["state"] = self.state.array()
         header = {
             "config": config,
             "actions": len(self.actions),
@@ -252,6 +257,7 @@ class Run:
             "completed": self.completed,
             "seconds": self.seconds,
             "versions": dict(self.versions),
+            "generator": None if self.state is None else self.state.generator,
         }
         kwargs = self.config.env_kwargs
         try:

@@ -15,6 +15,7 @@ from qtab.results import run_file
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import restore_optional
 from qtab.results.run import Run
+from qtab.results.run_state import RunState
 
 _LOGGER = logging.getLogger("qtab")
 _MAX_REASON = 400
@@ -77,6 +78,7 @@ def _run(content: run_file.Content) -> Run:
         seconds=float(seconds),
         versions=versions,
         unchecked=not content.has_digest,
+        state=RunState.restore(stored["state"], header["generator"]) if "state" in stored else None,
         **arrays,
     )
     check_consistent(run)

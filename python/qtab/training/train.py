@@ -27,6 +27,7 @@ from qtab.training.callback_list import CallbackList, Callbacks
 from qtab.training.callbacks import EpisodeReader
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.restore import restore, state_of
 from qtab.training.run_memory import check_run
 
 CALLBACK_EVERY = 100
@@ -113,17 +114,21 @@ def train_resolved(
     *,
     visits: bool = False,
     snapshots: int | Sequence[int] | None = None,
+    earlier: Run | None = None,
 ) -> Run:
-    """Trains a run that is already resolved; see :func:`train`."""
+    """Trains a run that is already resolved, or continues an earlier one; see :func:`train` and :func:`resume`."""
     total = resolved.config.episodes
     copied_at = snapshot_episodes(snapshots, total)
     room = check_run(resolved, record, bytes_limit(memory_limit))
     began = time.perf_counter()
     trainer = _core.Trainer(resolved.spec(), resolved.seed, record, min(room, checks.LARGEST_COUNT), visits)
     collector = SnapshotCollector(trainer, copied_at, _table_shape(resolved))
-    reader = EpisodeReader(trainer, resolved, began, lambda: _run(resolved, trainer, began, over=False))
     callbacks = CallbackList(callback, callback_every)
     done = 0
+    if earlier is not None:
+        restore(trainer, resolved, earlier)
+        done, began = len(earlier.episode_returns), began - earlier.seconds
+    reader = EpisodeReader(trainer, resolved, began, lambda: _run(resolved, trainer, began, over=False))
     try:
         with (
             resolved.environment.exclusively(),
@@ -207,4 +212,5 @@ def _run(
         recordings=recordings,
         visits=None if visits is None else visits.reshape(*resolved.discretizer.shape, len(resolved.actions)),
         snapshots=snapshots,
+        state=state_of(trainer, resolved),
     )

@@ -1,5 +1,6 @@
 //! The trait of all environments.
 
+use crate::checkpoint::Persist;
 use crate::random::Rng;
 
 /// The result of a step.
@@ -17,7 +18,7 @@ pub struct Step<S> {
 /// in.
 pub trait Env {
     /// All that changes from step to step.
-    type State: Copy;
+    type State: Copy + Persist;
     /// An action: an index if the actions are discrete.
     type Action: Copy;
     /// An observation, in Gymnasium's dtype.

@@ -2,10 +2,15 @@
 
 use super::OutOfBounds;
 
+/// The active rows of an observation, which are stored and passed by value.
+pub trait ActiveRows: Copy + AsRef<[u32]> + for<'a> TryFrom<&'a [u32]> {}
+
+impl<R: Copy + AsRef<[u32]> + for<'a> TryFrom<&'a [u32]>> ActiveRows for R {}
+
 /// Maps an observation to the active rows of a Q table: one row for a grid, several for tile coding.
 pub trait Features<O: ?Sized> {
     /// The active rows, in the order in which a learner sums their values.
-    type Active: Copy + AsRef<[u32]>;
+    type Active: ActiveRows;
 
     /// The active rows of an observation.
     ///

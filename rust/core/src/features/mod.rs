@@ -15,7 +15,7 @@ mod tile_coding;
 pub use any_grid::AnyGrid;
 pub use batch_features::BatchFeatures;
 pub use bins::{Bins, Edges};
-pub use features::Features;
+pub use features::{ActiveRows, Features};
 pub use identity::Identity;
 pub use multi_discrete_index::MultiDiscreteIndex;
 pub use out_of_bounds::OutOfBounds;

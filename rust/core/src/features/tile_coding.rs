@@ -24,6 +24,17 @@ impl<const M: usize> AsRef<[u32]> for ActiveTiles<M> {
     }
 }
 
+impl<const M: usize> TryFrom<&[u32]> for ActiveTiles<M> {
+    type Error = ();
+
+    /// An error for more rows than the capacity.
+    fn try_from(active: &[u32]) -> Result<Self, ()> {
+        let mut rows = [0; M];
+        rows.get_mut(..active.len()).ok_or(())?.copy_from_slice(active);
+        Ok(Self { rows, tilings: active.len() })
+    }
+}
+
 /// The tiles along one component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TiledAxis<const M: usize> {

@@ -1,6 +1,7 @@
 //! Double Q-learning (H. van Hasselt, 2010; Sutton & Barto, equation 6.10).
 
 use super::common::{Agent, Learner};
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::numeric::argmax;
 use crate::policies::Policy;
 use crate::q_table::QTable;
@@ -82,6 +83,25 @@ impl<R: Copy + AsRef<[u32]>> Learner<R> for DoubleQLearning {
 
     fn tables(&self) -> Vec<&[f64]> {
         vec![self.agent.table.values(), self.second_table.values()]
+    }
+
+    fn tables_mut(&mut self) -> Vec<&mut [f64]> {
+        vec![self.agent.table.values_mut(), self.second_table.values_mut()]
+    }
+
+    fn shape(&self) -> (usize, usize) {
+        self.agent.table.shape()
+    }
+
+    fn skip_episodes(&mut self, episodes: usize) {
+        (0..episodes).for_each(|_| <Self as Learner<R>>::end_episode(self));
+    }
+
+    fn abandon_episode(&mut self) {}
+
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.agent.persist_counts(checkpoint)?;
+        self.second_learning_rate.persist_counts(checkpoint)
     }
 
     fn diverged(&self) -> bool {

@@ -1,6 +1,7 @@
 //! Dyna-Q: Q-learning that also learns from a model (R. Sutton, 1990; Sutton & Barto, the box in section 8.2).
 
 use super::common::{Agent, Model, ModelEntry, PlanningProgress, UpdateRule, single_row};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -64,6 +65,16 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
             }
         }
         if self.progress.is_unfinished() { 0 } else { agent.next_action(next, rng) }
+    }
+
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.model.persist(checkpoint)?;
+        self.progress.persist(checkpoint)?;
+        self.model.check_planning(&self.progress)
+    }
+
+    fn abandon_episode(&mut self) {
+        self.progress = PlanningProgress::default();
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::common::{Agent, Model, ModelEntry, PlanningProgress, UpdateRule, single_row};
 use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled};
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -81,6 +82,22 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
             agent.update_from_entry(row, action, ModelEntry { reward, next });
         }
         if self.progress.is_unfinished() { 0 } else { agent.next_action(next, rng) }
+    }
+
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.model.persist(checkpoint)?;
+        self.progress.persist(checkpoint)?;
+        self.model.check_planning(&self.progress)?;
+        self.now.persist(checkpoint)?;
+        self.last_tried.persist(checkpoint)?;
+        if self.last_tried.iter().any(|&step| step > self.now) {
+            return Err(CheckpointError::Invalid("step of a visit"));
+        }
+        Ok(())
+    }
+
+    fn abandon_episode(&mut self) {
+        self.progress = PlanningProgress::default();
     }
 }
 

@@ -3,6 +3,8 @@
 use std::collections::VecDeque;
 
 use super::common::{Agent, MAX_WORK_PER_CALL, UpdateRule, VALUES_PER_WORK};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
+use crate::features::ActiveRows;
 use crate::memory::{AllocationError, out_of_memory};
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -34,7 +36,7 @@ pub struct NStepSarsa<R> {
     work: u64,
 }
 
-impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
+impl<R: ActiveRows> NStepSarsa<R> {
     /// Targets of `n` rewards.
     ///
     /// # Panics
@@ -76,7 +78,7 @@ impl<R: Copy + AsRef<[u32]>> NStepSarsa<R> {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for NStepSarsa<R> {
+impl<R: ActiveRows> UpdateRule<R, Agent> for NStepSarsa<R> {
     #[inline]
     fn learn(
         &mut self,
@@ -120,6 +122,46 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for NStepSarsa<R> {
     fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
         self.finish(agent);
         self.bootstrap.map_or(0, |(_, next_action)| next_action)
+    }
+
+    fn persist(
+        &mut self,
+        (num_rows, num_actions): (usize, usize),
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        let mut count = self.visits.len();
+        checkpoint.index(&mut count, self.n + 1, "number of steps")?;
+        if checkpoint.is_restoring() {
+            self.visits.clear();
+            self.visits.try_reserve(count).map_err(|_| CheckpointError::OutOfMemory)?;
+        }
+        for index in 0..count {
+            let saved = self.visits.get(index).copied();
+            let rows = persist_rows(saved.map(|visit| visit.rows), num_rows, checkpoint)?;
+            let (mut action, mut reward) = saved.map_or((0, 0.0), |visit| (visit.action, visit.reward));
+            checkpoint.index(&mut action, num_actions, "action")?;
+            reward.persist(checkpoint)?;
+            if checkpoint.is_restoring() {
+                self.visits.push_back(Visit { rows, action, reward });
+            }
+        }
+        let mut bootstraps = self.bootstrap.is_some();
+        (&mut self.finishing, &mut self.work, &mut bootstraps).persist(checkpoint)?;
+        self.bootstrap = if bootstraps {
+            let rows = persist_rows(self.bootstrap.map(|(rows, _)| rows), num_rows, checkpoint)?;
+            let mut action = self.bootstrap.map_or(0, |(_, action)| action);
+            checkpoint.index(&mut action, num_actions, "action")?;
+            Some((rows, action))
+        } else {
+            None
+        };
+        Ok(())
+    }
+
+    /// The pairs that await their updates are forgotten.
+    fn abandon_episode(&mut self) {
+        self.finishing = false;
+        self.visits.clear();
     }
 }
 

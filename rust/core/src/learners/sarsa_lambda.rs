@@ -1,6 +1,7 @@
 //! Sarsa(λ) (G. Rummery and M. Niranjan, 1994; Sutton & Barto, the box in section 12.7).
 
 use super::common::{Agent, TraceKind, Traces, UpdateRule, VALUES_PER_WORK};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -53,6 +54,10 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for SarsaLambda {
 
     fn end_episode(&mut self) {
         self.traces.clear();
+    }
+
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.traces.persist(checkpoint)
     }
 }
 

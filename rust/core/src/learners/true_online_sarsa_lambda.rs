@@ -1,6 +1,7 @@
 //! True online Sarsa(λ), with dutch traces (H. van Seijen et al., 2016; Sutton & Barto, the box in section 12.7).
 
 use super::common::{Agent, Traces, UpdateRule, VALUES_PER_WORK};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
@@ -74,6 +75,11 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
     fn end_episode(&mut self) {
         self.q_old = 0.0;
         self.traces.clear();
+    }
+
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.traces.persist(checkpoint)?;
+        self.q_old.persist(checkpoint)
     }
 }
 

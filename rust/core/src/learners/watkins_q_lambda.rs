@@ -1,6 +1,7 @@
 //! Watkins's Q(λ) (C. Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
 
 use super::common::{Agent, TraceKind, Traces, UpdateRule, VALUES_PER_WORK};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::numeric::maximum;
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -61,6 +62,10 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
 
     fn end_episode(&mut self) {
         self.traces.clear();
+    }
+
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.traces.persist(checkpoint)
     }
 }
 

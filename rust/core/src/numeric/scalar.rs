@@ -4,6 +4,7 @@ use std::hint::black_box;
 use std::ops::{Add, Mul, Sub};
 
 use super::squared;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
 /// A scalar together with its dtype.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,6 +111,24 @@ impl From<Scalar> for f32 {
             Scalar::Single(number) => number,
             Scalar::Python(number) | Scalar::Double(number) => number as Self,
         }
+    }
+}
+
+impl Persist for Scalar {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        let (mut dtype, mut value) = match *self {
+            Self::Python(value) => (0_u8, value),
+            Self::Single(value) => (1, f64::from(value)),
+            Self::Double(value) => (2, value),
+        };
+        (&mut dtype, &mut value).persist(checkpoint)?;
+        *self = match dtype {
+            0 => Self::Python(value),
+            1 => Self::Single(value as f32),
+            2 => Self::Double(value),
+            _ => return Err(CheckpointError::Invalid("dtype")),
+        };
+        Ok(())
     }
 }
 

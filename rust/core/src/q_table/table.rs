@@ -46,6 +46,11 @@ impl<const N: usize> QTable<N> {
         if N == 0 { self.num_actions } else { N }
     }
 
+    /// The number of rows and of actions.
+    pub(crate) fn shape(&self) -> (usize, usize) {
+        (self.values.len() / self.num_actions, self.num_actions)
+    }
+
     /// The action values of a row.
     #[inline]
     pub fn row(&self, row: u32) -> &[f64] {

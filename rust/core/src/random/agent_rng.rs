@@ -1,6 +1,7 @@
 //! The agent's random generator, chosen at run time.
 
 use super::{Mt19937, Pcg64, Rng, SeedSequence};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
 /// The agent's random generator, one variant per bit generator.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,6 +38,15 @@ impl Rng for AgentRng {
         match self {
             Self::Pcg64(rng) => rng.integers(below),
             Self::Mt19937(rng) => rng.integers(below),
+        }
+    }
+}
+
+impl Persist for AgentRng {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        match self {
+            Self::Pcg64(rng) => rng.persist(checkpoint),
+            Self::Mt19937(rng) => rng.persist(checkpoint),
         }
     }
 }

@@ -3,17 +3,33 @@
 use rand_mt::Mt;
 
 use super::Rng;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+
+/// The number of 32-bit words of the state.
+const WORDS: usize = 624;
 
 /// The Mersenne Twister with `NumPy`'s legacy seeding and legacy draws.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mt19937 {
     engine: Mt,
+    /// Words that the engine has drawn and that are not used yet, the next one last. Only a restored generator has them.
+    drawn: Vec<u32>,
 }
 
 impl Mt19937 {
     /// `numpy.random.RandomState(seed)`. Its numbers differ from those of `Generator(MT19937(seed))`.
     pub fn new(seed: u32) -> Self {
-        Self { engine: Mt::new(seed) }
+        Self { engine: Mt::new(seed), drawn: Vec::new() }
+    }
+}
+
+impl Mt19937 {
+    #[inline]
+    fn next_u32(&mut self) -> u32 {
+        match self.drawn.pop() {
+            Some(word) => word,
+            None => self.engine.next_u32(),
+        }
     }
 }
 
@@ -21,8 +37,8 @@ impl Rng for Mt19937 {
     /// `random_sample()`: 53 bits from two 32-bit words.
     #[inline]
     fn random(&mut self) -> f64 {
-        let high = f64::from(self.engine.next_u32() >> 5);
-        let low = f64::from(self.engine.next_u32() >> 6);
+        let high = f64::from(self.next_u32() >> 5);
+        let low = f64::from(self.next_u32() >> 6);
         (high * 67_108_864.0 + low) / 9_007_199_254_740_992.0
     }
 
@@ -35,11 +51,25 @@ impl Rng for Mt19937 {
         let largest = below - 1;
         let mask = u32::MAX >> largest.leading_zeros();
         loop {
-            let value = self.engine.next_u32() & mask;
+            let value = self.next_u32() & mask;
             if value <= largest {
                 return value;
             }
         }
+    }
+}
+
+/// The next words, as many as the state has: they determine all others.
+impl Persist for Mt19937 {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        let mut same = self.clone();
+        let mut words = [(); WORDS].map(|()| same.next_u32());
+        words.persist(checkpoint)?;
+        if checkpoint.is_restoring() {
+            self.engine = Mt::from(words);
+            self.drawn = words.into_iter().rev().collect();
+        }
+        Ok(())
     }
 }
 

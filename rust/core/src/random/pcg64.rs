@@ -3,6 +3,7 @@
 use rand_core::Rng as _;
 
 use super::{Rng, SeedSequence, TWO_POW_53};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
 /// PCG-XSL-RR 128/64 with `NumPy`'s seeding and its buffer of one 32-bit half.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -96,6 +97,17 @@ pub(crate) fn lemire_bounded(below: u32, mut next: impl FnMut() -> u32) -> u32 {
         }
     }
     (product >> 32) as u32
+}
+
+/// The position: a generator of the same seed is advanced to it.
+impl Persist for Pcg64 {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        let mut words_drawn = self.words_drawn;
+        (&mut words_drawn, &mut self.buffered_u32).persist(checkpoint)?;
+        self.engine.advance(u128::from(words_drawn).wrapping_sub(u128::from(self.words_drawn)));
+        self.words_drawn = words_drawn;
+        Ok(())
+    }
 }
 
 #[cfg(test)]

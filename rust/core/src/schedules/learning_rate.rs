@@ -2,6 +2,7 @@
 
 use super::{Schedule, StepSize};
 use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled};
 
 /// A learning rate that follows a schedule, or falls with the number of visits of each weight.
@@ -65,6 +66,10 @@ impl StepSize for LearningRate {
     fn end_episode(&mut self) {
         self.schedule.end_episode();
         self.step_size = self.schedule.value() / self.n_active;
+    }
+
+    fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.visits.persist(checkpoint)
     }
 }
 

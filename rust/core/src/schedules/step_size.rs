@@ -1,6 +1,7 @@
 //! The trait of all step sizes.
 
 use super::Schedule;
+use crate::checkpoint::{Checkpoint, CheckpointError};
 
 /// The step size of each weight of a Q table: the learning rate divided by the number of active rows. The index of a
 /// weight is `row * num_actions + action`.
@@ -13,6 +14,14 @@ pub trait StepSize {
 
     /// Called after every episode.
     fn end_episode(&mut self);
+
+    /// Saves or restores what it has counted; the episode that it is in is not part of it.
+    ///
+    /// # Errors
+    /// The bytes are damaged.
+    fn persist_counts(&mut self, _checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        Ok(())
+    }
 }
 
 /// A constant step size.

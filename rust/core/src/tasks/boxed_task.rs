@@ -1,6 +1,8 @@
 //! Any task behind one type.
 
 use super::{Task, Transition};
+use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::features::ActiveRows;
 
 /// A task together with the state of its episode, so that the type of the state is hidden.
 struct StatefulTask<T: Task> {
@@ -13,6 +15,9 @@ trait DynTask<R, X> {
     fn reset(&mut self) -> Result<R, X>;
     fn step(&mut self, action: usize) -> Result<Transition<R>, X>;
     fn visits(&self) -> Option<&[i64]>;
+    fn active_rows(&self) -> Result<R, X>;
+    fn resumes_episodes(&self) -> bool;
+    fn persist(&mut self, in_episode: bool, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
 
 impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
@@ -30,6 +35,19 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
     fn visits(&self) -> Option<&[i64]> {
         self.task.visits()
     }
+
+    fn active_rows(&self) -> Result<T::Active, X> {
+        let Some(state) = &self.state else { unreachable!("a trainer asks for the rows of an episode that has begun") };
+        Ok(self.task.active_rows(state)?)
+    }
+
+    fn resumes_episodes(&self) -> bool {
+        self.task.resumes_episodes()
+    }
+
+    fn persist(&mut self, in_episode: bool, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.task.persist(self.state.as_mut().filter(|_| in_episode), checkpoint)
+    }
 }
 
 /// A boxed task with active rows `R` and errors `X`: generic code is compiled once for all tasks behind it.
@@ -38,7 +56,7 @@ pub struct BoxedTask<R, X> {
     step_work: u64,
 }
 
-impl<R: Copy + AsRef<[u32]> + 'static, X: 'static> BoxedTask<R, X> {
+impl<R: ActiveRows + 'static, X: 'static> BoxedTask<R, X> {
     /// Boxes a task and converts its errors to `X`.
     pub fn new<T>(task: T) -> Self
     where
@@ -49,7 +67,7 @@ impl<R: Copy + AsRef<[u32]> + 'static, X: 'static> BoxedTask<R, X> {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>, X> Task for BoxedTask<R, X> {
+impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
     type State = ();
     type Active = R;
     type Error = X;
@@ -69,5 +87,17 @@ impl<R: Copy + AsRef<[u32]>, X> Task for BoxedTask<R, X> {
 
     fn visits(&self) -> Option<&[i64]> {
         self.task.visits()
+    }
+
+    fn active_rows(&self, (): &()) -> Result<R, X> {
+        self.task.active_rows()
+    }
+
+    fn resumes_episodes(&self) -> bool {
+        self.task.resumes_episodes()
+    }
+
+    fn persist(&mut self, state: Option<&mut ()>, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.task.persist(state.is_some(), checkpoint)
     }
 }

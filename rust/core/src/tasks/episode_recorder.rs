@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::{Next, RngSnapshot, Task, Transition};
 use crate::TrainingError;
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::memory::{AllocationError, out_of_memory, reserve};
 
 /// A finished episode that can be replayed.
@@ -81,5 +82,25 @@ impl<T: RngSnapshot> Task for EpisodeRecorder<T> {
 
     fn step_work(&self) -> u64 {
         self.task.step_work()
+    }
+
+    fn active_rows(&self, state: &T::State) -> Result<T::Active, Self::Error> {
+        self.task.active_rows(state).map_err(TrainingError::Task)
+    }
+
+    fn resumes_episodes(&self) -> bool {
+        self.task.resumes_episodes()
+    }
+
+    /// Recordings are not part of it: an episode that is resumed in the middle is not recorded.
+    fn persist(
+        &mut self,
+        state: Option<&mut T::State>,
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        if checkpoint.is_restoring() {
+            self.current = None;
+        }
+        self.task.persist(state, checkpoint)
     }
 }

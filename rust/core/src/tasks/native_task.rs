@@ -1,6 +1,7 @@
 //! Tasks that run without Python.
 
 use super::{Next, RngSnapshot, Task, Transition};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::Env;
 use crate::features::{Features, OutOfBounds};
 use crate::random::Pcg64;
@@ -65,6 +66,22 @@ where
             Next::NonTerminal(active)
         };
         Ok(Transition { reward: step.reward, next })
+    }
+
+    fn active_rows(&self, state: &Self::State) -> Result<F::Active, OutOfBounds> {
+        self.features.active_rows(&self.env.observe(&state.state))
+    }
+
+    fn persist(
+        &mut self,
+        state: Option<&mut Self::State>,
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        self.rng.persist(checkpoint)?;
+        match state {
+            Some(TimedState { state, elapsed }) => (state, elapsed).persist(checkpoint),
+            None => Ok(()),
+        }
     }
 }
 

@@ -1,5 +1,8 @@
 //! The trait of all tasks.
 
+use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::features::ActiveRows;
+
 /// What follows a step, as an update sees it. `R` holds the active rows of the next state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next<R> {
@@ -26,7 +29,7 @@ pub trait Task {
     /// The state of an episode. The caller keeps it and passes it to every step, so that it can stay in registers.
     type State: Copy;
     /// The active rows of an observation.
-    type Active: Copy + AsRef<[u32]>;
+    type Active: ActiveRows;
     /// Why a reset or a step can fail.
     type Error;
 
@@ -53,4 +56,25 @@ pub trait Task {
     fn visits(&self) -> Option<&[i64]> {
         None
     }
+
+    /// The active rows of a state.
+    ///
+    /// # Errors
+    /// An observation without a row.
+    fn active_rows(&self, state: &Self::State) -> Result<Self::Active, Self::Error>;
+
+    /// Whether an episode can be resumed in the middle.
+    fn resumes_episodes(&self) -> bool {
+        true
+    }
+
+    /// Saves or restores the random generator and, during an episode, its state.
+    ///
+    /// # Errors
+    /// The bytes are damaged.
+    fn persist(
+        &mut self,
+        state: Option<&mut Self::State>,
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError>;
 }

@@ -1,6 +1,9 @@
 //! Counts of the visits of each state-action pair.
 
 use super::{Next, Task, Transition};
+use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::memory::{AllocationError, filled};
 
 /// A wrapper around a task that counts how often each action was taken in each row of the table.
 #[derive(Clone, Debug)]
@@ -13,8 +16,11 @@ pub struct VisitCounter<T> {
 
 impl<T: Task> VisitCounter<T> {
     /// Counts the steps of `task`, whose table has `rows` rows of `num_actions` values.
-    pub fn new(task: T, rows: usize, num_actions: usize) -> Self {
-        Self { task, num_actions, visits: vec![0; rows * num_actions] }
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn new(task: T, rows: usize, num_actions: usize, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        Ok(Self { task, num_actions, visits: filled(&0, rows * num_actions, stop)? })
     }
 }
 
@@ -50,8 +56,36 @@ impl<T: Task> Task for VisitCounter<T> {
         Ok(transition)
     }
 
+    #[inline]
+    fn step_work(&self) -> u64 {
+        self.task.step_work()
+    }
+
     fn visits(&self) -> Option<&[i64]> {
         Some(&self.visits)
+    }
+
+    fn active_rows(&self, counted: &Self::State) -> Result<T::Active, T::Error> {
+        self.task.active_rows(&counted.state)
+    }
+
+    fn resumes_episodes(&self) -> bool {
+        self.task.resumes_episodes()
+    }
+
+    fn persist(
+        &mut self,
+        counted: Option<&mut Self::State>,
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        self.visits.persist(checkpoint)?;
+        let Some(counted) = counted else { return self.task.persist(None, checkpoint) };
+        self.task.persist(Some(&mut counted.state), checkpoint)?;
+        if checkpoint.is_restoring() {
+            let rows = self.task.active_rows(&counted.state);
+            counted.active = rows.map_err(|_| CheckpointError::Invalid("state of the environment"))?;
+        }
+        Ok(())
     }
 }
 
@@ -79,11 +113,19 @@ mod tests {
             let next = if *state == 2 { Next::Terminal } else { Next::NonTerminal([*state, *state + 3]) };
             Ok(Transition { reward: -1.0, next })
         }
+
+        fn active_rows(&self, state: &u32) -> Result<[u32; 2], ()> {
+            Ok([*state, *state + 3])
+        }
+
+        fn persist(&mut self, state: Option<&mut u32>, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+            state.map_or(Ok(()), |state| state.persist(checkpoint))
+        }
     }
 
     #[test]
     fn every_step_counts_in_each_active_row() -> Result<(), ()> {
-        let mut task = VisitCounter::new(Corridor, 6, 2);
+        let mut task = VisitCounter::new(Corridor, 6, 2, &StopFlag::new()).unwrap();
         for _ in 0..2 {
             let (mut state, active) = task.reset()?;
             assert_eq!(active, [0, 3]);
@@ -98,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_step_that_fails_is_not_counted() -> Result<(), ()> {
-        let mut task = VisitCounter::new(Corridor, 6, 3);
+        let mut task = VisitCounter::new(Corridor, 6, 3, &StopFlag::new()).unwrap();
         let (mut state, _) = task.reset()?;
         assert_eq!(task.step(&mut state, 2), Err(()));
         assert_eq!(task.visits(), Some([0; 18].as_slice()));

@@ -7,14 +7,14 @@ use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use qtab_core::Features;
-use qtab_core::features::OutOfBounds;
+use qtab_core::features::{ActiveRows, OutOfBounds};
 use qtab_core::numeric::Float;
 
 use crate::error::RunError;
 
 /// Reads the observations of one observation space.
 pub(crate) trait ObservationReader {
-    type Active: Copy + AsRef<[u32]>;
+    type Active: ActiveRows;
 
     /// The active rows of an observation.
     fn active_rows(&self, observation: &Bound<'_, PyAny>) -> Result<Self::Active, RunError>;

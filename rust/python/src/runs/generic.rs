@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::features::MAX_TILINGS;
+use qtab_core::features::{ActiveRows, MAX_TILINGS};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
     TdLearner, Traces, TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
@@ -75,25 +75,31 @@ where
     RunError: From<W::Error> + From<TrainingError<W::Error>>,
 {
     let (task, recordings) = if record == 0 {
-        (boxed_task(task, shape, spec), AnyRecordings::None)
+        (boxed_task(task, shape, spec, stop)?, AnyRecordings::None)
     } else {
         let (task, recordings) = EpisodeRecorder::new(task, record, spec.max_recorded_actions);
-        (boxed_task(task, shape, spec), keep(recordings))
+        (boxed_task(task, shape, spec, stop)?, keep(recordings))
     };
     let rng = spec.bit_generator.agent_rng(seed)?;
     Ok((build_learner(task, shape, rng, spec, stop)?, recordings))
 }
 
 /// A boxed task, which counts visits if the spec asks for it.
-fn boxed_task<W>(task: W, (n_rows, _): (usize, usize), spec: &RunSpec) -> BoxedTask<W::Active, RunError>
+fn boxed_task<W>(
+    task: W,
+    (n_rows, _): (usize, usize),
+    spec: &RunSpec,
+    stop: &StopFlag<'_>,
+) -> PyResult<BoxedTask<W::Active, RunError>>
 where
     W: Task<Active: Send, State: Send> + Send + 'static,
     RunError: From<W::Error>,
 {
     if spec.count_visits {
-        BoxedTask::new(VisitCounter::new(task, n_rows, spec.num_actions))
+        let counter = VisitCounter::new(task, n_rows, spec.num_actions, stop).map_err(allocation)?;
+        Ok(BoxedTask::new(counter))
     } else {
-        BoxedTask::new(task)
+        Ok(BoxedTask::new(task))
     }
 }
 
@@ -106,7 +112,7 @@ fn build_learner<R>(
     stop: &StopFlag<'_>,
 ) -> PyResult<Box<dyn Run>>
 where
-    R: Copy + AsRef<[u32]> + Send + 'static,
+    R: ActiveRows + Send + 'static,
 {
     let agent = generic_agent(spec, n_rows, n_active, &mut rng, stop)?;
     let weights = agent.table.values().len();
@@ -142,7 +148,7 @@ where
 
 fn with_rule<R, U>(task: BoxedTask<R, RunError>, agent: Agent, rule: U, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>
 where
-    R: Copy + AsRef<[u32]> + Send + 'static,
+    R: ActiveRows + Send + 'static,
     U: UpdateRule<R, Agent> + Send + 'static,
 {
     into_run(task, TdLearner { agent, rule }, rng, spec)
@@ -150,7 +156,7 @@ where
 
 fn into_run<R, L>(task: BoxedTask<R, RunError>, learner: L, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>
 where
-    R: Copy + AsRef<[u32]> + Send + 'static,
+    R: ActiveRows + Send + 'static,
     L: Learner<R> + Send + 'static,
 {
     let learner = TruncationHandling { learner, terminate: spec.terminate_on_truncation };

@@ -3,10 +3,10 @@
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::features::MAX_TILINGS;
 use qtab_core::numeric::Float;
-use qtab_core::tasks::RngSnapshot;
-use qtab_core::tasks::{Next, Transition};
+use qtab_core::tasks::{Next, RngSnapshot, Transition};
 use qtab_core::{Features, StopFlag, Task};
 
 use super::answers::{self, Answer};
@@ -149,6 +149,19 @@ impl<R: ObservationReader> Task for PythonTask<R> {
 
     fn step_work(&self) -> u64 {
         STEP_WORK
+    }
+
+    fn active_rows(&self, _elapsed: &u64) -> Result<R::Active, RunError> {
+        unreachable!("an episode of a Python environment is never resumed in the middle")
+    }
+
+    fn resumes_episodes(&self) -> bool {
+        false
+    }
+
+    /// Whether the environment was seeded. Its generator is the caller's to restore.
+    fn persist(&mut self, _state: Option<&mut u64>, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.seeded.persist(checkpoint)
     }
 }
 

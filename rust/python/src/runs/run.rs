@@ -1,6 +1,7 @@
 //! A training run of any type.
 
 use pyo3::prelude::*;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::random::Rng;
 use qtab_core::tasks::Recordings;
 use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer, TrainingError};
@@ -23,6 +24,12 @@ pub(crate) trait Run: Send {
 
     /// How often each action was taken in each row; None where visits are not counted.
     fn visits(&self) -> Option<&[i64]>;
+
+    /// Saves or restores all but the tables and the finished episodes.
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
+
+    /// Takes over the tables and the finished episodes of a run that is resumed.
+    fn restore(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError>;
 }
 
 impl<W, L, D> Run for Trainer<W, L, D>
@@ -30,7 +37,7 @@ where
     W: Task<State: Send, Active: Send> + Send,
     RunError: From<W::Error>,
     L: Learner<W::Active> + Send,
-    D: Rng + Clone + Send,
+    D: Rng + Clone + Persist + Send,
 {
     fn advance(&mut self, budget: Budget) -> Result<(), RunError> {
         Trainer::advance(self, budget).map_err(<RunError as From<TrainingError<W::Error>>>::from)?;
@@ -55,6 +62,14 @@ where
 
     fn visits(&self) -> Option<&[i64]> {
         self.task().visits()
+    }
+
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        Trainer::persist(self, checkpoint)
+    }
+
+    fn restore(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError> {
+        Trainer::restore(self, episodes, tables)
     }
 }
 
@@ -81,6 +96,14 @@ impl Run for Box<dyn Run> {
 
     fn visits(&self) -> Option<&[i64]> {
         (**self).visits()
+    }
+
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (**self).persist(checkpoint)
+    }
+
+    fn restore(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError> {
+        (**self).restore(episodes, tables)
     }
 }
 

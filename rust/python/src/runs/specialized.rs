@@ -15,6 +15,7 @@ use super::agent::policy;
 use super::factory::{Batching, Factory};
 use super::{AnyRecordings, Run, RunFactory, generic};
 use crate::convert::Seed;
+use crate::error::allocation;
 use crate::rng::{BitGenerator, agent_pcg64, environment_rng};
 use crate::spec::{AlgorithmSpec, LearningRateSpec, PolicySpec, RunSpec, ScheduleSpec};
 
@@ -154,7 +155,8 @@ where
         if count_visits {
             let build = move |seed: &Seed, stop: &StopFlag<'_>| {
                 let (task, learner, rng) = parts(seed, stop)?;
-                let task = VisitCounter::new(task, learner.agent.table.values().len() / N, N);
+                let task =
+                    VisitCounter::new(task, learner.agent.table.values().len() / N, N, stop).map_err(allocation)?;
                 Ok((Trainer::new(task, learner, rng), AnyRecordings::None))
             };
             return Box::new(Factory { build, batching: Batching::one_by_one() });

@@ -4,9 +4,11 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
-use numpy::PyArray1;
-use pyo3::exceptions::PyRuntimeError;
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError};
 use qtab_core::memory::with_capacity;
 use qtab_core::tasks::{Recording, Recordings};
 use qtab_core::{Budget, EpisodeLog};
@@ -14,13 +16,16 @@ use qtab_core::{Budget, EpisodeLog};
 use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
 use crate::convert::{Seed, array_of};
-use crate::error::{RunError, allocation};
+use crate::error::{RunError, allocation, invalid};
 use crate::interrupt::{run_interruptible, run_polling};
 use crate::runs::{AnyRecordings, BuiltRun, python_run};
 use crate::spec::{Fields, RunSpec};
 
 /// Returns, lengths, and whether each episode ended in a terminal state.
 type FinishedEpisodes<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<bool>>);
+
+/// The same, given.
+type Episodes<'py> = (PyReadonlyArray1<'py, f64>, PyReadonlyArray1<'py, i64>, PyReadonlyArray1<'py, bool>);
 
 /// The generator's state at the start of an episode, and its actions.
 type PyRecording<'py> = (Py<PyAny>, Bound<'py, PyArray1<u32>>);
@@ -114,6 +119,35 @@ impl PyTrainer {
         Ok(PyArray1::from_vec(py, values))
     }
 
+    /// All that is needed beside the tables and the finished episodes to resume the run exactly. Of an environment stepped
+    /// in Python the generator is not part of it, and an unfinished episode is left out.
+    fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let mut bytes = Vec::new();
+        self.lock()?.run.persist(&mut Checkpoint::save(&mut bytes)).map_err(unusable)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Makes a new trainer of the same spec and seed (but for the number of episodes) the one that had these tables, these
+    /// finished episodes and this checkpoint.
+    fn restore(
+        &self,
+        checkpoint: &[u8],
+        tables: Vec<PyReadonlyArray1<'_, f64>>,
+        episodes: Episodes<'_>,
+    ) -> PyResult<()> {
+        let (returns, lengths, terminated) = episodes;
+        let log =
+            EpisodeLog { returns: returns.to_vec()?, lengths: lengths.to_vec()?, terminated: terminated.to_vec()? };
+        if log.lengths.len() != log.returns.len() || log.terminated.len() != log.returns.len() {
+            return Err(invalid("episodes", "three arrays of the same length", "others"));
+        }
+        let tables = tables.iter().map(PyReadonlyArray1::as_slice).collect::<Result<Vec<_>, _>>()?;
+        let mut built = self.lock()?;
+        built.run.restore(log, &tables).map_err(unusable)?;
+        let mut checkpoint = Checkpoint::restore(checkpoint);
+        built.run.persist(&mut checkpoint).and_then(|()| checkpoint.finish()).map_err(unusable)
+    }
+
     /// How often each action was taken in each row, rows first; None where visits are not counted.
     fn visits<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<i64>>>> {
         Ok(self.lock()?.run.visits().map(|visits| PyArray1::from_slice(py, visits)))
@@ -148,6 +182,13 @@ impl PyTrainer {
                 "this trainer is at work in another thread, or called from its own environment",
             )),
         }
+    }
+}
+
+fn unusable(error: CheckpointError) -> PyErr {
+    match error {
+        CheckpointError::OutOfMemory => PyMemoryError::new_err(format!("the checkpoint cannot be made: {error}")),
+        _ => PyValueError::new_err(format!("the checkpoint does not fit the run: {error}")),
     }
 }
 

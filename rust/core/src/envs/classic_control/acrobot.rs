@@ -3,6 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Flag, Parameters, Step};
 use crate::numeric::squared;
 use crate::random::Rng;
@@ -245,6 +246,12 @@ fn wrap(mut angle: f64) -> f64 {
 fn bound(velocity: f64, max: f64) -> f64 {
     let raised = if -max > velocity { -max } else { velocity };
     if max < raised { max } else { raised }
+}
+
+impl Persist for AcrobotState {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (&mut self.theta1, &mut self.theta2, &mut self.dtheta1, &mut self.dtheta2, &mut self.is_f32).persist(checkpoint)
+    }
 }
 
 #[cfg(test)]

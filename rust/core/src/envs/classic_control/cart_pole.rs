@@ -1,6 +1,7 @@
 //! `CartPole-v1`: balance a pole on a cart by pushing the cart left or right (A. Barto, R. Sutton and C. Anderson, 1983).
 //! Gymnasium's dynamics follow R. Florian, "Correct equations for the dynamics of the cart-pole system", 2005.
 
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Flag, Parameters, SimdEnv, Step, step_batch};
 use crate::random::Rng;
 
@@ -230,6 +231,12 @@ impl SimdEnv<4> for CartPole {
             (true, false) => 0.0,
             (true, true) => -1.0,
         }
+    }
+}
+
+impl Persist for CartPoleState {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (&mut self.x, &mut self.x_dot, &mut self.theta, &mut self.theta_dot).persist(checkpoint)
     }
 }
 

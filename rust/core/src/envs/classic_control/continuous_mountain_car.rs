@@ -1,5 +1,6 @@
 //! `MountainCarContinuous-v0`: the mountain car with a continuous force, whose square is subtracted from the reward.
 
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Parameters, Step};
 use crate::numeric::{Scalar, squared};
 use crate::random::Rng;
@@ -167,6 +168,12 @@ impl Env for ContinuousMountainCar {
     #[inline]
     fn observe(&self, state: &Self::State) -> [f32; 2] {
         [state.position.into(), state.velocity.into()]
+    }
+}
+
+impl Persist for ContinuousMountainCarState {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (&mut self.position, &mut self.velocity).persist(checkpoint)
     }
 }
 

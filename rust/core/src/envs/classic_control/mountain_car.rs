@@ -1,5 +1,6 @@
 //! `MountainCar-v0`: an underpowered car in a sinusoidal valley (A. W. Moore, 1990; Sutton & Barto, Example 10.1).
 
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Parameters, Step, step_batch};
 use crate::numeric::cold_path;
 use crate::random::Rng;
@@ -170,6 +171,12 @@ fn clip(value: f64, low: f64, high: f64) -> f64 {
         clipped = high;
     }
     clipped
+}
+
+impl Persist for MountainCarState {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (&mut self.position, &mut self.velocity).persist(checkpoint)
+    }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Parameters, Step};
 use crate::numeric::{Scalar, clip, modulo, squared};
 use crate::random::Rng;
@@ -132,6 +133,12 @@ impl Env for Pendulum {
 #[inline]
 fn normalized(angle: f64) -> f64 {
     modulo(angle + PI, 2.0 * PI) - PI
+}
+
+impl Persist for PendulumState {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (&mut self.theta, &mut self.theta_dot).persist(checkpoint)
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! `Blackjack-v1`: get closer to 21 than the dealer without exceeding it (Sutton & Barto, Example 5.1).
 
 use super::hand::{Hand, TEN};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Step};
 use crate::random::Rng;
 
@@ -126,6 +127,12 @@ impl Env for Blackjack {
     #[inline]
     fn observe(&self, state: &BlackjackState) -> [u32; 3] {
         [state.player.sum(), state.shown, u32::from(state.player.usable_ace())]
+    }
+}
+
+impl Persist for BlackjackState {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (&mut self.player, &mut self.dealer, &mut self.shown).persist(checkpoint)
     }
 }
 

@@ -1,5 +1,7 @@
 //! A hand of blackjack.
 
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+
 /// The value of a ten and of a face card.
 pub(super) const TEN: u32 = 10;
 const ACE: u32 = 1;
@@ -61,6 +63,12 @@ impl Hand {
     #[inline]
     pub fn is_natural(&self) -> bool {
         self.cards == 2 && self.ace && self.total == ACE + TEN
+    }
+}
+
+impl Persist for Hand {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (&mut self.total, &mut self.cards, &mut self.ace).persist(checkpoint)
     }
 }
 

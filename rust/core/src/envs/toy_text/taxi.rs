@@ -1,6 +1,7 @@
 //! `Taxi`: pick up a passenger and drop them off at their destination (T. Dietterich, 2000, section 3.1; the fickle
 //! passenger is in section 7.1).
 
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::tabular::TabularMdp;
 use crate::envs::{Env, Step, TransitionProbability};
 use crate::random::Rng;
@@ -85,6 +86,12 @@ impl TransitionProbability for Taxi {
             cell = Self::with_other_destinations(cell)[rng.integers(NUM_DESTINATIONS - 1) as usize];
         }
         (Step { state: TaxiState { cell, fickle }, reward, terminated }, probability)
+    }
+}
+
+impl Persist for TaxiState {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (&mut self.cell, &mut self.fickle).persist(checkpoint)
     }
 }
 

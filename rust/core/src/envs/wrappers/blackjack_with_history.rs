@@ -1,5 +1,6 @@
 //! Blackjack with a record of the cards dealt, for rendering and for Python's view of the state.
 
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::toy_text::{Blackjack, BlackjackState};
 use crate::envs::{Env, Step};
 use crate::random::Rng;
@@ -28,6 +29,14 @@ impl DealHistory {
     /// face-up card, its face if it is a ten, the player's further cards, the dealer's further cards.
     pub fn draws(&self) -> impl Iterator<Item = usize> {
         (0..self.count).map(|index| (self.words[index / PER_WORD] >> (index % PER_WORD * BITS)) as usize % (1 << BITS))
+    }
+}
+
+impl Persist for DealHistory {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.hands.persist(checkpoint)?;
+        checkpoint.index(&mut self.count, MAX_DRAWS + 1, "number of draws")?;
+        self.words.persist(checkpoint)
     }
 }
 

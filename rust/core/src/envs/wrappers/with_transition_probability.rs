@@ -1,5 +1,6 @@
 //! An environment whose state includes the probability of the last step.
 
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Step, TransitionProbability};
 use crate::random::Rng;
 
@@ -15,6 +16,12 @@ pub struct TransitionProbabilityState<S> {
     pub state: S,
     /// The probability of the sampled outcome; 1 after a reset.
     pub probability: f64,
+}
+
+impl<S: Persist> Persist for TransitionProbabilityState<S> {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (&mut self.state, &mut self.probability).persist(checkpoint)
+    }
 }
 
 impl<E: TransitionProbability> Env for WithTransitionProbability<E> {

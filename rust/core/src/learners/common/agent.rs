@@ -1,5 +1,6 @@
 //! The parts that all learners share: the Q table, the policy and the constants of an update.
 
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::policies::{AnyPolicy, Policy};
 use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::Rng;
@@ -87,6 +88,11 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[inline]
     pub fn work(&self) -> u64 {
         if N > 0 { 1 } else { 1 + self.table.num_actions() as u64 / VALUES_PER_WORK }
+    }
+
+    /// Saves or restores what the learning rate has counted.
+    pub(crate) fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.learning_rate.persist_counts(checkpoint)
     }
 
     /// Moves the schedules on to the next episode.

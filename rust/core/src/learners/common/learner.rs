@@ -1,5 +1,6 @@
 //! The trait of all learners.
 
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::memory::AllocationError;
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -46,6 +47,24 @@ pub trait Learner<R> {
 
     /// The values of its tables, row by row. The greedy policy is over their sum.
     fn tables(&self) -> Vec<&[f64]>;
+
+    /// The same, to be replaced when a run is resumed.
+    fn tables_mut(&mut self) -> Vec<&mut [f64]>;
+
+    /// The number of rows and of actions of each table.
+    fn shape(&self) -> (usize, usize);
+
+    /// Moves the schedules on by this many episodes without learning.
+    fn skip_episodes(&mut self, episodes: usize);
+
+    /// Gives up an unfinished episode, so that another one can begin.
+    fn abandon_episode(&mut self);
+
+    /// Saves or restores all that has changed since the start of the run, except for the tables and the schedules.
+    ///
+    /// # Errors
+    /// The bytes are damaged, or belong to another run.
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 
     /// Whether a value has overflowed, so that further training is meaningless.
     fn diverged(&self) -> bool;

@@ -1,7 +1,8 @@
 //! The model that Dyna plans with (Sutton & Barto, section 8.2).
 
-use super::Agent;
+use super::{Agent, PlanningProgress};
 use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled, with_capacity};
 use crate::numeric::maximum;
 use crate::random::Rng;
@@ -97,6 +98,67 @@ impl Model {
     pub fn sample_action(&self, row: u32, rng: &mut impl Rng) -> usize {
         let index = rng.integers(self.counts[row as usize]);
         self.tried[row as usize * self.num_actions + index as usize] as usize
+    }
+}
+
+/// The entries in the order in which their pairs were first tried, row by row: an index into that order is drawn.
+impl Persist for Model {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        let (rows, num_actions) = (self.counts.len(), self.num_actions);
+        let mut visited = self.visited.len();
+        checkpoint.index(&mut visited, rows + 1, "number of visited rows")?;
+        if checkpoint.is_restoring() {
+            self.entries.fill(None);
+            self.visited.clear();
+            self.counts.fill(0);
+        }
+        for index in 0..visited {
+            let mut row = self.visited.get(index).copied().unwrap_or_default();
+            checkpoint.index_u32(&mut row, rows, "visited row")?;
+            let mut tried = self.counts[row as usize] as usize;
+            checkpoint.index(&mut tried, num_actions + 1, "number of actions tried")?;
+            for position in 0..tried {
+                self.persist_entry(row, position, checkpoint)?;
+            }
+            if self.visited.len() <= index || self.visited[index] != row {
+                return Err(CheckpointError::Invalid("visited row"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Model {
+    /// Refuses planning that is unfinished although nothing was tried yet.
+    pub(in crate::learners) fn check_planning(&self, progress: &PlanningProgress) -> Result<(), CheckpointError> {
+        if progress.is_unfinished() && self.visited.is_empty() {
+            return Err(CheckpointError::Invalid("number of planning updates"));
+        }
+        Ok(())
+    }
+
+    /// The entry of the action that was tried in a row as number `position`.
+    fn persist_entry(
+        &mut self,
+        row: u32,
+        position: usize,
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        let mut action = self.tried[row as usize * self.num_actions + position];
+        checkpoint.index_u32(&mut action, self.num_actions, "action tried")?;
+        let known = self.entry(row, action as usize);
+        let ModelEntry { mut reward, mut next } = known.unwrap_or(ModelEntry { reward: 0.0, next: None });
+        (&mut reward, &mut next).persist(checkpoint)?;
+        if next.is_some_and(|next| next as usize >= self.counts.len()) {
+            return Err(CheckpointError::Invalid("row of the model"));
+        }
+        if checkpoint.is_restoring() {
+            if known.is_some() {
+                return Err(CheckpointError::Invalid("action tried twice"));
+            }
+            self.record(row, action as usize, ModelEntry { reward, next });
+        }
+        Ok(())
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Agent;
 use super::agent::MAX_WORK_PER_CALL;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
 /// The planning updates of a step, done in parts, so that a caller never waits long for a part.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,5 +37,11 @@ impl PlanningProgress {
     /// The work of the last part.
     pub(in crate::learners) fn work(&self, agent: &Agent) -> u64 {
         u64::from(self.updates) * agent.work()
+    }
+}
+
+impl Persist for PlanningProgress {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        (&mut self.remaining, &mut self.updates).persist(checkpoint)
     }
 }

@@ -1,6 +1,7 @@
 //! A temporal-difference learner with one table.
 
 use super::{Agent, Learner, UpdateRule};
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::memory::AllocationError;
 use crate::policies::Policy;
 use crate::random::Rng;
@@ -58,6 +59,27 @@ where
 
     fn tables(&self) -> Vec<&[f64]> {
         vec![self.agent.table.values()]
+    }
+
+    fn tables_mut(&mut self) -> Vec<&mut [f64]> {
+        vec![self.agent.table.values_mut()]
+    }
+
+    fn shape(&self) -> (usize, usize) {
+        self.agent.table.shape()
+    }
+
+    fn skip_episodes(&mut self, episodes: usize) {
+        (0..episodes).for_each(|_| self.agent.end_episode());
+    }
+
+    fn abandon_episode(&mut self) {
+        self.rule.abandon_episode();
+    }
+
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.agent.persist_counts(checkpoint)?;
+        self.rule.persist(self.agent.table.shape(), checkpoint)
     }
 
     fn diverged(&self) -> bool {

@@ -4,6 +4,7 @@
 use std::hint::select_unpredictable;
 
 use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled, with_capacity};
 use crate::q_table::QTable;
 use crate::schedules::{LearningRate, StepSize};
@@ -203,6 +204,30 @@ impl Traces {
             self.positions[trace.weight_index as usize] = 0;
         }
         self.count = 0;
+    }
+}
+
+/// The active traces in their order, which is that of their updates.
+impl Persist for Traces {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        let weights = self.positions.len();
+        let mut count = self.count;
+        checkpoint.index(&mut count, weights + 1, "number of traces")?;
+        if checkpoint.is_restoring() {
+            self.clear();
+        }
+        for position in 0..count {
+            let mut active = self.active.get(position).copied().unwrap_or_default();
+            checkpoint.index_u32(&mut active.weight_index, weights, "weight of a trace")?;
+            active.trace.persist(checkpoint)?;
+            if checkpoint.is_restoring() {
+                if self.positions[active.weight_index as usize] != 0 {
+                    return Err(CheckpointError::Invalid("weight of two traces"));
+                }
+                self.update(active.weight_index as usize, |_| active.trace);
+            }
+        }
+        Ok(())
     }
 }
 

@@ -1,6 +1,7 @@
 //! The treatment of truncated episodes (F. Pardo et al., "Time limits in reinforcement learning", 2018).
 
 use super::Learner;
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::memory::AllocationError;
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -63,6 +64,26 @@ impl<R, L: Learner<R>> Learner<R> for TruncationHandling<L> {
 
     fn tables(&self) -> Vec<&[f64]> {
         self.learner.tables()
+    }
+
+    fn tables_mut(&mut self) -> Vec<&mut [f64]> {
+        self.learner.tables_mut()
+    }
+
+    fn shape(&self) -> (usize, usize) {
+        self.learner.shape()
+    }
+
+    fn skip_episodes(&mut self, episodes: usize) {
+        self.learner.skip_episodes(episodes);
+    }
+
+    fn abandon_episode(&mut self) {
+        self.learner.abandon_episode();
+    }
+
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.learner.persist(checkpoint)
     }
 
     fn diverged(&self) -> bool {

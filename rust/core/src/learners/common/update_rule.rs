@@ -1,5 +1,6 @@
 //! The trait of all update rules.
 
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::memory::AllocationError;
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -43,4 +44,17 @@ pub trait UpdateRule<R, G> {
 
     /// Called after the last step of every episode.
     fn end_episode(&mut self) {}
+
+    /// Called where an episode is given up without its last step.
+    fn abandon_episode(&mut self) {
+        self.end_episode();
+    }
+
+    /// Saves or restores what it stores between steps; `shape` is the number of rows and of actions of the table.
+    ///
+    /// # Errors
+    /// The bytes are damaged, or belong to another run.
+    fn persist(&mut self, _shape: (usize, usize), _checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        Ok(())
+    }
 }

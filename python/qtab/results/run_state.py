@@ -1,0 +1,47 @@
+"""What a run holds beside its tables and episodes, so that it can be resumed exactly where it stopped."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, repr=False)
+class RunState:
+    """The random generators, the unfinished episode, and what the learner remembers: traces, visits, models."""
+
+    checkpoint: bytes
+    """What the extension wrote."""
+    generator: Mapping[str, Any] | None
+    """The state of the bit generator of an environment that is stepped in Python, as JSON can hold it."""
+
+    def array(self) -> NDArray[np.uint8]:
+        """Returns the checkpoint as a file holds it."""
+        return np.frombuffer(self.checkpoint, np.uint8)
+
+    @classmethod
+    def restore(cls, array: NDArray[Any], generator: Any) -> "RunState":
+        """Returns the state in a file, of which nothing is known.
+
+        Raises:
+            ValueError: if it cannot be one.
+        """
+        if array.dtype != np.uint8 or array.ndim != 1:
+            raise ValueError(f"its state has dtype {array.dtype} and {array.ndim} axes, not uint8 and 1")
+        if not (generator is None or isinstance(generator, dict)):
+            raise ValueError(f"its generator must be a JSON object or null, got {generator!r}")
+        return cls(array.tobytes(), generator)
+
+
+def generator_state(generator: np.random.Generator) -> dict[str, Any]:
+    """Returns the state of a bit generator in the types of JSON."""
+    state: dict[str, Any] = _to_json(generator.bit_generator.state)
+    return state
+
+
+def _to_json(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(name): _to_json(item) for name, item in value.items()}
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value

@@ -1,0 +1,57 @@
+"""Puts a trainer, and an environment that is stepped in Python, where an earlier run stopped."""
+
+import logging
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from qtab import _core
+from qtab._utils.checks import required
+from qtab.results.run import Run
+from qtab.results.run_state import RunState, generator_state
+from qtab.training.resolved_run import PythonEnvironment, ResolvedRun
+
+_LOGGER = logging.getLogger("qtab")
+
+
+def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None:
+    """Makes a new trainer the one that an earlier run had.
+
+    Raises:
+        ValueError: if the state of the earlier run does not fit.
+    """
+    state = required("run.state", earlier.state)
+    if isinstance(resolved.environment, PythonEnvironment):
+        _restore_generator(resolved.environment.env, resolved.seed, state)
+    elif state.generator is not None:
+        raise ValueError("run must be resumed with env=, an environment stepped in Python as the run was trained on")
+    tables = [table.ravel() for table in earlier.tables]
+    episodes = earlier.episode_returns, earlier.episode_lengths, earlier.terminated
+    trainer.restore(state.checkpoint, tables, episodes)
+
+
+def _restore_generator(env: gym.Env, seed: int, state: RunState) -> None:
+    if state.generator is None:
+        raise ValueError("run was trained in Rust, and can be resumed only by its environment's id")
+    env.reset(seed=seed)
+    try:
+        env.unwrapped.np_random.bit_generator.state = _with_arrays(state.generator)
+    except (TypeError, ValueError, KeyError, OverflowError) as error:
+        raise ValueError(f"run has a generator that its environment cannot take over: {error}") from None
+
+
+def _with_arrays(state: Any) -> Any:
+    """Turns the lists of JSON into the arrays that some bit generators have."""
+    if isinstance(state, dict):
+        return {name: _with_arrays(value) for name, value in state.items()}
+    return np.array(state, np.uint64) if isinstance(state, list) else state
+
+
+def state_of(trainer: _core.Trainer, resolved: ResolvedRun) -> RunState:
+    """Returns what :func:`restore` will need."""
+    environment = resolved.environment
+    generator = None
+    if isinstance(environment, PythonEnvironment):
+        generator = generator_state(environment.env.unwrapped.np_random)
+    return RunState(trainer.checkpoint(), generator)

@@ -1,0 +1,138 @@
+//! Writing and reading a checkpoint, by one description of what it holds.
+
+use std::fmt::{self, Display, Formatter};
+
+/// A checkpoint that is being written or read. The same calls do both, so that the two cannot disagree: a value that is
+/// passed to it is appended to the bytes, or replaced by what they hold.
+#[derive(Debug)]
+pub struct Checkpoint<'a>(Mode<'a>);
+
+#[derive(Debug)]
+enum Mode<'a> {
+    Save(&'a mut Vec<u8>),
+    /// What is left to read.
+    Restore(&'a [u8]),
+}
+
+/// Why a checkpoint cannot be written or read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CheckpointError {
+    /// The bytes end too early.
+    Truncated,
+    /// There are bytes after the end.
+    TrailingBytes,
+    /// A number that cannot be right in this run: it says which.
+    Invalid(&'static str),
+    /// The bytes do not fit into memory.
+    OutOfMemory,
+}
+
+impl Display for CheckpointError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Truncated => write!(f, "it ends too early"),
+            Self::TrailingBytes => write!(f, "it is too long"),
+            Self::Invalid(what) => write!(f, "it holds an impossible {what}"),
+            Self::OutOfMemory => write!(f, "it does not fit into memory"),
+        }
+    }
+}
+
+impl<'a> Checkpoint<'a> {
+    /// Appends to these bytes.
+    pub fn save(bytes: &'a mut Vec<u8>) -> Self {
+        Self(Mode::Save(bytes))
+    }
+
+    /// Reads these bytes.
+    pub fn restore(bytes: &'a [u8]) -> Self {
+        Self(Mode::Restore(bytes))
+    }
+
+    /// Whether values are read.
+    pub fn is_restoring(&self) -> bool {
+        matches!(self.0, Mode::Restore(_))
+    }
+
+    /// Appends these bytes and returns them, or returns as many that are read.
+    pub(super) fn bytes<const N: usize>(&mut self, value: [u8; N]) -> Result<[u8; N], CheckpointError> {
+        match &mut self.0 {
+            Mode::Save(bytes) => {
+                bytes.try_reserve(N).map_err(|_| CheckpointError::OutOfMemory)?;
+                bytes.extend_from_slice(&value);
+                Ok(value)
+            }
+            Mode::Restore(bytes) => {
+                let (value, rest) = bytes.split_first_chunk().ok_or(CheckpointError::Truncated)?;
+                *bytes = rest;
+                Ok(*value)
+            }
+        }
+    }
+
+    /// An index or a count, which must be less than `below` when it is read.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Invalid`] with `what`, or as for any value.
+    pub fn index(&mut self, value: &mut usize, below: usize, what: &'static str) -> Result<(), CheckpointError> {
+        let number = u64::from_le_bytes(self.bytes((*value as u64).to_le_bytes())?);
+        *value = usize::try_from(number).ok().filter(|&index| index < below).ok_or(CheckpointError::Invalid(what))?;
+        Ok(())
+    }
+
+    /// The same for a number of 32 bits.
+    ///
+    /// # Errors
+    /// As for `index`.
+    pub fn index_u32(&mut self, value: &mut u32, below: usize, what: &'static str) -> Result<(), CheckpointError> {
+        let number = u32::from_le_bytes(self.bytes(value.to_le_bytes())?);
+        if number as usize >= below {
+            return Err(CheckpointError::Invalid(what));
+        }
+        *value = number;
+        Ok(())
+    }
+
+    /// Ends the checkpoint.
+    ///
+    /// # Errors
+    /// [`CheckpointError::TrailingBytes`] if not all bytes were read.
+    pub fn finish(self) -> Result<(), CheckpointError> {
+        match self.0 {
+            Mode::Restore([_, ..]) => Err(CheckpointError::TrailingBytes),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::checkpoint::Persist;
+
+    #[test]
+    fn what_was_saved_is_restored() {
+        let mut bytes = Vec::new();
+        let mut saved = (7_u32, -0.0_f64, Some(3_u32), [true, false], i64::MIN);
+        saved.persist(&mut Checkpoint::save(&mut bytes)).expect("memory suffices");
+        let mut restored = (0, 0.0, None, [false; 2], 0);
+        let mut checkpoint = Checkpoint::restore(&bytes);
+        restored.persist(&mut checkpoint).expect("the bytes are complete");
+        checkpoint.finish().expect("all bytes were read");
+        assert_eq!(restored, saved);
+        assert!(restored.1.is_sign_negative());
+    }
+
+    #[test]
+    fn damaged_bytes_are_refused() {
+        let mut index = 3;
+        let bytes = 3_u64.to_le_bytes();
+        let index_of = |bytes, index: &mut usize, below| Checkpoint::restore(bytes).index(index, below, "row");
+        assert_eq!(index_of(&bytes, &mut index, 4), Ok(()));
+        assert_eq!(index_of(&bytes, &mut index, 3), Err(CheckpointError::Invalid("row")));
+        assert_eq!(index_of(&bytes[..7], &mut index, 4), Err(CheckpointError::Truncated));
+        assert_eq!(Checkpoint::restore(&bytes).finish(), Err(CheckpointError::TrailingBytes));
+        let not_a_bool = [2_u8];
+        assert_eq!(true.persist(&mut Checkpoint::restore(&not_a_bool)), Err(CheckpointError::Invalid("true or false")));
+    }
+}

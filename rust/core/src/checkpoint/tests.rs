@@ -1,0 +1,167 @@
+//! A run that is saved and restored at any step continues as if nothing had happened, for every learner.
+
+use proptest::prelude::*;
+
+use super::Checkpoint;
+use crate::envs::classic_control::MountainCar;
+use crate::features::{Axis, Features, Rounding, TileCoding};
+use crate::learners::{
+    Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
+    TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, WatkinsQLambda,
+};
+use crate::policies::{AnyPolicy, TieBreaking};
+use crate::q_table::TerminalUpdate;
+use crate::random::{AgentRng, Pcg64, SeedSequence};
+use crate::schedules::{LearningRate, Schedule};
+use crate::tasks::NativeTask;
+use crate::{Budget, Learner, QTable, StopFlag, Trainer};
+
+const ACTIONS: usize = 3;
+const EPISODES: usize = 6;
+const LIMIT: u64 = 40;
+
+type Run<F, L> = Trainer<NativeTask<MountainCar, F>, L, AgentRng>;
+
+/// Where a run is saved, and how it is made.
+#[derive(Clone, Copy, Debug)]
+struct Setup {
+    steps: u64,
+    seed: u32,
+    mt19937: bool,
+    visits: bool,
+}
+
+impl Setup {
+    fn agent(self, rows: usize, n_active: usize) -> Agent {
+        let schedule = Schedule::linear(0.5, 0.1, EPISODES as u64, 0);
+        Agent {
+            table: QTable::new(vec![0.0; rows * ACTIONS], ACTIONS),
+            policy: AnyPolicy::EpsilonGreedy { epsilon: schedule, ties: TieBreaking::Random },
+            learning_rate: if self.visits {
+                LearningRate::by_visit_count(1.0, 0.1, rows * ACTIONS, n_active, &StopFlag::new())
+                    .expect("a few counts")
+            } else {
+                LearningRate::scheduled(schedule, n_active)
+            },
+            discount: 0.9,
+            terminal_update: TerminalUpdate::Target,
+        }
+    }
+
+    fn run<F, L>(self, features: F, learner: L) -> Run<F, L>
+    where
+        F: Features<[f32; 2]>,
+        L: Learner<F::Active>,
+    {
+        let seed = SeedSequence::new(&[self.seed]);
+        let task = NativeTask::new(MountainCar::default(), features, Some(LIMIT), Pcg64::new(&seed));
+        let rng = if self.mt19937 { AgentRng::mt19937(self.seed) } else { AgentRng::pcg64(&seed) };
+        Trainer::new(task, learner, rng)
+    }
+
+    /// Compares an uninterrupted run with one that is saved after some steps and restored into a new run.
+    fn check<F, L>(self, features: &F, learner: impl Fn() -> L)
+    where
+        F: Features<[f32; 2]> + Clone,
+        L: Learner<F::Active>,
+    {
+        let new_run = || self.run(features.clone(), learner());
+        let (mut whole, mut stopped, mut resumed) = (new_run(), new_run(), new_run());
+        let advance = |run: &mut Run<F, L>, steps| {
+            run.advance(Budget { episodes: EPISODES, work: steps }).expect("all observations have rows");
+        };
+        advance(&mut whole, u64::MAX);
+        advance(&mut stopped, self.steps);
+        let tables = stopped.learner().tables().into_iter().map(<[f64]>::to_vec).collect::<Vec<_>>();
+        let mut bytes = Vec::new();
+        stopped.persist(&mut Checkpoint::save(&mut bytes)).expect("memory suffices");
+        let tables = tables.iter().map(Vec::as_slice).collect::<Vec<_>>();
+        resumed.restore(stopped.episodes().clone(), &tables).expect("the tables have the same size");
+        let mut checkpoint = Checkpoint::restore(&bytes);
+        resumed.persist(&mut checkpoint).expect("the bytes are those of this run");
+        checkpoint.finish().expect("all bytes are read");
+        advance(&mut resumed, u64::MAX);
+        assert_eq!(resumed.episodes(), whole.episodes());
+        assert_eq!(resumed.learner().tables(), whole.learner().tables());
+        let mut states = [Vec::new(), Vec::new()];
+        for (run, state) in [&mut whole, &mut resumed].into_iter().zip(&mut states) {
+            run.persist(&mut Checkpoint::save(state)).expect("memory suffices");
+        }
+        assert_eq!(states[0], states[1]);
+    }
+
+    /// The learners that work with any features.
+    fn check_all<F: Features<[f32; 2]> + Clone>(self, features: &F, n_active: usize) {
+        let rows = features.len();
+        let agent = || self.agent(rows, n_active);
+        let traces = || Traces::new(rows * ACTIONS, 1e-3, &StopFlag::new()).expect("a few traces");
+        let kind = TraceKind::Replacing;
+        self.check(features, || TdLearner { agent: agent(), rule: QLearning });
+        self.check(features, || TdLearner { agent: agent(), rule: Sarsa });
+        self.check(features, || TdLearner { agent: agent(), rule: ExpectedSarsa });
+        self.check(features, || DoubleQLearning::new(agent(), QTable::new(vec![0.0; rows * ACTIONS], ACTIONS)));
+        self.check(features, || TdLearner { agent: agent(), rule: NStepSarsa::new(4) });
+        let rule = || SarsaLambda { traces: traces(), kind, trace_decay: 0.8 };
+        self.check(features, || TdLearner { agent: agent(), rule: rule() });
+        let rule = || WatkinsQLambda { traces: traces(), kind, trace_decay: 0.8 };
+        self.check(features, || TdLearner { agent: agent(), rule: rule() });
+        if !self.visits {
+            self.check(features, || TdLearner { agent: agent(), rule: TrueOnlineSarsaLambda::new(traces(), 0.8) });
+        }
+    }
+}
+
+fn setup() -> impl Strategy<Value = Setup> {
+    (0..EPISODES as u64 * LIMIT, any::<u32>(), any::<bool>(), any::<bool>())
+        .prop_map(|(steps, seed, mt19937, visits)| Setup { steps, seed, mt19937, visits })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn every_learner_on_tilings_resumes_exactly(setup in setup()) {
+        let tiles: TileCoding<f32, 8> = TileCoding::new(&[-1.2, -0.07], &[0.6, 0.07], &[4, 4], 5);
+        setup.check_all(&tiles, 5);
+    }
+
+    #[test]
+    fn every_learner_on_a_grid_resumes_exactly(setup in setup()) {
+        let grid = Rounding::new([Axis::new(-1.2_f32, 0.6, 10.0), Axis::new(-0.07_f32, 0.07, 100.0)]);
+        let rows = Features::<[f32; 2]>::len(&grid);
+        setup.check_all(&grid, 1);
+        // More planning than is done in one call, so that a run can stop within a step.
+        let planning = 20_000;
+        let (agent, model) = (|| setup.agent(rows, 1), || Model::new(rows, ACTIONS, &StopFlag::new()).expect("a small model"));
+        setup.check(&grid, || TdLearner { agent: agent(), rule: DynaQ::new(model(), planning) });
+        let dyna_q_plus = || DynaQPlus::new(model(), planning, 1e-3, &StopFlag::new()).expect("a small model");
+        setup.check(&grid, || TdLearner { agent: agent(), rule: dyna_q_plus() });
+    }
+
+    /// Not even bytes that somebody made up cause a panic.
+    #[test]
+    fn any_bytes_are_restored_or_refused(
+        setup in setup(),
+        flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
+    ) {
+        let grid = Rounding::new([Axis::new(-1.2_f32, 0.6, 10.0), Axis::new(-0.07_f32, 0.07, 100.0)]);
+        let rows = Features::<[f32; 2]>::len(&grid);
+        let new_run = || {
+            let stop = StopFlag::new();
+            let model = Model::new(rows, ACTIONS, &stop).expect("a small model");
+            let rule = DynaQPlus::new(model, 3, 1e-3, &stop).expect("a small model");
+            setup.run(grid.clone(), TdLearner { agent: setup.agent(rows, 1), rule })
+        };
+        let (mut run, mut bytes) = (new_run(), Vec::new());
+        run.advance(Budget { episodes: EPISODES, work: setup.steps }).expect("all observations have rows");
+        run.persist(&mut Checkpoint::save(&mut bytes)).expect("memory suffices");
+        for (index, value) in flips {
+            let index = index.index(bytes.len());
+            bytes[index] = value;
+        }
+        let mut restored = new_run();
+        if restored.persist(&mut Checkpoint::restore(&bytes)).is_ok() {
+            let _ = restored.advance(Budget { episodes: 2, work: 1000 });
+        }
+    }
+}

@@ -1,0 +1,156 @@
+"""A run that is stopped, saved and resumed equals the uninterrupted one, bit for bit."""
+
+import logging
+import signal
+from collections.abc import Callable
+from typing import Any, get_args
+
+import gymnasium as gym
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import qtab
+from qtab.config.choices import Algorithm
+from support.gridworld import Room
+from support.learner_settings import run_settings
+from support.parity import assert_same_run
+
+
+def stopped(env: Any, after: int, **config: Any) -> qtab.Run:
+    """A run that a callback stopped after so many episodes."""
+    return qtab.train(env, callback=until(after), callback_every=after, **config)
+
+
+def until(episodes: int) -> Callable[[qtab.Progress], bool]:
+    """A callback that stops a run after so many episodes."""
+    return lambda progress: progress.episodes < episodes
+
+
+def assert_resumed(resumed: qtab.Run, whole: qtab.Run) -> None:
+    assert_same_run(resumed, whole)
+    assert resumed.state == whole.state
+    assert resumed.completed
+
+
+@pytest.mark.parametrize("algorithm", get_args(Algorithm))
+@given(data=st.data())
+def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, data):
+    config = data.draw(run_settings(algorithm))
+    episodes = config["episodes"]
+    after = data.draw(st.integers(1, episodes))
+    whole = qtab.train("MountainCar-v0", **config)
+    part = stopped("MountainCar-v0", after, **config)
+    if data.draw(st.booleans()):
+        path = tmp_path_factory.mktemp("resumed") / "run.npz"
+        part.save(path)
+        part = qtab.load(path)
+    if part.completed:
+        with pytest.raises(ValueError, match="episodes must be given for a run that has finished"):
+            qtab.resume(part)
+    else:
+        assert_resumed(qtab.resume(part), whole)
+
+
+class StoppedError(Exception):
+    pass
+
+
+def stopped_by_a_timer(seconds: float, env: str, **config: Any) -> qtab.Run:
+    """A run that a signal stopped, most probably in the middle of an episode."""
+
+    def stop(*_: Any) -> None:
+        raise StoppedError
+
+    before = signal.signal(signal.SIGVTALRM, stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    try:
+        with pytest.raises(StoppedError) as caught:
+            qtab.train(env, **config)
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, before)
+    run: qtab.Run = caught.value.run  # type: ignore[attr-defined]
+    return run
+
+
+LONG: dict[str, dict[str, Any]] = {
+    "Acrobot-v1": {"algorithm": "true_online_sarsa_lambda", "discretizer": "tiles", "tiles": 3, "tilings": 8},
+    "CartPole-v1": {
+        "algorithm": "sarsa_lambda",
+        "discretizer": "tiles",
+        "low": (-2.4, -3, -0.21, -3),
+        "high": (2.4, 3, 0.21, 3),
+    },
+    "Pendulum-v1": {"algorithm": "n_step_sarsa", "actions": 3, "discretizer": "bins", "bins": 5},
+    "MountainCarContinuous-v0": {"algorithm": "watkins_q_lambda", "actions": 3, "tiles": 8},
+    "Taxi-v4": {"algorithm": "dyna_q_plus", "env_kwargs": {"fickle_passenger": True}},
+    "Blackjack-v1": {"algorithm": "double_q_learning"},
+}
+
+
+@pytest.mark.parametrize("env", LONG)
+@pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
+def test_a_run_stopped_in_the_middle_of_an_episode_resumes_exactly(env, bit_generator):
+    config = {"episodes": 2_000_000, "max_episode_steps": 1000, "seed": 3, "bit_generator": bit_generator, **LONG[env]}
+    part = stopped_by_a_timer(0.03, env, **config)
+    finished = len(part.episode_returns)
+    part = qtab.resume(part, callback=until(finished + 20), callback_every=20)
+    assert_same_run(part, stopped(env, finished + 20, **config))
+
+
+def test_more_episodes_spread_the_schedules_over_all_of_them(caplog):
+    part = qtab.train("MountainCar-v0", seed=0, episodes=30)
+    with caplog.at_level(logging.WARNING, "qtab"):
+        longer = qtab.resume(part, 50)
+    assert "epsilon now falls linearly over 50 episodes instead of 30" in caplog.text
+    assert longer.config.episodes == 50
+    assert longer.episode_returns[:30].tobytes() == part.episode_returns.tobytes()
+    assert len(longer.episode_returns) == 50
+    constant = {"seed": 0, "epsilon_schedule": "constant", "epsilon": 0.2}
+    caplog.clear()
+    longer = qtab.resume(qtab.train("MountainCar-v0", episodes=30, **constant), 50)
+    assert_resumed(longer, qtab.train("MountainCar-v0", episodes=50, **constant))
+    assert not caplog.text
+
+
+@pytest.mark.parametrize("env", ["FrozenLake-v1", "CartPole-v1"])
+def test_an_environment_stepped_in_python_resumes_between_episodes(env, tmp_path):
+    config: dict[str, Any] = {"backend": "gymnasium", "seed": 4, "episodes": 40}
+    part = stopped(env, 13, **config)
+    part.save(tmp_path / "run.npz")
+    assert_resumed(qtab.resume(tmp_path / "run.npz"), qtab.train(env, **config))
+
+
+def test_an_environment_without_an_id_is_given_again():
+    config: dict[str, Any] = {"seed": 4, "episodes": 40}
+    part = stopped(Room(), 13, **config)
+    with pytest.raises(gym.error.Error):
+        qtab.resume(part)
+    assert_resumed(qtab.resume(part, env=Room()), qtab.train(Room(), **config))
+
+
+def test_a_resumed_run_may_be_stopped_and_resumed_again():
+    config: dict[str, Any] = {"seed": 4, "episodes": 60, "algorithm": "sarsa_lambda"}
+    part = stopped("MountainCar-v0", 10, **config)
+    for episodes in (20, 30, 40):
+        part = qtab.resume(part, callback=until(episodes), callback_every=10)
+        assert len(part.episode_returns) == episodes
+    assert_resumed(qtab.resume(part), qtab.train("MountainCar-v0", **config))
+
+
+def test_what_cannot_be_resumed_is_refused_by_name(tmp_path):
+    run = qtab.train("MountainCar-v0", seed=0, episodes=5)
+    for call, message in {
+        lambda: qtab.resume(run): "episodes must be given for a run that has finished: more than its 5",
+        lambda: qtab.resume(run, 5): "episodes must be more than the 5 that the run has finished, got 5",
+        lambda: qtab.resume(
+            qtab.train_many("MountainCar-v0", seeds=2, episodes=5, tables=True)[0], 9
+        ): "runs of train_many",
+    }.items():
+        with pytest.raises(ValueError, match=message):
+            call()
+    with pytest.raises(TypeError, match="run must be a Run or the path of a saved run, got 3"):
+        qtab.resume(3)  # type: ignore[arg-type]
+    with pytest.raises(FileNotFoundError):
+        qtab.resume(tmp_path / "none.npz")
