@@ -2,6 +2,7 @@
 
 import itertools
 import json
+from typing import Any
 
 import pytest
 
@@ -40,7 +41,7 @@ def test_a_memory_limit_is_a_positive_integer(limit, error):
 
 
 def test_recordings_stop_at_the_memory_limit():
-    limits: dict = {"env_kwargs": {"goal_velocity": 1.0}, "max_episode_steps": 1000, "episodes": 50}
+    limits: dict[str, Any] = {"env_kwargs": {"goal_velocity": 1.0}, "max_episode_steps": 1000, "episodes": 50}
     with pytest.raises(MemoryError) as caught:
         qtab.train(CAR, record=50, memory_limit=500_000, seed=0, **limits)
     run = run_of(caught.value)

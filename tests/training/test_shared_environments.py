@@ -19,7 +19,7 @@ def train(env):
 
 @pytest.mark.parametrize("wrap", [lambda env: env, lambda env: gym.wrappers.TimeLimit(env, 100)])
 def test_a_second_thread_is_refused_and_the_first_goes_on(wrap):
-    errors = []
+    errors: list[RuntimeError] = []
 
     def meddle(count):
         if count != 5:

@@ -166,7 +166,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         Ok(())
     }
 
-    /// Goes on learning from a step that the learner left unfinished.
+    /// Continues to learn from a step that the learner left unfinished.
     #[cold]
     fn finish_step(&mut self, mut episode: EpisodeState<T::State, T::Active>, next: Next<T::Active>, rng: &mut R) {
         episode.action = self.learner.resume(next, rng);

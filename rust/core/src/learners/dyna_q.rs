@@ -25,7 +25,8 @@ pub struct DynaQ {
 impl DynaQ {
     /// An update rule before the first step.
     pub fn new(model: Model, planning_steps: u32) -> Self {
-        Self { model, planning_steps, progress: PlanningProgress::default() }
+        let progress = PlanningProgress::new(model.num_actions());
+        Self { model, planning_steps, progress }
     }
 }
 
@@ -47,8 +48,9 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
         self.resume(agent, next, rng)
     }
 
-    fn work(&self, agent: &Agent) -> u64 {
-        self.progress.work(agent)
+    #[inline]
+    fn work(&self, _agent: &Agent) -> u64 {
+        self.progress.work()
     }
 
     #[inline]
@@ -56,8 +58,9 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
         self.progress.is_unfinished()
     }
 
+    #[inline]
     fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
-        for _ in 0..self.progress.take(agent) {
+        for _ in 0..self.progress.take() {
             let row = self.model.sample_state(rng);
             let action = self.model.sample_action(row, rng);
             if let Some(entry) = self.model.entry(row, action) {
@@ -74,7 +77,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
     }
 
     fn abandon_episode(&mut self) {
-        self.progress = PlanningProgress::default();
+        self.progress.abandon();
     }
 }
 

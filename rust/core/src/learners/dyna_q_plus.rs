@@ -38,7 +38,8 @@ impl DynaQPlus {
         stop: &StopFlag<'_>,
     ) -> Result<Self, AllocationError> {
         let last_tried = filled(&0, model.num_pairs(), stop)?;
-        Ok(Self { model, planning_steps, time_weight, now: 0, last_tried, progress: PlanningProgress::default() })
+        let progress = PlanningProgress::new(model.num_actions());
+        Ok(Self { model, planning_steps, time_weight, now: 0, last_tried, progress })
     }
 }
 
@@ -62,8 +63,9 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
         self.resume(agent, next, rng)
     }
 
-    fn work(&self, agent: &Agent) -> u64 {
-        self.progress.work(agent)
+    #[inline]
+    fn work(&self, _agent: &Agent) -> u64 {
+        self.progress.work()
     }
 
     #[inline]
@@ -71,8 +73,9 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
         self.progress.is_unfinished()
     }
 
+    #[inline]
     fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
-        for _ in 0..self.progress.take(agent) {
+        for _ in 0..self.progress.take() {
             let row = self.model.sample_state(rng);
             let action = rng.integers(agent.table.num_actions() as u32) as usize;
             let ModelEntry { reward, next } =
@@ -97,7 +100,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
     }
 
     fn abandon_episode(&mut self) {
-        self.progress = PlanningProgress::default();
+        self.progress.abandon();
     }
 }
 

@@ -32,8 +32,8 @@ pub struct NStepSarsa<R> {
     bootstrap: Option<(R, usize)>,
     /// Whether the episode is finished and pairs still await their updates.
     finishing: bool,
-    /// The work of the last call.
-    work: u64,
+    /// The work of the updates at the end of the episode, in the last call.
+    finishing_work: u64,
 }
 
 impl<R: ActiveRows> NStepSarsa<R> {
@@ -43,10 +43,11 @@ impl<R: ActiveRows> NStepSarsa<R> {
     /// If `n` is 0.
     pub fn new(n: usize) -> Self {
         assert!(n > 0, "n_steps must be at least 1, got 0");
-        Self { n, visits: VecDeque::new(), bootstrap: None, finishing: false, work: 1 }
+        Self { n, visits: VecDeque::new(), bootstrap: None, finishing: false, finishing_work: 0 }
     }
 
     /// The work of an update.
+    #[inline]
     fn update_work(&self, agent: &Agent) -> u64 {
         agent.work() + self.visits.len() as u64 / VALUES_PER_WORK
     }
@@ -68,10 +69,11 @@ impl<R: ActiveRows> NStepSarsa<R> {
     }
 
     /// Updates the last pairs of an episode, or a part of them where they are many.
+    #[inline(never)]
     fn finish(&mut self, agent: &mut Agent) {
-        self.work = 1;
-        while !self.visits.is_empty() && self.work < MAX_WORK_PER_CALL {
-            self.work += self.update_work(agent);
+        self.finishing_work = 0;
+        while !self.visits.is_empty() && self.finishing_work < MAX_WORK_PER_CALL {
+            self.finishing_work += self.update_work(agent);
             self.update_oldest(agent, self.bootstrap);
         }
         self.finishing = !self.visits.is_empty();
@@ -95,17 +97,18 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for NStepSarsa<R> {
             self.bootstrap = bootstrap;
             self.finish(agent);
         } else if self.visits.len() == self.n {
-            self.work = self.update_work(agent);
             self.update_oldest(agent, bootstrap);
-        } else {
-            self.work = 1;
         }
         bootstrap.map_or(0, |(_, next_action)| next_action)
     }
 
     #[inline]
-    fn work(&self, _agent: &Agent) -> u64 {
-        self.work
+    fn work(&self, agent: &Agent) -> u64 {
+        self.update_work(agent) + self.finishing_work
+    }
+
+    fn end_episode(&mut self) {
+        self.finishing_work = 0;
     }
 
     /// An episode has as many pairs as steps, and at most n of them wait.
@@ -146,7 +149,7 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for NStepSarsa<R> {
             }
         }
         let mut bootstraps = self.bootstrap.is_some();
-        (&mut self.finishing, &mut self.work, &mut bootstraps).persist(checkpoint)?;
+        (&mut self.finishing, &mut bootstraps).persist(checkpoint)?;
         self.bootstrap = if bootstraps {
             let rows = persist_rows(self.bootstrap.map(|(rows, _)| rows), num_rows, checkpoint)?;
             let mut action = self.bootstrap.map_or(0, |(_, action)| action);

@@ -13,6 +13,12 @@ pub(crate) const VALUES_PER_WORK: u64 = 16;
 /// The most work that a learner does in one call. A step that takes more is left unfinished.
 pub(crate) const MAX_WORK_PER_CALL: u64 = 8192;
 
+/// The work of an update that reads a row of so many values.
+#[inline]
+pub(super) fn row_work(num_actions: usize) -> u64 {
+    1 + num_actions as u64 / VALUES_PER_WORK
+}
+
 /// A table, a policy and the constants of an update.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agent<const N: usize = 0, P = AnyPolicy, A = LearningRate> {
@@ -87,7 +93,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     /// compiler knows is small.
     #[inline]
     pub fn work(&self) -> u64 {
-        if N > 0 { 1 } else { 1 + self.table.num_actions() as u64 / VALUES_PER_WORK }
+        if N > 0 { 1 } else { row_work(self.table.num_actions()) }
     }
 
     /// Saves or restores what the learning rate has counted.

@@ -36,7 +36,7 @@ pub trait Learner<R> {
         false
     }
 
-    /// Goes on learning from the last step, which led to `next`, and returns the next action once the step is finished.
+    /// Continues to learn from the last step, which led to `next`, and returns the next action once the step is finished.
     fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
         let (_, _) = (next, rng);
         0

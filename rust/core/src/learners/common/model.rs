@@ -61,6 +61,11 @@ impl Model {
         })
     }
 
+    /// The number of actions.
+    pub(crate) fn num_actions(&self) -> usize {
+        self.num_actions
+    }
+
     /// The number of state-action pairs.
     pub(crate) fn num_pairs(&self) -> usize {
         self.entries.len()

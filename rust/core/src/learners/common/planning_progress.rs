@@ -1,31 +1,47 @@
 //! How much of a step's planning is done.
 
-use super::Agent;
-use super::agent::MAX_WORK_PER_CALL;
+use super::agent::{MAX_WORK_PER_CALL, row_work};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
 /// The planning updates of a step, done in parts, so that a caller never waits long for a part.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(in crate::learners) struct PlanningProgress {
     /// The number of updates still to do.
     remaining: u32,
-    /// The number of updates in the last part, and the update from the environment.
-    updates: u32,
+    /// The work of the last part.
+    work: u64,
+    /// The work of an update.
+    update_work: u64,
+    /// The most updates in a part.
+    most: u32,
 }
 
 impl PlanningProgress {
+    /// Before the first step, with rows of so many values.
+    pub(in crate::learners) fn new(num_actions: usize) -> Self {
+        let update_work = row_work(num_actions);
+        let most = (MAX_WORK_PER_CALL / update_work).max(1) as u32;
+        Self { remaining: 0, work: update_work, update_work, most }
+    }
+
     /// Begins the planning of a step.
+    #[inline]
     pub(in crate::learners) fn begin(&mut self, planning_steps: u32) {
         self.remaining = planning_steps;
     }
 
     /// How many updates to do now.
-    pub(in crate::learners) fn take(&mut self, agent: &Agent) -> u32 {
-        let most = (MAX_WORK_PER_CALL / agent.work()).max(1);
-        let updates = u64::from(self.remaining).min(most) as u32;
+    #[inline]
+    pub(in crate::learners) fn take(&mut self) -> u32 {
+        let updates = self.remaining.min(self.most);
         self.remaining -= updates;
-        self.updates = 1 + updates;
+        self.work = u64::from(1 + updates) * self.update_work;
         updates
+    }
+
+    /// Gives up what remains.
+    pub(in crate::learners) fn abandon(&mut self) {
+        self.remaining = 0;
     }
 
     /// Whether updates remain.
@@ -35,13 +51,15 @@ impl PlanningProgress {
     }
 
     /// The work of the last part.
-    pub(in crate::learners) fn work(&self, agent: &Agent) -> u64 {
-        u64::from(self.updates) * agent.work()
+    #[inline]
+    pub(in crate::learners) fn work(&self) -> u64 {
+        self.work
     }
 }
 
+/// What is done of it; the rest only measures.
 impl Persist for PlanningProgress {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        (&mut self.remaining, &mut self.updates).persist(checkpoint)
+        self.remaining.persist(checkpoint)
     }
 }
