@@ -78,7 +78,7 @@ def stores(tmp_path_factory: pytest.TempPathFactory) -> Stores:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["finished", "unfinished"])
-@settings(max_examples=settings().max_examples // 4, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=settings().max_examples // 5, suppress_health_check=[HealthCheck.too_slow])
 @given(damage=DAMAGE)
 def test_a_damaged_store_is_refused_or_gives_the_same_results(stores: Stores, name: str, damage: Damage) -> None:
     with tempfile.TemporaryDirectory() as folder:
