@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 MAX_BINS = 1000
 """More bins are narrower than a pixel."""
+MAX_FILLED = 3
+"""More histograms than this are outlines."""
 
 
 def distribution(
@@ -59,11 +61,13 @@ def distribution(
     edges = _edges([entry.values for entry in drawn], bins)
     ax = axes_or_new(ax)
     hues = palette(color_keys(drawn), ax, None, colors, [entry.label for entry in drawn])
+    # Many filled histograms on top of each other would mix to a color of none of them.
+    fill = 0.5 / math.sqrt(len(drawn)) if len(drawn) <= MAX_FILLED else 0.06
     for entry, hue in zip(drawn, hues, strict=True):
         middle = float(np.median(entry.values))
         runs = f"{len(entry.values)} run{'' if len(entry.values) == 1 else 's'}, median {middle:.4g}"
         label = f"{entry.label}: {runs}" if entry.label else runs
-        ax.hist(entry.values, edges, color=hue, alpha=0.5 / math.sqrt(len(drawn)), label=label)
+        ax.hist(entry.values, edges, color=hue, alpha=fill, label=label)
         ax.hist(entry.values, edges, color=hue, histtype="step", linewidth=1.4)
         ax.axvline(middle, color=hue, linewidth=2)
     mark_threshold(ax, threshold, only_env(drawn), "x")
