@@ -186,8 +186,10 @@ class Facts:
     @cached_property
     def changed(self) -> NDArray[np.bool_]:
         """(rows, actions): whether a value has changed since the start, in either table."""
-        unequal: NDArray[np.bool_] = np.logical_or.reduce(self.run.tables != self.initial_tables, axis=0)
-        return unequal
+        first, *others = self.run.tables != self.initial_tables
+        for other in others:
+            first = first | other
+        return np.asarray(first)
 
     @cached_property
     def visited(self) -> NDArray[np.bool_]:
