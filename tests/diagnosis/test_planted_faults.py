@@ -74,7 +74,12 @@ def test_a_planted_fault_is_found_alone(fault: Fault) -> None:
         assert finding.changes
 
 
-@pytest.mark.parametrize("fault", FAULTS[:1] + FAULTS[3:-1], ids=lambda fault: fault.finding)
+MENDED_AT_ONCE = "exploration", "slow learning", "too optimistic", "time-outs treated as terminal"
+
+
+@pytest.mark.parametrize(
+    "fault", [fault for fault in FAULTS if fault.finding in MENDED_AT_ONCE], ids=lambda fault: fault.finding
+)
 def test_the_advised_change_removes_the_finding(fault: Fault) -> None:
     run = qtab.train(fault.env, seed=0, **fault.settings)
     change = qtab.diagnose(run, seeds=0)[fault.finding].changes[0]

@@ -186,14 +186,12 @@ class Facts:
     @cached_property
     def changed(self) -> NDArray[np.bool_]:
         """(rows, actions): whether a value has changed since the start, in either table."""
-        unequal: NDArray[np.bool_] = np.logical_or.reduce(self.run.tables != self.initial_tables, axis=0)
-        return unequal
+        return np.asarray(np.any(self.run.tables != self.initial_tables, axis=0))
 
     @cached_property
     def visited(self) -> NDArray[np.bool_]:
         """(rows,): whether any value of a row has changed."""
-        some: NDArray[np.bool_] = self.changed.any(axis=1)
-        return some
+        return np.asarray(np.any(self.changed, axis=1))
 
     @cached_property
     def q_values(self) -> NDArray[np.float64]:
