@@ -17,6 +17,7 @@ from qtab.results.run import Run
 from qtab.results.snapshots import snapshot_episodes
 from qtab.results.summary import FINAL_EPISODES, SOLVED_EPISODES, best_mean_returns, default_block
 from qtab.training.callbacks import Progress
+from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve, time_limit_notice
 from qtab.training.resolved_run import NativeEnvironment, ResolvedRun
 from qtab.training.train import train_resolved
@@ -76,7 +77,7 @@ def _train(
     averages = _averages(block)
     try:
         finished = train_resolved(
-            resolved, averages, block, record=outputs.shown, visits=visits, snapshots=snapshots or None
+            resolved, TrainingOptions(averages, block, outputs.shown, visits=visits, snapshots=snapshots or None)
         )
     except BaseException as error:
         partial = getattr(error, "run", None)

@@ -34,7 +34,7 @@ class Progress:
     """(episodes,): the return of each finished episode."""
     lengths: NDArray[np.int64]
     """(episodes,): the steps of each finished episode."""
-    _state: "RunState | None" = field(default=None, repr=False, compare=False)
+    _state: "ProgressSource | None" = field(default=None, repr=False, compare=False)
 
     @property
     def episode(self) -> int:
@@ -107,7 +107,7 @@ class Progress:
         return self._current("run").make_run()
 
     @property
-    def _required(self) -> "RunState":
+    def _required(self) -> "ProgressSource":
         if self._state is None:
             raise RuntimeError("this Progress was not made by qtab.train: it has only episodes, returns and lengths")
         return self._state
@@ -125,7 +125,7 @@ Callback = Callable[[Progress], bool | None]
 
 
 @dataclass(slots=True)
-class RunState:
+class ProgressSource:
     """The run behind a Progress."""
 
     reader: "EpisodeReader"
@@ -150,7 +150,7 @@ class EpisodeReader:
         self._began = began
         self._episodes = self._steps = 0
         self._returns, self._lengths = np.empty(0, np.float64), np.empty(0, np.int64)
-        self._state: RunState | None = None
+        self._state: ProgressSource | None = None
 
     def __enter__(self) -> "EpisodeReader":
         return self
@@ -171,7 +171,7 @@ class EpisodeReader:
         now = slice(before, self._episodes)
         self._returns[now], self._lengths[now] = returns, lengths
         self._steps += int(lengths.sum())
-        self._state = RunState(self, self._steps, time.perf_counter() - self._began)
+        self._state = ProgressSource(self, self._steps, time.perf_counter() - self._began)
         return Progress(
             self._episodes, total, self._returns[: self._episodes], self._lengths[: self._episodes], self._state
         )

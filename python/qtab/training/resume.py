@@ -12,9 +12,10 @@ from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.results.run import Run
 from qtab.results.storage import load
-from qtab.training.callbacks import Callback
+from qtab.training.callback_list import Callbacks
+from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.resolve import resolve
-from qtab.training.train import CALLBACK_EVERY, train_resolved
+from qtab.training.train import train_resolved
 
 _LOGGER = logging.getLogger("qtab")
 _SCHEDULES = {"epsilon_schedule": "epsilon", "learning_rate_schedule": "learning_rate"}
@@ -25,10 +26,11 @@ def resume(
     episodes: int | None = None,
     env: gym.Env | None = None,
     *,
-    callback: Callback | None = None,
+    callback: Callbacks | None = None,
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
     progress: bool | None = None,
+    memory_limit: int | None = None,
 ) -> Run:
     """Continues a run that was stopped early, or trains one that has finished for more episodes.
 
@@ -49,9 +51,11 @@ def resume(
         callback_every: As for :func:`qtab.train`.
         record: As for :func:`qtab.train`.
         progress: As for :func:`qtab.train`.
+        memory_limit: As for :func:`qtab.train`.
 
     Returns:
-        The whole run: its first episodes are those of ``run``, which stays as it is.
+        The whole run: its first episodes are those of ``run``, which stays as it is. Visits are counted on if they were
+        counted; snapshots are those of ``run``.
 
     Raises:
         OSError: if the file cannot be read.
@@ -63,16 +67,14 @@ def resume(
     run = run if isinstance(run, Run) else load(_path(run))
     if env is not None and not isinstance(env, gym.Env):
         raise TypeError(f"env must be an environment, got {env!r}")
-    if callback is not None and not callable(callback):
-        raise TypeError(f"callback must be callable, got {callback!r}")
-    callback_every = checks.integer("callback_every", callback_every, least=1)
-    record = checks.count("record", record, least=0)
+    visits = run.visits is not None
+    options = TrainingOptions(callback, callback_every, record, visits, None, progress, memory_limit)
     config = _config(run, episodes)
     settings = {name: value for name, value in vars(config).items() if name != "env"}
     resolved = resolve(config.env if env is None else env, settings)
     try:
         _log_what_differs(run, config)
-        return train_resolved(resolved, callback, callback_every, record, progress, earlier=run)
+        return train_resolved(resolved, options, earlier=run)
     finally:
         resolved.close()
 

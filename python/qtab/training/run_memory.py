@@ -3,7 +3,9 @@
 import math
 
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
+from qtab._utils.memory import memory_limit as bytes_limit
 from qtab.config.options import n_tables
+from qtab.training.options import TrainingOptions
 from qtab.training.resolved_run import ResolvedRun
 
 BYTES_PER_VALUE = {
@@ -35,13 +37,13 @@ def bytes_in_progress(resolved: ResolvedRun) -> int:
     return resolved.config.episodes * BYTES_PER_EPISODE + values * per_value
 
 
-def check_run(resolved: ResolvedRun, record: int, limit: int) -> int:
+def check_run(resolved: ResolvedRun, options: TrainingOptions, snapshots: int) -> int:
     """Checks that one run fits into the memory limit.
 
     Args:
         resolved: The run.
-        record: How many episodes it records.
-        limit: The limit in bytes.
+        options: What else is asked for: the limit, recordings, visits.
+        snapshots: How many copies of the tables it keeps.
 
     Returns:
         How many actions its recordings may have together.
@@ -50,9 +52,11 @@ def check_run(resolved: ResolvedRun, record: int, limit: int) -> int:
         MemoryError: if the run does not fit.
     """
     episodes = resolved.config.episodes
-    copies = 8 * math.prod(tables_shape(resolved, 1))
-    recordings = min(record, episodes)
+    limit = bytes_limit(options.memory_limit)
+    copies = 8 * math.prod(tables_shape(resolved, 1 + snapshots + 2 * bool(options.visits)))
+    recordings = min(int(options.record), episodes)
     needed = bytes_in_progress(resolved) + copies + recordings * BYTES_PER_RECORDING
-    what = f"{episodes} episodes" + (f" with {recordings} recordings" if recordings else "")
+    extras = [f"{recordings} recordings"] * bool(recordings) + [f"{snapshots} snapshots"] * bool(snapshots)
+    what = f"{episodes} episodes" + (f" with {' and '.join(extras)}" if extras else "")
     check_memory(what, needed, limit)
     return (limit - needed) // BYTES_PER_RECORDED_ACTION

@@ -12,25 +12,22 @@ from typing_extensions import Unpack
 
 from qtab import _core
 from qtab._utils import checks
-from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.layers import collect, over
-from qtab.config.options import n_tables
 from qtab.config.settings import Settings
 from qtab.config.signature import with_settings
 from qtab.rendering.replay import generator_states
 from qtab.results.run import Recording, Run
 from qtab.results.snapshots import SnapshotCollector, Snapshots, snapshot_episodes
-from qtab.training.callback_list import CallbackList, Callbacks
+from qtab.training.callback_list import Callbacks
 from qtab.training.callbacks import EpisodeReader
+from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.restore import restore, state_of
-from qtab.training.run_memory import check_run
-
-CALLBACK_EVERY = 100
+from qtab.training.run_memory import check_run, tables_shape
 
 
 @with_settings
@@ -86,55 +83,43 @@ def train(
         KeyboardInterrupt: on Ctrl-C. Like any exception raised by the environment or the callback, it carries the run
             so far as ``.run``.
     """
-    callback_every = checks.integer("callback_every", callback_every, least=1)
-    CallbackList(callback, callback_every)  # refused before the environment is made
-    record = checks.count("record", record, least=0)
-    if not isinstance(visits, bool | np.bool_):
-        raise TypeError(f"visits must be True or False, got {visits!r}")
+    options = TrainingOptions(callback, callback_every, record, visits, snapshots, progress, memory_limit)
     env, base = collect(train, env, config, settings)
     resolved = resolve(env, over(base, settings))
     log_default_limit(resolved)
     if progress is not False:
         log_python_stepping(resolved)
     try:
-        return train_resolved(
-            resolved, callback, callback_every, record, progress, memory_limit, visits=visits, snapshots=snapshots
-        )
+        return train_resolved(resolved, options)
     finally:
         resolved.close()
 
 
-def train_resolved(
-    resolved: ResolvedRun,
-    callback: Callbacks | None = None,
-    callback_every: int = CALLBACK_EVERY,
-    record: int = 0,
-    progress: bool | None = None,
-    memory_limit: int | None = None,
-    *,
-    visits: bool = False,
-    snapshots: int | Sequence[int] | None = None,
-    earlier: Run | None = None,
-) -> Run:
-    """Trains a run that is already resolved, or continues an earlier one; see :func:`train` and :func:`resume`."""
-    total = resolved.config.episodes
-    copied_at = snapshot_episodes(snapshots, total)
-    room = check_run(resolved, record, bytes_limit(memory_limit))
+def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None, earlier: Run | None = None) -> Run:
+    """Trains a run that is already resolved, or continues an earlier one; see :func:`train` and :func:`qtab.resume`."""
+    options = TrainingOptions() if options is None else options
+    total, record = resolved.config.episodes, int(options.record)
+    copied_at = snapshot_episodes(options.snapshots, total)
+    room = check_run(resolved, options, len(copied_at))
     began = time.perf_counter()
-    trainer = _core.Trainer(resolved.spec(), resolved.seed, record, min(room, checks.LARGEST_COUNT), visits)
-    collector = SnapshotCollector(trainer, copied_at, _table_shape(resolved))
-    callbacks = CallbackList(callback, callback_every)
+    trainer = _core.Trainer(
+        resolved.spec(), resolved.seed, record, min(room, checks.LARGEST_COUNT), bool(options.visits)
+    )
+    collector = SnapshotCollector(trainer, copied_at, tables_shape(resolved, 1)[1:])
+    callbacks = options.callbacks()
     done = 0
     if earlier is not None:
         restore(trainer, resolved, earlier)
         done, began = len(earlier.episode_returns), began - earlier.seconds
-    reader = EpisodeReader(trainer, resolved, began, lambda: _run(resolved, trainer, began, over=False))
+    reader = EpisodeReader(
+        trainer, resolved, began, lambda: _run(resolved, trainer, began, collector.snapshots(), over=False)
+    )
     try:
         with (
             resolved.environment.exclusively(),
             reader,
             callbacks.start(resolved),
-            ProgressBar(total, "episode", progress) as bar,
+            ProgressBar(total, "episode", options.progress) as bar,
         ):
             while done < total:
                 target = callbacks.next_call(done, total)
@@ -149,7 +134,7 @@ def train_resolved(
         with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
             _attach(error, _run(resolved, trainer, began, collector.snapshots()))
         raise
-    run = _run(resolved, trainer, began, collector.snapshots())
+    run = _run(resolved, trainer, began, collector.snapshots() or (None if earlier is None else earlier.snapshots))
     overflow = _overflow(run)
     if overflow is not None:
         _attach(overflow, run)
@@ -175,10 +160,6 @@ def _overflow(run: Run) -> OverflowError | None:
     )
 
 
-def _table_shape(resolved: ResolvedRun) -> tuple[int, int, int]:
-    return n_tables(resolved.config.algorithm), resolved.discretizer.n_rows, len(resolved.actions)
-
-
 def _run(
     resolved: ResolvedRun,
     trainer: _core.Trainer,
@@ -200,7 +181,7 @@ def _run(
     visits = trainer.visits()
     return Run(
         config=resolved.config,
-        tables=tables.reshape(_table_shape(resolved)),
+        tables=tables.reshape(tables_shape(resolved, 1)[1:]),
         episode_returns=returns,
         episode_lengths=lengths,
         terminated=terminated,
