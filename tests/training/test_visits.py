@@ -5,7 +5,7 @@ from typing import Any, get_args
 import gymnasium as gym
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 
 import qtab
 from qtab.cli.train import run as command
@@ -64,6 +64,9 @@ def test_visits_are_those_of_the_reference(algorithm: Any, env: str) -> None:
             run = qtab.train(env, visits=True, **chosen)
         except OverflowError:
             return
+        values = run.actions.values
+        # The reference passes actions to the environment, not columns: equal ones cannot be told apart.
+        assume(values is None or len(np.unique(values, axis=0)) == len(values))
         assert run.visits is not None
         assert run.visits.dtype == np.int64
         np.testing.assert_array_equal(run.visits, visits_of_the_reference(run))
