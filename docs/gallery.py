@@ -29,7 +29,9 @@ def draw(code: str, namespace: dict[str, Any], path: Path) -> None:
     exec(code, namespace)  # noqa: S102 - the page's own code
     figure = namespace["ax"].figure if "ax" in namespace else namespace["figure"]
     figure.savefig(path, dpi=DOTS_PER_INCH)
-    Image.open(path).convert("RGB").quantize(COLORS, dither=Image.Dither.NONE).save(path, optimize=True)
+    Image.open(path).convert("RGB").quantize(COLORS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+        path, optimize=True
+    )
 
 
 def main() -> None:

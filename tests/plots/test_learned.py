@@ -1,5 +1,6 @@
 """Pictures of what was learned show the numbers of the run."""
 
+import sys
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -269,3 +270,13 @@ def test_the_overview_has_four_panels(car: qtab.Run) -> None:
     assert titles == [CAR, "Values", "Greedy policy", "Visits"]
     plain = qtab.train(CAR, episodes=20, seed=0)
     assert plots.overview(plain).axes[3].get_title("left") == "Schedule"
+
+
+@pytest.mark.parametrize("picture", [*PICTURES, plots.schedule, plots.overview])
+def test_without_matplotlib_the_message_says_what_to_install(
+    picture: Any, lake: qtab.Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(ModuleNotFoundError, match=r"pip install"):
+        picture(lake)

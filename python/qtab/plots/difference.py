@@ -56,9 +56,6 @@ def difference(
         TypeError: for an argument of the wrong type.
         ValueError: if the optimum is that of another environment, or an argument does not fit it.
     """
-    from matplotlib import colormaps
-    from matplotlib.colors import ListedColormap, Normalize
-
     if not isinstance(run, Run | Runs):
         raise TypeError(f"run must be a Run or Runs, got {run!r}")
     if not isinstance(optimum, Optimum):
@@ -68,6 +65,9 @@ def difference(
     raster = arrange(subject, at, layout, sampled=optimum.search is not None)
     cost = costs(subject, best, raster)
     [ax] = axes_for([raster], ax)
+    from matplotlib import colormaps  # after the axes: the message without matplotlib is theirs
+    from matplotlib.colors import ListedColormap, Normalize
+
     known = np.isfinite(cost)
     wrong = known & (cost > 0)
     share = wrong.sum() / max(known.sum(), 1)

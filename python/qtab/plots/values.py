@@ -61,13 +61,13 @@ def values(
         TypeError: for an argument of the wrong type.
         ValueError: for one that does not fit the environment, or runs without tables.
     """
-    from matplotlib.colors import Normalize
-
     subjects = subjects_of("run", run)
     check_same_environment(subjects, "run")
     rasters = [arrange(subject, at, layout) for subject in subjects]
     shown = [subject.state_values(raster.rows) for subject, raster in zip(subjects, rasters, strict=True)]
     axes = axes_for(rasters, ax)
+    from matplotlib.colors import Normalize  # after the axes: the message without matplotlib is theirs
+
     finite = np.concatenate([np.zeros(0), *(grid[np.isfinite(grid)] for grid in shown)])
     norm = Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0, 1)
     for subject, raster, grid, panel in zip(subjects, rasters, shown, axes, strict=True):

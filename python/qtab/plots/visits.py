@@ -53,8 +53,6 @@ def visits(
         TypeError: for an argument of the wrong type.
         ValueError: for a run without visits, or an argument that does not fit the environment.
     """
-    from matplotlib.colors import LogNorm
-
     subjects = subjects_of("run", run)
     for subject in subjects:
         _require_visits(subject)
@@ -62,6 +60,8 @@ def visits(
     rasters = [arrange(subject, at, layout) for subject in subjects]
     shown = [_counts(subject, raster) for subject, raster in zip(subjects, rasters, strict=True)]
     axes = axes_for(rasters, ax)
+    from matplotlib.colors import LogNorm  # after the axes: the message without matplotlib is theirs
+
     most = max([2.0, *(float(grid[np.isfinite(grid)].max(initial=2.0)) for grid in shown)])
     norm = LogNorm(1, most)
     for subject, raster, grid, panel in zip(subjects, rasters, shown, axes, strict=True):

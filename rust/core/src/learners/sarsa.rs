@@ -16,7 +16,8 @@ where
     P: Policy,
     A: StepSize,
 {
-    #[inline]
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+    #[inline(always)]
     fn learn(
         &mut self,
         agent: &mut Agent<N, P, A>,

@@ -29,7 +29,8 @@ where
         self.agent.choose(state, rng)
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+    #[inline(always)]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
         self.rule.learn(&mut self.agent, state, action, reward, next, rng)
     }
