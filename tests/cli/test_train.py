@@ -4,7 +4,6 @@ import importlib.metadata
 import re
 import signal
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ import pytest
 
 import qtab as package
 from support.command import QTAB, environment, qtab, qtab_here, refused
+from support.posix import posix_only
 
 
 def test_train_prints_the_articles_averages_and_saves_the_run(tmp_path: Path) -> None:
@@ -220,7 +220,7 @@ def heed_ctrl_c() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is no signal there")
+@posix_only
 def test_ctrl_c_saves_and_plots_what_was_learned_so_far(tmp_path: Path) -> None:
     process = subprocess.Popen(
         [*QTAB, "train", "--episodes", "1000000", "--seed", "0", "--save", "part.npz", "--plot", "part.png"],

@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
+from qtab._utils.fields import with_fields
 
 
+@with_fields
 @dataclass(frozen=True)
 class Progress:
     """The progress of a run, as a callback receives it. Later calls receive longer arrays with the same beginning."""
