@@ -8,6 +8,7 @@ import pytest
 import qtab
 from support.command import environment, qtab_here, refused
 from support.command import qtab as command
+from support.posix import posix_only
 
 
 def test_without_a_name_the_experiments_are_listed(tmp_path):
@@ -78,6 +79,7 @@ sys.exit(main(["book", "6.3", "--plot", "cliff.png"]))
 """
 
 
+@posix_only
 def test_ctrl_c_stops_an_experiment_and_leaves_no_file(tmp_path):
     done = subprocess.run(
         [sys.executable, "-c", INTERRUPTED], cwd=tmp_path, env=environment(tmp_path), capture_output=True, check=False

@@ -12,6 +12,7 @@ import pytest
 
 import qtab as package
 from support.command import QTAB, environment, qtab, qtab_here, refused
+from support.posix import posix_only
 
 
 def test_train_prints_the_articles_averages_and_saves_the_run(tmp_path: Path) -> None:
@@ -209,10 +210,10 @@ def test_without_tyro_the_command_names_the_extra(tmp_path: Path) -> None:
     (tmp_path / "tyro.py").write_text("raise ModuleNotFoundError(\"No module named 'tyro'\", name='tyro')")
     done = qtab("train", cwd=tmp_path)
     assert done.returncode == 1
-    assert (
-        done.stderr
-        == "qtab: error: this needs tyro, which is not installed; run: pip install 'tyro>=1.0' 'tqdm>=4.66'\n"
+    assert done.stderr.startswith(
+        "qtab: error: this needs tyro, which is not installed; run: pip install 'tyro>=1.0' 'tqdm>=4.66'"
     )
+    assert ("tomli" in done.stderr) == (sys.version_info < (3, 11))
 
 
 def heed_ctrl_c() -> None:
@@ -220,7 +221,7 @@ def heed_ctrl_c() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is no signal there")
+@posix_only
 def test_ctrl_c_saves_and_plots_what_was_learned_so_far(tmp_path: Path) -> None:
     process = subprocess.Popen(
         [*QTAB, "train", "--episodes", "1000000", "--seed", "0", "--save", "part.npz", "--plot", "part.png"],

@@ -16,15 +16,30 @@ from support.environments import Walk
 
 HUGE, NAN = 10**5000, float("nan")
 RAGGED = [[1.0], [1.0, 2.0]]
-RATES = ("learning_rate", "discount", "epsilon", "min_epsilon", "epsilon_decay", "learning_rate_decay", "trace_decay")
+RATES: tuple[str, ...] = (
+    "learning_rate",
+    "discount",
+    "epsilon",
+    "min_epsilon",
+    "epsilon_decay",
+    "learning_rate_decay",
+    "trace_decay",
+)
 RATES += ("trace_cutoff", "min_learning_rate", "temperature", "time_weight")
-COUNTS = ("episodes", "max_episode_steps", "n_steps", "planning_steps", "learning_rate_warm_up", "epsilon_warm_up")
+COUNTS: tuple[str, ...] = (
+    "episodes",
+    "max_episode_steps",
+    "n_steps",
+    "planning_steps",
+    "learning_rate_warm_up",
+    "epsilon_warm_up",
+)
 COUNTS += ("tilings", "hashed_rows")
 LISTS = ("scale", "tiles", "bins", "low", "high", "edges", "actions", "initial_q")
 NOT_REAL: list[Any] = ["x", b"1", NAN, -0.5, 1j, [0.5], {}, True, np.True_, HUGE, -HUGE]
 NOT_COUNTS: list[Any] = ["3", 1.5, -1, True, np.True_, [3], NAN, HUGE, np.array([3])]
 NOT_CHOICES: list[Any] = ["nope", "", 3, b"auto", ["auto"]]
-NOT_LISTS: list[Any] = ["abc", b"1", {"a": object}, 1j, [NAN], [object()], ["1", "2"], [[{}]]]
+NOT_LISTS: list[Any] = ["abc", b"1", {"a": object}, 1j, [NAN], [object], ["1", "2"], [[{}]]]
 
 
 def settings() -> Iterator[tuple[str, Any]]:
@@ -124,17 +139,18 @@ def test_a_bad_call_is_refused_with_the_argument_and_the_value(
     assert caught.type in (TypeError, ValueError, OSError, MemoryError)
 
 
-UNKNOWN = [
-    (lambda: qtab.Config(alpha=0.1), "unknown setting 'alpha' (did you mean 'learning_rate'?)"),  # type: ignore[call-arg]
-    (lambda: qtab.Config(wheels=4), "unknown setting 'wheels'; help(qtab.Config) lists the settings"),  # type: ignore[call-arg]
-    (lambda: qtab.train(CAR, alpha=0.1), "unknown setting 'alpha' (did you mean 'learning_rate'?)"),  # type: ignore[call-arg]
-    (lambda: qtab.train(CAR, wheels=4), "unknown setting 'wheels'; help(qtab.train) and qtab train --help list the"),  # type: ignore[call-arg]
-    (lambda: qtab.train_many(CAR, wheels=4), "unknown setting 'wheels'; help(qtab.train_many) lists the settings"),  # type: ignore[call-arg]
-    (lambda: qtab.train_many(CAR, n_jobs=4), "unknown setting 'n_jobs' (did you mean 'threads'?)"),  # type: ignore[call-arg]
-    (lambda: qtab.optimum("Taxi-v4", gamma=0.9), "unknown argument 'gamma' (did you mean 'discount'?)"),  # type: ignore[call-overload]
-    (lambda: qtab.optimum("Taxi-v4", wheels=4), "unknown argument 'wheels'; help(qtab.optimum) lists the arguments"),  # type: ignore[call-overload]
-    (lambda: qtab.evaluate(None, n_episodes=4), "unknown argument 'n_episodes' (did you mean 'episodes'?)"),  # type: ignore[call-overload]
-    (lambda: qtab.verify(None, wheels=4), "unknown argument 'wheels'; help(qtab.verify) lists the arguments"),  # type: ignore[call-overload]
+Q: Any = qtab  # for a type checker, the calls are errors as well
+UNKNOWN: list[tuple[Callable[[], Any], str]] = [
+    (lambda: Q.Config(alpha=0.1), "unknown setting 'alpha' (did you mean 'learning_rate'?)"),
+    (lambda: Q.Config(wheels=4), "unknown setting 'wheels'; help(qtab.Config) lists the settings"),
+    (lambda: Q.train(CAR, alpha=0.1), "unknown setting 'alpha' (did you mean 'learning_rate'?)"),
+    (lambda: Q.train(CAR, wheels=4), "unknown setting 'wheels'; help(qtab.train) and qtab train --help list the"),
+    (lambda: Q.train_many(CAR, wheels=4), "unknown setting 'wheels'; help(qtab.train_many) lists the settings"),
+    (lambda: Q.train_many(CAR, n_jobs=4), "unknown setting 'n_jobs' (did you mean 'threads'?)"),
+    (lambda: Q.optimum("Taxi-v4", gamma=0.9), "unknown argument 'gamma' (did you mean 'discount'?)"),
+    (lambda: Q.optimum("Taxi-v4", wheels=4), "unknown argument 'wheels'; help(qtab.optimum) lists the arguments"),
+    (lambda: Q.evaluate(None, n_episodes=4), "unknown argument 'n_episodes' (did you mean 'episodes'?)"),
+    (lambda: Q.verify(None, wheels=4), "unknown argument 'wheels'; help(qtab.verify) lists the arguments"),
 ]
 
 

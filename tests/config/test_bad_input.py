@@ -13,6 +13,7 @@ import pytest
 
 import qtab
 from support.environments import ScriptedEnv, Walk
+from support.posix import posix_only
 
 NO_NUMBERS: list[Any] = ["0.5", b"0.5", None, True, np.True_, 0.5j, [0.5], (0.5,), np.array([0.5]), {}]
 NO_INTEGERS = [1.0, 2.5, float("nan"), "5", True, np.True_, [5], np.array([5]), Fraction(5)]
@@ -189,6 +190,7 @@ def test_a_table_too_large_is_refused_with_the_scale(value):
         qtab.train("MountainCar-v0", scale=value)
 
 
+@posix_only
 def test_a_table_that_does_not_fit_into_memory_is_refused_and_the_process_continues():
     code = """
 import resource, qtab

@@ -72,13 +72,13 @@ def test_keywords_override_the_config_and_the_config_overrides_the_preset() -> N
     # The preset fills in only what the config does not have.
     assert (run.config.scale, run.config.terminal_update) == ((10.0, 100.0), "target")
     named = qtab.train(config={"env": CAR, "episodes": 7, "discount": 0.95}, preset="solved", tilings=4).config
-    assert (named.episodes, named.discount, named.tilings, named.algorithm) == (7, 0.95, 4, "sarsa_lambda")
+    assert (named.episodes, named.discount, named.tilings, named.algorithm) == (7, 0.95, 4, "true_online_sarsa_lambda")
 
 
 def test_a_keyword_drops_conflicting_options_of_a_config_but_not_of_a_mapping() -> None:
     run = qtab.train(CAR, preset="solved", episodes=3)
     other = qtab.train(config=run.config, algorithm="q_learning")
-    assert (other.config.algorithm, other.config.trace_decay, other.config.tilings) == ("q_learning", None, 8)
+    assert (other.config.algorithm, other.config.trace_decay, other.config.tilings) == ("q_learning", None, 32)
     with pytest.raises(ValueError, match=r"^trace_decay applies to algorithm .*, not to 'q_learning', got 0.5$"):
         qtab.train(CAR, config={"algorithm": "sarsa_lambda", "trace_decay": 0.5}, algorithm="q_learning")
 
@@ -105,7 +105,7 @@ def test_many_runs_start_from_the_config_of_one() -> None:
 
 def test_a_sweep_starts_from_the_config_of_a_run() -> None:
     run = qtab.train(CAR, preset="solved", episodes=4, seed=0)
-    swept = qtab.sweep(None, {"algorithm": ["sarsa_lambda", "q_learning"]}, 2, config=run.config)
+    swept = qtab.sweep(None, {"algorithm": ["true_online_sarsa_lambda", "q_learning"]}, 2, config=run.config)
     assert len(swept) == 4
     assert swept.failed == 0
     assert swept.columns["mean_return"][0] == run.episode_returns.mean()

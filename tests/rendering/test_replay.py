@@ -93,7 +93,7 @@ def test_watch_is_refused_before_training_without_a_display(tmp_path: Path) -> N
     drivers: list[Any] = [{}, {"SDL_VIDEODRIVER": "dummy"}, {"SDL_VIDEODRIVER": "offscreen"}]
     for variables in drivers:
         line = refused("train", "--watch", "3", "--save", "run.npz", cwd=tmp_path, **variables)
-        assert "--record DIR" in line
+        assert "--record FOLDER" in line
 
 
 def test_a_window_shows_the_same_episodes(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,6 +7,9 @@ import sys
 import pytest
 
 from support.interrupts import PRELUDE, in_a_process
+from support.posix import posix_only
+
+pytestmark = posix_only
 
 
 @pytest.mark.parametrize("backend", ["rust", "gymnasium"])

@@ -14,6 +14,7 @@ import pytest
 import qtab
 from support.environments import make_brittle
 from support.parity import assert_same_as_single_runs, run_of
+from support.posix import posix_only
 
 CAR = "MountainCar-v0"
 SHORT: dict[str, Any] = {"episodes": 30}
@@ -23,6 +24,7 @@ def _in_a_child(queue):
     queue.put(qtab.train_many(CAR, 4, threads=2, **SHORT).episode_returns)
 
 
+@posix_only
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 def test_train_many_works_after_a_fork():
     before = qtab.train_many(CAR, 4, threads=2, **SHORT).episode_returns
@@ -80,6 +82,7 @@ def run_until_ready_then_interrupt(script):
     return out.split()
 
 
+@posix_only
 def test_ctrl_c_keeps_the_finished_runs():
     # The first runs finish before the interrupt, the others do not.
     said = run_until_ready_then_interrupt(
@@ -117,6 +120,7 @@ def test_a_failing_process_is_reported_with_its_seed_and_keeps_the_finished_runs
     assert run_of(caught.value).episode_returns[0].tobytes() == single.episode_returns.tobytes()
 
 
+@posix_only
 @pytest.mark.slow
 @pytest.mark.parametrize("settings", ["episodes=50", "max_episode_steps=10**12, env_kwargs={'goal_velocity': 1.0}"])
 def test_ctrl_c_stops_the_processes_too(settings):

@@ -64,8 +64,8 @@ def _reason(paragraphs: Sequence[str], kind: Any, known: Collection[str]) -> str
     summary = paragraphs[0].partition(" Got errors:")[0].rstrip(".")
     if unrecognized := re.match(r"Unrecognized options: (.+)", summary):
         return _unknown(unrecognized[1].split(", "), kind, known)
-    if missing := re.match(r"Missing value for argument '([^']+)'", summary):
-        return f"{missing[1].split('/')[-1]} needs a value"
+    if missing := re.match(r"Missing value for argument .*?(--[\w-]+)", summary):
+        return f"{missing[1]} needs a value"
     if missing := re.match(r"Missing from qtab \w+: (\w+) (.+?)\.? \(required\)", summary):
         return f"{missing[1]} must be given: {missing[2][0].lower()}{missing[2][1:]}"
     return re.sub(r"^Error parsing (--[\w-]+): must ", r"\1 must ", summary)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.fields import with_fields
 from qtab.config.choices import (
     Algorithm,
     Backend,
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from qtab.config.settings import ConfigSettings, Settings
 
 
+@with_fields
 @dataclass(frozen=True, eq=False)
 class Config:
     """The settings of a run: with the same config, it can be repeated exactly.

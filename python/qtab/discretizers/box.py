@@ -42,7 +42,7 @@ def box_of(space: Any) -> spaces.Box:
 
 def _remedy(space: Any) -> str:
     """Returns what makes a supported space of another one."""
-    if isinstance(space, spaces.Discrete | spaces.MultiDiscrete) and len(space.shape) <= 1:
+    if isinstance(space, spaces.Discrete | spaces.MultiDiscrete) and len(space.shape or ()) <= 1:
         return "discretizer must be left out for it"
     if isinstance(space, spaces.Dict):
         return (

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
+from qtab._utils.fields import with_fields
 from qtab.config import Config
 from qtab.training.rates import Rates
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from qtab.training.resolved_run import ResolvedRun
 
 
+@with_fields
 @dataclass(frozen=True)
 class Progress:
     """The progress of a run, as a callback receives it. Later calls receive longer arrays with the same beginning.

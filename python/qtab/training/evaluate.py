@@ -11,6 +11,7 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.fields import with_fields
 from qtab._utils.frames import episode_frame
 from qtab.config import Config
 from qtab.config.options import OPTIONS
@@ -33,6 +34,7 @@ TABLE_SETTINGS = (
 """The settings that say what the rows and columns of a table stand for."""
 
 
+@with_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Evaluation:
     """Episodes played by a greedy policy, without learning."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
+from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
@@ -24,6 +25,7 @@ from qtab.training.given_env import check_env, check_spaces
 from qtab.training.resolve import resolve
 
 
+@with_fields
 @dataclass(frozen=True)
 class Verification:
     """The result of a comparison with Gymnasium and NumPy."""
