@@ -86,8 +86,13 @@ def test_the_advised_change_removes_the_finding(fault: Fault) -> None:
     assert fault.finding not in qtab.diagnose(qtab.train(config=run.config, **change), seeds=0)
 
 
+DIVERGING: dict[str, Any] = {"preset": "solved", "algorithm": "sarsa_lambda", "traces": "accumulating", "seed": 0}
+
+
 def test_values_that_diverge_are_found_before_anything_else() -> None:
-    run = qtab.train(CAR, seed=0, preset="solved", learning_rate=1.9, traces="accumulating", episodes=20)
+    run = qtab.train(
+        CAR, seed=0, algorithm="sarsa_lambda", preset="solved", learning_rate=1.9, traces="accumulating", episodes=20
+    )
     diagnosis = qtab.diagnose(run)
     assert diagnosis.names == ("not solved", "divergence")
     assert diagnosis["divergence"].evidence["largest value"] > 1e4
@@ -95,7 +100,15 @@ def test_values_that_diverge_are_found_before_anything_else() -> None:
 
 def test_a_run_that_overflowed_is_diagnosed() -> None:
     with pytest.raises(OverflowError) as caught:
-        qtab.train(CAR, seed=0, preset="solved", learning_rate=2.0, traces="accumulating", episodes=2000)
+        qtab.train(
+            CAR,
+            seed=0,
+            algorithm="sarsa_lambda",
+            preset="solved",
+            learning_rate=2.0,
+            traces="accumulating",
+            episodes=2000,
+        )
     diagnosis = qtab.diagnose(caught.value.run)  # type: ignore[attr-defined]
     assert "divergence" in diagnosis
     assert "nan" not in str(diagnosis)

@@ -198,7 +198,7 @@ class Odd(gym.RewardWrapper[Any, Any]):
             ValueError,
             "env_kwargs must be None if env is an env",
         ),
-        ({"env": "MountainCar-v0", "method": "value_iteration"}, ValueError, "method must be one of 'search', got"),
+        ({"env": "MountainCar-v0", "method": "value_iteration"}, ValueError, "method must be 'search', got"),
         ({"env": "MountainCar-v0", "discount": 0.9}, ValueError, "discount must be 1 for method .search."),
     ],
 )

@@ -23,6 +23,8 @@ RATES = CHOICES["learning_rate_schedule"]
 
 
 def check(env: str, preset: Mapping[str, Any], exploration: Mapping[str, Any], rate: str) -> None:
+    if rate == "visits" and preset.get("algorithm") == "true_online_sarsa_lambda":
+        rate = "linear"  # it has one learning rate for all weights
     settings = {**preset, **exploration, "learning_rate_schedule": rate}
     if exploration is SOFTMAX:
         settings = {name: value for name, value in settings.items() if name not in GREEDY}

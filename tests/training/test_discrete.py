@@ -203,8 +203,8 @@ def test_a_run_refuses_invalid_observations():
         ("FrozenLake-v1", {"discretizer": "tiles"}, "the observation space must be a Box"),
         ("MountainCar-v0", {"discretizer": "identity"}, "the observation space must be Discrete"),
         (Steps(Discrete(2**33)), {}, r"the observation space must give a table of fewer than 2\*\*32 values"),
-        (Steps(Box(0, 1, (2, 2))), {}, "must be a Box of one float axis"),
-        (Steps(Tuple((Discrete(2), Box(0, 1, (1,))))), {}, "must be a Box of one float axis"),
+        (Steps(Box(0, 1, (2, 2))), {}, "must be a Box of one axis of float32 or float64"),
+        (Steps(Tuple((Discrete(2), Box(0, 1, (1,))))), {}, "must be a Box of one axis of float32 or float64"),
     ],
     ids=str,
 )

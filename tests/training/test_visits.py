@@ -15,6 +15,7 @@ from qtab.reference import LEARNERS
 from qtab.reference.actions import actions
 from qtab.reference.discretizers import discretizer
 from support.learner_settings import CAR, TRAINED, run_settings
+from support.run_files import members_of, with_right_digest, write_members
 
 ALGORITHMS = get_args(Algorithm)
 
@@ -179,9 +180,8 @@ def test_a_saved_run_keeps_them(tmp_path: Any) -> None:
 )
 def test_damaged_visits_and_snapshots_are_refused(tmp_path: Any, name: str, value: Any, message: str) -> None:
     qtab.train(CAR, episodes=5, seed=0, visits=True, snapshots=2).save(tmp_path / "run.npz")
-    with np.load(tmp_path / "run.npz") as stored:
-        arrays = {**stored, name: value}
-    np.savez(tmp_path / "damaged.npz", **arrays)
+    members = members_of(tmp_path / "run.npz") | {name: value}
+    write_members(tmp_path / "damaged.npz", with_right_digest(members))
     with pytest.raises(ValueError, match=message):
         qtab.load(tmp_path / "damaged.npz")
 

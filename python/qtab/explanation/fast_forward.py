@@ -55,7 +55,7 @@ def start_of(run: Run, episode: int) -> Start | None:
         trainer.advance(episode)
         before = trainer.tables()
         trainer.advance(episode + 1)
-        start, columns = trainer.recordings()[-1]
+        start, columns = trainer.take_recordings()[-1]
         (env_generator,) = generator_states(resolved.config, [start])
     finally:
         resolved.close()

@@ -248,17 +248,17 @@ class Run:
         if isinstance(self.config.initial_q, np.ndarray):
             arrays["initial_q"] = self.config.initial_q
             config["initial_q"] = None
-        if self.state is not None:
-            arrays["state"] = self.state.array()
-        header = {
+        header: dict[str, Any] = {
             "config": config,
             "actions": len(self.actions),
             "first_action": self.actions.first,
             "completed": self.completed,
             "seconds": self.seconds,
             "versions": dict(self.versions),
-            "generator": None if self.state is None else self.state.generator,
         }
+        if self.state is not None:
+            arrays["state"] = self.state.array()
+            header["generator"] = self.state.generator
         kwargs = self.config.env_kwargs
         try:
             text = run_file.encode(header)

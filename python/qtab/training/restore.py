@@ -48,10 +48,13 @@ def _with_arrays(state: Any) -> Any:
     return np.array(state, np.uint64) if isinstance(state, list) else state
 
 
-def state_of(trainer: _core.Trainer, resolved: ResolvedRun) -> RunState:
-    """Returns what :func:`restore` will need."""
+def state_of(trainer: _core.Trainer, resolved: ResolvedRun) -> RunState | None:
+    """Returns what :func:`restore` will need; None if there is no memory for it."""
     environment = resolved.environment
     generator = None
     if isinstance(environment, PythonEnvironment):
         generator = generator_state(environment.env.unwrapped.np_random)
-    return RunState(trainer.checkpoint(), generator)
+    try:
+        return RunState(trainer.checkpoint(), generator)
+    except MemoryError:
+        return None  # what was learned is worth more

@@ -1,7 +1,5 @@
 //! A training run as a value, and the only training loop.
 
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
-use crate::features::ActiveRows;
 use crate::learners::Learner;
 use crate::memory::{AllocationError, reserve};
 use crate::random::Rng;
@@ -192,97 +190,6 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         self.episodes.returns.push(episode_return);
         self.episodes.lengths.push(length);
         self.episodes.terminated.push(terminated);
-    }
-}
-
-/// Saves or restores what followed an unfinished step.
-fn persist_next<R: ActiveRows>(
-    next: Option<Next<R>>,
-    num_rows: usize,
-    checkpoint: &mut Checkpoint<'_>,
-) -> Result<Option<Next<R>>, CheckpointError> {
-    let (mut kind, rows) = match next {
-        None => (0_u8, None),
-        Some(Next::NonTerminal(rows)) => (1, Some(rows)),
-        Some(Next::Truncated(rows)) => (2, Some(rows)),
-        Some(Next::Terminal) => (3, None),
-    };
-    kind.persist(checkpoint)?;
-    Ok(match kind {
-        0 => None,
-        1 => Some(Next::NonTerminal(persist_rows(rows, num_rows, checkpoint)?)),
-        2 => Some(Next::Truncated(persist_rows(rows, num_rows, checkpoint)?)),
-        3 => Some(Next::Terminal),
-        _ => return Err(CheckpointError::Invalid("end of a step")),
-    })
-}
-
-/// How a checkpoint describes an unfinished episode.
-const BETWEEN_EPISODES: u8 = 0;
-const IN_EPISODE: u8 = 1;
-/// The task cannot restore the state of an episode: the run is resumed with the next one.
-const ABANDONED: u8 = 2;
-
-impl<T: Task, L: Learner<T::Active>, R: Persist> Trainer<T, L, R> {
-    /// Saves or restores the run, except for its tables and its finished episodes. A checkpoint is restored into a new run
-    /// of the same task, learner and seed.
-    ///
-    /// # Errors
-    /// The bytes are damaged, or belong to another run. The run is then useless.
-    pub fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.rng.persist(checkpoint)?;
-        self.learner.persist(checkpoint)?;
-        let mut progress = match self.episode {
-            None => BETWEEN_EPISODES,
-            Some(_) if self.task.resumes_episodes() => IN_EPISODE,
-            Some(_) => ABANDONED,
-        };
-        progress.persist(checkpoint)?;
-        match progress {
-            IN_EPISODE => return self.persist_episode(checkpoint),
-            ABANDONED if checkpoint.is_restoring() => self.learner.abandon_episode(),
-            BETWEEN_EPISODES | ABANDONED => {}
-            _ => return Err(CheckpointError::Invalid("progress of an episode")),
-        }
-        self.task.persist(None, checkpoint)
-    }
-
-    fn persist_episode(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        const INVALID: CheckpointError = CheckpointError::Invalid("state of the environment");
-        let mut episode = match &self.episode {
-            Some(episode) => *episode,
-            None => {
-                // Any state will do, and the generator is restored after it.
-                let (state, active) = self.task.reset().map_err(|_| INVALID)?;
-                EpisodeState { state, active, action: 0, episode_return: 0.0, length: 0, unfinished: None }
-            }
-        };
-        let (num_rows, num_actions) = self.learner.shape();
-        self.task.persist(Some(&mut episode.state), checkpoint)?;
-        checkpoint.index(&mut episode.action, num_actions, "action")?;
-        (&mut episode.episode_return, &mut episode.length).persist(checkpoint)?;
-        if checkpoint.is_restoring() {
-            episode.active = self.task.active_rows(&episode.state).map_err(|_| INVALID)?;
-        }
-        episode.unfinished = persist_next(episode.unfinished, num_rows, checkpoint)?;
-        self.episode = Some(episode);
-        Ok(())
-    }
-
-    /// Continues a run that has finished these episodes and learned these tables: the schedules move on to the episode
-    /// after them. The rest of the run is restored by `persist`.
-    ///
-    /// # Errors
-    /// The number of tables, or of their values, is another.
-    pub fn restore(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError> {
-        let ours = self.learner.tables_mut();
-        if ours.len() != tables.len() || ours.iter().zip(tables).any(|(ours, theirs)| ours.len() != theirs.len()) {
-            return Err(CheckpointError::Invalid("size of the tables"));
-        }
-        ours.into_iter().zip(tables).for_each(|(ours, theirs)| ours.copy_from_slice(theirs));
-        self.learner.skip_episodes(episodes.returns.len());
-        self.episodes = episodes;
-        Ok(())
     }
 }
 

@@ -4,6 +4,7 @@ mod bytes;
 mod persist;
 #[cfg(test)]
 mod tests;
+mod trainer;
 
 pub use bytes::{Checkpoint, CheckpointError};
 pub use persist::{Persist, persist_rows};

@@ -261,23 +261,21 @@ mod tests {
 
     #[test]
     fn hanging_at_rest_stays_at_rest() {
-        let hanging = Acrobot::default().transition(AcrobotState::default(), 0.0);
-        assert!(<[f64; 4]>::from(hanging.state).iter().all(|number| number.abs() < 1e-15));
-        assert_eq!((hanging.reward, hanging.terminated), (-1.0, false));
+        let step = Acrobot::default().transition(AcrobotState::default(), 0.0);
+        assert!(<[f64; 4]>::from(step.state).iter().all(|number| number.abs() < 1e-15) && !step.terminated);
     }
 
     #[test]
     fn the_last_step_costs_nothing() {
-        let up = Acrobot::default().transition([PI, 0.0, 0.0, 0.0].into(), 0.0);
-        assert_eq!((up.reward, up.terminated), (0.0, true));
+        let step = Acrobot::default().transition([PI, 0.0, 0.0, 0.0].into(), 0.0);
+        assert_eq!((step.reward, step.terminated), (0.0, true));
     }
 
     #[test]
     fn angles_are_wrapped_and_speeds_bounded() {
         let fast: [f64; 4] = Acrobot::default().transition([3.0, 3.0, 12.5, 28.0].into(), 1.0).state.into();
-        assert!(fast[0].abs() <= PI && fast[1].abs() <= PI);
-        assert!(fast[2].abs() <= 4.0 * PI && fast[3].abs() <= 9.0 * PI);
-        assert!(wrap(1e300).is_nan());
+        let bounds = [PI, PI, 4.0 * PI, 9.0 * PI];
+        assert!(fast.iter().zip(bounds).all(|(number, bound)| number.abs() <= bound) && wrap(1e300).is_nan());
     }
 
     #[test]
