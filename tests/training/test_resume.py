@@ -107,7 +107,7 @@ def test_more_episodes_spread_the_schedules_over_all_of_them(caplog):
     assert longer.config.episodes == 50
     assert longer.episode_returns[:30].tobytes() == part.episode_returns.tobytes()
     assert len(longer.episode_returns) == 50
-    constant = {"seed": 0, "epsilon_schedule": "constant", "epsilon": 0.2}
+    constant: dict[str, Any] = {"seed": 0, "epsilon_schedule": "constant", "epsilon": 0.2}
     caplog.clear()
     longer = qtab.resume(qtab.train("MountainCar-v0", episodes=30, **constant), 50)
     assert_resumed(longer, qtab.train("MountainCar-v0", episodes=50, **constant))

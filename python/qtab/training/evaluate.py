@@ -141,7 +141,7 @@ def evaluate(
     check_env(env)
     config = run.config
     if env is None:
-        spec = spec_of_run(config.env)
+        spec: EnvSpec | None = spec_of_run(config.env)
     elif isinstance(env, gym.Env):
         spec = env.spec
         check_spaces(run, env)

@@ -41,7 +41,11 @@ impl<T: Persist + Default> Persist for Option<T> {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         let mut present = self.is_some();
         present.persist(checkpoint)?;
-        if present { self.get_or_insert_default().persist(checkpoint) } else { Ok(*self = None) }
+        if present {
+            return self.get_or_insert_default().persist(checkpoint);
+        }
+        *self = None;
+        Ok(())
     }
 }
 

@@ -61,13 +61,12 @@ impl<T: Task, L: Learner<T::Active>, R: Persist> Trainer<T, L, R> {
 
     fn persist_episode(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         const INVALID: CheckpointError = CheckpointError::Invalid("state of the environment");
-        let mut episode = match &self.episode {
-            Some(episode) => *episode,
-            None => {
-                // Any state will do, and the generator is restored after it.
-                let (state, active) = self.task.reset().map_err(|_| INVALID)?;
-                EpisodeState { state, active, action: 0, episode_return: 0.0, length: 0, unfinished: None }
-            }
+        let mut episode = if let Some(episode) = &self.episode {
+            *episode
+        } else {
+            // Any state will do, and the generator is restored after it.
+            let (state, active) = self.task.reset().map_err(|_| INVALID)?;
+            EpisodeState { state, active, action: 0, episode_return: 0.0, length: 0, unfinished: None }
         };
         let (num_rows, num_actions) = self.learner.shape();
         self.task.persist(Some(&mut episode.state), checkpoint)?;

@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn every_step_counts_in_each_active_row() -> Result<(), ()> {
-        let mut task = VisitCounter::new(Corridor, 6, 2, &StopFlag::new()).unwrap();
+        let mut task = VisitCounter::new(Corridor, 6, 2, &StopFlag::new()).expect("a few counts");
         for _ in 0..2 {
             let (mut state, active) = task.reset()?;
             assert_eq!(active, [0, 3]);
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_step_that_fails_is_not_counted() -> Result<(), ()> {
-        let mut task = VisitCounter::new(Corridor, 6, 3, &StopFlag::new()).unwrap();
+        let mut task = VisitCounter::new(Corridor, 6, 3, &StopFlag::new()).expect("a few counts");
         let (mut state, _) = task.reset()?;
         assert_eq!(task.step(&mut state, 2), Err(()));
         assert_eq!(task.visits(), Some([0; 18].as_slice()));

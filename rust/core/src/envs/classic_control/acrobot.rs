@@ -262,7 +262,9 @@ mod tests {
     #[test]
     fn hanging_at_rest_stays_at_rest() {
         let step = Acrobot::default().transition(AcrobotState::default(), 0.0);
-        assert!(<[f64; 4]>::from(step.state).iter().all(|x| x.abs() < 1e-15) && step.reward == -1.0 && !step.terminated);
+        assert!(
+            <[f64; 4]>::from(step.state).iter().all(|x| x.abs() < 1e-15) && step.reward == -1.0 && !step.terminated
+        );
     }
 
     #[test]
