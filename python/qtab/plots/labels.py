@@ -165,7 +165,7 @@ def _legend(ax: "Axes", handles: Any, names: list[str], title: str, size: float,
         style |= {"loc": "upper left" if ax.get_autoscaley_on() else "best", "borderaxespad": 0.3}
         return ax.legend(handles, labels, **style)
     style |= {"loc": "upper left", "bbox_to_anchor": (0, 0), "borderaxespad": 0, "borderpad": 0}
-    return ax.legend(handles, labels, bbox_transform=_below(ax), **style)
+    return ax.legend(handles, labels, bbox_transform=below_label(ax), **style)
 
 
 def _share(ax: "Axes", legend: Any) -> float:
@@ -174,7 +174,7 @@ def _share(ax: "Axes", legend: Any) -> float:
     return float(legend.get_window_extent().height / (height * ax.figure.dpi / 72)) + 0.02
 
 
-def _below(ax: "Axes") -> Any:
+def below_label(ax: "Axes") -> Any:
     """Returns the transform with its origin below the ticks and the label of the x axis, however high the axes are."""
     from matplotlib.transforms import ScaledTranslation
 

@@ -10,6 +10,7 @@ from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DIRECTIONS
 from qtab.plots.colors import COLORS
+from qtab.plots.labels import below_label
 from qtab.plots.panels import (
     axes_for,
     brightness,
@@ -65,13 +66,15 @@ def policy(
     rasters = [arrange(subject, at, layout) for subject in subjects]
     axes = axes_for(rasters, ax)
     for subject, raster, panel, named in zip(subjects, rasters, axes, names, strict=True):
-        greedy = subject.greedy_actions(raster.rows)
+        greedy, handles = subject.greedy_actions(raster.rows), list[Any]()
         if raster.is_map and any(name in DIRECTIONS for name in named):
             _draw_map(panel, raster, greedy, named)
         else:
-            _draw_colors(panel, raster, greedy, named)
+            handles = _draw_colors(panel, raster, greedy, named)
         note = "; ".join(filter(None, [raster.note, _initials(named) if raster.is_map else ""]))
         finish_panel(panel, raster, subject.name if title is None else title, note)
+        if handles:
+            _add_legend(panel, handles)
     return axes[0]
 
 
@@ -149,7 +152,8 @@ def action_colors(count: int, ordered: bool) -> list[Any]:
     )
 
 
-def _draw_colors(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str]) -> None:
+def _draw_colors(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str]) -> list[Any]:
+    """Draws the actions in colors; returns what a legend explains, nothing where the picture itself does."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
 
@@ -160,21 +164,27 @@ def _draw_colors(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: S
     draw_cells(ax, raster, np.where(greedy < 0, np.nan, greedy), ListedColormap(colors), norm)
     if raster.parts:
         _label_regions(ax, raster, greedy, names, colors)
-        return
+        return []
     if raster.has_numbers:
         _name_cells(ax, raster, greedy, names, colors)
-        return
+        return []
     present = [index for index in range(len(names)) if (greedy == index).any() or len(names) <= 8]
-    handles = [Patch(color=colors[index], label=names[index]) for index in present]
+    return [Patch(color=colors[index], label=names[index]) for index in present]
+
+
+def _add_legend(ax: "Axes", handles: list[Any]) -> None:
+    """Adds the legend below the label of the x axis."""
     ax.legend(
         handles=handles,
         loc="upper left",
-        bbox_to_anchor=(0.0, -0.13 if len(greedy) > 1 else -0.55),
+        bbox_to_anchor=(0, 0),
+        bbox_transform=below_label(ax),
         ncols=min(len(handles), 4),
         frameon=False,
         fontsize="small",
         handlelength=1.2,
-        borderaxespad=0.2,
+        borderaxespad=0,
+        borderpad=0,
     )
 
 

@@ -77,9 +77,11 @@ def _label(sweep: Sweep, setting: int) -> str:
 
 def _mark(ax: Any, value: float, label: str, is_vertical: bool = False) -> None:
     """Draws a dashed line at a return, and names it in the legend."""
+    from qtab.plots.labels import add_legend
+
     line = ax.axvline if is_vertical else ax.axhline
     line(value, color="0.35", linewidth=1, linestyle=":" if "threshold" in label else "--", label=label, zorder=1)
-    ax.legend()
+    add_legend(ax)
 
 
 def _spec(sweep: Sweep) -> Any:
