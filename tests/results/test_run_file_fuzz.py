@@ -184,7 +184,7 @@ def edit_array(content: bytes, draw: Draw) -> bytes:
 
 def packed(members: dict[str, Any]) -> bytes:
     written = io.BytesIO()
-    np.savez(written, allow_pickle=True, **members)
+    np.savez(written, **members)
     return written.getvalue()
 
 

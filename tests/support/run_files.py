@@ -39,4 +39,4 @@ def with_right_digest(members: Members) -> Members:
 
 def write_members(path: Path, members: Mapping[str, Any]) -> None:
     """Writes a run file."""
-    np.savez(path, allow_pickle=True, **members)
+    np.savez(path, **members)

@@ -1,5 +1,4 @@
-//! `Acrobot-v1`: swing up two links with a motor at the joint between them (R. Sutton, 1996; Sutton & Barto, 1st ed.,
-//! section 11.3).
+//! `Acrobot-v1`: swing up two links by a motor between them (R. Sutton, 1996; Sutton & Barto, 1st ed., section 11.3).
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -262,9 +261,8 @@ mod tests {
     #[test]
     fn hanging_at_rest_stays_at_rest() {
         let step = Acrobot::default().transition(AcrobotState::default(), 0.0);
-        assert!(
-            <[f64; 4]>::from(step.state).iter().all(|x| x.abs() < 1e-15) && step.reward == -1.0 && !step.terminated
-        );
+        assert!(<[f64; 4]>::from(step.state).iter().all(|number| number.abs() < 1e-15));
+        assert_eq!((step.reward, step.terminated), (-1.0, false));
     }
 
     #[test]
@@ -276,8 +274,8 @@ mod tests {
     #[test]
     fn angles_are_wrapped_and_speeds_bounded() {
         let fast: [f64; 4] = Acrobot::default().transition([3.0, 3.0, 12.5, 28.0].into(), 1.0).state.into();
-        let bounds = [PI, PI, 4.0 * PI, 9.0 * PI];
-        assert!(fast.iter().zip(bounds).all(|(number, bound)| number.abs() <= bound) && wrap(1e300).is_nan());
+        assert!(fast.iter().zip([PI, PI, 4.0 * PI, 9.0 * PI]).all(|(number, bound)| number.abs() <= bound));
+        assert!(wrap(1e300).is_nan());
     }
 
     #[test]
