@@ -63,7 +63,7 @@ except ModuleNotFoundError as error:
 """
     message = in_a_process(code)
     assert "matplotlib" in message
-    assert "pip install 'matplotlib>=3.8' 'pillow>=10'" in message
+    assert "pip install 'matplotlib>=3.9' 'pillow>=10'" in message
 
 
 @pytest.mark.parametrize("name", vars(qtab)["__all__"])

@@ -146,7 +146,7 @@ def test_tensorboard_without_its_writer_names_the_command_that_installs_it(tmp_p
     import sys
 
     monkeypatch.setitem(sys.modules, "tensorboardX", None)
-    with pytest.raises(ModuleNotFoundError, match=r"pip install .*tensorboardX"):
+    with pytest.raises(ModuleNotFoundError, match=r"(?i)pip install .*tensorboardX"):
         qtab.train(CAR, callback=TensorBoardLogger(tmp_path / "curves"), **SHORT)
 
 
