@@ -3,6 +3,7 @@
 import tempfile
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -93,8 +94,10 @@ class RunFileMachine(RuleBasedStateMachine):
         self.path.write_bytes(content[:start] + content[start + count :])
 
 
-class TestRunFile(RunFileMachine.TestCase):
-    settings = settings(max_examples=max(settings().max_examples // 2, 1), stateful_step_count=12, deadline=None)
+TestRunFile: Any = RunFileMachine.TestCase
+TestRunFile.settings = settings(
+    max_examples=max(settings().max_examples // 2, 1), stateful_step_count=12, deadline=None
+)
 
 
 @pytest.mark.parametrize("episodes", [1, EPISODES])

@@ -99,6 +99,6 @@ def whole_key(table: qtab.Sweep) -> tuple[Any, Any]:
     return table.columns["setting"].tolist(), table.columns["seed"].tolist()
 
 
-@pytest.mark.slow
-class TestStore(StoreMachine.TestCase):
-    settings = settings(max_examples=max(settings().max_examples // 8, 1), stateful_step_count=8, deadline=None)
+TestStore: Any = StoreMachine.TestCase
+TestStore.settings = settings(max_examples=max(settings().max_examples // 8, 1), stateful_step_count=8, deadline=None)
+TestStore.pytestmark = [pytest.mark.slow]
