@@ -12,8 +12,7 @@ from PIL import Image
 
 import qtab
 
-COLORS = 96
-"""The pictures are reduced to this many colours, which keeps the files small."""
+DOTS_PER_INCH = 110
 
 folder = Path(__file__).parent / "book"
 folder.mkdir(exist_ok=True)
@@ -23,5 +22,5 @@ for name in sys.argv[1:] or qtab.book.EXPERIMENTS:
     print(result, end="\n\n", flush=True)
     figure: Any = result.plot().figure
     path = folder / f"{experiment.name}.png"
-    figure.savefig(path, dpi=75)
-    Image.open(path).convert("RGB").quantize(COLORS).save(path, optimize=True)
+    figure.savefig(path, dpi=DOTS_PER_INCH)
+    Image.open(path).convert("RGB").save(path, optimize=True)
