@@ -11,6 +11,7 @@ import pytest
 import qtab
 from support.command import qtab_here, refused
 from support.interrupts import in_a_process
+from support.posix import posix_only
 
 EPISODES = 100
 
@@ -189,6 +190,7 @@ except KeyboardInterrupt:
 """
 
 
+@posix_only
 def test_ctrl_c_stops_planning():
     assert json.loads(in_a_process(ENDLESS).stdout) == "stopped"
 

@@ -13,6 +13,7 @@ import qtab
 from support.environments import Walk
 from support.ids import short_repr
 from support.parity import assert_same_run, table_to_go_on_from
+from support.posix import posix_only
 
 
 def fields(value):
@@ -110,6 +111,7 @@ def test_a_save_replaces_the_file_that_was_there(tmp_path):
     assert [entry.name for entry in tmp_path.iterdir()] == ["run.npz"]
 
 
+@posix_only
 def test_a_failed_save_leaves_the_old_file_and_nothing_else(tmp_path):
     # In a process that may not write files of more than 8000 bytes.
     path = tmp_path / "run.npz"

@@ -16,6 +16,7 @@ from qtab.sweeps import store as stores
 from qtab.sweeps import study as studies
 from qtab.sweeps.database import RunRecord
 from support.parity import run_of
+from support.posix import posix_only
 from support.sweeps import CAR, GRID, SMALL, assert_equal
 
 
@@ -97,6 +98,7 @@ def start(path, seeds=5):
     return subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE, text=True)
 
 
+@posix_only
 @pytest.mark.slow
 @pytest.mark.parametrize("chunks", [1, 4])
 def test_a_killed_sweep_resumes(tmp_path, small_chunks, chunks):

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from support.interrupts import in_a_process
+from support.posix import posix_only
 
 WORK = {
     "Q-learning": "qtab.train('MountainCar-v0', episodes=10**8)",
@@ -49,6 +50,7 @@ def latency(work):
 """
 
 
+@posix_only
 @pytest.mark.slow
 def test_ctrl_c_takes_effect_within_a_fifth_of_a_second_of_cpu_time():
     calls = ", ".join(f"{name!r}: lambda: {call}" for name, call in WORK.items())

@@ -9,6 +9,7 @@ import pytest
 import qtab
 from support.interrupts import in_a_process
 from support.parity import run_of
+from support.posix import posix_only
 
 CAR = "MountainCar-v0"
 
@@ -83,6 +84,7 @@ limit_memory(50 * 2**20)
 KEPT = "print(json.dumps([error.run.completed, bool(np.isfinite(error.run.tables).all()), str(error)]))"
 
 
+@posix_only
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "call",

@@ -15,6 +15,7 @@ from qtab.config.choices import Algorithm
 from support.gridworld import Room
 from support.learner_settings import run_settings
 from support.parity import assert_same_run
+from support.posix import posix_only
 
 
 def stopped(env: Any, after: int, **config: Any) -> qtab.Run:
@@ -89,6 +90,7 @@ LONG: dict[str, dict[str, Any]] = {
 }
 
 
+@posix_only
 @pytest.mark.parametrize("env", LONG)
 @pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
 def test_a_run_stopped_in_the_middle_of_an_episode_resumes_exactly(env, bit_generator):

@@ -6,6 +6,7 @@ import sys
 import pytest
 
 from support.interrupts import in_a_process
+from support.posix import posix_only
 
 LIMIT = """
 import resource, hashlib
@@ -35,6 +36,7 @@ resource.setrlimit(resource.RLIMIT_NPROC, (1, 1))
 """
 
 
+@posix_only
 @pytest.mark.skipif(sys.platform != "linux", reason="the limit of threads is Linux's")
 def test_without_threads_the_results_are_the_same():
     done = in_a_process(LIMIT + "print(json.dumps([cannot_start(), work() == with_threads]))")
@@ -44,6 +46,7 @@ def test_without_threads_the_results_are_the_same():
     assert same
 
 
+@posix_only
 @pytest.mark.skipif(sys.platform != "linux", reason="the limit of threads is Linux's")
 def test_ctrl_c_is_heard_without_threads():
     done = in_a_process(
