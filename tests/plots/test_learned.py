@@ -12,7 +12,7 @@ import qtab
 from qtab import plots
 from qtab.envs import grid_worlds
 from qtab.envs.registry import ENTRIES, EXTRA
-from qtab.plots.panels import brightness
+from qtab.plots.colors import brightness, is_dark
 from qtab.plots.schedule import rate_at
 
 PICTURES: tuple[Any, ...] = (plots.values, plots.policy, plots.visits, plots.trajectory)
@@ -53,13 +53,21 @@ def test_every_environment_can_be_drawn(env: str) -> None:
 @pytest.mark.parametrize("picture", [plots.values, plots.policy])
 def test_dark_styles_have_light_letters_and_dark_cells_where_nothing_is_known(picture: Any) -> None:
     unknown = qtab.train("FrozenLake-v1", episodes=1, seed=0, visits=True)
-    for style, is_dark in (("default", False), ("dark_background", True)):
+    for style, dark in (("default", False), ("dark_background", True)):
         with plt.style.context(style):
             ax = picture(unknown)
             [start] = [text for text in ax.texts if text.get_text() == "S"]
-            assert (brightness(start.get_color()) > 0.5) is is_dark
+            assert (brightness(start.get_color()) > 0.5) is dark
             grey = next(mesh for mesh in ax.collections if type(mesh).__name__ == "QuadMesh").get_cmap()(0.0)
-            assert (brightness(grey) < 0.5) is is_dark
+            assert (brightness(grey) < 0.5) is dark
+
+
+def test_the_background_decides_what_is_dark_and_the_text_where_it_is_transparent() -> None:
+    for face, text, dark in (("#202020", "black", True), ("white", "white", False), ("none", "white", True)):
+        with plt.rc_context({"text.color": text}):
+            ax = Figure(facecolor=face).subplots()
+            ax.set_facecolor("none")
+            assert is_dark(ax) is dark, face
 
 
 def test_values_are_those_of_the_table_and_grey_where_it_was_never_updated(car: qtab.Run) -> None:
