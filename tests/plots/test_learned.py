@@ -13,7 +13,6 @@ from qtab import plots
 from qtab.envs import grid_worlds
 from qtab.envs.registry import ENTRIES, EXTRA
 from qtab.plots.colors import brightness, is_dark
-from qtab.plots.schedule import rate_at
 
 PICTURES: tuple[Any, ...] = (plots.values, plots.policy, plots.visits, plots.trajectory)
 SHORT: dict[str, Any] = {"episodes": 5, "seed": 0, "visits": True, "max_episode_steps": 40}
@@ -270,7 +269,7 @@ def test_the_schedule_is_that_of_the_reference(chosen: dict[str, Any]) -> None:
         for _ in range(30):
             expected.append(reference.value)
             reference.end_episode()
-        np.testing.assert_allclose(rate_at(behaviour.epsilon, np.arange(30), 30), expected, atol=1e-12)
+        np.testing.assert_allclose(behaviour.epsilon.rates(np.arange(30), 30), expected, atol=1e-12)
 
 
 def test_the_overview_has_four_panels(car: qtab.Run) -> None:

@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
 from qtab._spec import ConstantSpec, ExponentialSpec, LinearSpec, VisitsSpec
 from qtab._utils.checks import required
 from qtab.config.config import Config
@@ -18,6 +21,10 @@ class Constant:
         """Returns the schedule as the extension takes it."""
         return {"type": "constant", "value": self.value}
 
+    def rates(self, episodes: NDArray[np.int64], total: int) -> NDArray[np.float64]:  # noqa: ARG002 - as the others
+        """Returns (n,): the value in each of n episodes."""
+        return np.full(len(episodes), self.value)
+
 
 @dataclass(frozen=True)
 class Linear:
@@ -30,6 +37,14 @@ class Linear:
     def spec(self) -> LinearSpec:
         """Returns the schedule as the extension takes it."""
         return {"type": "linear", "value": self.value, "minimum": self.minimum, "warm_up": self.warm_up}
+
+    def rates(self, episodes: NDArray[np.int64], total: int) -> NDArray[np.float64]:
+        """Returns (n,): the value in each of n episodes, numbered from 0, of a run of ``total`` episodes.
+
+        The learners subtract once after each episode, so their last digits can differ.
+        """
+        reduction = (self.value - self.minimum) / max(total - self.warm_up, 1)
+        return np.maximum(self.value - np.maximum(episodes - self.warm_up, 0) * reduction, self.minimum)
 
 
 @dataclass(frozen=True)
@@ -50,6 +65,14 @@ class Exponential:
             "decay": self.decay,
             "warm_up": self.warm_up,
         }
+
+    def rates(self, episodes: NDArray[np.int64], total: int) -> NDArray[np.float64]:  # noqa: ARG002 - as the others
+        """Returns (n,): the value in each of n episodes, numbered from 0.
+
+        The learners multiply once after each episode, so their last digits can differ.
+        """
+        elapsed = np.maximum(episodes - self.warm_up, 0).astype(np.float64)
+        return np.maximum(self.value * self.decay**elapsed, self.minimum)
 
 
 @dataclass(frozen=True)

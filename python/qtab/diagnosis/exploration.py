@@ -59,7 +59,7 @@ def lasting_exploration(facts: Facts) -> Finding | None:
     config = facts.config
     if config.exploration != "epsilon_greedy":
         return None
-    last = float(epsilons(config, len(facts.run.episode_returns))[1][-1])
+    last = float(epsilons(config, len(facts.run.episode_returns))[-1])
     if last <= MOST_EPSILON:
         return None
     return Finding(

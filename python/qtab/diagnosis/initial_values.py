@@ -42,7 +42,7 @@ def too_pessimistic(facts: Facts) -> Finding | None:
     config, visited = facts.config, facts.visited
     if config.exploration != "epsilon_greedy" or not visited.any():
         return None
-    epsilon = float(epsilons(config, len(facts.run.episode_returns))[1].mean())
+    epsilon = float(epsilons(config, len(facts.run.episode_returns)).mean())
     if epsilon > LITTLE_EPSILON:
         return None
     untried = ~facts.changed & np.isfinite(facts.initial_tables).all(axis=0)
