@@ -105,6 +105,17 @@ def test_a_diagnosis_prints_and_can_be_searched(diagnosis: qtab.Diagnosis) -> No
         diagnosis["coverage"]
 
 
+def test_visits_tell_untried_actions_from_values_that_stayed_the_same() -> None:
+    settings: dict[str, Any] = {"initial_q": 0.0, "epsilon": 1.0, "epsilon_schedule": "constant", "episodes": 300}
+    settings |= {"seed": 3}
+    counted = qtab.diagnose(qtab.train(LAKE, visits=True, **settings), seeds=0)
+    assert counted.run.visits is not None
+    assert counted.facts.visited.tolist() == counted.run.visits.any(axis=1).tolist()
+    assert "coverage" not in counted
+    guessed = qtab.diagnose(qtab.train(LAKE, **settings), seeds=0)
+    assert guessed["coverage"].title.endswith("or their values never changed.")
+
+
 def test_other_seeds_give_the_rank() -> None:
     run = qtab.train(LAKE, preset="solved", episodes=500, seed=13)
     evidence = qtab.diagnose(run, seeds=40)["unlucky seed"].evidence

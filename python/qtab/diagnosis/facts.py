@@ -189,9 +189,18 @@ class Facts:
         return np.asarray(np.any(self.run.tables != self.initial_tables, axis=0))
 
     @cached_property
+    def tried(self) -> NDArray[np.bool_]:
+        """(rows, actions): whether the action was taken there: by the run's visits, or else whether its value changed.
+
+        Without visits, an update that leaves the value as it was goes unnoticed, such as one of 0 towards 0.
+        """
+        visits = self.run.visits
+        return self.changed if visits is None else np.asarray(visits.reshape(self.changed.shape) > 0)
+
+    @cached_property
     def visited(self) -> NDArray[np.bool_]:
-        """(rows,): whether any value of a row has changed."""
-        return np.asarray(np.any(self.changed, axis=1))
+        """(rows,): whether any action was taken there."""
+        return np.asarray(np.any(self.tried, axis=1))
 
     @cached_property
     def q_values(self) -> NDArray[np.float64]:
