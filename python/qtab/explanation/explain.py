@@ -17,7 +17,7 @@ from qtab.explanation.explanation import Explanation
 from qtab.explanation.fast_forward import Start, start_of
 from qtab.explanation.records import ExplainedStep
 from qtab.explanation.watcher import SeenStep, Watcher
-from qtab.explanation.words import action_name, map_columns, state_in_words
+from qtab.explanation.words import map_columns, state_in_words
 from qtab.reference import LEARNERS
 from qtab.reference.observer import observed_by
 from qtab.reference.schedules import LearningRate
@@ -159,7 +159,7 @@ def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> E
         cell=_cell(run, step.rows[0]),
         state=state_in_words(env, step.observation, columns),
         action=run.actions[choice.action],
-        action_name=action_name(env, choice.action, run.actions[choice.action]),
+        action_name=run.action_names[choice.action],
         choice=choice,
         reward=step.reward,
         next_observation=step.next_observation,
