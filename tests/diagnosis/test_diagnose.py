@@ -164,7 +164,7 @@ def test_an_interrupted_run_is_diagnosed() -> None:
 def test_bad_arguments_are_named(article: qtab.Run) -> None:
     with pytest.raises(TypeError, match=r"run must be a Run, got 'run\.npz'; qtab\.load"):
         qtab.diagnose("run.npz")  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="optimum must be a Optimum, got 3"):
+    with pytest.raises(TypeError, match="optimum must be an Optimum, got 3"):
         qtab.diagnose(article, 3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="run must have env 'FrozenLake-v1' as this optimum has"):
         qtab.diagnose(article, qtab.optimum(LAKE))

@@ -141,7 +141,8 @@ def instance(name: str, value: Any, kind: type) -> None:
     """
     if not isinstance(value, kind):
         hint = "; qtab.load reads one from a file" if isinstance(value, str | PathLike) else ""
-        raise TypeError(f"{name} must be a {kind.__name__}, got {shown(value)}{hint}")
+        article = "an" if kind.__name__[0] in "AEIO" else "a"
+        raise TypeError(f"{name} must be {article} {kind.__name__}, got {shown(value)}{hint}")
 
 
 def required(name: str, value: T | None) -> T:

@@ -7,7 +7,7 @@ from qtab.config import Config
 from qtab.config.schedules import ByVisits, epsilon, learning_rate
 
 POINTS = 1000
-"""So many episodes, evenly spaced, stand for all."""
+"""The largest number of episodes, evenly spaced, at which a rate is computed."""
 
 
 def learning_rates(config: Config, episodes: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:

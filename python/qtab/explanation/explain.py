@@ -210,7 +210,7 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
             config = self._run.config
             rows = self._active_rows(observation)
             terminal = terminated or (truncated and config.on_truncation == "terminate")
-            self._watcher.took(
+            self._watcher.record(
                 SeenStep(
                     observation=self._observation,
                     rows=self._rows,

@@ -1,4 +1,4 @@
-"""Bootstrap intervals, in blocks of bounded memory between which Ctrl-C is heard."""
+"""Bootstrap intervals, computed in batches of bounded memory; Ctrl-C takes effect between two batches."""
 
 import warnings
 from collections.abc import Callable, Sequence
