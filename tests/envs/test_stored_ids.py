@@ -6,8 +6,10 @@ from typing import Any
 
 import gymnasium as gym
 import pytest
+from matplotlib.figure import Figure
 
 import qtab
+from qtab import plots
 from qtab.envs.stored import StoredId, stored_id
 from support.environments import Walk
 from support.run_files import members_of, with_header, with_right_digest, write_members
@@ -42,10 +44,18 @@ USES: dict[str, Any] = {
     "optimum": qtab.optimum,
     "its id": lambda run: qtab.optimum(run.config.env),
     "pickled": lambda run: qtab.evaluate(pickle.loads(pickle.dumps(run))),  # noqa: S301
+    "explain": qtab.explain,
+    "trajectory": lambda run: plots.trajectory(run, Figure().subplots(), episodes=1),
 }
+LOOKS: dict[str, Any] = {
+    "values": lambda run: plots.values(run, Figure().subplots()),
+    "policy": lambda run: plots.policy(run, Figure().subplots()),
+    "diagnose": lambda run: qtab.diagnose(run, seeds=0),
+}
+"""They need the environment only for what they can do without."""
 
 
-@pytest.mark.parametrize("use", USES.values(), ids=USES)
+@pytest.mark.parametrize("use", [*USES.values(), *LOOKS.values()], ids=[*USES, *LOOKS])
 def test_nothing_is_imported_for_a_registered_environment(named, use):
     run = named("FrozenLake-v1")
     assert run.config.env == f"{MODULE}:FrozenLake-v1"

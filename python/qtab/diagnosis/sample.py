@@ -3,12 +3,11 @@
 from dataclasses import dataclass
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.results.run import Run
+from qtab.training.run_env import make_run_env
 from qtab.training.train import train
 
 SAMPLE_STEPS = 20_000
@@ -51,8 +50,7 @@ def sample_steps(run: Run) -> Sample:
         callback=lambda progress: progress.episodes < finished,
         callback_every=finished,
     )
-    name, config = gymnasium_id(run.config.env), run.config
-    env = gym.make(f"qtab/{name}" if name in ENTRIES else config.env, disable_env_checker=True, **config.env_kwargs)
+    env = make_run_env(run.config)
     visited, taken, following, rewards = [], [], [], []
     try:
         plain: Any = env.unwrapped
