@@ -55,12 +55,19 @@ def values(
         ValueError: for one that does not fit the environment, or runs without tables.
     """
     panels = arranged(run, at, layout)
-    shown = [subject.state_values(raster.rows) for subject, raster in panels]
-    text = (lambda value: f"{value:.3g}") if numbers else None
-    return draw_heat_maps(panels, shown, ax, norm=_norm, label=VALUE_LABEL, title=title, text=text)
+    grids = [subject.state_values(raster.rows) for subject, raster in panels]
+    text = value_text if numbers else None
+    return draw_heat_maps(panels, grids, ax, norm=common_norm, label=VALUE_LABEL, title=title, text=text)
 
 
-def _norm(finite: NDArray[np.float64]) -> "Normalize":
+def common_norm(grids: Sequence[NDArray[np.float64]]) -> "Normalize":
+    """Returns one scale of colors for the finite values of several pictures."""
     from matplotlib.colors import Normalize
 
+    finite = np.concatenate([grid[np.isfinite(grid)] for grid in grids])
     return Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0, 1)
+
+
+def value_text(value: float) -> str:
+    """Returns a value as it is written into a cell."""
+    return f"{value:.3g}"

@@ -51,10 +51,10 @@ def visits(
     return draw_heat_maps(panels, counts, ax, norm=_norm, label="visits", title=title, text=_short)
 
 
-def _norm(finite: NDArray[np.float64]) -> "Normalize":
+def _norm(grids: Sequence[NDArray[np.float64]]) -> "Normalize":
     from matplotlib.colors import LogNorm
 
-    return LogNorm(1, finite.max(initial=2.0))
+    return LogNorm(1, max(float(grid[np.isfinite(grid)].max(initial=2.0)) for grid in grids))
 
 
 def _counts(subject: Subject, raster: Raster) -> NDArray[np.float64]:
