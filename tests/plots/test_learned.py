@@ -233,9 +233,9 @@ def test_a_picture_of_visits_needs_visits() -> None:
 
 @pytest.mark.parametrize(
     ("wrong", "message"),
-    [(3, "run must be a Run, Runs or an Optimum, got 3"), ("run.npz", "run must be a Run, Runs or an Optimum")],
+    [(3, "run must be a Run, Runs or an Optimum, got 3"), ("run.npz", r"got 'run\.npz'; qtab\.load reads one")],
 )
-def test_what_cannot_be_drawn_is_refused(wrong: Any, message: str) -> None:
+def test_what_cannot_be_drawn_is_refused(car: qtab.Run, wrong: Any, message: str) -> None:
     with pytest.raises(TypeError, match=message):
         plots.values(wrong)
     with pytest.raises(ValueError, match="run must hold at least one run, got an empty list"):
@@ -243,6 +243,11 @@ def test_what_cannot_be_drawn_is_refused(wrong: Any, message: str) -> None:
     run = qtab.train(CAR, episodes=1, seed=0)
     with pytest.raises(ValueError, match="optimum must be that of 'MountainCar-v0', the run's environment"):
         plots.difference(run, qtab.optimum("FrozenLake-v1"))
+    for draw in (*PICTURES, plots.schedule):
+        with pytest.raises(TypeError, match="title must be a str, got 3"):
+            draw(car, title=3)
+    with pytest.raises(TypeError, match="numbers must be True or False, got 'no'"):
+        plots.values(car, numbers="no")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import re
 from typing import TYPE_CHECKING, Any
 
+from qtab._utils import checks
 from qtab.plots.colors import text_color
 
 if TYPE_CHECKING:
@@ -18,6 +19,16 @@ MAX_LEGEND = 0.6
 _LEGEND_SIZES = (1.0, 0.85, 0.7)
 """Tried in turn where a legend is too high."""
 _NOTE = "qtab-note"
+
+
+def check_title(title: str | None) -> None:
+    """Checks the argument ``title`` of a plot that has a title of its own.
+
+    Raises:
+        TypeError: if it is neither None nor a string.
+    """
+    if title is not None:
+        checks.instance("title", title, str)
 
 
 def finish(

@@ -12,6 +12,7 @@ from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DARK, LIGHT
 from qtab.plots.axes import axes_or_new, shown_figure
 from qtab.plots.colors import brightness, is_dark
+from qtab.plots.labels import check_title
 from qtab.plots.subject import Drawable, Subject, subject_of
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ MAX_PANELS_IN_A_ROW = 3
 
 
 def arranged(
-    run: Drawable | Sequence[Drawable], at: Mapping[str, float] | None, layout: Layout | None
+    run: Drawable | Sequence[Drawable], at: Mapping[str, float] | None, layout: Layout | None, title: str | None
 ) -> list[tuple[Subject, Raster]]:
     """Returns what the panels of a picture show, each with where it shows which state.
 
@@ -30,12 +31,14 @@ def arranged(
         run: The argument ``run`` of a plot: a run, Runs or an optimum, or a sequence of them.
         at: The components of the observation that are held fixed.
         layout: The map of an environment with numbered states; None takes the known one.
+        title: The title of the picture, which is only checked.
 
     Raises:
         TypeError: for an argument of the wrong type.
         ValueError: for an empty sequence, different environments, runs without tables, or an argument that does not
             fit the environment.
     """
+    check_title(title)
     subjects = _subjects_of("run", run)
     _check_same_environment("run", subjects)
     return [(subject, arrange(subject, at, layout)) for subject in subjects]

@@ -50,7 +50,7 @@ def policy(
         TypeError: for an argument of the wrong type.
         ValueError: for one that does not fit the environment, or runs without tables.
     """
-    panels = arranged(run, at, layout)
+    panels = arranged(run, at, layout, title)
     names = [checked_names(subject, action_names) for subject, _ in panels]
     axes = axes_for([raster for _, raster in panels], ax)
     for (subject, raster), panel, named in zip(panels, axes, names, strict=True):

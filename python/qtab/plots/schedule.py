@@ -10,7 +10,7 @@ from qtab.config.policies import policy as policy_of
 from qtab.config.schedules import ByVisits, learning_rate
 from qtab.plots.axes import axes_or_new
 from qtab.plots.colors import color
-from qtab.plots.labels import finish
+from qtab.plots.labels import check_title, finish
 from qtab.results.run import Run
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) ->
         TypeError: if ``run`` is not a Run.
     """
     checks.instance("run", run, Run)
+    check_title(title)
     ax = axes_or_new(ax)
     config = run.config
     episodes = np.unique(np.linspace(0, config.episodes - 1, MAX_POINTS).astype(np.int64))

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.checks import load_hint
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.discretizers import Discretizer, Identity
 from qtab.discretizers.actions import Actions
@@ -105,7 +107,7 @@ def subject_of(name: str, source: Any) -> Subject:
         return _of_runs(source, source.config, source.tables, names, f"{len(source):,} seeds")
     if isinstance(source, Optimum):
         return _of_optimum(source)
-    raise TypeError(f"{name} must be a Run, Runs or an Optimum, got {source!r}")
+    raise TypeError(f"{name} must be a Run, Runs or an Optimum, got {shown(source)}{load_hint(source)}")
 
 
 def _of_runs(

@@ -13,6 +13,7 @@ from qtab.envs.stored import spec_of_run
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
+from qtab.plots.labels import check_title
 from qtab.plots.subject import subject_of
 from qtab.plots.values import values
 from qtab.results.run import Run
@@ -60,6 +61,7 @@ def trajectory(
         raise TypeError(f"run must be a Run or an Optimum, got {run!r}")
     episodes = checks.integer("episodes", episodes, least=1)
     seed = checks.integer("seed", seed, least=0)
+    check_title(title)
     subject = subject_of("run", run)
     raster = arrange(subject, at, layout)
     played = _play(run, env, episodes, seed)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils import checks
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.heat_maps import draw_heat_maps
 from qtab.plots.panels import arranged
@@ -54,7 +55,8 @@ def values(
         TypeError: for an argument of the wrong type.
         ValueError: for one that does not fit the environment, or runs without tables.
     """
-    panels = arranged(run, at, layout)
+    numbers = checks.boolean("numbers", numbers)
+    panels = arranged(run, at, layout, title)
     grids = [subject.state_values(raster.rows) for subject, raster in panels]
     text = value_text if numbers else None
     return draw_heat_maps(panels, grids, ax, norm=common_norm, label=VALUE_LABEL, title=title, text=text)

@@ -46,7 +46,7 @@ def visits(
         TypeError: for an argument of the wrong type.
         ValueError: for a run without visits, or an argument that does not fit the environment.
     """
-    panels = arranged(run, at, layout)
+    panels = arranged(run, at, layout, title)
     counts = [_counts(subject, raster) for subject, raster in panels]
     return draw_heat_maps(panels, counts, ax, norm=_norm, label="visits", title=title, text=_short)
 
