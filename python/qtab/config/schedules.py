@@ -21,9 +21,9 @@ class Constant:
         """Returns the schedule as the extension takes it."""
         return {"type": "constant", "value": self.value}
 
-    def rates(self, episodes: NDArray[np.int64], total: int) -> NDArray[np.float64]:  # noqa: ARG002 - as the others
-        """Returns (n,): the value in each of n episodes."""
-        return np.full(len(episodes), self.value)
+    def after(self, episodes: int, total: int) -> float:  # noqa: ARG002 - as the others
+        """Returns the value."""
+        return self.value
 
 
 @dataclass(frozen=True)
@@ -38,13 +38,10 @@ class Linear:
         """Returns the schedule as the extension takes it."""
         return {"type": "linear", "value": self.value, "minimum": self.minimum, "warm_up": self.warm_up}
 
-    def rates(self, episodes: NDArray[np.int64], total: int) -> NDArray[np.float64]:
-        """Returns (n,): the value in each of n episodes, numbered from 0, of a run of ``total`` episodes.
-
-        The learners subtract once after each episode, so their last digits can differ.
-        """
-        reduction = (self.value - self.minimum) / max(total - self.warm_up, 1)
-        return np.maximum(self.value - np.maximum(episodes - self.warm_up, 0) * reduction, self.minimum)
+    def after(self, episodes: int, total: int) -> float:
+        """Returns the value after some of a run's ``total`` episodes, up to the rounding of each subtraction."""
+        reduction = (self.value - self.minimum) / (total - self.warm_up)
+        return max(self.value - reduction * max(episodes - self.warm_up, 0), self.minimum)
 
 
 @dataclass(frozen=True)
@@ -66,13 +63,9 @@ class Exponential:
             "warm_up": self.warm_up,
         }
 
-    def rates(self, episodes: NDArray[np.int64], total: int) -> NDArray[np.float64]:  # noqa: ARG002 - as the others
-        """Returns (n,): the value in each of n episodes, numbered from 0.
-
-        The learners multiply once after each episode, so their last digits can differ.
-        """
-        elapsed = np.maximum(episodes - self.warm_up, 0).astype(np.float64)
-        return np.maximum(self.value * self.decay**elapsed, self.minimum)
+    def after(self, episodes: int, total: int) -> float:  # noqa: ARG002 - as the others
+        """Returns the value after some episodes, up to the rounding of each multiplication."""
+        return max(self.value * self.decay ** max(episodes - self.warm_up, 0), self.minimum)
 
 
 @dataclass(frozen=True)
@@ -123,3 +116,8 @@ def epsilon(config: Config) -> Schedule:
     if kind == "linear":
         return Linear(value, minimum, warm_up)
     return Exponential(value, minimum, required("epsilon_decay", config.epsilon_decay), warm_up)
+
+
+def rates(schedule: Schedule, episodes: NDArray[np.int64], total: int) -> NDArray[np.float64]:
+    """Returns (n,): the value of a schedule in each of n episodes, numbered from 0, of a run of ``total`` episodes."""
+    return np.array([schedule.after(episode, total) for episode in episodes.tolist()])

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.config.schedules import ByVisits, epsilon, learning_rate
+from qtab.config.schedules import ByVisits, epsilon, learning_rate, rates
 
 POINTS = 1000
 """The largest number of episodes, evenly spaced, at which a rate is computed."""
@@ -15,12 +15,12 @@ def learning_rates(config: Config, episodes: int) -> tuple[NDArray[np.int64], ND
     points, rate = _evenly_spaced(episodes), learning_rate(config)
     if isinstance(rate, ByVisits):
         return points, np.full(len(points), rate.value)
-    return points, rate.rates(points, config.episodes)
+    return points, rates(rate, points, config.episodes)
 
 
 def epsilons(config: Config, episodes: int) -> NDArray[np.float64]:
     """Returns (n,): the exploration rate of an epsilon-greedy policy in evenly spaced episodes, the last included."""
-    return epsilon(config).rates(_evenly_spaced(episodes), config.episodes)
+    return rates(epsilon(config), _evenly_spaced(episodes), config.episodes)
 
 
 def _evenly_spaced(episodes: int) -> NDArray[np.int64]:

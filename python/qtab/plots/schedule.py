@@ -8,6 +8,7 @@ from qtab._utils import checks
 from qtab.config.policies import Softmax
 from qtab.config.policies import policy as policy_of
 from qtab.config.schedules import ByVisits, learning_rate
+from qtab.config.schedules import rates as rates_in
 from qtab.plots.axes import axes_or_new
 from qtab.plots.colors import color
 from qtab.plots.labels import check_title, finish
@@ -49,14 +50,14 @@ def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) ->
             behaviour.temperature, color=color(0), linewidth=2, label=f"temperature τ = {behaviour.temperature:g}"
         )
     else:
-        rates = behaviour.epsilon.rates(episodes, config.episodes)
+        rates = rates_in(behaviour.epsilon, episodes, config.episodes)
         ax.plot(episodes + 1, rates, color=color(0), linewidth=2, label="exploration rate ε")
     rate = learning_rate(config)
     if isinstance(rate, ByVisits):
         label = f"learning rate α = {rate.value:g} / visits of the pair"
         ax.axhspan(rate.minimum, rate.value, color=color(1), alpha=0.25, linewidth=0, label=label)
     else:
-        rates = rate.rates(episodes, config.episodes)
+        rates = rates_in(rate, episodes, config.episodes)
         shared = run.discretizer.n_active
         label = "learning rate α" if shared == 1 else f"learning rate α, divided among {shared} tilings"
         ax.plot(episodes + 1, rates, color=color(1), linewidth=2, linestyle="--", label=label)
