@@ -23,6 +23,9 @@ def right_calls(run: qtab.Run, env: gym.Env) -> None:
     run = qtab.train("MountainCar-v0", config={"learning_rate": 0.1}, callback=stop_soon, record=1)
     run = qtab.train("MountainCar-v0", **qtab.presets("MountainCar-v0")["solved"])
     run = qtab.train("MountainCar-v0", callback=[stop_soon, qtab.callbacks.StopAtReturn(-110), print])
+    run = qtab.train("MountainCar-v0", resume="run.npz", episodes=10_000)
+    run = qtab.train(resume=run, callback=print)
+    run = qtab.resume(Path("run.npz"), 10_000, snapshots=5)
     table: np.ndarray = qtab.callbacks.EvaluateEvery(episodes=3).mean_returns
     runs: qtab.Runs = qtab.train_many("MountainCar-v0", callback=stop_later, progress=False)
     runs = qtab.train_many("MountainCar-v0", 100, threads=2, learning_rate=0.1, traces=None)
@@ -51,6 +54,7 @@ def wrong_calls(run: qtab.Run, progress: qtab.Progress) -> None:
     qtab.train("MountainCar-v0", scale="10")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", callback=3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", callback=[3])  # type: ignore[list-item]  # pyright: ignore[reportArgumentType]
+    qtab.train("MountainCar-v0", resume=3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", callback=stop_later)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train_many("Taxi-v4", callback=stop_soon)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.callbacks.Checkpoint(3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]

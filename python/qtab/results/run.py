@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.fields import with_fields
 from qtab._utils.frames import episode_frame
 from qtab.config import Config
 from qtab.config.config import replace_checked
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+@with_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Run:
     """A finished or interrupted run: its config, its episodes, and what it learned."""
@@ -259,6 +261,8 @@ class Run:
         if self.state is not None:
             arrays["state"] = self.state.array()
             header["generator"] = self.state.generator
+            if self.state.snapshots:
+                header["snapshots"] = self.state.snapshots
         kwargs = self.config.env_kwargs
         try:
             text = run_file.encode(header)

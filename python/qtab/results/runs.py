@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.fields import with_fields
 from qtab._utils.frames import data_frame
 from qtab.config import Config
 from qtab.config.config import replace_checked
@@ -24,6 +25,7 @@ BAND = (10.0, 90.0)
 """The percentiles of the runs that a picture shows beside their mean."""
 
 
+@with_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Runs:
     """Many runs of one config, one per row.

@@ -78,11 +78,16 @@ def _run(content: run_file.Content) -> Run:
         seconds=float(seconds),
         versions=versions,
         unchecked=not content.has_digest,
-        state=RunState.restore(stored["state"], header["generator"]) if "state" in stored else None,
+        state=_state(header, stored["state"]) if "state" in stored else None,
         **arrays,
     )
     check_consistent(run)
     return run
+
+
+def _state(header: Mapping[str, Any], array: Any) -> RunState:
+    # Versions that did not continue snapshots wrote none.
+    return RunState.restore(array, header["generator"], header.get("snapshots", []))
 
 
 def _config(header: Mapping[str, Any], stored: Mapping[str, Any]) -> Config:
