@@ -79,7 +79,7 @@ def named_store(named, tmp_path):
             changed = meta | {"study": meta["study"].replace('"FrozenLake-v1"', f'"{MODULE}:{env}"')}
             changed["digest"] = to_text(int(meta["digest"], 16) ^ study_digest(meta) ^ study_digest(changed))
             connection.executemany(
-                "UPDATE meta SET value = ? WHERE name = ?", [(v, name) for name, v in changed.items()]
+                "UPDATE meta SET value = ? WHERE name = ?", [*zip(changed.values(), changed, strict=True)]
             )
             connection.commit()
         return qtab.load_sweep(path)

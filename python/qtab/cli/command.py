@@ -11,6 +11,7 @@ from qtab.cli.usage import USER_ERRORS, UsageError, one_line, with_origin
 
 SUBCOMMANDS = {
     "train": "train a tabular agent, save and plot the run, replay its last episodes",
+    "resume": "continue a saved run exactly where it stopped, or for more episodes",
     "verify": "repeat a saved run with Gymnasium and NumPy, and compare the results byte for byte",
     "explain": "show steps of an episode of a saved run: each choice, and each update with its numbers",
     "diagnose": "say why a saved run did not solve its environment, and what to change",
