@@ -1,6 +1,7 @@
 """``--json`` prints one strict JSON object, ``--quiet`` nothing but errors; without them the text is as before."""
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 import qtab
 from qtab.cli.reporting import json_text
 from support.command import qtab_here, refused
+from support.repository import ROOT
 
 
 def refuse(name: str) -> None:
@@ -171,3 +173,16 @@ def test_numbers_that_json_does_not_have_become_null() -> None:
         "b": (None, True, Path("c")),
     }
     assert json_text(value) == '{"a": [null, null, 0.5, 3, [1.0, null]], "b": [null, true, "c"]}'
+
+
+def test_the_page_on_the_command_line_lists_every_key(folder: Path) -> None:
+    page = (ROOT / "docs" / "command_line.md").read_text(encoding="utf-8")
+    shared = page.split("| `qtab train` and `qtab resume` | |")[1].split("## Completion")[0]
+    lines = {line.split("`")[1]: line for line in shared.splitlines() if line.startswith("| `")}
+    described = {key for line in lines.values() for key in re.findall(r"`(\w+)`", line)}
+    trained = printed("train", "FrozenLake-v1", "--episodes", "5", cwd=folder)
+    assert {*trained, *trained["gap"]} <= described
+    for line in ("verify run.npz --episodes 2", "explain run.npz", "diagnose run.npz", "optimum FrozenLake-v1"):
+        name, *arguments = line.split()
+        keys = set(re.findall(r"`(\w+)`", lines[name]))
+        assert set(printed(name, *arguments, cwd=folder)) - {"command"} <= keys

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import gymnasium as gym
 import numpy as np
 import pytest
+from gymnasium.envs.registration import EnvSpec
 
 import qtab
 from support.command import qtab_here, refused
@@ -75,7 +76,8 @@ class Interrupts(gym.Env[Any, Any]):
 def test_ctrl_c_keeps_what_was_learned(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, output: tuple[str, ...]
 ) -> None:
-    monkeypatch.setitem(gym.registry, "Interrupts-v0", gym.envs.registration.EnvSpec("Interrupts-v0", Interrupts))
+    spec = EnvSpec("Interrupts-v0", lambda **_: Interrupts())
+    monkeypatch.setitem(gym.registry, "Interrupts-v0", spec)
     qtab.train("Interrupts-v0", seed=0, episodes=3, progress=False).save(tmp_path / "run.npz")
     monkeypatch.setattr(Interrupts, "left", 40)
     done = qtab_here("resume", "run.npz", "--episodes", "500", *output, cwd=tmp_path)

@@ -49,7 +49,7 @@ def assert_same_arrays(one: qtab.Run, other: qtab.Run) -> None:
 
 
 @given(data=st.data())
-@settings(max_examples=max(1, settings.default.max_examples // 4))  # type: ignore[attr-defined]
+@settings(max_examples=max(1, settings().max_examples // 4))
 def test_visits_and_snapshots_are_those_of_the_uninterrupted_run(data, tmp_path_factory):
     episodes = data.draw(st.integers(2, 25))
     asked = data.draw(st.none() | st.integers(1, 30) | st.sets(st.integers(0, episodes), min_size=1).map(sorted))
@@ -81,7 +81,7 @@ def test_a_checkpoint_of_a_killed_run_takes_the_snapshots_that_were_left(tmp_pat
         if progress.episodes == 9:
             raise KilledError
 
-    callbacks = [Checkpoint(tmp_path / "run.npz", every=6), kill]
+    callbacks: list[Any] = [Checkpoint(tmp_path / "run.npz", every=6), kill]
     with pytest.raises(KilledError) as caught:
         qtab.train("FrozenLake-v1", callback=callbacks, callback_every=9, **LAKE)
     assert snapshots_of(qtab.load(tmp_path / "run.npz")).episodes.tolist() == [0, 3]

@@ -20,6 +20,7 @@ SUBCOMMANDS = {
     "report": "turn the store of a sweep into tables, plots and one HTML page",
     "book": "run an experiment of Sutton & Barto's book: its settings, a table, a figure",
     "bench": "compare the speed of this package with Gymnasium and the article's loop",
+    "completion": "print the script with which bash or zsh completes commands, flags and choices",
 }
 """The subcommands with their help. Each is a module of this package with ``run(arguments) -> exit code``."""
 
@@ -69,7 +70,7 @@ def _fail(name: str, message: str, code: int) -> int:
 
 
 def _help() -> str:
-    commands = "\n".join(f"  {name:8}{summary}" for name, summary in SUBCOMMANDS.items())
+    commands = "\n".join(f"  {name:11}{summary}" for name, summary in SUBCOMMANDS.items())
     return (
         "usage: qtab COMMAND [OPTIONS]\n\n"
         "Tabular reinforcement learning on Gymnasium environments, in Rust.\n\n"

@@ -156,8 +156,8 @@ def _gap_text(facts: Facts, gap: Gap[float] | None) -> str | None:
     if not facts.is_usual_mountain_car or not len(facts.run.episode_returns):
         return None
     last = last_episodes(min(len(facts.run.episode_returns), FINAL_EPISODES))
-    gap = BEST_KNOWN_MOUNTAIN_CAR - facts.final_return
-    return f"Best known {BEST_KNOWN_MOUNTAIN_CAR:.4g}, gap {gap:.4g} over {last}"
+    short = BEST_KNOWN_MOUNTAIN_CAR - facts.final_return
+    return f"Best known {BEST_KNOWN_MOUNTAIN_CAR:.4g}, gap {short:.4g} over {last}"
 
 
 def _summary(run: Run, facts: Facts, gap: Gap[float] | None) -> dict[str, Any]:

@@ -47,8 +47,8 @@ def check_consistent_runs(runs: "Runs") -> None:
     if not isinstance(runs.completed, bool):
         raise ValueError(f"its completed must be true or false, got {runs.completed!r}")
     with np.errstate(all="raise"):
-        shape = (0 if runs.tables is None else len(seeds), *_shape(runs))
-        _check_tables(runs, np.empty(shape) if runs.tables is None else runs.tables, shape)
+        layout = (0 if runs.tables is None else len(seeds), *_shape(runs))
+        _check_tables(runs, np.empty(layout) if runs.tables is None else runs.tables, layout)
     _check_episodes(runs)
 
 

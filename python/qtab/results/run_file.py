@@ -93,14 +93,15 @@ def read(file: BinaryIO, kind: str = RUN) -> Content:
 
 
 def _header(stored: NDArray[Any], kind: str) -> dict[str, Any]:
-    header = json.loads(str(stored), object_pairs_hook=_without_duplicates)
+    header: Any = json.loads(str(stored), object_pairs_hook=_without_duplicates)
     found = header.get("format") if isinstance(header, dict) else None
     if found != kind:
         advice = _ADVICE.get(found) if isinstance(found, str) else None
         raise ValueError(advice or "its header is not one of qtab's")
     if header["version"] != FORMAT_VERSION:
         raise ValueError(f"its format has version {header['version']!r}, this one reads {FORMAT_VERSION}")
-    return header
+    checked: dict[str, Any] = header
+    return checked
 
 
 def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
