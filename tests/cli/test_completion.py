@@ -13,7 +13,7 @@ from support.command import qtab_here, refused
 
 LINES = {
     "tr": "train",
-    "re": "resume report",
+    "res": "resume",
     "--v": "--version",
     "train --epi": "--episodes",
     "train --learning-rate-sch": "--learning-rate-schedule",

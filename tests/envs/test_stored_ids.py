@@ -147,5 +147,8 @@ class MountainCar(Walk):
 def test_the_name_of_a_class_is_not_taken_for_an_id():
     run = qtab.train(MountainCar(start=5), scale=(3, 0.7), seed=0, episodes=2, max_episode_steps=20)
     assert run.config.env == "MountainCar"
-    with pytest.raises(gym.error.UnregisteredEnv, match="pass env="):
-        qtab.evaluate(run)
+    for use in (qtab.evaluate, lambda run: qtab.resume(run, 3), lambda run: qtab.train(resume=run, seed=0, episodes=3)):
+        with pytest.raises(
+            gym.error.UnregisteredEnv, match="environment 'MountainCar' is not registered .*: pass env="
+        ):
+            use(run)

@@ -17,6 +17,7 @@ from qtab.config.config import replace_checked
 from qtab.config.layers import over
 from qtab.config.options import is_set
 from qtab.envs.registry import versioned
+from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
 from qtab.results.snapshots import resumed_snapshot_episodes, snapshot_episodes
 from qtab.results.storage import load
@@ -62,6 +63,8 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
         ValueError: if the run cannot be resumed, or has finished as many episodes already.
     """
     config = _config(name, run, episodes)
+    if env is None:
+        spec_of_run(config.env)  # the name of a class without an id is not taken for one
     resolved = resolve(config.env if env is None else env, over(_without_kwargs(config, env), {}))
     _log_what_differs(run, config)
     return resolved
@@ -84,6 +87,8 @@ def check_agrees(run: Run, env: str | EnvSpec | gym.Env | None, settings: Mappin
         return
     if env is not None and (id_given := _id(env)) is not None and _bare(id_given) != _bare(run.config.env):
         raise _differs("env", run.config.env, id_given)
+    if env is None:
+        spec_of_run(run.config.env)
     resolved = resolve(run.config.env if env is None else env, over(_without_kwargs(run.config, env), given))
     resolved.close()
     for name in ("env_kwargs", *given):
