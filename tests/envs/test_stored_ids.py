@@ -149,6 +149,6 @@ def test_the_name_of_a_class_is_not_taken_for_an_id():
     assert run.config.env == "MountainCar"
     for use in (qtab.evaluate, lambda run: qtab.resume(run, 3), lambda run: qtab.train(resume=run, seed=0, episodes=3)):
         with pytest.raises(
-            gym.error.UnregisteredEnv, match="environment 'MountainCar' is not registered .*: pass env="
+            gym.error.UnregisteredEnv, match=r"environment 'MountainCar' is not registered .*: pass env="
         ):
             use(run)
