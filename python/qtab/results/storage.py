@@ -26,6 +26,8 @@ _MAX_REASON = 400
 def load(path: "str | os.PathLike[str]") -> Run:
     """Reads a run that :meth:`qtab.Run.save` wrote, after checking that not a byte of it was changed.
 
+    :func:`qtab.load_runs` reads the file of many runs, and :func:`qtab.load_sweep` the store of a sweep.
+
     Files of earlier versions have no digest to check it by. They are read all the same, with a message of the logger
     ``qtab`` that says so, and ``run.unchecked`` is True.
 
