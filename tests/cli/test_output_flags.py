@@ -73,6 +73,11 @@ def test_what_is_not_known_is_null(tmp_path: Path) -> None:
     assert [content[name] for name in ("threshold", "solved", "gap", "best_mean_return")] == [None] * 4
 
 
+def test_an_array_of_initial_values_is_shown_by_its_shape(folder: Path) -> None:
+    content = printed("train", "FrozenLake-v1", "--episodes", "2", "--initial-q", "run.npz", cwd=folder)
+    assert content["settings"]["initial_q"] == {"shape": [16, 4]}
+
+
 def test_text_has_the_verdict_and_the_gap(tmp_path: Path) -> None:
     text = qtab_here("train", "--seed", "0", "--episodes", "200", cwd=tmp_path).stdout
     assert "Not solved: the best mean return over 100 consecutive episodes is -200.00" in text
