@@ -1,6 +1,8 @@
 """A file never chooses a module to import: its environment must be registered, or the user passes it."""
 
+import contextlib
 import pickle
+import sqlite3
 import sys
 from typing import Any
 
@@ -11,6 +13,8 @@ from matplotlib.figure import Figure
 import qtab
 from qtab import plots
 from qtab.envs.stored import StoredId, stored_id
+from qtab.sweeps.digests import study_digest, to_text
+from qtab.sweeps.report import report
 from support.environments import Walk
 from support.run_files import members_of, with_header, with_right_digest, write_members
 
@@ -73,6 +77,45 @@ def test_an_environment_that_is_not_registered_is_refused_with_what_helps(named,
     assert MODULE not in sys.modules
 
 
+@pytest.fixture
+def named_store(named, tmp_path):
+    """Returns a function that makes a store which names ``MODULE`` as the package of its environment."""
+
+    def make(env: str) -> Any:
+        path = tmp_path / "study.db"
+        qtab.sweep("FrozenLake-v1", {"learning_rate": [0.1, 0.2]}, seeds=2, episodes=2, store=path)
+        with contextlib.closing(sqlite3.connect(path)) as connection:
+            meta = dict(connection.execute("SELECT name, value FROM meta"))
+            changed = meta | {"study": meta["study"].replace('"FrozenLake-v1"', f'"{MODULE}:{env}"')}
+            changed["digest"] = to_text(int(meta["digest"], 16) ^ study_digest(meta) ^ study_digest(changed))
+            connection.executemany(
+                "UPDATE meta SET value = ? WHERE name = ?", [*zip(changed.values(), changed, strict=True)]
+            )
+            connection.commit()
+        return qtab.load_sweep(path)
+
+    return make
+
+
+def test_the_store_of_a_sweep_chooses_no_module_either(named_store, tmp_path):
+    sweep = named_store("FrozenLake-v1")
+    assert sweep.env == sweep.configs[1]["env"] == f"{MODULE}:FrozenLake-v1"
+    assert qtab.train(sweep.env, episodes=1).config.env == sweep.env
+    assert len(sweep.confirm(1).confirmed) == 1
+    assert report(sweep, tmp_path / "report")
+    assert MODULE not in sys.modules
+
+
+def test_a_store_of_an_environment_that_is_not_registered_is_refused_with_what_helps(named_store):
+    sweep = named_store("Unknown-v0")
+    for env in (sweep.env, sweep.configs[1]["env"]):
+        with pytest.raises(gym.error.UnregisteredEnv, match=f"import {MODULE} first, or pass env="):
+            qtab.train(env)
+    with pytest.raises(ValueError, match="must be registered, or given as env="):
+        sweep.confirm(1)
+    assert MODULE not in sys.modules
+
+
 def test_it_loads_so_that_it_can_be_looked_at_and_the_user_can_pass_the_environment(named):
     run = named("Unknown-v0")
     assert len(run.episode_returns) == 3
@@ -114,5 +157,8 @@ class MountainCar(Walk):
 def test_the_name_of_a_class_is_not_taken_for_an_id():
     run = qtab.train(MountainCar(start=5), scale=(3, 0.7), seed=0, episodes=2, max_episode_steps=20)
     assert run.config.env == "MountainCar"
-    with pytest.raises(gym.error.UnregisteredEnv, match="pass env="):
-        qtab.evaluate(run)
+    for use in (qtab.evaluate, lambda run: qtab.resume(run, 3), lambda run: qtab.train(resume=run, seed=0, episodes=3)):
+        with pytest.raises(
+            gym.error.UnregisteredEnv, match=r"environment 'MountainCar' is not registered .*: pass env="
+        ):
+            use(run)
