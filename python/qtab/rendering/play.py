@@ -26,6 +26,8 @@ from qtab.results.run import Run
 
 _LOGGER = logging.getLogger("qtab")
 MAX_FPS = 1000.0
+MAX_LISTED = 3
+"""The returns of so many episodes are listed; of more their mean is."""
 
 
 @with_fields
@@ -47,14 +49,18 @@ class Playback:
     """The pictures."""
 
     def __repr__(self) -> str:
-        return f"<Playback of {self._title}>"
+        return f"<Playback of {self.summary}>"
 
     @property
-    def _title(self) -> str:
+    def summary(self) -> str:
+        """One line: the environment, the seed and the returns."""
         count = len(self.returns)
-        results = [f"return {one:.6g} in {steps} steps" for one, steps in zip(self.returns, self.lengths, strict=True)]
-        shown = "; ".join(results) if count <= 3 else f"mean return {self.returns.mean():.2f}"
-        return f"{self.env}, {count} {'episode' if count == 1 else 'episodes'}, seed {self.seed}: {shown or 'none'}"
+        episodes = "1 episode" if count == 1 else f"{count:,} episodes"
+        results = [
+            f"return {one:.6g} in {steps:,} steps" for one, steps in zip(self.returns, self.lengths, strict=True)
+        ]
+        shown = ", ".join(results) if count <= MAX_LISTED else f"mean return {self.returns.mean():.2f}"
+        return f"{self.env}, {episodes}, seed {self.seed}" + (f": {shown}" if shown else "")
 
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes the video to a file, completely or not at all.
@@ -71,11 +77,11 @@ class Playback:
         save_video(self.film.frames(), target, self._page)
 
     def _page(self) -> str:
-        return page(self.env, f"{paragraph(self._title)}\n{self._repr_html_()}")
+        return page(self.env, f"{paragraph(self.summary)}\n{self._repr_html_()}")
 
     def _repr_html_(self) -> str:
         """A player, for notebooks."""
-        return self.film.player(lambda frames: episode_player(frames, self._title))
+        return self.film.player(lambda frames: episode_player(frames, self.summary))
 
 
 @suggesting
