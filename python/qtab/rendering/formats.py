@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from qtab._utils.extras import missing
 from qtab._utils.files import check_writable, replacing
@@ -21,6 +22,7 @@ MAX_GIF_FPS = 50.0
 """Browsers slow down a GIF with shorter delays than 0.02 s."""
 PALETTE_FRAMES = 16
 """The colors of about so many pictures make the palette of all."""
+EXACT_COLORS = 64
 QUALITY = 7
 """From 1 to 10: letters stay sharp, and an episode of Mountain Car takes about 40 kB."""
 
@@ -106,7 +108,7 @@ def png_uris(frames: Frames) -> Iterator[str]:
     """Yields a data URI of each picture as PNG."""
     for image in _images(frames):
         written = io.BytesIO()
-        image.save(written, format="png", optimize=True)
+        image.save(written, format="png", compress_level=9)
         yield data_uri("image/png", written.getvalue())
 
 
@@ -129,9 +131,22 @@ def _images(frames: Frames) -> Iterator[Any]:
     image = _pillow()
     step = max(len(frames) // PALETTE_FRAMES, 1)
     sample = np.concatenate([picture[::2, ::2] for index, picture in enumerate(frames) if index % step == 0])
-    palette = image.fromarray(sample).quantize(256, image.Quantize.MEDIANCUT)
+    palette = image.new("P", (1, 1))
+    palette.putpalette(_palette(sample, image).tobytes())
     for picture in frames:
         yield image.fromarray(picture).quantize(palette=palette, dither=image.Dither.NONE)
+
+
+def _palette(sample: NDArray[np.uint8], image: Any) -> NDArray[np.uint8]:
+    """Returns (256, 3) colors: the most frequent ones exactly, so that white stays white, and others for the rest."""
+    packed = sample.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
+    colors, counts = np.unique(packed, return_counts=True)
+    frequent = colors[np.argsort(-counts, kind="stable")[:EXACT_COLORS]]
+    exact = (frequent[:, np.newaxis] >> np.array([16, 8, 0], np.uint32) & 255).astype(np.uint8)
+    mixed = image.fromarray(sample).quantize(256 - EXACT_COLORS, image.Quantize.MEDIANCUT).getpalette()
+    others = np.array(mixed, np.uint8).reshape(-1, 3)[: 256 - EXACT_COLORS]
+    chosen = np.concatenate([exact, others])
+    return np.concatenate([chosen, np.repeat(chosen[-1:], 256 - len(chosen), axis=0)])
 
 
 def _ffmpeg() -> Any:
