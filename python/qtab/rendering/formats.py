@@ -22,7 +22,8 @@ MAX_GIF_FPS = 50.0
 """Browsers slow down a GIF with shorter delays than 0.02 s."""
 PALETTE_FRAMES = 16
 """The colors of about so many pictures make the palette of all."""
-EXACT_COLORS = 64
+EXACT_COLORS = 8
+"""The most frequent colors, such as that of the background, are not changed."""
 QUALITY = 7
 """From 1 to 10: letters stay sharp, and an episode of Mountain Car takes about 40 kB."""
 
@@ -127,26 +128,33 @@ def _write_gif(frames: Frames, path: Path) -> None:
 
 
 def _images(frames: Frames) -> Iterator[Any]:
-    """Yields the pictures with one palette, that of some of them: much faster than a palette for each."""
+    """Yields the pictures with one palette, that of some of them: much faster than a palette for each.
+
+    The most frequent colors are kept exactly, so that white stays white; Pillow takes near ones.
+    """
     image = _pillow()
     step = max(len(frames) // PALETTE_FRAMES, 1)
     sample = np.concatenate([picture[::2, ::2] for index, picture in enumerate(frames) if index % step == 0])
+    colors, counts = np.unique(_packed(sample), return_counts=True)
+    frequent = colors[np.argsort(-counts, kind="stable")[:EXACT_COLORS]].tolist()
+    mixed = image.fromarray(sample).quantize(256 - len(frequent), image.Quantize.MEDIANCUT).getpalette()
+    chosen = [part for color in frequent for part in (color >> 16, color >> 8 & 255, color & 255)] + mixed
     palette = image.new("P", (1, 1))
-    palette.putpalette(_palette(sample, image).tobytes())
+    palette.putpalette(chosen[: 3 * 256])
     for picture in frames:
-        yield image.fromarray(picture).quantize(palette=palette, dither=image.Dither.NONE)
+        indices = np.array(image.fromarray(picture).quantize(palette=palette, dither=image.Dither.NONE))
+        packed = _packed(picture)
+        for index, color in enumerate(frequent):
+            indices[packed == color] = index
+        shown = image.fromarray(indices)  # of mode L, which a palette turns into P
+        shown.putpalette(chosen[: 3 * 256])
+        yield shown
 
 
-def _palette(sample: NDArray[np.uint8], image: Any) -> NDArray[np.uint8]:
-    """Returns (256, 3) colors: the most frequent ones exactly, so that white stays white, and others for the rest."""
-    packed = sample.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
-    colors, counts = np.unique(packed, return_counts=True)
-    frequent = colors[np.argsort(-counts, kind="stable")[:EXACT_COLORS]]
-    exact = (frequent[:, np.newaxis] >> np.array([16, 8, 0], np.uint32) & 255).astype(np.uint8)
-    mixed = image.fromarray(sample).quantize(256 - EXACT_COLORS, image.Quantize.MEDIANCUT).getpalette()
-    others = np.array(mixed, np.uint8).reshape(-1, 3)[: 256 - EXACT_COLORS]
-    chosen = np.concatenate([exact, others])
-    return np.concatenate([chosen, np.repeat(chosen[-1:], 256 - len(chosen), axis=0)])
+def _packed(pictures: NDArray[np.uint8]) -> NDArray[np.uint32]:
+    """Returns the color of each pixel as one number."""
+    red, green, blue = np.moveaxis(pictures.astype(np.uint32), -1, 0)
+    return red << 16 | green << 8 | blue
 
 
 def _ffmpeg() -> Any:

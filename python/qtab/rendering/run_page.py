@@ -68,6 +68,7 @@ def _page(
     env: Any,
     progress: bool | None,
 ) -> str:
+    episode = _episode(run, env)  # first, as a wrong environment is then refused at once
     found = _diagnosis(run, optimum)
     if optimum is None and found is not None:
         optimum = _best_known(found)
@@ -75,7 +76,7 @@ def _page(
         table((), _summary(run)),
         section("Learning curve", _learning_curve(run, optimum)),
         section("What it learned", _learned(run, at, layout, progress)),
-        section("A greedy episode", _episode(run, env)),
+        section("A greedy episode", episode),
         section("Diagnosis", _findings(found)),
         section("Settings", table((), _settings(run.config))),
         section("How it was made", table((), [*run.versions.items(), ("training", f"{run.seconds:.3g} s")])),
@@ -145,7 +146,10 @@ def _diagnosis(run: Run, optimum: Optimum | float | None) -> Diagnosis | None:
     """Returns the diagnosis where it takes about a second."""
     if run.config.backend != "rust" or not len(run.episode_returns):
         return None
-    return diagnose(run, optimum if isinstance(optimum, Optimum) else None)
+    try:
+        return diagnose(run, optimum if isinstance(optimum, Optimum) else None)
+    except gym.error.Error:  # an environment without an id, which cannot be made again
+        return None
 
 
 def _best_known(found: Diagnosis) -> Any:
@@ -158,7 +162,7 @@ def _best_known(found: Diagnosis) -> Any:
 
 def _findings(found: Diagnosis | None) -> str:
     if found is None:
-        return paragraph("There is none: it needs an environment that Rust steps, and a finished episode.")
+        return paragraph("There is none: it needs an environment with an id that Rust steps, and a finished episode.")
     return f'<div class="text wide">{found._repr_html_()}</div>'
 
 
