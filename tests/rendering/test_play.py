@@ -52,7 +52,7 @@ def test_the_episodes_are_those_of_evaluate(env: str, settings: dict[str, Any]) 
 def test_the_pictures_are_gymnasiums() -> None:
     run = lake()
     played = qtab.play(run, 2, seed=3, window=False)
-    expected = []
+    expected: list[Any] = []
     with gym.make("FrozenLake-v1", render_mode="rgb_array", max_episode_steps=20) as env:
         for episode in range(2):
             observation, _ = env.reset(seed=3 if episode == 0 else None)
@@ -87,7 +87,7 @@ def test_a_seed_is_drawn_and_recorded() -> None:
 
 
 def test_videos_can_be_read_again(tmp_path: Path) -> None:
-    import imageio_ffmpeg
+    import imageio_ffmpeg  # type: ignore[import-untyped]
     from PIL import Image
 
     played = qtab.play(lake(), seed=3, window=False)

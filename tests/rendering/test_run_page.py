@@ -11,7 +11,7 @@ import pytest
 import qtab
 from qtab.rendering import learning, run_page
 
-TABLE = {
+TABLE: dict[str, Any] = {
     "env": qtab.TabularEnv({0: {0: [(1.0, 1, 1.0, True)]}, 1: {0: [(1.0, 1, 0.0, True)]}}, [1.0, 0.0]),
     "episodes": 20,
     "seed": 0,
@@ -80,30 +80,13 @@ def test_a_page_has_all_parts_and_needs_nothing_else(tmp_path: Path) -> None:
         assert f'<th scope="row">{name}</th><td>{value}</td>' in page.source
 
 
-def test_without_snapshots_it_has_the_final_tables_only(tmp_path: Path) -> None:
-    qtab.train("FrozenLake-v1", episodes=100, seed=0).to_html(tmp_path / "run.html")
-    page = Page(tmp_path / "run.html")
-    assert [attributes.get("data-label") for attributes in page.all("img")] == [None, "after 100 episodes"]
-    assert page.all("input") == []
-
-
-def test_an_environment_without_pictures_has_a_page_all_the_same(tmp_path: Path) -> None:
+def test_without_snapshots_and_a_renderer_it_has_the_final_tables_only(tmp_path: Path) -> None:
     qtab.train(**TABLE).to_html(tmp_path / "run.html")
     page = Page(tmp_path / "run.html")
     assert page.headings[1:] == HEADINGS
+    assert [attributes.get("data-label") for attributes in page.all("img")] == [None, "after 20 episodes"]
+    assert page.all("input") == []
     assert "There is no video: the run&#x27;s environment &#x27;TabularEnv&#x27; is not registered" in page.source
-
-
-def test_texts_are_escaped(tmp_path: Path) -> None:
-    name = "Evil<b>&-v0"
-    run = qtab.train("FrozenLake-v1", episodes=20, seed=0, env_kwargs={"desc": ["SF", "FG"]})
-    config = qtab.Config(**{**vars(run.config), "env": name})
-    versions = {"<script>": "alert(1)"}
-    qtab.Run(**{**vars(run), "config": config, "versions": versions}).to_html(tmp_path / "run.html")
-    page = Page(tmp_path / "run.html")
-    assert page.headings[0] == name
-    assert name not in page.source
-    assert page.all("script") == []
 
 
 def test_many_snapshots_and_long_episodes_are_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -119,13 +102,18 @@ def test_many_snapshots_and_long_episodes_are_cut(tmp_path: Path, monkeypatch: p
     assert "Its first 4 steps." in Page(tmp_path / "run.html").source
 
 
-def test_a_run_that_was_stopped_in_its_first_episode_has_a_page(tmp_path: Path) -> None:
+def test_texts_are_escaped_and_a_run_without_a_finished_episode_has_a_page(tmp_path: Path) -> None:
+    name = "Evil<b>&-v0"
     run = qtab.train("FrozenLake-v1", episodes=5, seed=0)
-    nothing: dict[str, Any] = {
-        name: getattr(run, name)[:0] for name in ("episode_returns", "episode_lengths", "terminated")
+    changes: dict[str, Any] = {
+        one: getattr(run, one)[:0] for one in ("episode_returns", "episode_lengths", "terminated")
     }
-    qtab.Run(**{**vars(run), **nothing, "completed": False}).to_html(tmp_path / "run.html")
+    changes |= {"config": qtab.Config(**{**vars(run.config), "env": name}), "versions": {"<script>": "alert(1)"}}
+    qtab.Run(**{**vars(run), **changes, "completed": False}).to_html(tmp_path / "run.html")
     page = Page(tmp_path / "run.html")
+    assert page.headings[0] == name
+    assert name not in page.source
+    assert page.all("script") == []
     assert "no episode was finished" in page.source
     assert "0 of 5, 0 steps" in page.source
 

@@ -154,12 +154,13 @@ def _images(frames: Frames) -> Iterator[Any]:
 def _packed(pictures: NDArray[np.uint8]) -> NDArray[np.uint32]:
     """Returns the color of each pixel as one number."""
     red, green, blue = np.moveaxis(pictures.astype(np.uint32), -1, 0)
-    return red << 16 | green << 8 | blue
+    packed: NDArray[np.uint32] = red << 16 | green << 8 | blue
+    return packed
 
 
 def _ffmpeg() -> Any:
     try:
-        import imageio_ffmpeg
+        import imageio_ffmpeg  # type: ignore[import-untyped]
     except ModuleNotFoundError as error:
         raise missing(error, "video") from None
     try:

@@ -75,7 +75,7 @@ def draw_learning(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     figure.set_dpi(DOTS_PER_INCH)
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     frames = Frames(fps)
     painter = _Painter(figure, raster, subjects, panels, at, layout)
     # A given height of the titles saves matplotlib from measuring all labels for each picture.
