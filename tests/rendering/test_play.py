@@ -178,6 +178,19 @@ def test_without_a_display_nothing_is_shown_and_a_message_says_so(caplog: pytest
     assert "no window is shown (SDL draws to 'dummy'); .save('agent.mp4') writes the video" in caplog.text
 
 
+def test_without_pygame_an_environment_that_does_not_need_it_is_shown_without_a_window(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = qtab.train(Corridor(), episodes=2, seed=0, max_episode_steps=5)
+    monkeypatch.setitem(sys.modules, "pygame", None)
+    assert len(qtab.play(run, seed=0, env=Corridor("rgb_array")).returns) == 1
+    with pytest.raises(ModuleNotFoundError, match=r"pip install .*"):
+        qtab.play(run, env=Corridor("rgb_array"), window=True)
+    with pytest.raises(gym.error.DependencyNotInstalled, match="pip install"):
+        qtab.play(lake())
+    assert "no window is shown (this needs pygame" in caplog.text
+
+
 class Corridor(gym.Env[Any, Any]):
     """Two cells; a move to the right ends the episode."""
 

@@ -172,7 +172,7 @@ def _settings(config: Config) -> list[tuple[str, str]]:
 
 
 def _is_empty(value: Any) -> bool:
-    return value is None or (isinstance(value, Mapping) and not value)
+    return value is None or (isinstance(value, Mapping | tuple) and not value)
 
 
 def _setting(value: Any) -> str:
