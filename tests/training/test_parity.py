@@ -15,7 +15,7 @@ from support.parity import assert_same_as_reference, assert_same_run, table_to_g
 
 LEARNED = table_to_go_on_from()
 QUICK = 143
-"""A seed with which the article's settings reach the goal in the first episode after 1,304 steps, not many thousands."""
+"""A seed with which the first episode reaches the goal after 1,304 steps, not after many thousands."""
 UNIT = st.sampled_from([0.0, 0.1, 0.5, 1.0]) | st.floats(0.0, 1.0)
 EPSILONS = st.tuples(UNIT, UNIT).map(sorted)
 RANGES = st.sampled_from([(-1.0, 1.0), (0.0, 0.0), (-200.0, -100.0)]) | st.tuples(
