@@ -82,9 +82,18 @@ class ProgressBar:
             self._bar.update(done - self._bar.n)
 
 
-def _tqdm(total: int, unit: str, progress: bool | None, description: str | None) -> Any:
+def check_progress(progress: Any) -> None:
+    """Checks the argument ``progress`` of a function that may not come to show a bar.
+
+    Raises:
+        TypeError: if it is neither a boolean nor None.
+    """
     if not (progress is None or isinstance(progress, bool)):
         raise TypeError(f"progress must be True, False or None, got {progress!r}")
+
+
+def _tqdm(total: int, unit: str, progress: bool | None, description: str | None) -> Any:
+    check_progress(progress)
     if progress is False or (progress is None and not is_terminal(sys.stderr) and not in_notebook()):
         return None
     try:

@@ -1,7 +1,7 @@
 """``qtab sweep``."""
 
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,11 +9,11 @@ import gymnasium as gym
 import tyro
 
 from qtab._utils import checks
-from qtab._utils.progress import ProgressBar, print_above
+from qtab._utils.progress import print_above
 from qtab.cli.parsing import parse
 from qtab.cli.study_file import read_study
 from qtab.cli.usage import UsageError, one_line, usage_errors
-from qtab.sweeps import StoreError, SweepProgress, sweep
+from qtab.sweeps import StoreError, sweep
 
 COMMAND = "qtab sweep"
 DEFAULT_SEEDS = 100
@@ -51,42 +51,22 @@ def run(arguments: list[str]) -> int:
         given = {"seeds": DEFAULT_SEEDS, **study.options}
         if options.threads is not None:
             given["threads"] = options.threads
-        with _names_file(options.study), _says_what_is_kept(store), _Bar(options.study.stem) as bar:
-            result = sweep(study.env, study.grid, store=store, callback=bar.show, **given, **study.config)
+        with _names_file(options.study), _says_what_is_kept(store):
+            result = sweep(study.env, study.grid, store=store, **given, **study.config)
     runs, settings = _counted(len(result), "run"), _counted(len(result.settings), "setting")
     print_above(f"{runs} of {settings} in {store}, {result.failed} failed")
     if options.confirm is not None:
-        with usage_errors(), _names_file(options.study), _Bar("confirm") as bar:
+        with usage_errors(), _names_file(options.study):
             confirmation = result.confirm(
                 options.confirm,
                 top=options.top,
                 store=options.confirm_store,
                 threads=given.get("threads"),
                 memory_limit=given.get("memory_limit"),
-                callback=bar.show,
             )
             text = str(confirmation)
         print_above(text)
     return 0
-
-
-class _Bar:
-    """A progress bar that is created with the first progress, which tells the number of runs."""
-
-    def __init__(self, description: str) -> None:
-        self._description, self._opened = description, ExitStack()
-        self._bar: ProgressBar | None = None
-
-    def __enter__(self) -> "_Bar":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._opened.close()
-
-    def show(self, progress: SweepProgress) -> None:
-        if self._bar is None:
-            self._bar = self._opened.enter_context(ProgressBar(progress.total, "run", None, self._description))
-        self._bar.move_to(progress.runs)
 
 
 @contextmanager

@@ -269,7 +269,7 @@ class Run:
         run_file.write(Path(path), text, arrays)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Recording:
     """One episode that can be replayed."""
 
@@ -279,6 +279,9 @@ class Recording:
     """The state of the environment's bit generator before the episode's reset."""
     actions: tuple[Any, ...]
     """What ``env.step`` was given: integers, with the start of a Discrete space added, or arrays."""
+
+    def __repr__(self) -> str:
+        return f"<Recording of episode {self.episode}: {len(self.actions):,} actions>"
 
 
 def _sum(parts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:

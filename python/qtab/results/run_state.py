@@ -17,6 +17,9 @@ class RunState:
     generator: Mapping[str, Any] | None
     """The state of the bit generator of an environment that is stepped in Python, as JSON can hold it."""
 
+    def __repr__(self) -> str:
+        return f"<RunState of {len(self.checkpoint):,} bytes>"
+
     def array(self) -> NDArray[np.uint8]:
         """Returns the checkpoint as a file holds it."""
         return np.frombuffer(self.checkpoint, np.uint8)
