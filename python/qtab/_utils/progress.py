@@ -2,12 +2,12 @@
 
 import sys
 import time
-import warnings
 from collections.abc import Iterator
 from typing import Any
 
 from qtab._utils.extras import missing
 from qtab._utils.notebook import in_notebook
+from qtab._utils.notebook_bar import notebook_bar
 
 SECONDS_BETWEEN_UPDATES = 0.1
 """The approximate time between two updates of the bar."""
@@ -96,19 +96,23 @@ def _tqdm(total: int, unit: str, progress: bool | None, description: str | None)
     check_progress(progress)
     if progress is False or (progress is None and not is_terminal(sys.stderr) and not in_notebook()):
         return None
+    options = {
+        "total": total,
+        "unit": f" {unit}s",
+        "desc": description,
+        "delay": 0.0 if progress else DELAY_SECONDS,
+        "leave": False,
+        "dynamic_ncols": True,
+    }
     try:
         if in_notebook():
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # without ipywidgets the bar is text, which needs no warning
-                from tqdm.auto import tqdm
-        else:
-            from tqdm import tqdm
+            return notebook_bar(**options)
+        from tqdm import tqdm
     except ModuleNotFoundError as error:
         if progress:
             raise missing(error, "cli") from None
         return None
-    delay = 0.0 if progress else DELAY_SECONDS
-    return tqdm(total=total, unit=f" {unit}s", desc=description, delay=delay, leave=False, dynamic_ncols=True)
+    return tqdm(**options)
 
 
 def is_terminal(stream: Any) -> bool:

@@ -151,6 +151,7 @@ def _optimum_for_env(
             best = _search_mountain_car(unwrapped, discount, steps, bar)
         else:
             best = _solve_table(unwrapped, method, discount, steps)
+            bar.move_to(1)
     return Optimum(
         env=name,
         env_kwargs={} if env.spec is None else dict(env.spec.kwargs),
