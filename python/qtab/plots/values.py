@@ -1,11 +1,12 @@
 """A picture of the learned values."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from qtab.plots.arrangements import arrange
+from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.panels import (
     axes_for,
@@ -21,6 +22,7 @@ from qtab.plots.subject import Drawable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.colors import Normalize
 
 VALUE_LABEL = "value, max$_a$ Q(s, a)"
 
@@ -65,16 +67,29 @@ def values(
     check_same_environment(subjects, "run")
     rasters = [arrange(subject, at, layout) for subject in subjects]
     shown = [subject.state_values(raster.rows) for subject, raster in zip(subjects, rasters, strict=True)]
-    axes = axes_for(rasters, ax)
-    from matplotlib.colors import Normalize  # after the axes: the message without matplotlib is theirs
-
-    finite = np.concatenate([np.zeros(0), *(grid[np.isfinite(grid)] for grid in shown)])
-    norm = Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0, 1)
+    axes = axes_for(rasters, ax)  # without matplotlib, this names the extra
+    norm = common_norm(shown)
     for subject, raster, grid, panel in zip(subjects, rasters, shown, axes, strict=True):
-        shade_unknown(panel, raster, grid)
-        image = draw_cells(panel, raster, grid, "viridis", norm)
-        if numbers and raster.has_numbers:
-            write_numbers(panel, raster, grid, image, lambda value: f"{value:.3g}")
-        finish_panel(panel, raster, subject.name if title is None else title)
+        image = draw_values(panel, raster, grid, norm, subject.name if title is None else title, numbers)
     color_bar(axes, rasters[0], image, VALUE_LABEL)
     return axes[0]
+
+
+def common_norm(grids: Sequence[NDArray[np.float64]]) -> "Normalize":
+    """Returns one scale of colors for the finite values of several pictures."""
+    from matplotlib.colors import Normalize
+
+    finite = np.concatenate([np.zeros(0), *(grid[np.isfinite(grid)] for grid in grids)])
+    return Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0, 1)
+
+
+def draw_values(
+    panel: "Axes", raster: Raster, grid: NDArray[np.float64], norm: "Normalize", title: str, numbers: bool = True
+) -> Any:
+    """Draws (ny, nx) values, the grey of unknown ones, and the title; returns what a color bar takes."""
+    shade_unknown(panel, raster, grid)
+    image = draw_cells(panel, raster, grid, "viridis", norm)
+    if numbers and raster.has_numbers:
+        write_numbers(panel, raster, grid, image, lambda value: f"{value:.3g}")
+    finish_panel(panel, raster, title)
+    return image
