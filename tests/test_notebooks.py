@@ -158,7 +158,9 @@ def check_study(executed: Executed) -> None:
     final = {}
     for name, algorithm in space["ALGORITHMS"].items():
         [line] = [line for line in printed if line.startswith(f"{name}: setting")]
-        setting = {found: float(value) for found, value in re.findall(r"(learning_rate|trace_decay) ([\d.]+)", line)}
+        setting: dict[str, Any] = {
+            found: float(value) for found, value in re.findall(r"(learning_rate|trace_decay) ([\d.]+)", line)
+        }
         assert setting in space["design"]
         runs = qtab.train_many("MountainCar-v0", range(10, 40), algorithm=algorithm, **setting, **space["SHARED"])
         final[name] = runs.final_returns()

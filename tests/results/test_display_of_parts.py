@@ -42,7 +42,7 @@ def progress() -> qtab.Progress:
 
 
 def gap(runs: qtab.Run | qtab.Runs) -> Any:
-    return qtab.optimum("FrozenLake-v1").gap(runs)  # type: ignore[arg-type]
+    return qtab.optimum("FrozenLake-v1").gap(runs)
 
 
 PARTS: dict[str, tuple[Any, str]] = {

@@ -30,11 +30,12 @@ def notebook_bar(**options: Any) -> Any:
 
         def display(self, *arguments: Any, check_delay: bool = True, **keywords: Any) -> None:
             """Draws the bar, and shows it once its delay is over."""
-            from IPython.display import display
+            from IPython import display
 
             super().display(*arguments, check_delay=False, **keywords)
             if check_delay and self.output is None:
-                self.output = display(self.container, display_id=True)
+                show: Any = display.display
+                self.output = show(self.container, display_id=True)
 
         def close(self) -> None:
             """Closes the bar, and empties its output."""

@@ -60,7 +60,7 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
         """One line; Gymnasium shows an environment without an id by its address."""
         if self.spec is not None:
             return super().__repr__()
-        states, actions = int(self.observation_space.n), int(self.action_space.n)
+        states, actions = len(self.P), len(self.P[0])
         return f"<{type(self).__name__}: {_counted(states, 'state')}, {_counted(actions, 'action')}>"
 
     def _reset_in_python(self) -> tuple[int, dict[str, Any]]:
