@@ -119,6 +119,21 @@ def test_without_ipywidgets_a_bar_of_text_comes_without_a_warning(
     assert "0/20" in capsys.readouterr().err
 
 
+def test_a_wrong_progress_is_refused_even_where_no_bar_would_come() -> None:
+    run = qtab.train("FrozenLake-v1", seed=0, episodes=200)
+    sweep = qtab.sweep("FrozenLake-v1", {"discount": [0.9]}, 1, episodes=5)
+    wrong: Any = 1
+    for call in (
+        lambda: qtab.evaluate(run, progress=wrong),
+        lambda: qtab.optimum("FrozenLake-v1", progress=wrong),
+        lambda: qtab.sweep("FrozenLake-v1", {"discount": [0.9]}, 1, episodes=5, progress=wrong),
+        lambda: sweep.confirm(1, progress=wrong),
+        lambda: qtab.diagnose(run).what_if(2, progress=wrong),
+    ):
+        with pytest.raises(TypeError, match=r"^progress must be True, False or None, got 1$"):
+            call()
+
+
 CELLS = {
     "picture": """
 import qtab

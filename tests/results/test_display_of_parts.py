@@ -159,3 +159,23 @@ def test_a_callback_of_your_own_shows_what_it_was_given():
         def __call__(self, progress: qtab.Progress) -> None: ...
 
     assert repr(Mine(3.0, 7)) == "Mine(every=7)"
+
+
+def test_the_name_of_an_environment_is_escaped_everywhere():
+    named = type(NAME, (qtab.TabularEnv,), {})
+    chain = [[[(1.0, 1, -1.0, False)], [(1.0, 0, -1.0, False)]], [[(1.0, 1, 0.0, True)], [(1.0, 0, -1.0, False)]]]
+    env = named(chain, [1.0, 0.0])
+    run = qtab.train(env, seed=0, episodes=200, max_episode_steps=20)
+    best = qtab.optimum(env, max_episode_steps=20)
+    results = [
+        run,
+        run.config,
+        best,
+        qtab.diagnose(run, best),
+        qtab.explain(run, episode=0, steps=1, env=env),
+        qtab.verify(run, episodes=2, env=env),
+    ]
+    for result in results:
+        shown = result._repr_html_()
+        assert NAME not in shown, result
+        assert NAME in "".join(ElementTree.fromstring(shown).itertext())  # noqa: S314
