@@ -19,7 +19,7 @@ def notebook_bar(**options: Any) -> Any:
     if notebook.IProgress is None:
         return tqdm(**options)
 
-    class Bar(notebook.tqdm_notebook):  # type: ignore[misc] # tqdm has no types
+    class WidgetProgressBar(notebook.tqdm_notebook):  # type: ignore[misc] # tqdm has no types
         """tqdm's widget, whose output can be replaced.
 
         tqdm closes the widget, but its output stays: a saved notebook would show the bar as it was first drawn, or an
@@ -44,7 +44,7 @@ def notebook_bar(**options: Any) -> Any:
                 self.output.update({"text/plain": ""}, raw=True)
                 self.output = None
 
-    bar = Bar(display=False, **options)
+    bar = WidgetProgressBar(display=False, **options)
     if options.get("delay", 0.0) <= 0.0:
         bar.display()
     return bar
