@@ -1,5 +1,6 @@
 """How the parts of results are shown: one short line, and a table in notebooks where there is more to see."""
 
+import inspect
 import xml.etree.ElementTree as ElementTree
 from functools import cache
 from typing import Any
@@ -91,6 +92,17 @@ def test_the_repr_is_one_short_line(name):
     assert shown.startswith(expected)
     assert "\n" not in shown
     assert len(shown) < 200
+
+
+def public_classes() -> list[type]:
+    modules = [qtab, stats, callbacks, qtab.book]
+    found = [getattr(module, name) for module in modules for name in module.__all__]
+    return [one for one in found if inspect.isclass(one)]
+
+
+def test_no_public_object_is_shown_by_its_address():
+    assert len(public_classes()) > 30
+    assert [cls.__name__ for cls in public_classes() if cls.__repr__ is object.__repr__] == []
 
 
 def test_every_discretizer_is_shown_in_one_line():
