@@ -11,10 +11,11 @@ from qtab._utils.progress import ProgressBar
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.axes import new_figure
+from qtab.plots.heat_maps import draw_heat_map
 from qtab.plots.panels import color_bar
 from qtab.plots.policy import policy
 from qtab.plots.subject import Subject, subject_of
-from qtab.plots.values import VALUE_LABEL, common_norm, draw_values
+from qtab.plots.values import VALUE_LABEL, common_norm, value_text
 from qtab.rendering.frames import Frames
 from qtab.results.run import Run
 
@@ -114,7 +115,7 @@ class _Painter:
         for ax, panel, title in zip(self.axes, self.panels, titles, strict=True):
             ax.clear()
             if panel == "values":
-                image = draw_values(ax, self.raster, self.grids[index], self.norm, title)
+                image = draw_heat_map(ax, self.raster, self.grids[index], self.norm, title, value_text)
                 color_bar([ax], self.raster, image, VALUE_LABEL)
             else:
                 source: Any = self.subjects[index].source
