@@ -99,7 +99,7 @@ class Executed:
 
 
 def _is_red(output: Any) -> bool:
-    return output.output_type == "error" or output.get("name") == "stderr"
+    return bool(output.output_type == "error" or output.get("name") == "stderr")
 
 
 def check_mountain_car(executed: Executed) -> None:
