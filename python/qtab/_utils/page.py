@@ -11,7 +11,7 @@ _STYLE = (
     "color:#222;background:#fff}"
     "table{border-collapse:collapse}td,th{padding:.25rem .7rem;text-align:right;border-bottom:1px solid #8885}"
     "th[scope=row]{font-weight:normal;text-align:left}td{overflow-wrap:anywhere}"
-    "table.text td,table.text th{text-align:left;vertical-align:top}"
+    ".text td,.text th{text-align:left;vertical-align:top}"
     "figure{margin:1rem 0}img,video{max-width:100%;border-radius:4px}"
     ".wide{overflow-x:auto}code{white-space:pre-wrap}"
     "@media(prefers-color-scheme:dark){body{color:#ddd;background:#181a1b}a{color:#8ab4f8}}"

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +64,7 @@ def animate(
     run: Run,
     path: "str | os.PathLike[str] | None" = None,
     *,
-    what: str = "values",
+    what: Literal["values", "policy"] = "values",
     fps: float = 5.0,
     at: Mapping[str, float] | None = None,
     layout: Layout | None = None,

@@ -34,14 +34,8 @@ class Scene:
 
     def show(self) -> Episodes:
         """Plays in a window; returns the episodes that were finished before it was closed."""
-        with self._environment("human") as env:
-            shared = env.unwrapped.metadata
-            if self.fps is not None:
-                env.unwrapped.metadata = {**shared, "render_fps": self.fps}
-            try:
-                return play_episodes(self.agent, env, self.episodes, self.seed, lambda *_: not _is_window_closed())
-            finally:
-                env.unwrapped.metadata = shared
+        with self._environment("human") as env, _with_speed(env.unwrapped, self.fps):
+            return play_episodes(self.agent, env, self.episodes, self.seed, lambda *_: not _is_window_closed())
 
     def record(self) -> tuple[Episodes, Frames]:
         """Plays without a window; returns the episodes, and a picture of each state."""
@@ -92,6 +86,19 @@ class Film:
         if self._player is None:
             self._player = make(self.frames())
         return self._player
+
+
+@contextmanager
+def _with_speed(env: gym.Env, fps: float | None) -> Iterator[None]:
+    """Gives an environment another speed in its window, not its class."""
+    before = env.metadata
+    if fps is not None:
+        env.metadata = {**before, "render_fps": fps}
+    try:
+        yield
+    finally:
+        if fps is not None:
+            env.metadata = before
 
 
 @contextmanager

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from qtab._utils.extras import missing
 from qtab._utils.files import check_writable, replacing
@@ -21,6 +22,8 @@ MAX_GIF_FPS = 50.0
 """Browsers slow down a GIF with shorter delays than 0.02 s."""
 PALETTE_FRAMES = 16
 """The colors of about so many pictures make the palette of all."""
+EXACT_COLORS = 8
+"""The most frequent colors, such as that of the background, are not changed."""
 QUALITY = 7
 """From 1 to 10: letters stay sharp, and an episode of Mountain Car takes about 40 kB."""
 
@@ -106,7 +109,7 @@ def png_uris(frames: Frames) -> Iterator[str]:
     """Yields a data URI of each picture as PNG."""
     for image in _images(frames):
         written = io.BytesIO()
-        image.save(written, format="png", optimize=True)
+        image.save(written, format="png", compress_level=9)
         yield data_uri("image/png", written.getvalue())
 
 
@@ -125,18 +128,39 @@ def _write_gif(frames: Frames, path: Path) -> None:
 
 
 def _images(frames: Frames) -> Iterator[Any]:
-    """Yields the pictures with one palette, that of some of them: much faster than a palette for each."""
+    """Yields the pictures with one palette, that of some of them: much faster than a palette for each.
+
+    The most frequent colors are kept exactly, so that white stays white; Pillow takes near ones.
+    """
     image = _pillow()
     step = max(len(frames) // PALETTE_FRAMES, 1)
     sample = np.concatenate([picture[::2, ::2] for index, picture in enumerate(frames) if index % step == 0])
-    palette = image.fromarray(sample).quantize(256, image.Quantize.MEDIANCUT)
+    colors, counts = np.unique(_packed(sample), return_counts=True)
+    frequent = colors[np.argsort(-counts, kind="stable")[:EXACT_COLORS]].tolist()
+    mixed = image.fromarray(sample).quantize(256 - len(frequent), image.Quantize.MEDIANCUT).getpalette()
+    chosen = [part for color in frequent for part in (color >> 16, color >> 8 & 255, color & 255)] + mixed
+    palette = image.new("P", (1, 1))
+    palette.putpalette(chosen[: 3 * 256])
     for picture in frames:
-        yield image.fromarray(picture).quantize(palette=palette, dither=image.Dither.NONE)
+        indices = np.array(image.fromarray(picture).quantize(palette=palette, dither=image.Dither.NONE))
+        packed = _packed(picture)
+        for index, color in enumerate(frequent):
+            indices[packed == color] = index
+        shown = image.fromarray(indices)  # of mode L, which a palette turns into P
+        shown.putpalette(chosen[: 3 * 256])
+        yield shown
+
+
+def _packed(pictures: NDArray[np.uint8]) -> NDArray[np.uint32]:
+    """Returns the color of each pixel as one number."""
+    red, green, blue = np.moveaxis(pictures.astype(np.uint32), -1, 0)
+    packed: NDArray[np.uint32] = red << 16 | green << 8 | blue
+    return packed
 
 
 def _ffmpeg() -> Any:
     try:
-        import imageio_ffmpeg
+        import imageio_ffmpeg  # type: ignore[import-untyped]
     except ModuleNotFoundError as error:
         raise missing(error, "video") from None
     try:

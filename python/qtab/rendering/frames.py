@@ -51,7 +51,7 @@ class Frames:
             expected = "(height, width, 3)" if self._shape is None else self._shape
             raise ValueError(f"env.render() must return arrays of shape {expected}, got {picture.shape}")
         self._shape = picture.shape
-        compressed = zlib.compress(np.ascontiguousarray(picture), 1)
+        compressed = zlib.compress(picture.tobytes(), 1)
         if self._compressed and self._compressed[-1] == compressed:
             compressed = self._compressed[-1]  # an agent that does not move takes no memory
         self._compressed.append(compressed)

@@ -72,23 +72,29 @@ def draw_learning(
     titles = [subjects[-1].name] * len(panels) if titles is None else titles
     width, height = raster.size
     figure = new_figure(width * len(panels) * (0.85 if len(panels) > 1 else 1), height)
-    from matplotlib.backends.backend_agg import FigureCanvasAgg  # after the figure, whose error names the extra
+    from matplotlib import rc_context  # after the figure, whose error names the extra
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     figure.set_dpi(DOTS_PER_INCH)
-    canvas = FigureCanvasAgg(figure)
-    painter = _Painter(figure, raster, subjects, panels, at, layout)
-    # The last picture, which has most to show, determines the layout of all.
-    painter.draw(len(states) - 1, [f"{title}\n{after_episodes(states[-1][0])}" for title in titles])
-    canvas.draw()
-    figure.set_layout_engine("none")
+    canvas: Any = FigureCanvasAgg(figure)
     frames = Frames(fps)
-    with ProgressBar(len(states), "snapshot", progress, "draw") as bar:
+    painter = _Painter(figure, raster, subjects, panels, at, layout)
+    # A given height of the titles saves matplotlib from measuring all labels for each picture.
+    with rc_context({"axes.titley": 1.0}), ProgressBar(len(states), "snapshot", progress, "draw") as bar:
+        # The last picture, which has most to show, determines the layout of all.
+        painter.draw(len(states) - 1, _below(titles, states[-1][0]))
+        canvas.draw()
+        figure.set_layout_engine("none")
         for index, (done, _) in enumerate(states):
-            painter.draw(index, [f"{title}\n{after_episodes(done)}" for title in titles])
+            painter.draw(index, _below(titles, done))
             canvas.draw()
             frames.append(np.asarray(canvas.buffer_rgba())[..., :3].copy(), after_episodes(done))
             bar.move_to(index + 1)
     return frames
+
+
+def _below(titles: Sequence[str], done: int) -> list[str]:
+    return [f"{title}\n{after_episodes(done)}" for title in titles]
 
 
 class _Painter:
@@ -105,6 +111,7 @@ class _Painter:
     ) -> None:
         self.raster, self.subjects, self.panels = raster, subjects, panels
         self.at, self.layout = at, layout
+        self.bar: Any = None
         self.axes = list(figure.subplots(1, len(panels), squeeze=False)[0])
         self.grids: list[NDArray[np.float64]] = []
         if "values" in panels:
@@ -112,11 +119,21 @@ class _Painter:
             self.norm = common_norm(self.grids)
 
     def draw(self, index: int, titles: Sequence[str]) -> None:
+        """Replaces what the axes show by the state with an index."""
         for ax, panel, title in zip(self.axes, self.panels, titles, strict=True):
-            ax.clear()
+            self._clear(ax)
             if panel == "values":
                 image = draw_heat_map(ax, self.raster, self.grids[index], self.norm, title, value_text)
-                color_bar([ax], self.raster, image, VALUE_LABEL)
+                if self.bar is None:
+                    self.bar = color_bar([ax], self.raster, image, VALUE_LABEL).ax
             else:
                 source: Any = self.subjects[index].source
                 policy(source, ax, at=self.at, layout=self.layout, title=title)
+
+    def _clear(self, ax: Any) -> None:
+        """Removes what was drawn; the axes, their ticks and the color bar stay, which saves a third of the time."""
+        legend = ax.get_legend()
+        drawn = [*ax.collections, *ax.lines, *ax.texts, *ax.patches, *ax.images, *ax.child_axes, legend]
+        for artist in drawn:
+            if artist is not None and artist is not self.bar:
+                artist.remove()

@@ -119,6 +119,7 @@ def play(
     Raises:
         gymnasium.error.DependencyNotInstalled: from Gymnasium, without the library that renders the environment.
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
+        ModuleNotFoundError: for a window without pygame; the message names the ``pip install``.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range, an environment that cannot be rendered or has other spaces than the
             run's, or a window where there is no display.
@@ -144,7 +145,12 @@ def _opens_window(env: Any, window: bool | None) -> bool:
         return env.render_mode == "human"
     if window is False or (window is None and in_notebook()):
         return False
-    problem = display_problem()
+    try:
+        problem = display_problem()
+    except ModuleNotFoundError as error:  # pygame, which not every environment needs for its pictures
+        if window:
+            raise
+        problem = str(error)
     if problem is None:
         return True
     if window:
