@@ -33,7 +33,7 @@ def test_explain_shows_the_rates_that_an_episode_had() -> None:
     run = extended()
     explained = qtab.explain(run, episode=20, steps=1)
     assert explained.learning_rate == qtab.explain(qtab.train(POLE, seed=0, episodes=30), episode=20).learning_rate
-    with pytest.raises(ValueError, match=r"^episode must be less than 30 for a run that was extended"):
+    with pytest.raises(ValueError, match=r"^episode must be at most 29 for a run that was extended"):
         qtab.explain(run, episode=30)
 
 

@@ -53,19 +53,19 @@ def explain(
     Raises:
         RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range. Of a run that was resumed with more episodes while a rate fell, only the
-            episodes before can be explained.
+        ValueError: for an argument out of range. Of a run that was resumed with more episodes while a rate fell, only
+            the episodes before can be explained.
     """
     checks.instance("run", run, Run)
     finished = len(run.episode_returns)
     if finished == 0:
         raise ValueError("run must have a finished episode, got one that was stopped during its first")
     episode = checks.integer("episode", episode, least=0, most=finished - 1)
-    run, repeated_episodes = repeatable(run)
-    if episode >= repeated_episodes:
+    run, most = repeatable(run)
+    if episode >= most:
         raise ValueError(
-            f"episode must be less than {repeated_episodes:,} for a run that was extended after so many, since its rates "
-            f"then fell over more episodes, got {episode}"
+            f"episode must be at most {most - 1:,} for a run that was extended after {most:,} episodes, since its "
+            f"rates then fell over more of them, got {episode}"
         )
     start = checks.integer("start", start, least=0, most=int(run.episode_lengths[episode]) - 1)
     steps = checks.integer("steps", steps, least=1)

@@ -119,7 +119,7 @@ def verify(
     if count > most:
         raise ValueError(
             f"episodes must be at most {most:,} for a run that was extended after so many, since its rates then fell "
-            f"over more episodes, got {episodes!r}"
+            f"over more of them, got {episodes!r}"
         )
     config = run.config
     if env is None:
