@@ -1,4 +1,4 @@
-"""The vector environment that Gymnasium has for CartPole, beside ours: equal in everything, as Gymnasium's default mode."""
+"""The vector environment that Gymnasium has for CartPole, beside ours: equal in everything."""
 
 import copy
 import pickle

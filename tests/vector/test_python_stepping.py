@@ -136,6 +136,7 @@ for _ in range(30):
 one, other = gym.make_vec("qtab/CartPole-v1", num_envs=3), gym.make_vec("CartPole-v1", num_envs=3)
 one.reset(seed=0), other.reset(seed=0)
 for _ in range(30):
-    assert all(a.tobytes() == b.tobytes() for a, b in zip(one.step(np.ones(3, int))[:4], other.step(np.ones(3, int))[:4]))
+    steps = one.step(np.ones(3, int)), other.step(np.ones(3, int))
+    assert all(mine.tobytes() == gymnasiums.tobytes() for mine, gymnasiums in zip(steps[0][:4], steps[1][:4]))
 print(gym.make_vec("qtab/MountainCar-v0", num_envs=3).is_native, ours.is_native, "equal")
 """

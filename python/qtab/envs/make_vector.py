@@ -23,7 +23,7 @@ def make_vector_env(
     vector_kwargs: Mapping[str, Any] | None = None,
     **kwargs: Any,
 ) -> VectorEnv[Any, Any, Any]:
-    """Returns what ``gymnasium.make_vec("qtab/…")`` does: a :class:`RustVectorEnv`, or with wrappers a ``SyncVectorEnv``.
+    """Returns what ``gymnasium.make_vec("qtab/…")`` does: with wrappers a ``SyncVectorEnv``, else a RustVectorEnv.
 
     Args:
         name: Gymnasium's id of the environment.

@@ -101,8 +101,8 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
         """Steps every sub-environment, and resets those whose episode ends.
 
         Returns:
-            Observations (num_envs, …), rewards (num_envs,) float32, dones (num_envs,) bool, and an info for each. Where an
-            episode ended, the observation is the first of the next, and the info that of the last step.
+            Observations (num_envs, …), rewards (num_envs,) float32, dones (num_envs,) bool, and an info for each.
+            Where an episode ended, the observation is the first of the next, and the info that of the last step.
         """
         observations, rewards, terminated, truncated, infos = self.venv.step(self._actions)
         last_observations = infos.pop("final_obs", None)
@@ -158,7 +158,7 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
     def env_method(
         self, method_name: str, *method_args: Any, indices: int | Iterable[int] | None = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Calls a method of each sub-environment, or of those of ``indices``; but for ``render``, Python then steps them."""
+        """Calls a method of each sub-environment, or of those of ``indices``, which Python steps from now on."""
         if method_name == "render" and not method_args and not method_kwargs:
             frames = self.venv.render()
             return [frames[index] for index in self._get_indices(indices)]
