@@ -77,7 +77,14 @@ def test_a_wrapper_with_statistics_of_its_own_starts_where_the_last_call_left_it
     def make() -> Any:
         return gym.wrappers.TimeLimit(wrapper(Walk(start=5)), 30)
 
-    settings = {"seed": 0, "episodes": 4, "discretizer": "bins", "bins": 4, "low": (-2.0, -2.0), "high": (2.0, 2.0)}
+    settings: dict[str, Any] = {
+        "seed": 0,
+        "episodes": 4,
+        "discretizer": "bins",
+        "bins": 4,
+        "low": (-2.0, -2.0),
+        "high": (2.0, 2.0),
+    }
     env = make()
     run = qtab.train(env, **settings)
     report = qtab.verify(run, env=env)

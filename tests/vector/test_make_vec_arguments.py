@@ -14,14 +14,21 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 import qtab
 from support.vector import assert_equal
 
-WRAPPED = [
+WRAPPED: list[dict[str, Any]] = [
     {"wrappers": [gym.wrappers.TimeAwareObservation]},
-    {"wrappers": (lambda env: gym.wrappers.TransformReward(env, lambda reward: 2 * reward),), "max_episode_steps": 5},
+    {
+        "wrappers": (lambda env: gym.wrappers.TransformReward(env, lambda reward: 2 * float(reward)),),
+        "max_episode_steps": 5,
+    },
     {"vector_kwargs": {"autoreset_mode": AutoresetMode.SAME_STEP}},
     {"vector_kwargs": {"copy": False, "autoreset_mode": "Disabled"}},
     {"vector_kwargs": {"observation_mode": "different"}},
     {"wrappers": [gym.wrappers.TimeAwareObservation], "vector_kwargs": {"autoreset_mode": "SameStep", "copy": False}},
 ]
+
+
+def made(name: str, **kwargs: Any) -> Any:
+    return gym.make_vec(name, num_envs=3, **kwargs)
 
 
 def run(env: Any, steps: int = 20) -> list[Any]:
@@ -38,7 +45,7 @@ def run(env: Any, steps: int = 20) -> list[Any]:
 @pytest.mark.parametrize("kwargs", WRAPPED, ids=lambda kwargs: " ".join(kwargs))
 @pytest.mark.parametrize("name", ["MountainCar-v0", "Pendulum-v1"])
 def test_wrappers_and_vector_kwargs_work_as_for_gymnasiums_environments(name, kwargs):
-    mine, gymnasiums = (gym.make_vec(full, num_envs=3, **kwargs) for full in (f"qtab/{name}", name))
+    mine, gymnasiums = (made(full, **kwargs) for full in (f"qtab/{name}", name))
     assert isinstance(gymnasiums, SyncVectorEnv)
     for attribute in ("metadata", "observation_space", "action_space", "single_observation_space", "num_envs"):
         assert getattr(mine, attribute) == getattr(gymnasiums, attribute)

@@ -58,12 +58,13 @@ class CartPoleVectorEnv(GymnasiumCartPoleVectorEnv):
         Raises:
             AssertionError: from Gymnasium, for an action outside the space, or before the first reset.
         """
-        arrays = type(self.state) is np.ndarray and type(action) is np.ndarray
-        stepped = _core.step_cart_poles(self, self.state, action) if arrays else None
+        old_state: Any = self.state
+        arrays = type(old_state) is np.ndarray and type(action) is np.ndarray
+        stepped = _core.step_cart_poles(self, old_state, action) if arrays else None
         if stepped is None:
             return super().step(action)
         state, terminated = stepped
-        self.state = state
+        self.state: Any = state
         self.steps += 1
         truncated = self.steps >= self.max_episode_steps
         if self._sutton_barto_reward:

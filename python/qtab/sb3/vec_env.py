@@ -139,7 +139,7 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
         if self.venv.is_native and not example.has_wrapper_attr(attr_name):
             # Only a reset makes some attributes. Stable-Baselines3 asks for others to learn whether they are there.
             attributes, *_ = self.venv.snapshots()[0]
-            if attr_name not in attributes:
+            if attr_name not in attributes or self.venv.not_reset():
                 raise AttributeError(f"{self.venv} has no attribute {attr_name!r}")
         if attr_name in _CONSTANT and self.venv.is_native:
             values: Sequence[Any] = [example.get_wrapper_attr(attr_name)] * self.num_envs
