@@ -187,4 +187,4 @@ def test_a_runs_predict_is_what_stable_baselines3_evaluates(name):
             for kept, total, done in zip(first, returns, starts, strict=True)
         ]
     expected = [qtab.evaluate(run, 1, seed=5 + index).returns[0] for index in range(3)]
-    assert np.allclose(first, expected, rtol=1e-5)  # rewards are float32
+    assert np.allclose(np.array(first, np.float64), expected, rtol=1e-5)  # rewards are float32

@@ -49,7 +49,8 @@ def same_attributes(envs: Any) -> None:
 )
 def test_steps_equal_gymnasiums(name, num_envs, kwargs):
     envs = pair(name, num_envs, **kwargs)
-    assert data_equivalence(*(env.reset(seed=3) for env in envs), exact=True)
+    one, other = (env.reset(seed=3) for env in envs)
+    assert data_equivalence(one, other, exact=True)
     rng = np.random.default_rng(0)
     ended = 0
     for _ in range(250):
@@ -57,7 +58,8 @@ def test_steps_equal_gymnasiums(name, num_envs, kwargs):
         ended += int((terminated | truncated).sum())
     assert ended > 3
     same_attributes(envs)
-    assert data_equivalence(*(env.reset(options={"low": -0.2, "high": 0.1}) for env in envs), exact=True)
+    one, other = (env.reset(options={"low": -0.2, "high": 0.1}) for env in envs)
+    assert data_equivalence(one, other, exact=True)
     step_both(envs, np.zeros(num_envs, np.int64))
     same_attributes(envs)
 
@@ -176,7 +178,7 @@ def test_what_gymnasiums_does_not_take_is_refused_with_the_class_that_takes_it(n
     with pytest.raises(
         TypeError, match=rf"{name} must be left out, .* got 1; qtab.RustVectorEnv\('CartPole-v1', ...\)"
     ):
-        gym.make_vec("qtab/CartPole-v1", num_envs=2, **{name: 1})
+        pair(num_envs=2, **{name: 1})
 
 
 def test_wrappers_are_refused_as_gymnasium_refuses_them():
@@ -184,6 +186,6 @@ def test_wrappers_are_refused_as_gymnasium_refuses_them():
     for name in ("qtab/CartPole-v1", "CartPole-v1"):
         for kwargs in ({"wrappers": [gym.wrappers.ClipReward]}, {"vector_kwargs": {"copy": False}}):
             with pytest.raises(gym.error.Error) as error:
-                gym.make_vec(name, **kwargs)  # type: ignore[arg-type]
+                gym.make_vec(name, **kwargs)
             messages.append(str(error.value))
     assert messages[:2] == messages[2:]

@@ -2,11 +2,9 @@
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use qtab_core::Env;
 use qtab_core::StopFlag;
-use qtab_core::envs::classic_control::{CartPole, CartPoleState};
-use qtab_core::memory::{collect, filled};
-use qtab_core::random::NoRng;
+use qtab_core::envs::classic_control::CartPole;
+use qtab_core::memory::{filled, with_capacity};
 
 use super::dyn_env::read_parameters;
 use super::numpy_uses_libm;
@@ -47,22 +45,13 @@ pub(crate) fn step_cart_poles<'py>(
         return Ok(None);
     }
 
-    let stop = StopFlag::new();
-    let state_of = |index: usize| CartPoleState::from(std::array::from_fn(|field| numbers[field * count + index]));
-    let mut states: Vec<CartPoleState> = collect((0..count).map(state_of)).map_err(allocation)?;
-    let actions = collect(actions.iter().map(|&action| action as usize)).map_err(allocation)?;
-    let mut rewards = filled(&0.0, count, &stop).map_err(allocation)?;
-    let mut terminated = filled(&false, count, &stop).map_err(allocation)?;
-    let inactive = filled(&false, count, &stop).map_err(allocation)?;
-    let no_rngs: &mut [NoRng] = &mut [];
-    cart_pole.step_batch(&mut states, &actions, no_rngs, &mut rewards, &mut terminated, &inactive);
-
-    let mut next = filled(&0.0, numbers.len(), &stop).map_err(allocation)?;
-    for (index, &state) in states.iter().enumerate() {
-        for (field, number) in <[f64; 4]>::from(state).into_iter().enumerate() {
-            next[field * count + index] = number;
-        }
-    }
+    let mut next = with_capacity(numbers.len()).map_err(allocation)?;
+    next.extend_from_slice(numbers);
+    let mut terminated = filled(&false, count, &StopFlag::new()).map_err(allocation)?;
+    let (x, rest) = next.split_at_mut(count);
+    let (x_dot, rest) = rest.split_at_mut(count);
+    let (theta, theta_dot) = rest.split_at_mut(count);
+    cart_pole.step_arrays([x, x_dot, theta, theta_dot], actions, &mut terminated);
     if !next.iter().all(|number| number.is_finite()) {
         return Ok(None);
     }
