@@ -20,7 +20,7 @@ def register() -> None:
         gym.register(
             id=PREFIX + name,
             entry_point=entry.entry_point,
-            vector_entry_point=entry.vector_entry_point or f"qtab.envs.vector:{name}",
+            vector_entry_point=entry.vector_entry_point or f"qtab.envs.make_vector:{name}",
             max_episode_steps=spec.max_episode_steps,
             reward_threshold=spec.reward_threshold,
             nondeterministic=spec.nondeterministic,

@@ -55,3 +55,10 @@ def _wrapped_env(make: Callable[[], gym.Env[Any, Any]], wrappers: Sequence[Any])
     for wrapper in wrappers:
         env = wrapper(env)
     return env
+
+
+def __getattr__(name: str) -> Any:
+    """Returns the entry point of an id: ``qtab.envs.make_vector:Taxi-v4``."""
+    if gym.registry.get(PREFIX + name) is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return partial(make_vector_env, name)

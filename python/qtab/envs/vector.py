@@ -282,12 +282,3 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         self.restore(state["checkpoint"], state["seeds"])
         for index, generator in state["generators"].items():
             self.set_rng(index, generator)
-
-
-def __getattr__(name: str) -> Any:
-    """Returns the entry point of an id: ``qtab.envs.vector:Taxi-v4``."""
-    if gym.registry.get(PREFIX + name) is None:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from qtab.envs.make_vector import make_vector_env
-
-    return partial(make_vector_env, name)

@@ -268,7 +268,9 @@ mod tests {
         };
         let (mut saved, mut rngs) = (new(3), generators(7));
         (0..7).for_each(|index| saved.reset(index, None, &mut rngs[index]));
-        (0..9).for_each(|_| drop(step(&mut saved, &mut rngs)));
+        for _ in 0..9 {
+            step(&mut saved, &mut rngs);
+        }
 
         let mut bytes = Vec::new();
         saved.persist(&mut Checkpoint::save(&mut bytes)).expect("memory suffices");

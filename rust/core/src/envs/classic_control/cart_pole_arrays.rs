@@ -16,7 +16,7 @@ impl CartPole {
         let in_lanes = count / LANES * LANES;
         let [x, x_dot, theta, theta_dot] = state.map(|field| field.split_at_mut(in_lanes));
         let (actions, terminated) = (actions.split_at(in_lanes), terminated.split_at_mut(in_lanes));
-        pulp::Arch::new().dispatch(Chunks {
+        pulp::Arch::new().dispatch(ArrayChunks {
             env: *self,
             state: [x.0, x_dot.0, theta.0, theta_dot.0],
             actions: actions.0,
@@ -31,14 +31,14 @@ impl CartPole {
 }
 
 /// Cart-poles in chunks of [`LANES`], as a closure that `pulp` compiles for each instruction set.
-struct Chunks<'a> {
+struct ArrayChunks<'a> {
     env: CartPole,
     state: [&'a mut [f64]; 4],
     actions: &'a [i64],
     terminated: &'a mut [bool],
 }
 
-impl pulp::NullaryFnOnce for Chunks<'_> {
+impl pulp::NullaryFnOnce for ArrayChunks<'_> {
     type Output = ();
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
