@@ -112,5 +112,5 @@ class Diagnosis:
         elif self.unremarkable:
             lines.append(f"Nothing to report on: {', '.join(self.unremarkable)}.")
         if self.not_made:
-            lines.append(f"Not checked, as Rust does not step this environment: {', '.join(self.not_made)}.")
+            lines.append(f"Not checked, as this needs an environment with an id that Rust steps: {', '.join(self.not_made)}.")
         return lines

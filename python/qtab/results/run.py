@@ -20,6 +20,7 @@ from qtab.results import behaviour, plain_data, run_file, saving
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
+from qtab.results.page import WithPage
 from qtab.results.run_state import RunState
 from qtab.results.snapshots import Snapshots
 from qtab.results.summary import FINAL_EPISODES, default_block
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 @with_fields
 @dataclass(frozen=True, eq=False, repr=False)
-class Run:
+class Run(WithPage):
     """A finished or interrupted run: its config, its episodes, and what it learned."""
 
     config: Config

@@ -157,7 +157,7 @@ def evaluate(
         "learning_rate": 0.0,
         "epsilon": 0.0,
         "terminal_update": "target",
-        "initial_q": _greedy_table(run),
+        "initial_q": greedy_table(run),
         **{name: getattr(config, name) for name in TABLE_SETTINGS},
         **_env_kwargs(config, env, env_kwargs),
         "max_episode_steps": config.max_episode_steps if max_episode_steps is None else max_episode_steps,
@@ -185,7 +185,7 @@ def _env_kwargs(config: Config, env: Any, env_kwargs: Mapping[str, Any] | None) 
     return {"env_kwargs": config.env_kwargs} if env is None else {}
 
 
-def _greedy_table(run: Run) -> NDArray[np.float64]:
-    """The table that the greedy policy reads: of two the sum, with tile coding as well, whose values are sums, too."""
+def greedy_table(run: Run) -> NDArray[np.float64]:
+    """Returns (1, rows, actions): the table that the greedy policy reads; of two the sum, also with tile coding."""
     table: NDArray[np.float64] = run.tables[0] if len(run.tables) == 1 else run.tables[0] + run.tables[1]
     return table[np.newaxis]
