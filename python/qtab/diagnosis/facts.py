@@ -72,7 +72,7 @@ class Facts:
         """Episodes of the greedy policy; None where they cannot be played quickly."""
         if not (self.can_repeat and self.is_finite):
             return None
-        return evaluate(self.run, EVALUATION_EPISODES, seed=0)
+        return evaluate(self.run, EVALUATION_EPISODES, seed=0, progress=False)
 
     @cached_property
     def random(self) -> Run | None:

@@ -256,7 +256,7 @@ class Run(WithPage):
         saving.write(Path(path), run_file.RUN, self, header, arrays)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Recording:
     """One episode that can be replayed."""
 
@@ -266,6 +266,9 @@ class Recording:
     """The state of the environment's bit generator before the episode's reset."""
     actions: tuple[Any, ...]
     """What ``env.step`` was given: integers, with the start of a Discrete space added, or arrays."""
+
+    def __repr__(self) -> str:
+        return f"<Recording of episode {self.episode}: {len(self.actions):,} actions>"
 
 
 def _sum(parts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
