@@ -1,9 +1,8 @@
 """``qtab.Run``: the result of a training run."""
 
-import dataclasses
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -16,14 +15,16 @@ from qtab._utils import checks, html, svg
 from qtab._utils.frames import episode_frame
 from qtab.config import Config
 from qtab.config.config import replace_checked
+from qtab.config.stored import stored_settings
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
-from qtab.results import behaviour, run_file
+from qtab.results import action_values, behaviour, run_file
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
 from qtab.results.run_state import RunState
 from qtab.results.snapshots import Snapshots
+from qtab.results.stored_actions import describe_parts
 from qtab.results.summary import FINAL_EPISODES, default_block
 
 if TYPE_CHECKING:
@@ -64,6 +65,9 @@ class Run:
     they were not counted."""
     snapshots: Snapshots | None = field(default=None, repr=False)
     """The tables at several episodes, where ``snapshots=`` asked for them; None elsewhere."""
+    action_masks: NDArray[np.bool_] | None = field(default=None, repr=False)
+    """(*cells, actions): which actions each cell has, as last seen; all, where it was never seen. None without
+    ``action_mask=``, and with tile coding."""
     state: RunState | None = field(default=None, repr=False)
     """What :func:`qtab.resume` needs; None for runs of ``train_many`` and from files of earlier versions."""
 
@@ -103,17 +107,19 @@ class Run:
 
     @property
     def q_table(self) -> NDArray[np.float64]:
-        """(*cells, actions): the values that the greedy policy reads; of two tables the sum.
+        """(*cells, actions): the values that the greedy policy reads; of two tables the sum; -inf for masked actions.
 
         Raises:
             ValueError: with tile coding, which has no cells.
         """
         self._require_cells("q_table", "q_values")
-        return _sum(self.tables).reshape(*self.discretizer.shape, len(self.actions))
+        return action_values.of_cells(self)
 
     @property
-    def policy(self) -> NDArray[Any]:
-        """(*cells,): the greedy action of each cell, the first of several; (*cells, d) for actions of a Box.
+    def policy(self) -> Any:
+        """(*cells,): the greedy action of each cell, the first of several; (*cells, *shape) if actions are arrays.
+
+        Of a Tuple or Dict space it is a tuple or dict of these.
 
         Raises:
             ValueError: with tile coding, which has no cells; :meth:`predict` works.
@@ -145,8 +151,7 @@ class Run:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
             ValueError: if it has another shape than the space, or lies outside the space.
         """
-        active = np.moveaxis(self.discretizer.active_rows(observation), -1, 0)
-        return _sum(_sum(table[rows] for rows in active) for table in self.tables)
+        return action_values.of_observations(self, observation)
 
     def values(self, observation: ArrayLike) -> Any:
         """Returns the value of an observation under the greedy policy, or the (n,) values of n observations.
@@ -167,6 +172,7 @@ class Run:
         state: Any = None,  # noqa: ARG002 - Stable-Baselines3's signature
         episode_start: Any = None,  # noqa: ARG002
         deterministic: bool = True,
+        action_masks: ArrayLike | None = None,
     ) -> tuple[Any, None]:
         """Returns the action of an observation as ``env.step`` takes it, and None, as Stable-Baselines3 does.
 
@@ -180,6 +186,7 @@ class Run:
             deterministic: True takes the greedy action. False draws an action from the behaviour policy, with the ε
                 or the temperature that the last episode of the training left: an ε that fell to 0 leaves the greedy
                 action. The draws come from a generator of this run, which is seeded by its seed.
+            action_masks: (actions,) or (n, actions): which actions there are. None: by the run's ``action_mask``.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space), or ``deterministic`` is
@@ -188,7 +195,7 @@ class Run:
         """
         if not isinstance(deterministic, bool | np.bool_):
             raise TypeError(f"deterministic must be True or False, got {deterministic!r}")
-        values = self.q_values(observation)
+        values = action_values.to_choose_from(self, observation, action_masks)
         if deterministic:
             columns = np.argmax(values, axis=-1)
         else:
@@ -244,7 +251,7 @@ class Run:
         )
         if self.actions.values is not None:
             arrays["actions"] = self.actions.values
-        config = {field.name: getattr(self.config, field.name) for field in dataclasses.fields(Config)}
+        config = stored_settings(self.config)
         if isinstance(self.config.initial_q, np.ndarray):
             arrays["initial_q"] = self.config.initial_q
             config["initial_q"] = None
@@ -256,6 +263,8 @@ class Run:
             "seconds": self.seconds,
             "versions": dict(self.versions),
         }
+        if self.actions.composite is not None:
+            header["action_parts"] = describe_parts(self.actions)
         if self.state is not None:
             arrays["state"] = self.state.array()
             header["generator"] = self.state.generator
@@ -279,12 +288,3 @@ class Recording:
     """The state of the environment's bit generator before the episode's reset."""
     actions: tuple[Any, ...]
     """What ``env.step`` was given: integers, with the start of a Discrete space added, or arrays."""
-
-
-def _sum(parts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Adds from left to right, as the learners do; ``np.sum`` would add in pairs."""
-    first, *others = parts
-    total: NDArray[np.float64] = np.array(first)
-    for part in others:
-        total += part
-    return total

@@ -2,27 +2,31 @@
 
 import logging
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from qtab import discretizers
+from qtab._utils.shown import shown
 from qtab.config import Config
+from qtab.config.action_mask import STORED
+from qtab.config.config import replace_checked
 from qtab.config.options import defaults
-from qtab.discretizers.actions import Actions
 from qtab.envs.stored import stored_id
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import restore_optional
 from qtab.results.run import Run
 from qtab.results.run_state import RunState
+from qtab.results.stored_actions import restore_actions
 
 _LOGGER = logging.getLogger("qtab")
 _MAX_REASON = 400
 """The characters of the reason in an error: it may show values from the file."""
 
 
-def load(path: "str | os.PathLike[str]") -> Run:
+def load(path: "str | os.PathLike[str]", *, action_mask: Callable[[Any], Any] | None = None) -> Run:
     """Reads a run that :meth:`qtab.Run.save` wrote, after checking that not a byte of it was changed.
 
     Files of earlier versions have no digest to check it by. They are read all the same, with a message of the logger
@@ -30,6 +34,11 @@ def load(path: "str | os.PathLike[str]") -> Run:
 
     The environment that a file names is used only if it is registered with Gymnasium: no module is imported because a
     file names it. For ``"package:Name-v0"`` import the package first, or pass ``env=`` to what needs the environment.
+
+    Args:
+        path: The file.
+        action_mask: The function that gave the action masks of a run that was trained with one, which its file does
+            not hold. Without it the run can be looked at, and predicts for the cells that it has seen.
 
     Raises:
         OSError: if the file is missing or cannot be read.
@@ -48,7 +57,15 @@ def load(path: "str | os.PathLike[str]") -> Run:
         _LOGGER.warning(
             "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
         )
-    return run
+    return run if action_mask is None else _with_function(run, action_mask)
+
+
+def _with_function(run: Run, action_mask: Callable[[Any], Any]) -> Run:
+    if not callable(action_mask):
+        raise TypeError(f"action_mask must be a function of the observation, got {shown(action_mask)}")
+    if run.config.action_mask != STORED:
+        raise ValueError("action_mask must be left out for a run that was not trained with a function")
+    return replace(run, config=replace_checked(run.config, action_mask=action_mask))
 
 
 def _open_regular(path: Path) -> BinaryIO:
@@ -62,7 +79,8 @@ def _run(content: run_file.Content) -> Run:
     header, stored = content.header, content.arrays
     arrays: dict[str, Any] = {name: run_file.array(stored, name) for name in run_file.ARRAYS}
     config = _config(header, stored)
-    actions = Actions(_integer(header, "actions"), _integer(header, "first_action"), stored.get("actions"))
+    count, first = _integer(header, "actions"), _integer(header, "first_action")
+    actions = restore_actions(count, first, stored.get("actions"), header.get("action_parts"))
     seconds, versions = header["seconds"], header["versions"]
     if isinstance(seconds, bool) or not isinstance(seconds, int | float):
         raise ValueError(f"its seconds must be a number, got {seconds!r}")

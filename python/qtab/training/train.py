@@ -25,7 +25,7 @@ from qtab.training.callback_list import Callbacks
 from qtab.training.callbacks import EpisodeReader
 from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.resolved_run import ResolvedRun, masks_of
 from qtab.training.restore import restore, state_of
 from qtab.training.run_memory import check_run, tables_shape
 
@@ -193,5 +193,6 @@ def _run(
         recordings=recordings,
         visits=None if visits is None else visits.reshape(*resolved.discretizer.shape, len(resolved.actions)),
         snapshots=snapshots,
+        action_masks=masks_of(trainer, resolved),
         state=state_of(trainer, resolved),
     )

@@ -23,6 +23,7 @@ type CartPoleRun = SimdTrainer<CartPole, Bins<f32, [Edges; 4]>, 2, Schedule>;
 #[derive(Clone, Copy, Debug)]
 struct Settings {
     terminal_update: TerminalUpdate,
+    masks: None,
     learning_rate: f64,
     discount: f64,
     epsilon: f64,
