@@ -27,7 +27,7 @@ def mask_setting(name: str, value: Any) -> Mask:
     """
     if isinstance(value, bool | np.bool_):
         return bool(value)
-    if value == STORED or callable(value):
+    if callable(value) or (isinstance(value, str) and value == STORED):
         checked: Mask = value
         return checked
     raise TypeError(

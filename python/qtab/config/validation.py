@@ -36,9 +36,9 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
         most = LARGEST_MT19937_SEED if checked["bit_generator"] == "MT19937" else None
         checked["seed"] = checks.integer("seed", checked["seed"], least=0, most=most)
     check_options(checked)
-    if isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any():
-        if checked["discretizer"] == "tiles":
-            raise ValueError(other_choice("discretizer", "tiles", ("tiles",), "for an initial_q that contains -inf"))
+    missing = isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any()
+    if missing and checked["discretizer"] == "tiles":
+        raise ValueError(other_choice("discretizer", "tiles", ("tiles",), "for an initial_q that contains -inf"))
     most_rate = 2 if checked["discretizer"] == "tiles" else 1
     checks.real("learning_rate", checked["learning_rate"], 0, most_rate)
     _at_most(checked, "min_epsilon", "epsilon", OPTIONS["epsilon"].default)

@@ -50,7 +50,7 @@ class Actions:
             return self.composite.combine(
                 part[int(number)] for part, number in zip(self.composite.parts, self._split(index), strict=True)
             )
-        return self.first + index if self.values is None else self.values[index].copy()
+        return self.first + index if self.values is None else np.array(self.values[index])
 
     def take(self, columns: NDArray[np.int64]) -> Any:
         """Returns the actions of many columns, as Gymnasium's vector environments take them.
@@ -162,11 +162,10 @@ def _all_integers(space: Any, low: NDArray[Any], counts: NDArray[Any]) -> Action
 def _check_count(space: Any, count: int) -> None:
     if count > MAX_ACTIONS:
         number = f"{count:,}" if count < 10**15 else f"{float(count):.3g}"
-        others = (
-            "actions= lists some of them" if isinstance(space, spaces.Box) else "TransformAction can leave some out"
-        )
+        fewer = "actions=" if isinstance(space, spaces.Box) else "gymnasium.wrappers.TransformAction"
         raise ValueError(
-            f"the action space must have at most {MAX_ACTIONS} actions, got {space} with {number}; {others}"
+            f"the action space must have at most {MAX_ACTIONS} actions, got {space} with {number}; {fewer} can leave "
+            "some out"
         )
 
 

@@ -7,12 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
+from qtab.config.action_mask import FORGOTTEN
 
 
 class ActionMasks:
     """The masks of the states, each as it was last seen."""
 
     def __init__(self, env: gym.Env, config: Config) -> None:
+        if isinstance(config.action_mask, str):
+            raise ValueError(FORGOTTEN)
         self.env, self.setting = env, config.action_mask
         self.of_state: dict[tuple[int, ...], NDArray[np.bool_]] = {}
 

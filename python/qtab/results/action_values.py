@@ -48,9 +48,7 @@ def to_choose_from(run: "Run", observation: Any, action_masks: Any) -> NDArray[n
         given = np.asarray(action_masks)
         masks = [checked_mask("action_masks", mask, values.shape[-1]) for mask in np.atleast_2d(given)]
         if len(masks) != len(np.atleast_2d(values)) or given.ndim > values.ndim:
-            raise ValueError(
-                f"action_masks must have shape {values.shape}, one item for each action, got {given.shape}"
-            )
+            raise ValueError(f"action_masks must have shape {values.shape}, an item for each action, got {given.shape}")
         return np.where(np.reshape(masks, values.shape), values, -np.inf)
     available = _available(run, observation, rows)
     if available is not None:

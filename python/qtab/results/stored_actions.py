@@ -39,11 +39,11 @@ def restore_actions(count: int, first: int, values: NDArray[Any] | None, descrip
     return actions
 
 
-def _restore(described: Any) -> Actions:
-    if not isinstance(described, dict):
-        raise ValueError(f"a part of its actions must be a JSON object, got {described!r}")
-    if "parts" in described:
-        parts, keys = tuple(map(_restore, described["parts"])), described["keys"]
+def _restore(stored: Any) -> Actions:
+    if not isinstance(stored, dict):
+        raise ValueError(f"a part of its actions must be a JSON object, got {stored!r}")
+    if "parts" in stored:
+        parts, keys = tuple(map(_restore, stored["parts"])), stored["keys"]
         if keys is not None:
             keys = tuple(keys)
             if len(keys) != len(parts) or not all(isinstance(key, str) for key in keys):
@@ -51,16 +51,16 @@ def _restore(described: Any) -> Actions:
         count = math.prod(map(len, parts))
         _check_count(count)
         return Actions(count, composite=Composite(parts, keys))
-    if "values" in described:
-        dtype = np.dtype(described["dtype"])
-        values = np.array(described["values"])
+    if "values" in stored:
+        dtype = np.dtype(stored["dtype"])
+        values = np.array(stored["values"])
         if dtype.kind not in _KINDS or values.dtype.kind not in _KINDS or not values.ndim:
             raise ValueError("the parts of its actions must be integers")
         _check_count(len(values))
         return Actions(len(values), values=values.astype(dtype))
-    count, first = described["count"], described["first"]
+    count, first = stored["count"], stored["first"]
     if type(count) is not int or type(first) is not int:
-        raise ValueError(f"a part of its actions must have a count and a first action, got {described!r}")
+        raise ValueError(f"a part of its actions must have a count and a first action, got {stored!r}")
     _check_count(count)
     return Actions(count, first)
 
