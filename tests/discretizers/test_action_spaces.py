@@ -13,6 +13,7 @@ import qtab
 from qtab.discretizers.actions import choose_actions
 from qtab.discretizers.composite_actions import flat
 from qtab.rendering.replay import replay_episode
+from support.run_files import Members, members_of, with_header, without_digest, write_members
 
 
 class Picky(gym.Env[Any, Any]):
@@ -186,3 +187,54 @@ def test_masks_cover_all_combinations() -> None:
     run = qtab.train(env, action_mask=lambda state: [1, 0, 0, 0, 1, state > 0], seed=0, episodes=20)
     assert {tuple(action.tolist()) for action in env.taken} == {(0, 0), (1, 1), (1, 2)}
     assert qtab.verify(run, env=Picky(space)).equal
+
+
+@pytest.fixture(scope="module")
+def members(tmp_path_factory: pytest.TempPathFactory) -> Members:
+    path = tmp_path_factory.mktemp("saved") / "run.npz"
+    qtab.train(Picky(NESTED), seed=0, episodes=2, max_episode_steps=9).save(path)
+    return without_digest(members_of(path))
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        None,
+        [],
+        {},
+        {"parts": [], "keys": None},
+        {"parts": [3], "keys": None},
+        {"count": 24, "first": 0},
+        {"parts": [{"count": 24, "first": 0.5}], "keys": None},
+        {"parts": [{"count": 10**9, "first": 0}], "keys": None},
+        {"parts": [{"count": 24, "first": 0}], "keys": ["a", "b"]},
+        {"parts": [{"count": 24, "first": 0}], "keys": [1]},
+        {"parts": [{"count": 25, "first": 0}], "keys": None},
+        {"parts": [{"dtype": "O", "values": [1] * 24}], "keys": None},
+        {"parts": [{"dtype": "int8", "values": 24}], "keys": None},
+        {"parts": [{"dtype": "int8", "values": [[1], []] * 12}], "keys": None},
+        {"parts": [{"dtype": "int8", "values": [0.5] * 24}], "keys": None},
+        {"parts": [{"parts": [{"count": 24}], "keys": None}], "keys": None},
+    ],
+    ids=str,
+)
+def test_a_file_whose_actions_do_not_fit_is_refused(members: Members, tmp_path: Any, parts: Any) -> None:
+    write_members(tmp_path / "run.npz", with_header(members, lambda header: header.update(action_parts=parts)))
+    if parts is None:
+        assert qtab.load(tmp_path / "run.npz").actions[0] == 0
+        return
+    with pytest.raises(ValueError, match="is not a run file that this version of qtab can read: "):
+        qtab.load(tmp_path / "run.npz")
+
+
+@pytest.mark.parametrize(
+    "change", [lambda masks: masks[1:], lambda masks: masks.astype(np.int8), lambda masks: masks & False], ids=range(3)
+)
+def test_a_file_whose_masks_do_not_fit_is_refused(tmp_path: Any, change: Any) -> None:
+    path = tmp_path / "run.npz"
+    qtab.train("Taxi-v4", action_mask=True, seed=0, episodes=1).save(path)
+    members = without_digest(members_of(path))
+    members["action_masks"] = change(members["action_masks"])
+    write_members(path, members)
+    with pytest.raises(ValueError, match=r"its action masks are not booleans of shape \(500, 6\)"):
+        qtab.load(path)

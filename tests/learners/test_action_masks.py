@@ -280,3 +280,8 @@ def test_an_explanation_shows_the_masked_values() -> None:
         env: Any = gym.make("Taxi-v4").unwrapped
         assert np.isneginf(step.choice.values).tolist() == (env.action_mask(step.observation) == 0).tolist()
         assert np.isfinite(step.updates[0].target)
+
+
+def test_a_diagnosis_does_not_ask_for_masked_actions() -> None:
+    run = qtab.train("Taxi-v4", action_mask=True, seed=0, episodes=2500)
+    assert "coverage" not in [finding.name for finding in qtab.diagnose(run).findings]

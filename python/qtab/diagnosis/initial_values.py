@@ -45,7 +45,7 @@ def too_pessimistic(facts: Facts) -> Finding | None:
     epsilon = float(epsilons(config, len(facts.run.episode_returns))[1].mean())
     if epsilon > LITTLE_EPSILON:
         return None
-    untried = ~facts.changed & np.isfinite(facts.initial_tables).all(axis=0)
+    untried = ~facts.changed & facts.has_action
     values = facts.q_values
     hidden = (untried & (values < values.max(axis=1, keepdims=True))).any(axis=1) & facts.changed.any(axis=1)
     greedy_tried = facts.changed[np.arange(len(values)), values.argmax(axis=1)]

@@ -23,7 +23,6 @@ type CartPoleRun = SimdTrainer<CartPole, Bins<f32, [Edges; 4]>, 2, Schedule>;
 #[derive(Clone, Copy, Debug)]
 struct Settings {
     terminal_update: TerminalUpdate,
-    masks: None,
     learning_rate: f64,
     discount: f64,
     epsilon: f64,
@@ -60,6 +59,7 @@ where
         learning_rate,
         discount: settings.discount,
         terminal_update: settings.terminal_update,
+        masks: None,
     };
     let task = NativeTask::new(env, features, Some(settings.max_episode_steps), Pcg64::new(&seed));
     Trainer::new(task, TdLearner { agent, rule: QLearning }, rng)
