@@ -31,7 +31,9 @@ def of_first_number(observation: Any) -> Any:
 def masked_runs(draw: st.DrawFn) -> tuple[NDArray[Any], str, dict[str, Any]]:
     states, actions = draw(st.integers(1, 4)), draw(st.integers(1, 5))
     rows = st.lists(st.booleans(), min_size=actions, max_size=actions).filter(any)
-    masks = np.array([draw(rows) for _ in range(states)], draw(st.sampled_from([np.int8, np.bool_, np.int64])))
+    masks: NDArray[Any] = np.array(
+        [draw(rows) for _ in range(states)], draw(st.sampled_from([np.int8, np.bool_, np.int64]))
+    )
     algorithm = draw(st.sampled_from(ALGORITHMS))
     shown = draw(st.sampled_from(["discrete", "box"]))
     features: dict[str, Any] = {"discretizer": "identity"}
@@ -251,6 +253,8 @@ def test_a_saved_run_asks_for_the_function_of_its_masks(tmp_path: Any) -> None:
     assert again.config == run.config
     assert qtab.verify(again, env=MaskedGraph(MASKS, "none")).equal
     assert qtab.evaluate(again, episodes=2, seed=0, env=MaskedGraph(MASKS, "none")).lengths.min() > 0
+    longer = qtab.train(MaskedGraph(MASKS, "none"), resume=tmp_path / "run.npz", action_mask=masks, episodes=20)
+    assert_same_run(longer, qtab.resume(again, 20, env=MaskedGraph(MASKS, "none")))
     with pytest.raises(TypeError, match=r"^action_mask must be a function of the observation, got True"):
         qtab.load(tmp_path / "run.npz", action_mask=True)  # type: ignore[arg-type]
 
@@ -266,17 +270,19 @@ def test_a_run_that_was_stopped_is_resumed_exactly(algorithm: Any, backend: Any)
     assert_same_run(qtab.resume(part), whole)
 
 
-def test_many_runs_keep_to_the_masks_too() -> None:
+def test_many_runs_keep_to_the_masks_too(tmp_path: Any) -> None:
     runs = qtab.train_many("Taxi-v4", seeds=2, action_mask=True, episodes=5, tables=True)
     assert_same_run(runs[1], qtab.train("Taxi-v4", seed=1, action_mask=True, episodes=5))
     assert runs[0].q_table.min() == -np.inf
     assert runs[:1][0].action_masks is not None
+    runs.save(tmp_path / "runs.npz")
+    assert qtab.load_runs(tmp_path / "runs.npz")[1].q_table.tobytes() == runs[1].q_table.tobytes()
 
 
 def test_an_explanation_shows_the_masked_values() -> None:
     for algorithm in ("q_learning", "expected_sarsa", "double_q_learning"):
         run = qtab.train("Taxi-v4", action_mask=True, seed=0, episodes=3, max_episode_steps=20, algorithm=algorithm)
-        (step, *_) = qtab.explain(run, episode=2)
+        step = qtab.explain(run, episode=2)[0]
         env: Any = gym.make("Taxi-v4").unwrapped
         assert np.isneginf(step.choice.values).tolist() == (env.action_mask(step.observation) == 0).tolist()
         assert np.isfinite(step.updates[0].target)
