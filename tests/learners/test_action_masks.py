@@ -213,6 +213,7 @@ def test_predictions_keep_to_the_masks() -> None:
 
 
 def test_tile_coding_predicts_with_a_mask_or_a_function() -> None:
+    pytest.importorskip("matplotlib").use("agg")
     env = MaskedGraph(MASKS, shown="box")
     run = qtab.train(env, action_mask=True, seed=0, **TILES, **SHORT)
     assert run.action_masks is None
@@ -220,6 +221,7 @@ def test_tile_coding_predicts_with_a_mask_or_a_function() -> None:
     with pytest.raises(ValueError, match=r"^action_masks must be given: the run was trained with the masks of its env"):
         run.predict(observation)
     assert run.predict(observation, action_masks=MASKS[1])[0] == 3
+    qtab.plots.trajectory(run, env=env, seed=0)  # with the masks of the environment, which refuses other actions
     run = qtab.train(env, action_mask=lambda seen: MASKS[min(int(seen[0]), 2)], seed=0, **TILES, **SHORT)
     assert run.predict(observation)[0] == 3
     assert run.predict(np.stack([observation, observation]))[0].tolist() == [3, 3]

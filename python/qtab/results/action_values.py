@@ -1,11 +1,13 @@
 """The action values of a run, with -inf for the actions that an observation does not have."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
+import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.config import Config
 from qtab.config.action_mask import FORGOTTEN, checked_mask
 
 if TYPE_CHECKING:
@@ -81,3 +83,15 @@ def _available(run: "Run", observation: Any, rows: NDArray[np.int64]) -> NDArray
         return None
     known: NDArray[np.bool_] = run.action_masks.reshape(-1, len(run.actions))
     return known[rows[..., 0]]
+
+
+def masks_of_step(config: Config, env: gym.Env, info: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the keyword for :meth:`qtab.Run.predict` that holds the mask of the last ``reset`` or ``step``.
+
+    It is empty unless the run was trained with the masks of its environment.
+    """
+    if config.action_mask is not True:
+        return {}
+    if env.has_wrapper_attr("action_masks"):
+        return {"action_masks": env.get_wrapper_attr("action_masks")()}
+    return {"action_masks": info["action_mask"]} if "action_mask" in info else {}
