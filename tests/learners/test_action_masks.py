@@ -293,3 +293,23 @@ def test_an_explanation_shows_the_masked_values() -> None:
 def test_a_diagnosis_does_not_ask_for_masked_actions() -> None:
     run = qtab.train("Taxi-v4", action_mask=True, seed=0, episodes=2500)
     assert "coverage" not in [finding.name for finding in qtab.diagnose(run).findings]
+
+
+class Legal(gym.Wrapper[Any, Any, Any, Any]):
+    """Refuses what the mask excludes."""
+
+    def reset(self, **kwargs: Any) -> Any:
+        observation, self.info = self.env.reset(**kwargs)
+        return observation, self.info
+
+    def step(self, action: Any) -> Any:
+        assert self.info["action_mask"][action]
+        *answer, self.info = self.env.step(action)
+        return (*answer, self.info)
+
+
+def test_a_played_episode_is_that_of_evaluate() -> None:
+    run = qtab.train("Taxi-v4", action_mask=True, seed=0, episodes=30, max_episode_steps=25)
+    played = qtab.play(run, 2, seed=5, window=False, env=Legal(gym.make("Taxi-v4", render_mode="rgb_array")))
+    evaluated = qtab.evaluate(run, 2, seed=5)
+    assert played.returns.tobytes() == evaluated.returns.tobytes()

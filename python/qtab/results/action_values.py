@@ -85,13 +85,24 @@ def _available(run: "Run", observation: Any, rows: NDArray[np.int64]) -> NDArray
     return known[rows[..., 0]]
 
 
-def masks_of_step(config: Config, env: gym.Env, info: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the keyword for :meth:`qtab.Run.predict` that holds the mask of the last ``reset`` or ``step``.
+def mask_of_step(config: Config, env: gym.Env, observation: Any, info: Mapping[str, Any]) -> NDArray[np.bool_] | None:
+    """Returns the mask of what an environment's ``reset`` or ``step`` has just returned; None without masks.
 
-    It is empty unless the run was trained with the masks of its environment.
+    Raises:
+        TypeError: if it does not hold booleans or integers.
+        ValueError: if it does not fit, there is none, or the function that gives it is not known.
     """
-    if config.action_mask is not True:
-        return {}
-    if env.has_wrapper_attr("action_masks"):
-        return {"action_masks": env.get_wrapper_attr("action_masks")()}
-    return {"action_masks": info["action_mask"]} if "action_mask" in info else {}
+    setting = config.action_mask
+    if setting is False:
+        return None
+    if isinstance(setting, str):
+        raise ValueError(FORGOTTEN)
+    if callable(setting):
+        name, given = "action_mask", setting(observation)
+    elif env.has_wrapper_attr("action_masks"):
+        name, given = "action_masks()", env.get_wrapper_attr("action_masks")()
+    elif "action_mask" in info:
+        name, given = "info['action_mask']", info["action_mask"]
+    else:
+        raise ValueError("info must have an 'action_mask', as in the run's training")
+    return checked_mask(name, given, np.size(given))
