@@ -153,6 +153,12 @@ impl PyTrainer {
         Ok(self.lock()?.run.visits().map(|visits| PyArray1::from_slice(py, visits)))
     }
 
+    /// Which actions the states have, as each was last seen, rows first; with tile coding those of the last state. None
+    /// without action masks.
+    fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<bool>>>> {
+        Ok(self.lock()?.run.action_masks().map(|masks| PyArray1::from_slice(py, masks)))
+    }
+
     /// The recorded episodes, oldest first, taken out. It ends the training.
     fn take_recordings<'py>(&self, py: Python<'py>) -> PyResult<Vec<PyRecording<'py>>> {
         let built = self.lock()?;
