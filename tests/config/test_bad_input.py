@@ -277,11 +277,8 @@ SPACES = {
         ScriptedEnv([], dtype=np.float16),
         "observation space must be a Box of one axis of float32 or float64",
     ),
-    "many actions at once": (
-        ScriptedEnv([], actions=gym.spaces.MultiDiscrete([2, 2])),
-        "action space must be Discrete or a Box",
-    ),
-    "yes or no": (ScriptedEnv([], actions=gym.spaces.MultiBinary(1)), "action space must be Discrete or a Box"),
+    "texts": (ScriptedEnv([], actions=gym.spaces.Text(3)), "action space must be Discrete, MultiDiscrete"),
+    "too many actions": (ScriptedEnv([], actions=gym.spaces.MultiBinary(17)), "at most 65536 actions, got .* 131,072"),
 }
 
 

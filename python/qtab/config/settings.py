@@ -4,7 +4,7 @@ They are wider than the types that :class:`qtab.Config` stores: ``tiles=8`` does
 NumPy's scalars and arrays as well as Python's numbers and tuples. A test compares the names with the config's.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -74,6 +74,7 @@ class SharedSettings(EnvironmentSettings, total=False):
     epsilon_warm_up: Integer | None
     ties: Ties | None
     temperature: Real | None
+    action_mask: bool | Callable[[Any], Any]
     discretizer: DiscretizerName
     scale: Reals
     tilings: Integer | None

@@ -25,6 +25,7 @@ from qtab.discretizers.identity import integer_bounds
 from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import native_env
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
+from qtab.training.action_masks import known_masks, observed_masks
 from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun
 
 _LOGGER = logging.getLogger("qtab")
@@ -140,6 +141,16 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     actions = choose_actions(env.action_space, config.actions)
     environment, python_reason = _environment(request, actions, owns_env)
     discretizer = discretizers.build(env.observation_space, config, len(actions))
+    masks = None
+    if isinstance(environment, NativeEnvironment):
+        masks = known_masks(config.action_mask, env, discretizer, len(actions))
+        if masks is None:
+            python_reason = "its action masks are known only from step to step"
+            if config.backend == "rust":
+                raise rust_unavailable(python_reason)
+    if masks is None:
+        masks = observed_masks(config.action_mask, env)
+        environment = PythonEnvironment(env, actions, owns_env, masks)
     own_limit = config.max_episode_steps or request.time_limit
     max_episode_steps = own_limit or UNLIMITED_MAX_EPISODE_STEPS
     seed = int(np.random.SeedSequence().generate_state(1)[0]) if config.seed is None else config.seed
@@ -156,6 +167,7 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         environment=environment,
         discretizer=discretizer,
         actions=actions,
+        masks=masks,
         algorithm=algorithm_settings(config),
         policy=policy(config),
         learning_rate=learning_rate(config),

@@ -28,7 +28,7 @@ from qtab.training.callbacks import EpisodeReader
 from qtab.training.earlier_run import check_agrees, counts_visits, earlier_run, resolve_again, snapshots_of
 from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.resolved_run import ResolvedRun, masks_of
 from qtab.training.restore import restore, state_of
 from qtab.training.run_memory import check_run, tables_shape
 
@@ -96,7 +96,8 @@ def train(
     if resume is None:
         resolved = resolve(env, over(base, settings))
     else:
-        earlier, asked = earlier_run("resume", resume), over(base, settings)
+        asked = over(base, settings)
+        earlier = earlier_run("resume", resume, asked.get("action_mask"))
         options = replace(options, visits=counts_visits(earlier, visits))
         check_agrees(earlier, env, asked)
         made = env if isinstance(env, gym.Env) else None
@@ -208,5 +209,6 @@ def _run(
         recordings=recordings,
         visits=None if visits is None else visits.reshape(*resolved.discretizer.shape, len(resolved.actions)),
         snapshots=collector.snapshots(),
+        action_masks=masks_of(trainer, resolved),
         state=state_of(trainer, resolved, collector.to_take),
     )
