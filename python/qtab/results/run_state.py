@@ -51,10 +51,7 @@ class RunState:
 
 
 def _is_extension(pair: Any) -> bool:
-    if not isinstance(pair, list) or len(pair) != 2 or not all(type(number) is int for number in pair):
-        return False
-    finished, episodes = pair
-    return 1 <= finished <= episodes
+    return isinstance(pair, list) and [type(number) for number in pair] == [int, int] and 1 <= pair[0] <= pair[1]
 
 
 def generator_state(generator: np.random.Generator) -> dict[str, Any]:
