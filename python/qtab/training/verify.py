@@ -45,7 +45,7 @@ class Verification:
     """The first step (from 0) of that episode at which their actions differ; None where none does."""
     versions: dict[str, str]
     repeats: bool | None = None
-    """Whether the environment gave the same twice for the same seed and actions; None where nothing differs."""
+    """Whether the environment gave the same results twice for the same seed and actions; None where nothing differs."""
     wrapper: str | None = None
     """The class name of a wrapper of ``env`` with statistics of its own; None where nothing differs, or without one."""
 
@@ -82,10 +82,10 @@ class Verification:
         """What the environment has to do with a difference, in lines of a report."""
         lines = []
         if self.repeats is False:
-            lines.append("the environment does not repeat itself: the same seed and actions gave something else the")
-            lines.append("second time, so that the difference says nothing about qtab")
+            lines.append("the environment does not repeat itself: the same seed and actions gave different results the")
+            lines.append("second time, so the difference does not show a fault of qtab")
         elif self.repeats:
-            lines.append("the environment repeats itself: the same seed and actions gave the same twice")
+            lines.append("the environment repeats itself: the same seed and actions gave the same results twice")
         if self.wrapper is not None:
             lines.append(f"its wrapper {self.wrapper} keeps statistics, which start where the last call left them:")
             lines.append("train and verify need a new environment each, and verify no episodes=")
