@@ -92,7 +92,27 @@ class IdentitySpec(TypedDict):
     """Whether an observation is one integer (a Discrete space), not a sequence of them."""
 
 
-DiscretizerSpec: TypeAlias = RoundSpec | BinsSpec | TilesSpec | IdentitySpec
+class FactorSpec(TypedDict):
+    """Some components of an observation, and the rows of the table that theirs stand for."""
+
+    components: Sequence[int]
+    """Their indices in the observation: one, except for tiles."""
+    stride: int
+    """By how much the row of the table increases with theirs."""
+    discretizer: Any
+    """Their DiscretizerSpec: identity, round, bins or tiles."""
+
+
+class ProductSpec(TypedDict):
+    """Components that are discretized differently: each combination of their rows is a row of the table."""
+
+    type: Literal["product"]
+    dimensions: int
+    """How many components an observation has."""
+    factors: Sequence[FactorSpec]
+
+
+DiscretizerSpec: TypeAlias = RoundSpec | BinsSpec | TilesSpec | IdentitySpec | ProductSpec
 
 # The agent
 

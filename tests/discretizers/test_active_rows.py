@@ -8,7 +8,7 @@ import pytest
 
 from qtab import _core
 from qtab._spec import DiscretizerSpec
-from qtab.reference.discretizers import discretizer as numpy_discretizer
+from qtab.reference.observations import discretizer as numpy_discretizer
 from qtab.training.resolve import resolve
 
 TILES = {"discretizer": "tiles", "tilings": 8, "tiles": (8, 8)}

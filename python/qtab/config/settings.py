@@ -4,7 +4,7 @@ They are wider than the types that :class:`qtab.Config` stores: ``tiles=8`` does
 NumPy's scalars and arrays as well as Python's numbers and tuples. A test compares the names with the config's.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -74,7 +74,9 @@ class SharedSettings(EnvironmentSettings, total=False):
     epsilon_warm_up: Integer | None
     ties: Ties | None
     temperature: Real | None
-    discretizer: DiscretizerName
+    discretizer: DiscretizerName | Callable[[Any], Any] | Mapping[str, Any]
+    shape: Integer | Integers | None
+    max_rows: Integer | None
     scale: Reals
     tilings: Integer | None
     tiles: Integer | Integers | None

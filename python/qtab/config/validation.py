@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config.choices import CHOICES
+from qtab.config.discretizer import checked_discretizer, uses_tiles
 from qtab.config.options import OPTIONS, check_options, other_choice
 
 LARGEST_MT19937_SEED = 2**32 - 1
@@ -18,6 +19,7 @@ MAX_TILINGS = 32
 MAX_TILES = 2**32 - 1
 MAX_BINS = 1_000_000
 MAX_ACTIONS = 2**16
+MAX_ROWS = 2**32 - 2
 
 
 def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
@@ -37,9 +39,9 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
     check_options(checked)
     if isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any():
         for name, bad in (("algorithm", "dyna_q_plus"), ("exploration", "softmax"), ("discretizer", "tiles")):
-            if checked[name] == bad:
+            if checked[name] == bad or (name == "discretizer" and uses_tiles(checked[name])):
                 raise ValueError(other_choice(name, bad, (bad,), "for an initial_q that contains -inf"))
-    most_rate = 2 if checked["discretizer"] == "tiles" else 1
+    most_rate = 2 if uses_tiles(checked["discretizer"]) else 1
     checks.real("learning_rate", checked["learning_rate"], 0, most_rate)
     _at_most(checked, "min_epsilon", "epsilon", OPTIONS["epsilon"].default)
     _at_most(checked, "min_learning_rate", "learning_rate", None)
@@ -191,6 +193,9 @@ def _holds_numbers(array: NDArray[Any]) -> bool:
 
 _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(CHOICES, _choice),
+    "discretizer": checked_discretizer,
+    "shape": _counts(1, None),
+    "max_rows": _integer(1, MAX_ROWS),
     "env": _text,
     "env_kwargs": _keywords,
     "episodes": _count,

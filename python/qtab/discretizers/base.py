@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
 from qtab._spec import DiscretizerSpec
+from qtab._utils.memory import ALWAYS_FREE, free_memory, readable
 from qtab._utils.shown import shown
 from qtab.config import Config
 
@@ -28,13 +29,21 @@ class Discretizer(ABC):
     high: NDArray[Any]
     """(d,) or (): the upper bounds."""
 
+    reads_space: ClassVar[bool] = False
+    """Whether :meth:`observe` has to read the observations of the environment before the extension does."""
     has_cells: ClassVar[bool] = True
     """Whether exactly one row is active, the cell of an observation, so that the table has an axis per component."""
 
     @classmethod
     @abstractmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Discretizer":
-        """Returns the discretizer of an observation space; ``config`` has the defaults of its options filled in.
+        """Returns the discretizer of an observation space.
+
+        Args:
+            space: The space.
+            config: The config, with the defaults of its options filled in.
+            n_actions: How many values a row of the table has; 0 where the discretizer only finds the cells of a table
+                with other rows.
 
         Raises:
             ValueError: if the space or an option does not fit, or the table would be too large.
@@ -85,6 +94,23 @@ class Discretizer(ABC):
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Returns the arrays to save, from which :meth:`restore` rebuilds the discretizer."""
         return {"low": self.low, "high": self.high}
+
+    @property
+    def component_names(self) -> tuple[str, ...]:
+        """A name for each component of the observation; none where the environment's own names are used."""
+        return ()
+
+    def observe(self, observation: Any) -> Any:
+        """Returns an observation of the environment as the extension reads it."""
+        return observation
+
+    def as_learned(self) -> "Discretizer":
+        """Returns the discretizer as it is now, for a run that is made before the training is over."""
+        return self
+
+    def same_space(self, other: "Discretizer") -> bool:
+        """Whether another discretizer has the same rows for observations of the same shape."""
+        return self.shape == other.shape and self.low.shape == other.low.shape
 
     def active_rows(self, observation: ArrayLike) -> NDArray[np.int64]:
         """Returns the (n_active,) rows of an observation, or the (n, n_active) rows of n observations.
@@ -143,10 +169,17 @@ def check_table_size(name: str, given: Any, values: float, instead: str = "") ->
             f"{name} must give a table of fewer than 2**32 values{instead}, got {shown(given)}, "
             f"which needs {values:.3g}"
         )
+    needed = 8 * int(values)
+    if needed < ALWAYS_FREE:
+        return
+    free = free_memory()
     try:
-        np.empty(int(values))
+        # Some systems refuse at once; Linux gives out what it does not have, and kills the process that uses it.
+        np.empty(needed, np.uint8)
     except MemoryError:
+        free = min(free, needed - 1)
+    if needed > free:
         raise ValueError(
-            f"{name} must give a table that fits into memory{instead}, got {shown(given)}, "
-            f"which needs {values:.3g} values"
-        ) from None
+            f"{name} must give a table that fits into memory{instead}, got {shown(given)}, which needs {values:.3g} "
+            f"values or {readable(needed)}, more than is free"
+        )

@@ -37,10 +37,11 @@ class Rounding(BoxDiscretizer):
         if not (box.low <= box.high).all():
             raise ValueError(f"the observation space must have low <= high, got {box}")
         if len(scale) != len(box.low):
-            raise ValueError(
-                f"scale must hold {len(box.low)} numbers for this observation space, the cells per unit of each "
-                f"component, got {shown(scale)}. Without them choose discretizer 'bins' or 'tiles'"
-            )
+            numbers = "1 number" if len(box.low) == 1 else f"{len(box.low)} numbers"
+            held = f"hold {numbers} for this observation space, the cells per unit of each component"
+            if not scale:
+                raise ValueError(f"scale must be given and {held}, or discretizer='bins' or 'tiles' without it")
+            raise ValueError(f"scale must {held}, got {shown(scale)}. Without them choose discretizer 'bins' or 'tiles'")
         grid = cls(box.low, box.high, np.array(scale, dtype=np.float64))
         with np.errstate(over="ignore"):
             cells = (box.high - box.low).astype(np.float64) * grid.scale

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.reference.actions import actions
-from qtab.reference.discretizers import discretizer
+from qtab.reference.observations import discretizer
 from qtab.reference.observer import current_observer
 from qtab.reference.policies import policy
 from qtab.reference.schedules import LearningRate

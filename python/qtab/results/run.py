@@ -1,6 +1,5 @@
 """``qtab.Run``: the result of a training run."""
 
-import dataclasses
 import json
 import os
 from collections.abc import Iterable, Mapping
@@ -16,6 +15,7 @@ from qtab._utils import checks, html, svg
 from qtab._utils.frames import episode_frame
 from qtab.config import Config
 from qtab.config.config import replace_checked
+from qtab.config.discretizer import stored_fields, stored_function
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.results import behaviour, run_file
@@ -244,11 +244,12 @@ class Run:
         )
         if self.actions.values is not None:
             arrays["actions"] = self.actions.values
-        config = {field.name: getattr(self.config, field.name) for field in dataclasses.fields(Config)}
+        config = stored_fields(self.config)
         if isinstance(self.config.initial_q, np.ndarray):
             arrays["initial_q"] = self.config.initial_q
             config["initial_q"] = None
         header: dict[str, Any] = {
+            **stored_function(config),
             "config": config,
             "actions": len(self.actions),
             "first_action": self.actions.first,

@@ -2,12 +2,14 @@
 
 import logging
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from qtab import discretizers
+from qtab._utils.shown import shown
 from qtab.config import Config
+from qtab.config.discretizer import MissingFunction
 from qtab.config.options import defaults
 from qtab.discretizers.actions import Actions
 from qtab.envs.stored import stored_id
@@ -22,7 +24,7 @@ _MAX_REASON = 400
 """The characters of the reason in an error: it may show values from the file."""
 
 
-def load(path: "str | os.PathLike[str]") -> Run:
+def load(path: "str | os.PathLike[str]", *, discretizer: Callable[[Any], Any] | None = None) -> Run:
     """Reads a run that :meth:`qtab.Run.save` wrote, after checking that not a byte of it was changed.
 
     Files of earlier versions have no digest to check it by. They are read all the same, with a message of the logger
@@ -31,19 +33,30 @@ def load(path: "str | os.PathLike[str]") -> Run:
     The environment that a file names is used only if it is registered with Gymnasium: no module is imported because a
     file names it. For ``"package:Name-v0"`` import the package first, or pass ``env=`` to what needs the environment.
 
+    Args:
+        path: The file.
+        discretizer: The function that was the run's discretizer, of which a file holds only the name. Without it the
+            run is loaded as well, but cannot read an observation.
+
     Raises:
         OSError: if the file is missing or cannot be read.
+        TypeError: if ``discretizer`` is given and is not a function, or the run had none.
         ValueError: if it is not a run file, is damaged, or comes from another version of the format; the
             message says why.
     """
     path = Path(path)
     with _open_regular(path) as file:
         try:
-            run = _run(run_file.read(file))
+            content = run_file.read(file)
+            function = _function(content.header)
+            run = _run(content, function if discretizer is None else discretizer)
         except Exception as error:  # a damaged file can raise almost anything
             reason = f"it has no {error.args[0]!r}" if isinstance(error, KeyError) else " ".join(str(error).split())
             reason = reason[:_MAX_REASON]
             raise ValueError(f"{str(path)!r} is not a run file that this version of qtab can read: {reason}") from None
+    if discretizer is not None and (function is None or not callable(discretizer)):
+        had = f"{run.config.discretizer!r}, no function" if function is None else "a function"
+        raise TypeError(f"discretizer must be the run's, which is {had}, got {shown(discretizer)}")
     if run.unchecked:
         _LOGGER.warning(
             "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
@@ -58,10 +71,15 @@ def _open_regular(path: Path) -> BinaryIO:
     return path.open("rb")
 
 
-def _run(content: run_file.Content) -> Run:
+def _function(header: Mapping[str, Any]) -> MissingFunction | None:
+    name = header.get("discretizer_function")
+    return MissingFunction(name) if isinstance(name, str) and header["config"]["discretizer"] is None else None
+
+
+def _run(content: run_file.Content, function: Callable[[Any], Any] | None) -> Run:
     header, stored = content.header, content.arrays
     arrays: dict[str, Any] = {name: run_file.array(stored, name) for name in run_file.ARRAYS}
-    config = _config(header, stored)
+    config = _config(header, stored, function)
     actions = Actions(_integer(header, "actions"), _integer(header, "first_action"), stored.get("actions"))
     seconds, versions = header["seconds"], header["versions"]
     if isinstance(seconds, bool) or not isinstance(seconds, int | float):
@@ -85,8 +103,10 @@ def _run(content: run_file.Content) -> Run:
     return run
 
 
-def _config(header: Mapping[str, Any], stored: Mapping[str, Any]) -> Config:
+def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Callable[[Any], Any] | None) -> Config:
     fields = dict(header["config"])
+    if fields["discretizer"] is None and function is not None:
+        fields["discretizer"] = function
     if fields["initial_q"] is None:
         fields["initial_q"] = stored["initial_q"]
     fields["env"] = stored_id(fields["env"])

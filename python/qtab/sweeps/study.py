@@ -13,6 +13,7 @@ import numpy as np
 from qtab._utils import checks
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
 from qtab.config import DEFAULTS
+from qtab.config.discretizer import function_name, stored_fields
 from qtab.config.layers import Base, over
 from qtab.config.unknown import check_names
 from qtab.sweeps import designs
@@ -64,7 +65,7 @@ class Study:
     def description(self) -> Description:
         """The study as a store describes it."""
         configs = [
-            {name: value for name, value in vars(resolved.config).items() if name != "seed"}
+            {name: value for name, value in stored_fields(resolved.config).items() if name != "seed"}
             for resolved in self.resolved
         ]
         settings = [dict(setting) for setting in self.settings]
@@ -155,7 +156,7 @@ def _jsonable(value: Any) -> Any:
         return value.item()
     if isinstance(value, Mapping):
         return dict(value)
-    return repr(value)
+    return {"function": function_name(value)} if callable(value) else repr(value)
 
 
 def to_cell(value: Any) -> Any:

@@ -7,7 +7,7 @@ from typing import TypeAlias
 import gymnasium as gym
 
 from qtab import _core
-from qtab._spec import NativeEnvSpec, PythonEnvSpec, RunSpec
+from qtab._spec import EnvironmentSpec, NativeEnvSpec, PythonEnvSpec, RunSpec
 from qtab.config import Config
 from qtab.config.algorithms import AlgorithmSettings
 from qtab.config.config import replace_checked
@@ -18,6 +18,7 @@ from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.envs.registry import EnvEntry
 from qtab.training.exclusive import exclusively
+from qtab.training.observed_env import ObservedEnv
 
 
 @dataclass(frozen=True)
@@ -102,11 +103,17 @@ class ResolvedRun:
         """Returns the same run with another seed, which must be valid for the bit generator."""
         return replace(self, seed=seed, config=replace_checked(self.config, seed=seed))
 
+    def _env_spec(self) -> EnvironmentSpec:
+        spec = self.environment.spec()
+        if spec["type"] == "python" and self.discretizer.reads_space:
+            return {**spec, "env": ObservedEnv(spec["env"], self.discretizer)}
+        return spec
+
     def spec(self) -> RunSpec:
         """Returns the run, except for its seed, as the extension takes it."""
         config = self.config
         return {
-            "env": self.environment.spec(),
+            "env": self._env_spec(),
             "discretizer": self.discretizer.spec(),
             "num_actions": len(self.actions),
             "max_episode_steps": self.max_episode_steps,

@@ -15,6 +15,7 @@ from qtab.results.storage import load
 from qtab.training.callback_list import Callbacks
 from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.resolve import resolve
+from qtab.training.rows_met import continued
 from qtab.training.train import train_resolved
 
 _LOGGER = logging.getLogger("qtab")
@@ -71,7 +72,7 @@ def resume(
     options = TrainingOptions(callback, callback_every, record, visits, None, progress, memory_limit)
     config = _config(run, episodes)
     settings = {name: value for name, value in vars(config).items() if name != "env"}
-    resolved = resolve(config.env if env is None else env, settings)
+    resolved = continued(resolve(config.env if env is None else env, settings), run)
     try:
         _log_what_differs(run, config)
         return train_resolved(resolved, options, earlier=run)

@@ -185,7 +185,7 @@ def _run(
         episode_returns=returns,
         episode_lengths=lengths,
         terminated=terminated,
-        discretizer=resolved.discretizer,
+        discretizer=resolved.discretizer.as_learned(),
         actions=resolved.actions,
         completed=len(returns) == resolved.config.episodes,
         seconds=time.perf_counter() - began,

@@ -23,6 +23,7 @@ from qtab.config import Config
 from qtab.config.layers import collect, over
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
+from qtab.discretizers import Sparse
 from qtab.envs.matching import equal_environments
 from qtab.results.runs import Runs
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
@@ -89,6 +90,8 @@ def train_many(
     resolved = resolve_template(env, {**overrides, "seed": largest}).with_seed(numbers[0])
     log_default_limit(resolved)
     log_python_stepping(resolved)
+    if tables and isinstance(resolved.discretizer, Sparse):
+        raise ValueError("tables must be left out with max_rows: each run gives out the rows of its table by itself")
     began = time.perf_counter()
     results = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
     try:
