@@ -44,7 +44,13 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
 
 @contextmanager
 def naming_preset(name: str | None, settings: Mapping[str, Any], asked: Mapping[str, Any]) -> Iterator[None]:
-    """Adds to an error about a value of a preset that it is the preset's: nobody asked for it."""
+    """Adds to an error about a value of a preset that it is the preset's, which nobody typed.
+
+    Args:
+        name: The name of the preset.
+        settings: What is used of it.
+        asked: The settings that were asked for.
+    """
     try:
         yield
     except ValueError as error:

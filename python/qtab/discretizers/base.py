@@ -157,18 +157,17 @@ def check_table_size(name: str, given: Any, values: float, instead: str = "") ->
 
     Args:
         name: The setting that decides the size.
-        given: Its value.
+        given: Its value, or a text that describes it.
         values: How many values the table would have.
         instead: Which other setting would help, to be added to the message.
 
     Raises:
         ValueError: if rows could not be numbered, or the table does not fit into memory.
     """
+    text = given if isinstance(given, str) else shown(given)
     if not values < MAX_TABLE_SIZE:
-        raise ValueError(
-            f"{name} must give a table of fewer than 2**32 values{instead}, got {shown(given)}, "
-            f"which needs {values:.3g}"
-        )
+        many = f"{values:.3g}" if math.isfinite(values) else "more than 1e308"
+        raise ValueError(f"{name} must give a table of fewer than 2**32 values{instead}, got {text}, which needs {many}")
     needed = 8 * int(values)
     if needed < ALWAYS_FREE:
         return
@@ -180,6 +179,6 @@ def check_table_size(name: str, given: Any, values: float, instead: str = "") ->
         free = min(free, needed - 1)
     if needed > free:
         raise ValueError(
-            f"{name} must give a table that fits into memory{instead}, got {shown(given)}, which needs {values:.3g} "
+            f"{name} must give a table that fits into memory{instead}, got {text}, which needs {values:.3g} "
             f"values or {readable(needed)}, more than is free"
         )

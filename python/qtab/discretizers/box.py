@@ -52,7 +52,7 @@ def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] |
         if not np.isfinite(limit).all():
             raise ValueError(
                 f"{name} must be given, a number for each component, where the observation space has no finite bounds: "
-                f"{space}"
+                f"{' '.join(str(space).split())}"
             )
         limits.append(limit)
     if not (limits[0] < limits[1]).all():

@@ -59,7 +59,7 @@ class Composite(Discretizer):
                 ]
                 values = float(np.prod([float(count or 1) for count in counts])) * n_actions
             names = composite.component_names
-            given = names if len(names) < 10 else f"{len(names)} components"
+            given = f"{len(names)} components ({', '.join(names[:4])}{', ...' if len(names) > 4 else ''})"
             check_table_size("the observation space", given, values, too_large(layout.parts))
         return composite
 
@@ -208,8 +208,8 @@ class Composite(Discretizer):
         """
         return self._compiled.active_rows(self.flat(observation))
 
-    def cells(self, observation: Any) -> tuple[int, ...]:
-        """Returns the index of one observation along each component, however many cells there are.
+    def cells(self, observation: Any) -> NDArray[np.int64]:
+        """Returns (d,): the index of one observation along each component, however many cells there are.
 
         Raises:
             TypeError: if it does not hold numbers (integers for what is discrete).
@@ -232,10 +232,10 @@ class Composite(Discretizer):
             for component in group.components
         ]
 
-    def cells_of(self, numbers: NDArray[Any]) -> tuple[int, ...]:
-        """Returns the index along each component of (d,) numbers that :meth:`observe` returned."""
+    def cells_of(self, numbers: NDArray[Any]) -> NDArray[np.int64]:
+        """Returns (d,): the index along each component of the numbers that :meth:`observe` returned."""
         indices, counts = self._indices
-        cells = np.where(indices, numbers, 0).astype(np.int64)
+        cells: NDArray[np.int64] = np.where(indices, numbers, 0).astype(np.int64)
         for component, discretizer, dtype in self._of_components:
             cells[component] = discretizer.active_rows(numbers[component : component + 1].astype(dtype))[0]
         bounded = counts < 2**62
@@ -243,7 +243,7 @@ class Composite(Discretizer):
         if outside.any():
             component = int(np.argmax(outside))
             raise ValueError(f"{self.component_names[component]} lies outside the observation space")
-        return tuple(cells.tolist())
+        return cells
 
     def same_space(self, other: Discretizer) -> bool:
         """Whether another discretizer is one of observations with the same components."""

@@ -34,7 +34,10 @@ def too_large(parts: Any) -> str:
     image = any(part.kind == "integer" and len(part.shape) in (2, 3) and part.size >= 64 for part in parts)
     if image:
         return (
-            ": it holds an image. Give max_rows=, which gives rows to those images alone that are met, "
-            f"{FUNCTION}, or gymnasium.wrappers.TransformObservation"
+            " (it holds an image: max_rows= gives rows only to the images that are met; "
+            "gymnasium.wrappers.TransformObservation or a function as discretizer= with shape= makes less of it)"
         )
-    return f" (or give max_rows=, which gives rows to those observations alone that are met, or {FUNCTION})"
+    return (
+        " (max_rows= gives rows only to the observations that are met; "
+        "a function as discretizer= with shape= makes fewer of them)"
+    )

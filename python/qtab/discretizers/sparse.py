@@ -27,8 +27,8 @@ class Sparse(Discretizer):
     cells: Composite | Function
     """Finds the cell of an observation."""
     max_rows: int
-    met: dict[tuple[int, ...], int] = field(repr=False)
-    """The row of each cell that was met. Training adds to it; :meth:`as_learned` returns a copy."""
+    met: dict[bytes, int] = field(repr=False)
+    """The row of each cell that was met, by the bytes of its int64 indices. Training adds to it; :meth:`as_learned` returns a copy."""
     gives_out: bool = True
     """Whether :meth:`observe` gives a row to a cell that was not met."""
 
@@ -46,7 +46,7 @@ class Sparse(Discretizer):
         return cls._of(cells, max_rows, {})
 
     @classmethod
-    def _of(cls, cells: Any, max_rows: int, met: dict[tuple[int, ...], int]) -> "Sparse":
+    def _of(cls, cells: Any, max_rows: int, met: dict[bytes, int]) -> "Sparse":
         if isinstance(cells, Composite) and not cells.has_cells:
             raise ValueError("max_rows does not apply to discretizer 'tiles', which has no cells; hashed_rows= does")
         return cls(np.array(0), np.array(max_rows), cells, max_rows, met)
@@ -59,15 +59,15 @@ class Sparse(Discretizer):
         cells = (Function if callable(config.discretizer) else Composite).restore(config, arrays, n_rows)
         if n_rows != max_rows + 1 or met.dtype != np.int64 or met.ndim != 2 or len(met) > max_rows:
             raise ValueError("its table has another number of rows than max_rows")
-        rows = {tuple(cell): row for row, cell in enumerate(met.tolist())}
+        rows = {cell.tobytes(): row for row, cell in enumerate(met)}
         if len(rows) != len(met) or (isinstance(cells, Composite) and met.size and met.shape[1] != cells.layout.size):
             raise ValueError("its rows are not those of different cells")
         return cls._of(cells, max_rows, rows)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Returns the arrays to save."""
-        width = len(next(iter(self.met), ()))
-        return {**self.cells.arrays(), "met": np.array(list(self.met), np.int64).reshape(-1, width)}
+        met = np.frombuffer(b"".join(self.met), np.int64).reshape(len(self.met), -1 if self.met else 0)
+        return {**self.cells.arrays(), "met": met}
 
     def settings(self) -> dict[str, Any]:
         """Returns the settings that followed from the space, for the config of the run."""
@@ -111,7 +111,7 @@ class Sparse(Discretizer):
             TypeError: if it does not hold numbers (integers for what is discrete).
             ValueError: if it lies outside the space, or all rows are given out.
         """
-        cell = self.cells.cells(observation)
+        cell = _key(self.cells.cells(observation))
         row = self.met.get(cell)
         if row is None and not self.gives_out:
             return self.max_rows
@@ -119,10 +119,10 @@ class Sparse(Discretizer):
             row = len(self.met)
             if row == self.max_rows:
                 raise ValueError(
-                    f"max_rows must be larger: all {row:,} rows are given out, and one more cell was met: {cell!r:.200}"
+                    f"max_rows must be more than {row}: all rows are given out, and yet another observation was met"
                 )
             if len(cell) != len(next(iter(self.met), cell)):
-                raise ValueError(f"discretizer must return as many integers each time, got {cell!r:.200}")
+                raise ValueError(f"discretizer must return as many integers each time, got {len(cell) // 8}")
             self.met[cell] = row
         return row
 
@@ -136,12 +136,16 @@ class Sparse(Discretizer):
         if isinstance(self.cells, Function):
             return rows_of(self._known_row, observation, self.cells.observation_shape)
         flat = self.cells.flat(observation)
-        rows = [self.met.get(self.cells.cells_of(numbers), self.max_rows) for numbers in np.atleast_2d(flat)]
+        rows = [self.met.get(_key(self.cells.cells_of(numbers)), self.max_rows) for numbers in np.atleast_2d(flat)]
         return np.array(rows, np.int64).reshape(*flat.shape[:-1], 1)
 
     def _known_row(self, observation: Any) -> int:
-        return self.met.get(self.cells.cells(observation), self.max_rows)
+        return self.met.get(_key(self.cells.cells(observation)), self.max_rows)
 
     def same_space(self, other: Discretizer) -> bool:
         """Whether another discretizer has as many rows, for observations with the same components."""
         return isinstance(other, Sparse) and self.shape == other.shape and self.cells.same_space(other.cells)
+
+
+def _key(cell: Any) -> bytes:
+    return np.asarray(cell, np.int64).tobytes()

@@ -62,16 +62,20 @@ class Components:
                     [] if group is self.tiles else [next(sizes) for _ in range(size(dict(self.leaves)[path]))]
                 )
         self.cell_shape = tuple(count for path, _ in self.leaves for count in counts[path])
+        self.first = {
+            path: np.array([first for first, _ in integers(leaf)], np.int64)
+            for path, leaf in self.leaves
+            if path not in self.grouped
+        }
         rows = 1 if self.tiles is None else math.prod(self.tiles.shape)
         self.shape: tuple[int, ...] = self.cell_shape if self.tiles is None else (math.prod(self.cell_shape) * rows,)
 
     def cells(self, observation: Any) -> tuple[int, ...]:
         """Returns the index of each component that is not tiled."""
         found: dict[Path, list[int]] = {}
-        for path, leaf in self.leaves:
+        for path, _ in self.leaves:
             if path not in self.grouped:
-                numbers = np.ravel(part(observation, path)).tolist()
-                found[path] = [int(number) - first for number, (first, _) in zip(numbers, integers(leaf), strict=True)]
+                found[path] = (np.ravel(part(observation, path)).astype(np.int64) - self.first[path]).tolist()
         for paths, group in self.groups:
             if group is not self.tiles:
                 (row,) = group.rows(self.numbers(observation, paths))

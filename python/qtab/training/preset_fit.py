@@ -5,6 +5,7 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from gymnasium import spaces
 
 from qtab.config import DEFAULTS, Config
 from qtab.config.config import replace_checked
@@ -33,7 +34,7 @@ def set_aside(env: gym.Env, config: Config, asked: Mapping[str, Any]) -> Config:
     inner, names = env.unwrapped, []
     if env.action_space is not inner.action_space and env.action_space != inner.action_space:
         names.append("actions")
-    if env.observation_space is not inner.observation_space and env.observation_space != inner.observation_space:
+    if not _same_units(env.observation_space, inner.observation_space):
         names += _OF_COMPONENTS
         if config.tiles is not None and len(config.tiles) > 1:
             names.append("tiles")
@@ -45,6 +46,15 @@ def set_aside(env: gym.Env, config: Config, asked: Mapping[str, Any]) -> Config:
     if config.learning_rate > 1 and not uses_tiles(config.discretizer):
         config = _with_defaults(config, ["learning_rate"], asked)
     return config
+
+
+def _same_units(one: Any, other: Any) -> bool:
+    """Whether two spaces are equal but for the dtypes and the shapes of Boxes."""
+    if one is other or one == other:
+        return True
+    if not isinstance(one, spaces.Box) or not isinstance(other, spaces.Box) or one.low.size != other.low.size:
+        return False
+    return np.allclose(one.low.ravel(), other.low.ravel()) and np.allclose(one.high.ravel(), other.high.ravel())
 
 
 def _with_defaults(config: Config, names: list[str], asked: Mapping[str, Any]) -> Config:

@@ -12,7 +12,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import discretizers
 from qtab._utils.shown import shown
-from qtab.config import Config
+from qtab.config import DEFAULTS, Config
 from qtab.config.algorithms import algorithm_settings
 from qtab.config.config import replace_checked
 from qtab.config.merge import config_of, merge_layers, naming_preset
@@ -141,7 +141,9 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     config = replace_checked(config, **defaults(vars(config)))
     actions = choose_actions(env.action_space, config.actions)
     environment, python_reason = _environment(request, actions, owns_env)
-    with naming_preset(config.preset, preset(config.env, config.preset)[1], request.asked):
+    of_preset = preset(config.env, config.preset)[1] if config.preset else {}
+    of_preset = {name: value for name, value in of_preset.items() if getattr(config, name) is not DEFAULTS[name]}
+    with naming_preset(config.preset, of_preset, request.asked):
         discretizer = discretizers.build(env.observation_space, config, len(actions))
     own_limit = config.max_episode_steps or request.time_limit
     max_episode_steps = own_limit or UNLIMITED_MAX_EPISODE_STEPS
