@@ -64,7 +64,9 @@ def test_a_space_is_served_as_documented(space: str, happens: str, write: str) -
     check(lambda: Sampled(eval(space, NAMES)), happens, write)  # noqa: S307
 
 
-@pytest.mark.parametrize(("wrapper", "name", "happens", "write"), WRAPPERS, ids=[f"{w}-{name}" for w, name, *_ in WRAPPERS])
+@pytest.mark.parametrize(
+    ("wrapper", "name", "happens", "write"), WRAPPERS, ids=[f"{w}-{name}" for w, name, *_ in WRAPPERS]
+)
 def test_a_wrapper_is_served_as_documented(wrapper: str, name: str, happens: str, write: str) -> None:
     if any(image in wrapper for image in IMAGES):
         pytest.importorskip("pygame", reason="frames need pygame")

@@ -167,7 +167,9 @@ def check_table_size(name: str, given: Any, values: float, instead: str = "") ->
     text = given if isinstance(given, str) else shown(given)
     if not values < MAX_TABLE_SIZE:
         many = f"{values:.3g}" if math.isfinite(values) else "more than 1e308"
-        raise ValueError(f"{name} must give a table of fewer than 2**32 values{instead}, got {text}, which needs {many}")
+        raise ValueError(
+            f"{name} must give a table of fewer than 2**32 values{instead}, got {text}, which needs {many}"
+        )
     needed = 8 * int(values)
     if needed < ALWAYS_FREE:
         return

@@ -150,7 +150,7 @@ class Layout:
         for part in self.parts:
             shape = part.find(observation).shape
             if shape != part.shape and shape[1:] != part.shape:
-                raise ValueError(f"{part.name} must have shape {part.shape}, got {shape}")
+                raise ValueError(f"{part.name} must have shape {part.shape}, the space's, got {shape}")
             counts.add(None if shape == part.shape else shape[0])
         if len(counts) > 1:
             raise ValueError(f"observations must be batched alike in all their parts, got {sorted(map(str, counts))}")

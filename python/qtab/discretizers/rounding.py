@@ -41,7 +41,9 @@ class Rounding(BoxDiscretizer):
             held = f"hold {numbers} for this observation space, the cells per unit of each component"
             if not scale:
                 raise ValueError(f"scale must be given and {held}, or discretizer='bins' or 'tiles' without it")
-            raise ValueError(f"scale must {held}, got {shown(scale)}. Without them choose discretizer 'bins' or 'tiles'")
+            raise ValueError(
+                f"scale must {held}, got {shown(scale)}. Without them choose discretizer 'bins' or 'tiles'"
+            )
         grid = cls(box.low, box.high, np.array(scale, dtype=np.float64))
         with np.errstate(over="ignore"):
             cells = (box.high - box.low).astype(np.float64) * grid.scale

@@ -31,6 +31,7 @@ from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnv
 _LOGGER = logging.getLogger("qtab")
 _logged: set[str] = set()
 """The environments whose default time limit was logged in this process, and the messages that were."""
+READ_IN_PYTHON = "a function as the discretizer, or max_rows, reads each observation in Python"
 UNLIMITED_MAX_EPISODE_STEPS = 10_000
 """The time limit in training for environments that have none."""
 
@@ -145,6 +146,8 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     of_preset = {name: value for name, value in of_preset.items() if getattr(config, name) is not DEFAULTS[name]}
     with naming_preset(config.preset, of_preset, request.asked):
         discretizer = discretizers.build(env.observation_space, config, len(actions))
+    if discretizer.reads_space and isinstance(environment, NativeEnvironment):
+        environment, python_reason = _read_in_python(request, actions, owns_env), READ_IN_PYTHON
     own_limit = config.max_episode_steps or request.time_limit
     max_episode_steps = own_limit or UNLIMITED_MAX_EPISODE_STEPS
     seed = int(np.random.SeedSequence().generate_state(1)[0]) if config.seed is None else config.seed
@@ -182,6 +185,12 @@ def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[E
                 raise rust_unavailable(str(error)) from None
             reason = str(error)
     return PythonEnvironment(request.env, actions, owns_env), reason
+
+
+def _read_in_python(request: _Request, actions: Actions, owns_env: bool) -> PythonEnvironment:
+    if request.config.backend == "rust":
+        raise rust_unavailable(READ_IN_PYTHON)
+    return PythonEnvironment(request.env, actions, owns_env)
 
 
 def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> Any:
