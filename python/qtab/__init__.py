@@ -40,6 +40,7 @@ _MODULES = {
     "evaluate": "qtab.training.evaluate",
     "explain": "qtab.explanation.explain",
     "load": "qtab.results.storage",
+    "load_runs": "qtab.results.runs_storage",
     "load_sweep": "qtab.sweeps.results",
     "optimum": "qtab.planning.solve",
     "plot": "qtab.plots.run",
@@ -75,6 +76,7 @@ if TYPE_CHECKING:
     from qtab.results.run import Recording as Recording
     from qtab.results.run import Run as Run
     from qtab.results.runs import Runs as Runs
+    from qtab.results.runs_storage import load_runs as load_runs
     from qtab.results.snapshots import Snapshots as Snapshots
     from qtab.results.storage import load as load
     from qtab.sweeps import designs as designs

@@ -183,7 +183,7 @@ def test_a_bad_config_file_is_refused_with_the_reason(tmp_path: Path, text: str,
 
 
 def test_an_unknown_command_is_refused_with_the_known_ones(tmp_path: Path) -> None:
-    assert "unknown command 'fly'; use train, verify, explain, diagnose, optimum" in refused("fly", cwd=tmp_path)
+    assert "unknown command 'fly'; use train, resume, verify, explain, diagnose" in refused("fly", cwd=tmp_path)
     assert "'trian' (did you mean 'train'?)" in refused("trian", cwd=tmp_path)
 
 

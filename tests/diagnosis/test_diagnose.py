@@ -105,6 +105,17 @@ def test_a_diagnosis_prints_and_can_be_searched(diagnosis: qtab.Diagnosis) -> No
         diagnosis["coverage"]
 
 
+def test_visits_tell_untried_actions_from_values_that_stayed_the_same() -> None:
+    settings: dict[str, Any] = {"initial_q": 0.0, "epsilon": 1.0, "epsilon_schedule": "constant", "episodes": 300}
+    settings |= {"seed": 3}
+    counted = qtab.diagnose(qtab.train(LAKE, visits=True, **settings), seeds=0)
+    assert counted.run.visits is not None
+    assert counted.facts.visited.tolist() == counted.run.visits.any(axis=1).tolist()
+    assert "coverage" not in counted
+    guessed = qtab.diagnose(qtab.train(LAKE, **settings), seeds=0)
+    assert guessed["coverage"].title.endswith("or their values never changed.")
+
+
 def test_other_seeds_give_the_rank() -> None:
     run = qtab.train(LAKE, preset="solved", episodes=500, seed=13)
     evidence = qtab.diagnose(run, seeds=40)["unlucky seed"].evidence
@@ -153,7 +164,7 @@ def test_an_interrupted_run_is_diagnosed() -> None:
 def test_bad_arguments_are_named(article: qtab.Run) -> None:
     with pytest.raises(TypeError, match=r"run must be a Run, got 'run\.npz'; qtab\.load"):
         qtab.diagnose("run.npz")  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="optimum must be a Optimum, got 3"):
+    with pytest.raises(TypeError, match="optimum must be an Optimum, got 3"):
         qtab.diagnose(article, 3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="run must have env 'FrozenLake-v1' as this optimum has"):
         qtab.diagnose(article, qtab.optimum(LAKE))

@@ -97,12 +97,15 @@ def test_a_saved_run_asks_for_its_function(tmp_path: Path) -> None:
     assert loaded.predict(observation) == run.predict(observation)
     assert qtab.verify(loaded).equal
     assert len(qtab.resume(loaded, 6).episode_returns) == 6
+    assert_same_run(qtab.train(resume=tmp_path / "run.npz", discretizer=cells, episodes=6), qtab.resume(loaded, 6))
+    with pytest.raises(ValueError, match="^discretizer must be that of the run to resume"):
+        qtab.train(resume=loaded, discretizer=len)
     qtab.train("MountainCar-v0", **SETTINGS).save(tmp_path / "plain.npz")
     with pytest.raises(
-        TypeError, match="discretizer must be the run's, which is 'round', no function, got <function cells"
+        TypeError, match="discretizer must be that of the file, which is 'round', no function, got <function cells"
     ):
         qtab.load(tmp_path / "plain.npz", discretizer=cells)
-    with pytest.raises(TypeError, match="discretizer must be the run's, which is a function, got 3"):
+    with pytest.raises(TypeError, match="discretizer must be that of the file, which is a function, got 3"):
         qtab.load(tmp_path / "run.npz", discretizer=3)  # type: ignore[arg-type]
 
 
@@ -127,10 +130,16 @@ def test_what_a_function_needs_and_what_needs_a_function() -> None:
 
 
 @pytest.mark.slow
-def test_many_runs_share_a_function() -> None:
+def test_many_runs_share_a_function(tmp_path: Path) -> None:
     def make() -> gym.Env:
         return gym.make("MountainCar-v0")
 
     settings: dict[str, Any] = {"discretizer": cells, "shape": (19, 15), "episodes": 2, "max_episode_steps": 30}
     runs = qtab.train_many(make, seeds=2, threads=1, tables=True, **settings)
     assert_same_run(runs[1], qtab.train(make(), seed=1, **settings))
+    runs.save(tmp_path / "runs.npz")
+    observation = np.array([-0.5, 0.0], np.float32)
+    loaded = qtab.load_runs(tmp_path / "runs.npz", discretizer=cells)
+    assert loaded[1].predict(observation) == runs[1].predict(observation)
+    with pytest.raises(ValueError, match="is the function 'cells'"):
+        qtab.load_runs(tmp_path / "runs.npz")[1].predict(observation)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any, get_args
 
 import gymnasium as gym
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -95,10 +96,17 @@ LONG: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
 def test_a_run_stopped_in_the_middle_of_an_episode_resumes_exactly(env, bit_generator):
     config = {"episodes": 2_000_000, "max_episode_steps": 1000, "seed": 3, "bit_generator": bit_generator, **LONG[env]}
+    config["visits"] = True
     part = stopped_by_a_timer(0.03, env, **config)
     finished = len(part.episode_returns)
-    part = qtab.resume(part, callback=until(finished + 20), callback_every=20)
-    assert_same_run(part, stopped(env, len(part.episode_returns), **config))
+    part = qtab.resume(part, callback=until(finished + 20), callback_every=20, snapshots=[finished + 1])
+    whole = stopped(env, len(part.episode_returns), snapshots=[finished + 1], **config)
+    assert_same_run(part, whole)
+    assert part.visits is not None
+    np.testing.assert_array_equal(part.visits, whole.visits)
+    assert part.snapshots is not None
+    assert whole.snapshots is not None
+    assert part.snapshots.tables.tobytes() == whole.snapshots.tables.tobytes()
 
 
 def test_more_episodes_spread_the_schedules_over_all_of_them(caplog):

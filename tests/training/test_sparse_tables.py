@@ -42,7 +42,7 @@ def test_what_was_not_met_has_the_initial_values_of_the_last_row() -> None:
 
 def test_a_full_table_is_refused_with_what_was_learned() -> None:
     with pytest.raises(
-        ValueError, match="^max_rows must be more than 7: all rows are given out, and yet another"
+        ValueError, match=r"^max_rows must be more than 7: all rows are given out, and yet another"
     ) as caught:
         qtab.train(Sampled(Box(0, 255, (5,), np.uint8)), max_rows=7, **SETTINGS)
     run = caught.value.run  # type: ignore[attr-defined]
@@ -112,7 +112,7 @@ def test_the_tables_of_many_runs_have_different_rows_and_are_not_kept() -> None:
         return Tutorial(3)
 
     settings = {name: value for name, value in SETTINGS.items() if name != "seed"} | {"episodes": 3}
-    with pytest.raises(ValueError, match="^tables must be left out with max_rows"):
+    with pytest.raises(ValueError, match=r"^tables must be left out with max_rows"):
         qtab.train_many(make, seeds=2, tables=True, max_rows=81, **settings)
     runs = qtab.train_many(make, seeds=2, threads=1, max_rows=81, **settings)
     single = qtab.train(make(), seed=1, max_rows=81, **settings)

@@ -23,9 +23,14 @@ def right_calls(run: qtab.Run, env: gym.Env) -> None:
     run = qtab.train("MountainCar-v0", config={"learning_rate": 0.1}, callback=stop_soon, record=1)
     run = qtab.train("MountainCar-v0", **qtab.presets("MountainCar-v0")["solved"])
     run = qtab.train("MountainCar-v0", callback=[stop_soon, qtab.callbacks.StopAtReturn(-110), print])
+    run = qtab.train("MountainCar-v0", resume="run.npz", episodes=10_000)
+    run = qtab.train(resume=run, callback=print)
+    run = qtab.resume(Path("run.npz"), 10_000, snapshots=5)
     table: np.ndarray = qtab.callbacks.EvaluateEvery(episodes=3).mean_returns
     runs: qtab.Runs = qtab.train_many("MountainCar-v0", callback=stop_later, progress=False)
     runs = qtab.train_many("MountainCar-v0", 100, threads=2, learning_rate=0.1, traces=None)
+    runs.save(Path("runs.npz"))
+    runs = qtab.load_runs("runs.npz")
     runs = qtab.train_many(lambda: env, range(3), bins=(3, 4), discretizer="bins")
     sweep: qtab.Sweep = qtab.sweep("MountainCar-v0", {"epsilon": [0.1, 0.2]}, store=Path("a.db"), n_steps=2)
     evaluation: qtab.Evaluation = qtab.evaluate(run, 10, seed=0, max_episode_steps=1000)
@@ -39,7 +44,7 @@ def stop_soon(progress: qtab.Progress) -> bool:
 
 
 def stop_later(progress: qtab.RunsProgress) -> bool:
-    return progress.runs < 10 and bool(progress.returns.mean() < 0)
+    return progress.runs < 10 and bool(progress.returns.mean() < 0) and len(progress.finished) > 0
 
 
 def wrong_calls(run: qtab.Run, progress: qtab.Progress) -> None:
@@ -51,9 +56,12 @@ def wrong_calls(run: qtab.Run, progress: qtab.Progress) -> None:
     qtab.train("MountainCar-v0", scale="10")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", callback=3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", callback=[3])  # type: ignore[list-item]  # pyright: ignore[reportArgumentType]
+    qtab.train("MountainCar-v0", resume=3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", callback=stop_later)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train_many("Taxi-v4", callback=stop_soon)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.callbacks.Checkpoint(3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.load_runs(3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    del qtab.load("runs.npz").seeds  # type: ignore[attr-defined]  # pyright: ignore[reportAttributeAccessIssue]
     qtab.train_many("Taxi-v4", learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
     qtab.train_many("Taxi-v4", algorithm="qlearning")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train_many("Taxi-v4", learning_rate="fast")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]

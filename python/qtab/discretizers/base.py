@@ -2,7 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, ClassVar
@@ -103,6 +103,10 @@ class Discretizer(ABC):
     def observe(self, observation: Any) -> Any:
         """Returns an observation of the environment as the extension reads it."""
         return observation
+
+    def with_function(self, function: Callable[[Any], Any]) -> "Discretizer":  # noqa: ARG002
+        """Returns the discretizer with another function, where it has one."""
+        return self
 
     def as_learned(self) -> "Discretizer":
         """Returns the discretizer as it is now, for a run that is made before the training is over."""

@@ -17,6 +17,9 @@ from qtab.discretizers.groups import Group, choose_groups
 from qtab.discretizers.layout import Layout
 from qtab.discretizers.refusals import too_large
 
+MAX_RESTORED_BINS = 10**7
+"""A file with more bins than this along all components would take much more memory than its size."""
+
 
 @dataclass(frozen=True, eq=False)
 class Composite(Discretizer):
@@ -66,6 +69,9 @@ class Composite(Discretizer):
     @classmethod
     def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Composite":
         """Returns the discretizer of a saved run; see :meth:`Discretizer.restore`."""
+        by_key: Any = config.discretizer.values() if isinstance(config.discretizer, Mapping) else ()
+        if sum(sum(options.get("bins") or ()) for options in (*by_key, vars(config))) > MAX_RESTORED_BINS:
+            raise ValueError("its bins are too many")
         composite = cls.of_layout(Layout.from_json(str(arrays["layout"])), config, 0)
         if config.max_rows is None and composite.n_rows != n_rows:
             raise ValueError("its table has another number of rows than its discretizer")

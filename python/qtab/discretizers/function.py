@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -117,6 +117,10 @@ class Function(Discretizer):
         if len(self.cell_shape) == 1:
             return f"one from 0 to {self.cell_shape[0] - 1}"
         return f"{len(self.cell_shape)} indices within the shape {self.cell_shape}, or the number of a row"
+
+    def with_function(self, function: Callable[[Any], Any]) -> "Function":
+        """Returns the discretizer with another function."""
+        return replace(self, function=function)
 
     def observe(self, observation: Any) -> int:
         """Returns the row of an observation, as the extension reads it."""

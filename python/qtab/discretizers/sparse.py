@@ -1,6 +1,6 @@
 """Rows that are given out as observations are met, for spaces of more cells than a table can have."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -76,6 +76,10 @@ class Sparse(Discretizer):
     def as_learned(self) -> "Sparse":
         """Returns the table with what was met until now."""
         return replace(self, met=dict(self.met), gives_out=True)
+
+    def with_function(self, function: Callable[[Any], Any]) -> "Sparse":
+        """Returns the table with another function, if it has one."""
+        return replace(self, cells=self.cells.with_function(function))
 
     def as_played(self) -> "Sparse":
         """Returns the table for a policy that only plays: what was not met shares the last row."""

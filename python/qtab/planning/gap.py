@@ -6,10 +6,13 @@ from typing import Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.fields import with_fields
+
 Number = TypeVar("Number", float, NDArray[np.float64])
 """A float for one run, (runs,) float64 for many."""
 
 
+@with_fields
 @dataclass(frozen=True, eq=False)
 class Gap(Generic[Number]):
     """The expected return of the optimum, the returns of a run, and how much these fall short of it."""

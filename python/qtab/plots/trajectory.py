@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
+from qtab.envs.stored import spec_of_run
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
+from qtab.plots.labels import check_title
 from qtab.plots.subject import subject_of
 from qtab.plots.values import values
 from qtab.results.run import Run
@@ -59,6 +61,7 @@ def trajectory(
         raise TypeError(f"run must be a Run or an Optimum, got {run!r}")
     episodes = checks.integer("episodes", episodes, least=1)
     seed = checks.integer("seed", seed, least=0)
+    check_title(title)
     subject = subject_of("run", run)
     raster = arrange(subject, at, layout)
     played = _play(run, env, episodes, seed)
@@ -78,7 +81,7 @@ def _play(run: Run | Optimum, env: gym.Env | None, episodes: int, seed: int) -> 
         name, kwargs, limit = run.env, run.env_kwargs, run.max_episode_steps
     if env is None:
         try:
-            made: Any = gym.make(name, max_episode_steps=limit, **kwargs)
+            made: Any = gym.make(spec_of_run(name), max_episode_steps=limit, **kwargs)
         except gym.error.Error:
             raise ValueError(f"env must be given: {name!r}, the run's environment, is not a registered id") from None
     else:

@@ -11,9 +11,6 @@ from qtab.results.snapshots import Snapshots
 if TYPE_CHECKING:
     from qtab.results.run import Run
 
-OPTIONAL_ARRAYS = ("visits", "snapshot_episodes", "snapshot_tables")
-"""The names of the arrays in a file."""
-
 
 def optional_arrays(run: "Run") -> dict[str, NDArray[Any]]:
     """Returns the arrays to save."""

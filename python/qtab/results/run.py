@@ -1,6 +1,5 @@
 """``qtab.Run``: the result of a training run."""
 
-import json
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -12,13 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.fields import with_fields
 from qtab._utils.frames import episode_frame
 from qtab.config import Config
-from qtab.config.config import replace_checked
-from qtab.config.discretizer import stored_fields, stored_function
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
-from qtab.results import behaviour, run_file
+from qtab.results import behaviour, run_file, saving
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
@@ -30,6 +28,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+@with_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Run:
     """A finished or interrupted run: its config, its episodes, and what it learned."""
@@ -239,35 +238,14 @@ class Run:
             check_consistent(self)
         except ValueError as error:
             raise ValueError(f"this run cannot be saved: {error}") from None
-        arrays = (
-            {name: getattr(self, name) for name in run_file.ARRAYS} | self.discretizer.arrays() | optional_arrays(self)
-        )
-        if self.actions.values is not None:
-            arrays["actions"] = self.actions.values
-        config = stored_fields(self.config)
-        if isinstance(self.config.initial_q, np.ndarray):
-            arrays["initial_q"] = self.config.initial_q
-            config["initial_q"] = None
-        header: dict[str, Any] = {
-            **stored_function(config),
-            "config": config,
-            "actions": len(self.actions),
-            "first_action": self.actions.first,
-            "completed": self.completed,
-            "seconds": self.seconds,
-            "versions": dict(self.versions),
-        }
+        arrays = {name: getattr(self, name) for name in run_file.ARRAYS} | optional_arrays(self)
+        header: dict[str, Any] = {}
         if self.state is not None:
             arrays["state"] = self.state.array()
             header["generator"] = self.state.generator
-        kwargs = self.config.env_kwargs
-        try:
-            text = run_file.encode(header)
-        except (TypeError, ValueError) as error:
-            raise type(error)(f"env_kwargs must hold what JSON can, got {kwargs!r}: {error}") from None
-        if replace_checked(self.config, env_kwargs=json.loads(text)["config"]["env_kwargs"]) != self.config:
-            raise TypeError(f"env_kwargs must hold what JSON can, got {kwargs!r}: keys must be texts")
-        run_file.write(Path(path), text, arrays)
+            if self.state.snapshots:
+                header["snapshots"] = self.state.snapshots
+        saving.write(Path(path), run_file.RUN, self, header, arrays)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,8 @@
 
 import logging
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -27,6 +28,8 @@ _MAX_REASON = 400
 def load(path: "str | os.PathLike[str]", *, discretizer: Callable[[Any], Any] | None = None) -> Run:
     """Reads a run that :meth:`qtab.Run.save` wrote, after checking that not a byte of it was changed.
 
+    :func:`qtab.load_runs` reads the file of many runs, and :func:`qtab.load_sweep` the store of a sweep.
+
     Files of earlier versions have no digest to check it by. They are read all the same, with a message of the logger
     ``qtab`` that says so, and ``run.unchecked`` is True.
 
@@ -45,18 +48,9 @@ def load(path: "str | os.PathLike[str]", *, discretizer: Callable[[Any], Any] | 
             message says why.
     """
     path = Path(path)
-    with _open_regular(path) as file:
-        try:
-            content = run_file.read(file)
-            function = _function(content.header)
-            run = _run(content, function if discretizer is None else discretizer)
-        except Exception as error:  # a damaged file can raise almost anything
-            reason = f"it has no {error.args[0]!r}" if isinstance(error, KeyError) else " ".join(str(error).split())
-            reason = reason[:_MAX_REASON]
-            raise ValueError(f"{str(path)!r} is not a run file that this version of qtab can read: {reason}") from None
-    if discretizer is not None and (function is None or not callable(discretizer)):
-        had = f"{run.config.discretizer!r}, no function" if function is None else "a function"
-        raise TypeError(f"discretizer must be the run's, which is {had}, got {shown(discretizer)}")
+    with opened(path, "run file") as file:
+        run = _run(run_file.read(file), discretizer)
+    check_function(discretizer, run.config)
     if run.unchecked:
         _LOGGER.warning(
             "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
@@ -64,49 +58,93 @@ def load(path: "str | os.PathLike[str]", *, discretizer: Callable[[Any], Any] | 
     return run
 
 
-def _open_regular(path: Path) -> BinaryIO:
-    """Opens a file; a FIFO, which would be waited for until something is written to it, is refused."""
+@contextmanager
+def opened(path: Path, kind: str) -> Iterator[BinaryIO]:
+    """Opens a file; what cannot be read from it is a ValueError that names the file and the kind of it.
+
+    A FIFO, which would be waited for until something is written to it, is refused.
+
+    Raises:
+        OSError: if the file is missing or cannot be read.
+        ValueError: for any exception inside the context.
+    """
     if path.is_fifo():
         raise OSError(f"path must be a regular file, got the FIFO {str(path)!r}")
-    return path.open("rb")
+    with path.open("rb") as file:
+        try:
+            yield file
+        except Exception as error:  # a damaged file can raise almost anything
+            reason = f"it has no {error.args[0]!r}" if isinstance(error, KeyError) else " ".join(str(error).split())
+            reason = reason[:_MAX_REASON]
+            raise ValueError(f"{str(path)!r} is not a {kind} that this version of qtab can read: {reason}") from None
 
 
-def _function(header: Mapping[str, Any]) -> MissingFunction | None:
-    name = header.get("discretizer_function")
-    return MissingFunction(name) if isinstance(name, str) and header["config"]["discretizer"] is None else None
+def check_function(function: Any, config: Config) -> None:
+    """Checks that a function is given only for what was trained with one.
+
+    Raises:
+        TypeError: if it is none, or the discretizer was none.
+    """
+    if function is not None and (isinstance(config.discretizer, str | dict) or not callable(function)):
+        had = f"{config.discretizer!r}, no function" if isinstance(config.discretizer, str | dict) else "a function"
+        raise TypeError(f"discretizer must be that of the file, which is {had}, got {shown(function)}")
 
 
 def _run(content: run_file.Content, function: Callable[[Any], Any] | None) -> Run:
     header, stored = content.header, content.arrays
     arrays: dict[str, Any] = {name: run_file.array(stored, name) for name in run_file.ARRAYS}
-    config = _config(header, stored, function)
-    actions = Actions(_integer(header, "actions"), _integer(header, "first_action"), stored.get("actions"))
-    seconds, versions = header["seconds"], header["versions"]
-    if isinstance(seconds, bool) or not isinstance(seconds, int | float):
-        raise ValueError(f"its seconds must be a number, got {seconds!r}")
-    if not isinstance(versions, dict) or not all(isinstance(version, str) for version in versions.values()):
-        raise ValueError(f"its versions must map names to texts, got {versions!r}")
+    shared = shared_fields(content, function)
+    config = shared["config"]
     discretizer = discretizers.restore(config, stored, arrays["tables"].shape[1])
     arrays |= restore_optional(stored, arrays["tables"], discretizer.shape, len(arrays["episode_returns"]))
     run = Run(
-        config=config,
         discretizer=discretizer,
-        actions=actions,
-        completed=header["completed"],
-        seconds=float(seconds),
-        versions=versions,
         unchecked=not content.has_digest,
-        state=RunState.restore(stored["state"], header["generator"]) if "state" in stored else None,
+        state=_state(header, stored["state"]) if "state" in stored else None,
+        **shared,
         **arrays,
     )
     check_consistent(run)
     return run
 
 
+def shared_fields(content: run_file.Content, function: Callable[[Any], Any] | None) -> dict[str, Any]:
+    """Returns the fields that the files of one run and of many runs have in common.
+
+    Args:
+        content: What the file holds.
+        function: The function that was the discretizer, if it is given.
+
+    Raises:
+        KeyError: if one is missing.
+        TypeError: if the config holds what is no setting.
+        ValueError: if one is impossible.
+    """
+    header, stored = content.header, content.arrays
+    seconds, versions = header["seconds"], header["versions"]
+    if isinstance(seconds, bool) or not isinstance(seconds, int | float):
+        raise ValueError(f"its seconds must be a number, got {seconds!r}")
+    if not isinstance(versions, dict) or not all(isinstance(version, str) for version in versions.values()):
+        raise ValueError(f"its versions must map names to texts, got {versions!r}")
+    return {
+        "config": _config(header, stored, function),
+        "actions": Actions(integer(header, "actions"), integer(header, "first_action"), stored.get("actions")),
+        "completed": header["completed"],
+        "seconds": float(seconds),
+        "versions": versions,
+    }
+
+
+def _state(header: Mapping[str, Any], array: Any) -> RunState:
+    # Versions that did not continue snapshots wrote none.
+    return RunState.restore(array, header["generator"], header.get("snapshots", []))
+
+
 def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Callable[[Any], Any] | None) -> Config:
     fields = dict(header["config"])
-    if fields["discretizer"] is None and function is not None:
-        fields["discretizer"] = function
+    name = header.get("discretizer_function")
+    if fields["discretizer"] is None and isinstance(name, str):
+        fields["discretizer"] = function if callable(function) else MissingFunction(name)
     if fields["initial_q"] is None:
         fields["initial_q"] = stored["initial_q"]
     fields["env"] = stored_id(fields["env"])
@@ -116,7 +154,13 @@ def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Call
     return config
 
 
-def _integer(header: Mapping[str, Any], name: str) -> int:
+def integer(header: Mapping[str, Any], name: str) -> int:
+    """Returns an integer in a header.
+
+    Raises:
+        KeyError: if it is missing.
+        ValueError: if it is something else.
+    """
     value = header[name]
     if isinstance(value, bool) or not isinstance(value, int):
         raise ValueError(f"its number of {name} must be an integer, got {value!r}")

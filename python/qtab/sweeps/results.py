@@ -257,7 +257,7 @@ def build_sweep(contents: Contents, settings: Sequence[Mapping[str, Any]], sourc
         columns[name] = np.array(values, dtype=np.float64)
     columns["error"] = np.array([run[-1] for run in runs], dtype=object)
     return Sweep(
-        env=str(description.configs[0]["env"]),
+        env=description.configs[0]["env"],
         settings=settings,
         seeds=description.seeds,
         columns=columns,

@@ -17,7 +17,7 @@ from qtab.sweeps.store import Store
 from qtab.sweeps.stored import finished_contents, store_path
 from qtab.sweeps.study import Study
 from qtab.sweeps.waiting import POLL_SECONDS, Notice
-from qtab.sweeps.worker import train_parts
+from qtab.sweeps.worker import train_claim
 from qtab.training.process_pool import process_pool
 from qtab.training.train_many import thread_count
 
@@ -84,11 +84,6 @@ def _train_in_threads(study: Study, store: Store, threads: int, report: Callable
             notice(store.claimed_by_others)
             time.sleep(POLL_SECONDS)
             continue
-        parts = [
-            (setting, study.overrides[setting], study.resolved[setting], seeds) for setting, seeds in study.split(claim)
-        ]
-        began = time.perf_counter()
-        records = train_parts(study.env, parts, study.block, threads, pace)
-        store.commit(claim, records, time.perf_counter() - began)
+        train_claim(study, store, claim, threads, pace)
         notice.reset()
         report()

@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
+from numpy.typing import NDArray
 from typing_extensions import Unpack
 
 from qtab import _core
@@ -93,9 +94,13 @@ def train_many(
     if tables and isinstance(resolved.discretizer, Sparse):
         raise ValueError("tables must be left out with max_rows: each run gives out the rows of its table by itself")
     began = time.perf_counter()
+
+    def make_runs(finished: NDArray[np.bool_]) -> Runs:
+        return _runs(resolved, numbers, results, finished, tables, began)
+
     results = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
     try:
-        with reporter.start(numbers, results):
+        with reporter.start(numbers, results, make_runs):
             if not resolved.is_native:
                 from qtab.training.process_pool import train_in_processes
 
@@ -109,9 +114,9 @@ def train_many(
                 error.add_note(f"in the run with seed {numbers[index]}")
             raise error
     except BaseException as error:
-        error.run = error.runs = _runs(resolved, numbers, results, tables, began)  # type: ignore[attr-defined]
+        error.run = error.runs = make_runs(results["finished"])  # type: ignore[attr-defined]
         raise
-    return _runs(resolved, numbers, results, tables, began)
+    return make_runs(results["finished"])
 
 
 def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
@@ -231,8 +236,14 @@ def train_in_threads(
     return _core.train_many(resolved.spec(), seeds, results, threads, keep_going)
 
 
-def _runs(resolved: ResolvedRun, seeds: Sequence[int], results: Results, keep_tables: bool, began: float) -> Runs:
-    finished = results["finished"]
+def _runs(
+    resolved: ResolvedRun,
+    seeds: Sequence[int],
+    results: Results,
+    finished: NDArray[np.bool_],
+    keep_tables: bool,
+    began: float,
+) -> Runs:
     completed = bool(finished.all())
     rows = slice(None) if completed else finished  # a slice copies nothing
     tables = results["tables"][rows]
