@@ -73,15 +73,16 @@ class Room(gym.Env[Any, Any]):
 class Tutorial(gym.Env):
     """The grid world of Gymnasium's page "Create a custom environment", written from its description.
 
-    An agent and a target are at different cells of a square; the observation is a Dict of their two positions. Actions 0
-    to 3 move right, up, left and down. Reaching the target gives a reward of 1 and ends the episode.
+    An agent and a target are at different cells of a square; the observation is a Dict of their two positions. Actions
+    0 to 3 move right, up, left and down. Reaching the target gives a reward of 1 and ends the episode.
     """
 
     MOVES = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
 
     def __init__(self, size: int = 5) -> None:
         self.size = size
-        cell = gym.spaces.Box(0, size - 1, shape=(2,), dtype=int)
+        integer: Any = int
+        cell = gym.spaces.Box(0, size - 1, shape=(2,), dtype=integer)
         self.observation_space = gym.spaces.Dict({"agent": cell, "target": cell})
         self.action_space = gym.spaces.Discrete(4)
         self.agent = self.target = np.array([-1, -1])

@@ -46,7 +46,7 @@ WRAPPERS = [
 
 def check(make: Callable[[], gym.Env], happens: str, write: str) -> None:
     """Follows a line of a table."""
-    train = partial(qtab.train, **SETTINGS)
+    train: Any = partial(qtab.train, **SETTINGS)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # Gymnasium's wrappers warn
         if happens.startswith("refused"):
@@ -74,7 +74,7 @@ def test_a_wrapper_is_served_as_documented(wrapper: str, name: str, happens: str
         pytest.importorskip("cv2", reason="Gymnasium changes images with OpenCV")
 
     def make() -> gym.Env:
-        kwargs = {"render_mode": "rgb_array"} if any(image in wrapper for image in IMAGES) else {}
+        kwargs: dict[str, Any] = {"render_mode": "rgb_array"} if any(image in wrapper for image in IMAGES) else {}
         made: gym.Env = eval(wrapper, {**NAMES, "env": gym.make(name, **kwargs)})  # noqa: S307
         return made
 

@@ -98,7 +98,7 @@ def test_a_saved_run_asks_for_its_function(tmp_path: Path) -> None:
     assert qtab.verify(loaded).equal
     assert len(qtab.resume(loaded, 6).episode_returns) == 6
     assert_same_run(qtab.train(resume=tmp_path / "run.npz", discretizer=cells, episodes=6), qtab.resume(loaded, 6))
-    with pytest.raises(ValueError, match="^discretizer must be that of the run to resume"):
+    with pytest.raises(ValueError, match=r"^discretizer must be that of the run to resume"):
         qtab.train(resume=loaded, discretizer=len)
     qtab.train("MountainCar-v0", **SETTINGS).save(tmp_path / "plain.npz")
     with pytest.raises(

@@ -19,6 +19,8 @@ from support.gridworld import Tutorial
 from support.parity import assert_same_run
 
 SETTINGS: dict[str, Any] = {"episodes": 3, "seed": 5, "epsilon": 0.5, "learning_rate": 0.3, "max_episode_steps": 20}
+DEFAULT: Any = settings.default
+EXAMPLES = max(DEFAULT.max_examples // 3, 1)
 SHAPES = st.sampled_from([(), (1,), (2,), (1, 2)])
 
 
@@ -33,7 +35,8 @@ def leaves(draw: st.DrawFn, unbounded: bool) -> gym.Space[Any]:
         nvec = np.array(draw(st.sampled_from([[2, 3], [[1], [4]]])))
         return MultiDiscrete(nvec, start=nvec - 3)
     if kind == 2:
-        return MultiBinary(draw(st.sampled_from([2, (1, 2)])))
+        size: Any = draw(st.sampled_from([2, (1, 2)]))
+        return MultiBinary(size)
     if kind == 3:
         dtype: Any = draw(st.sampled_from([np.int8, np.int64, np.uint16]))
         return Box(1, 1 + count, shape, dtype)
@@ -60,8 +63,8 @@ def cases(draw: st.DrawFn) -> tuple[gym.Space[Any], dict[str, Any]]:
     max_rows = draw(st.none() | st.just(100))
     space = draw(nested(unbounded=max_rows is not None))
     name = draw(st.sampled_from(["bins", "tiles"])) if max_rows is None else "bins"
-    options: dict[str, Any] = {"bins": {"bins": 3}, "tiles": {"tilings": 3, "tiles": 2, "learning_rate": 0.2}}[name]
-    chosen = {**SETTINGS, "discretizer": name, **options}
+    options: Any = {"bins": {"bins": 3}, "tiles": {"tilings": 3, "tiles": 2, "learning_rate": 0.2}}[name]
+    chosen: dict[str, Any] = {**SETTINGS, "discretizer": name, **options}
     floats = any(np.issubdtype(part.dtype, np.floating) for part in boxes(space))
     large = any(np.issubdtype(part.dtype, np.integer) and part.high.max() > 1024 for part in boxes(space))
     if not floats and (max_rows is not None or not large):
@@ -79,7 +82,7 @@ def boxes(space: Any) -> list[Box]:
     return [space] if isinstance(space, Box) else []
 
 
-@settings(max_examples=max(settings.default.max_examples // 3, 1))
+@settings(max_examples=EXAMPLES)
 @given(cases())
 def test_any_nesting_of_spaces_trains_verifies_predicts_and_is_saved(
     case: tuple[gym.Space[Any], dict[str, Any]],
@@ -102,12 +105,14 @@ def test_any_nesting_of_spaces_trains_verifies_predicts_and_is_saved(
         values = sum(table[row].sum(axis=0) for table in run.tables)
         assert np.allclose(run.q_values(observation), values, atol=1e-12)
         assert loaded.predict(observation)[0] == run.predict(observation)[0] == np.argmax(run.q_values(observation)) + 2
-    batch = concatenate(space, observations, create_empty_array(space, 4))
+    empty: Any = create_empty_array(space, 4)
+    batch = concatenate(space, observations, empty)
     assert np.array_equal(run.discretizer.active_rows(batch), np.stack(rows))
 
 
 def test_the_order_is_gymnasiums_and_each_component_has_an_axis() -> None:
-    space = Dict({"z": Discrete(2), "a": Tuple([Box(0, 2, (2,), np.int8), Box(0.0, 1.0, ())])})
+    parts: Any = [Box(0, 2, (2,), np.int8), Box(0.0, 1.0, ())]
+    space = Dict({"z": Discrete(2), "a": Tuple(parts)})
     run = qtab.train(Sampled(space), discretizer="bins", bins=5, **SETTINGS)
     assert [axis.name for axis in run.axes] == ["a[0][0]", "a[0][1]", "a[1]", "z"]
     assert run.q_table.shape == (3, 3, 5, 2, 3)

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._spec import DiscretizerSpec
@@ -116,7 +116,7 @@ class Discretizer(ABC):
         """Whether another discretizer has the same rows for observations of the same shape."""
         return self.shape == other.shape and self.low.shape == other.low.shape
 
-    def active_rows(self, observation: ArrayLike) -> NDArray[np.int64]:
+    def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (n_active,) rows of an observation, or the (n, n_active) rows of n observations.
 
         With hashing a row can appear several times.
@@ -127,7 +127,7 @@ class Discretizer(ABC):
         """
         return self._compiled.active_rows(observation)
 
-    def row(self, observation: ArrayLike) -> int:
+    def row(self, observation: Any) -> int:
         """Returns the row of the cell of one observation.
 
         Raises:
@@ -143,7 +143,7 @@ class Discretizer(ABC):
             raise ValueError(f"observation must have shape {self.low.shape}, got {np.shape(observation)}")
         return int(rows[0])
 
-    def cell(self, observation: ArrayLike) -> tuple[int, ...]:
+    def cell(self, observation: Any) -> tuple[int, ...]:
         """Returns the index of one observation in ``run.q_table`` and ``run.policy``; see :meth:`row`."""
         return tuple(int(index) for index in np.unravel_index(self.row(observation), self.shape))
 

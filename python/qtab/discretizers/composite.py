@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._spec import DiscretizerSpec, FactorSpec, IdentitySpec
@@ -202,7 +202,7 @@ class Composite(Discretizer):
         """
         return self.layout.flat(observation, self._dtype, self._first)
 
-    def active_rows(self, observation: ArrayLike) -> NDArray[np.int64]:
+    def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (n_active,) rows of an observation, or the (n, n_active) rows of n observations.
 
         Observations have the structure of the space; n of them are batched as Gymnasium's vector environments do. Those

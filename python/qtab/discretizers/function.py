@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from qtab._spec import IdentitySpec
 from qtab._utils.shown import shown
@@ -129,7 +129,7 @@ class Function(Discretizer):
             row = row * count + index
         return row
 
-    def active_rows(self, observation: ArrayLike) -> NDArray[np.int64]:
+    def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (1,) row of an observation, or the (n, 1) rows of n observations of a space that has a shape.
 
         Raises:

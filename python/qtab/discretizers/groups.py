@@ -139,12 +139,11 @@ def _by_key(layout: Layout, config: Config, n_actions: int) -> tuple[Group, ...]
 
 
 def _group(layout: Layout, parts: list[Part], config: Config, n_actions: int, key: str | None = None) -> Group:
-    single = all(part.single for part in parts)
-    low, high = (
-        np.array([bound for part in parts for bound in getattr(part, name)], np.float32 if single else np.float64)
-        for name in ("low", "high")
-    )
-    box = spaces.Box(low, high, dtype=np.float32 if single else np.float64)
+    dtype: Any = np.float32 if all(part.single for part in parts) else np.float64
+    bounds: Any = [
+        np.array([bound for part in parts for bound in getattr(part, name)], dtype) for name in ("low", "high")
+    ]
+    box = spaces.Box(*bounds, dtype=dtype)
     discretizer = OF_BOXES[str(config.discretizer)].build(box, config, n_actions)
     assert isinstance(discretizer, BoxDiscretizer)  # noqa: S101 - for type checkers
     return Group(tuple(layout.components(parts)), discretizer, key)

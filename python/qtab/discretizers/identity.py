@@ -32,8 +32,8 @@ class Identity(Discretizer):
         bounds = integer_bounds(space)
         if bounds is None:
             raise ValueError(
-                f"the observation space must be discrete for discretizer 'identity', got {space}; discretizer 'bins' or "
-                "'tiles' divides it"
+                f"the observation space must be discrete for discretizer 'identity', got {space}; discretizer 'bins' "
+                "or 'tiles' divides it"
             )
         low, high = bounds
         if not low.size:

@@ -130,7 +130,8 @@ class Layout:
 
     def components(self, parts: "list[Part] | tuple[Part, ...]") -> list[int]:
         """Returns the indices of the components of some parts."""
-        indices, first = [], 0
+        indices: list[int] = []
+        first = 0
         for part in self.parts:
             if part in parts:
                 indices += range(first, first + part.size)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from qtab._spec import IdentitySpec
 from qtab._utils.checks import required
@@ -28,7 +28,8 @@ class Sparse(Discretizer):
     """Finds the cell of an observation."""
     max_rows: int
     met: dict[bytes, int] = field(repr=False)
-    """The row of each cell that was met, by the bytes of its int64 indices. Training adds to it; :meth:`as_learned` returns a copy."""
+    """The row of each cell that was met, by the bytes of its int64 indices. Training adds to it; :meth:`as_learned`
+    returns a copy."""
     gives_out: bool = True
     """Whether :meth:`observe` gives a row to a cell that was not met."""
 
@@ -79,7 +80,8 @@ class Sparse(Discretizer):
 
     def with_function(self, function: Callable[[Any], Any]) -> "Sparse":
         """Returns the table with another function, if it has one."""
-        return replace(self, cells=self.cells.with_function(function))
+        cells = self.cells
+        return replace(self, cells=cells.with_function(function) if isinstance(cells, Function) else cells)
 
     def as_played(self) -> "Sparse":
         """Returns the table for a policy that only plays: what was not met shares the last row."""
@@ -130,7 +132,7 @@ class Sparse(Discretizer):
             self.met[cell] = row
         return row
 
-    def active_rows(self, observation: ArrayLike) -> NDArray[np.int64]:
+    def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (1,) row of an observation, or the (n, 1) rows of n observations; the last for what was not met.
 
         Raises:

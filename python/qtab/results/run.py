@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
 from qtab._utils.fields import with_fields
@@ -137,7 +137,7 @@ class Run:
                 f"run.{method}(observation) works"
             )
 
-    def q_values(self, observation: ArrayLike) -> NDArray[np.float64]:
+    def q_values(self, observation: Any) -> NDArray[np.float64]:
         """Returns the (actions,) values of an observation, or the (n, actions) values of n observations.
 
         Raises:
@@ -147,7 +147,7 @@ class Run:
         active = np.moveaxis(self.discretizer.active_rows(observation), -1, 0)
         return _sum(_sum(table[rows] for rows in active) for table in self.tables)
 
-    def values(self, observation: ArrayLike) -> Any:
+    def values(self, observation: Any) -> Any:
         """Returns the value of an observation under the greedy policy, or the (n,) values of n observations.
 
         It is the largest action value, as a float. Of Double Q-learning, whose :attr:`q_table` is the sum of two
@@ -162,7 +162,7 @@ class Run:
 
     def predict(
         self,
-        observation: ArrayLike,
+        observation: Any,
         state: Any = None,  # noqa: ARG002 - Stable-Baselines3's signature
         episode_start: Any = None,  # noqa: ARG002
         deterministic: bool = True,
