@@ -178,10 +178,15 @@ def test_a_scale_of_another_type_is_refused(value):
         qtab.train("MountainCar-v0", scale=value)
 
 
-@pytest.mark.parametrize("value", [(), (10,), (10, 100, 1)])
+@pytest.mark.parametrize("value", [(10,), (10, 100, 1)])
 def test_a_scale_of_another_length_is_refused_with_its_length(value):
     with pytest.raises(ValueError, match=r"scale must hold 2 numbers .* got \("):
         qtab.train("MountainCar-v0", scale=value)
+
+
+def test_a_scale_that_is_not_given_is_not_quoted():
+    with pytest.raises(ValueError, match=r"^scale must be given and hold 2 numbers [^\[(]*, or discretizer='bins' or"):
+        qtab.train("MountainCar-v0", scale=())
 
 
 @pytest.mark.parametrize("value", [(1e9, 1e9), (1e300, 1e300)])

@@ -120,6 +120,15 @@ def test_the_order_is_gymnasiums_and_each_component_has_an_axis() -> None:
     assert run.discretizer.cell(observation) == (2, 0, 2, 1)
     assert np.array_equal(run.q_values(observation), run.q_table[2, 0, 2, 1])
     assert run.discretizer.cell(np.array([2, 0, 0.5, 1])) == (2, 0, 2, 1)
+    assert run.discretizer.cell(np.array([1.6, -0.4, 0.5, 1.2])) == (2, 0, 2, 1)  # coordinates within the same edges
+
+
+def test_the_values_of_a_mixed_space_are_drawn_also_with_tiles() -> None:
+    pytest.importorskip("matplotlib")
+    space = Dict({"room": Discrete(3), "speed": Box(-1.0, 1.0, (1,))})
+    run = qtab.train(Sampled(space), discretizer="tiles", **SETTINGS)
+    ax = qtab.plots.values(run)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("room", "speed[0]")
 
 
 @pytest.mark.parametrize(

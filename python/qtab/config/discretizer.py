@@ -3,15 +3,7 @@
 import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-
-from qtab._utils import checks
-from qtab._utils.shown import shown
-from qtab._utils.suggestions import did_you_mean
-from qtab.config.choices import CHOICES
-
-if TYPE_CHECKING:
-    from qtab.config.config import Config
+from typing import Any
 
 FUNCTION = "function"
 MAPPING = "mapping"
@@ -29,50 +21,6 @@ def uses_tiles(discretizer: Any) -> bool:
     if isinstance(discretizer, Mapping):
         return any(of_key["discretizer"] == "tiles" for of_key in discretizer.values())
     return bool(discretizer == "tiles")
-
-
-def checked_discretizer(name: str, value: Any) -> Any:
-    """Returns the setting, checked: that of a key as a mapping with its name and the options that are given.
-
-    Raises:
-        TypeError: for a value of the wrong type.
-        ValueError: for an unknown name, or an option that does not fit.
-    """
-    if isinstance(value, Mapping):
-        if not value:
-            raise ValueError(f"{name} must name a discretizer for at least one key of the observation, got {{}}")
-        return {_key(name, key): _of_key(f"{name}[{key!r}]", given) for key, given in value.items()}
-    if callable(value) and not isinstance(value, str):
-        return value
-    return checks.choice(name, value, CHOICES[name])
-
-
-def _key(name: str, key: Any) -> str:
-    if isinstance(key, bool) or not isinstance(key, str | int):
-        raise TypeError(f"{name} must have texts or integers as keys, those of the observation, got {shown(key)}")
-    return str(key)
-
-
-def _of_key(name: str, given: Any) -> dict[str, Any]:
-    from qtab.config.config import Config
-    from qtab.config.options import OPTIONS, defaults, is_set
-
-    options = {"discretizer": given} if isinstance(given, str) else given
-    if not isinstance(options, Mapping):
-        raise TypeError(f"{name} must be a name or a mapping of a name and its options, got {shown(given)}")
-    known = ["discretizer", *(option for option, of in OPTIONS.items() if of.choice == "discretizer")]
-    known = [option for option in known if option not in ("shape", "max_rows")]
-    for option in options:
-        if option not in known:
-            raise ValueError(f"{name} has an unknown option {option!r}{did_you_mean(str(option), known)}")
-    if not isinstance(options.get("discretizer"), str):
-        raise TypeError(f"{name} must name its discretizer, got {shown(given)}")
-    try:
-        config = Config(**{"learning_rate": 0.0, **options})
-    except (TypeError, ValueError) as error:
-        raise type(error)(f"{name}: {error}") from None
-    complete = vars(config) | defaults(vars(config))
-    return {option: complete[option] for option in known if is_set(complete[option])}
 
 
 @dataclass(frozen=True)
@@ -104,7 +52,7 @@ LEFT_OUT = ("shape", "max_rows")
 """Settings that files and stores leave out where they have no value, because earlier versions did not have them."""
 
 
-def stored_fields(config: "Config") -> dict[str, Any]:
+def stored_fields(config: Any) -> dict[str, Any]:
     """Returns the settings of a config as files and stores hold them."""
     fields = ((field.name, getattr(config, field.name)) for field in dataclasses.fields(config))
     return {name: value for name, value in fields if name not in LEFT_OUT or value is not None}

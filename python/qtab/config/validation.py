@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config.choices import CHOICES
-from qtab.config.discretizer import checked_discretizer, uses_tiles
+from qtab.config.discretizer import uses_tiles
+from qtab.config.keyed_discretizers import check_limits, checked_discretizer
 from qtab.config.options import OPTIONS, check_options, other_choice
 
 LARGEST_MT19937_SEED = 2**32 - 1
@@ -48,11 +49,7 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
     for name in ("epsilon_warm_up", "learning_rate_warm_up"):
         if checked[name] is not None and checked[name] >= checked["episodes"]:
             raise ValueError(f"{name} must be less than episodes = {checked['episodes']}, got {shown(checked[name])}")
-    if checked["low"] is not None and checked["high"] is not None:
-        if len(checked["low"]) != len(checked["high"]):
-            raise ValueError(f"high must hold as many numbers as low, got {shown(checked['high'])}")
-        if not all(low < high for low, high in zip(checked["low"], checked["high"], strict=True)):
-            raise ValueError(f"high must lie above low = {checked['low']!r}, got {shown(checked['high'])}")
+    check_limits(checked["low"], checked["high"])
     return checked
 
 
@@ -193,7 +190,7 @@ def _holds_numbers(array: NDArray[Any]) -> bool:
 
 _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(CHOICES, _choice),
-    "discretizer": checked_discretizer,
+    "discretizer": lambda name, value: checked_discretizer(name, value, _CHECKS),
     "shape": _counts(1, None),
     "max_rows": _integer(1, MAX_ROWS),
     "env": _text,

@@ -187,6 +187,8 @@ class Layout:
                 if values.shape != (*shape, *part.shape):
                     raise ValueError(f"{part.name} must have shape {part.shape}, the space's, got {values.shape}")
                 values = values.reshape(*shape, part.size)
+            elif offset is not None and values.dtype.kind == "f":
+                values = np.rint(values)  # coordinates, of which an index has the cell from -0.5 to 0.5 around it
             values = part.numbers(values)
             flat[..., start:stop] = values if offset is None else values.astype(np.int64) - offset
             start = stop

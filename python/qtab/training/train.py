@@ -81,7 +81,8 @@ def train(
             last one included; or after how many episodes to copy them, such as ``(0, 10, 100)``, 0 being before all.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the run takes more
             than a second.
-        memory_limit: The number of bytes that the run may take; None means half of the machine's memory.
+        memory_limit: The number of bytes that the run may take; None means half of the machine's memory, but no
+            more than is free.
         **settings: The settings of the run, explained below.
 
     Returns:

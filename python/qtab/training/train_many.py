@@ -61,7 +61,8 @@ def train_many(
         config: The settings to start from, as for :func:`qtab.train`, without the seed.
         threads: The number of threads or processes; None means one per core.
         tables: Whether to keep the Q tables.
-        memory_limit: The number of bytes that the runs may take; None means half of the machine's memory.
+        memory_limit: The number of bytes that the runs may take; None means half of the machine's memory, but no
+            more than is free.
         callback: A callable, or a sequence of them, called with a :class:`qtab.RunsProgress` whenever some more runs
             are finished, and after the last one. Any of them stops the training by returning False.
         callback_every: The number of runs between two calls; None takes as many as need about a second.

@@ -12,7 +12,7 @@ pub enum FactorFeatures {
     /// One component, by a grid with arithmetic in f64.
     Double(AnyGrid<f64>),
     /// Any number of components, by tile coding.
-    Tiles(TileCoding<f64>),
+    TileCoding(TileCoding<f64>),
 }
 
 impl FactorFeatures {
@@ -21,7 +21,7 @@ impl FactorFeatures {
             Self::Index(count) => *count as usize,
             Self::Single(grid) => Features::<[f32]>::len(grid),
             Self::Double(grid) => Features::<[f64]>::len(grid),
-            Self::Tiles(tiles) => Features::<[f64]>::len(tiles),
+            Self::TileCoding(tiles) => Features::<[f64]>::len(tiles),
         }
     }
 }
@@ -54,12 +54,13 @@ impl Product {
             let rows = factor.features.len();
             n_rows = n_rows.checked_mul(rows)?;
             last = rows.checked_sub(1)?.checked_mul(factor.stride as usize)?.checked_add(last)?;
-            let is_tiles = matches!(factor.features, FactorFeatures::Tiles(_));
+            let is_tiles = matches!(factor.features, FactorFeatures::TileCoding(_));
             if factor.components.is_empty() || (factor.components.len() > 1 && !is_tiles) {
                 return None;
             }
         }
-        let tile_codings = factors.iter().filter(|factor| matches!(factor.features, FactorFeatures::Tiles(_))).count();
+        let tile_codings =
+            factors.iter().filter(|factor| matches!(factor.features, FactorFeatures::TileCoding(_))).count();
         (tile_codings <= 1 && last < n_rows && u32::try_from(n_rows).is_ok()).then_some(Self { factors, n_rows })
     }
 }
@@ -86,7 +87,7 @@ impl Features<[f64]> for Product {
                     }
                     FactorFeatures::Single(grid) => grid.active_rows(&[value as f32]).map_err(within)?[0],
                     FactorFeatures::Double(grid) => grid.active_rows(&[value]).map_err(within)?[0],
-                    FactorFeatures::Tiles(tiles) => {
+                    FactorFeatures::TileCoding(tiles) => {
                         let values: Vec<f64> = components.iter().map(|&axis| observation[axis]).collect();
                         let active = tiles.active_rows(&values).map_err(within)?;
                         n_active = active.as_ref().len();
@@ -137,7 +138,7 @@ mod tests {
     #[test]
     fn each_index_has_tilings_of_its_own() {
         let tiles = TileCoding::new(&[0.0], &[1.0], &[4], 2);
-        let tiles = Factor { components: vec![0], features: FactorFeatures::Tiles(tiles), stride: 1 };
+        let tiles = Factor { components: vec![0], features: FactorFeatures::TileCoding(tiles), stride: 1 };
         let Some(product) = Product::new(vec![tiles, index(1, 3, 10)]) else { unreachable!("it fits") };
         assert_eq!(Features::<[f64]>::len(&product), 30);
         assert_eq!(product.active_rows(&[0.0, 2.0]).map(|active| active.as_ref().to_vec()), Ok(vec![20, 25]));

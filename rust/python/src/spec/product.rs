@@ -59,7 +59,7 @@ fn features(discretizer: &DiscretizerSpec) -> PyResult<(FactorFeatures, usize)> 
                 _ => Err(invalid("discretizer", "one of a single component", counts.len())),
             };
         }
-        DiscretizerSpec::Tiles(tiles) => FactorFeatures::Tiles(tiles.tile_coding()),
+        DiscretizerSpec::Tiles(tiles) => FactorFeatures::TileCoding(tiles.tile_coding()),
         grid => match grid.box_space()?.0 {
             FloatType::F32 => FactorFeatures::Single(grid.grid(|bound| bound as f32)?),
             FloatType::F64 => FactorFeatures::Double(grid.grid(|bound| bound)?),
