@@ -44,6 +44,15 @@ WRAPPERS = [
 ]
 
 
+def cases() -> Iterator[Any]:
+    """The lines about wrappers; slow are those with frames, and a second Box and a second discrete space."""
+    for wrapper, name, happens, write in WRAPPERS:
+        again = happens == "trains with the preset" and name in ("CartPole-v1", "FrozenLake-v1")
+        slow = again or any(image in wrapper for image in IMAGES)
+        marks = [pytest.mark.slow] if slow else []
+        yield pytest.param(wrapper, name, happens, write, marks=marks, id=f"{wrapper}-{name}")
+
+
 def check(make: Callable[[], gym.Env], happens: str, write: str) -> None:
     """Follows a line of a table."""
     train: Any = partial(qtab.train, **SETTINGS)
@@ -64,9 +73,7 @@ def test_a_space_is_served_as_documented(space: str, happens: str, write: str) -
     check(lambda: Sampled(eval(space, NAMES)), happens, write)  # noqa: S307
 
 
-@pytest.mark.parametrize(
-    ("wrapper", "name", "happens", "write"), WRAPPERS, ids=[f"{w}-{name}" for w, name, *_ in WRAPPERS]
-)
+@pytest.mark.parametrize(("wrapper", "name", "happens", "write"), cases())
 def test_a_wrapper_is_served_as_documented(wrapper: str, name: str, happens: str, write: str) -> None:
     if any(image in wrapper for image in IMAGES):
         pytest.importorskip("pygame", reason="frames need pygame")

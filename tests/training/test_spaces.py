@@ -20,7 +20,7 @@ from support.parity import assert_same_run
 
 SETTINGS: dict[str, Any] = {"episodes": 3, "seed": 5, "epsilon": 0.5, "learning_rate": 0.3, "max_episode_steps": 20}
 DEFAULT: Any = settings.default
-EXAMPLES = max(DEFAULT.max_examples // 3, 1)
+EXAMPLES = max(DEFAULT.max_examples // 4, 1)
 SHAPES = st.sampled_from([(), (1,), (2,), (1, 2)])
 
 
@@ -123,6 +123,7 @@ def test_the_order_is_gymnasiums_and_each_component_has_an_axis() -> None:
     assert run.discretizer.cell(np.array([1.6, -0.4, 0.5, 1.2])) == (2, 0, 2, 1)  # coordinates within the same edges
 
 
+@pytest.mark.slow
 def test_the_values_of_a_mixed_space_are_drawn_also_with_tiles() -> None:
     pytest.importorskip("matplotlib")
     space = Dict({"room": Discrete(3), "speed": Box(-1.0, 1.0, (1,))})
