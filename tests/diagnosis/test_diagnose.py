@@ -130,10 +130,17 @@ def test_an_environment_in_python_is_diagnosed_by_what_the_run_holds() -> None:
     diagnosis = qtab.diagnose(qtab.train(Room(), seed=0, episodes=5))
     assert diagnosis.solved is None
     assert "exploration" in diagnosis.not_made
-    assert "Not checked, as Rust does not step this environment" in str(diagnosis)
+    assert "Not checked, as this needs an environment with an id that Rust steps" in str(diagnosis)
     changed = qtab.diagnose(qtab.train(Room(), seed=0, episodes=5, epsilon=0.5, epsilon_schedule="constant"))
     with pytest.raises(ValueError, match="what_if needs an environment with an id to make it again, and Room has none"):
         changed.what_if()
+
+
+def test_a_table_without_an_id_is_diagnosed_by_what_the_run_holds() -> None:
+    table = {0: {0: [(1.0, 1, 0.0, False)]}, 1: {0: [(1.0, 1, 1.0, True)]}}
+    run = qtab.train(qtab.TabularEnv(table, [1.0, 0.0]), max_episode_steps=5, seed=0, episodes=5)
+    assert run.config.backend == "rust"
+    assert "exploration" in qtab.diagnose(run).not_made
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from typing import Any, get_args
 import gymnasium as gym
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
@@ -35,7 +35,11 @@ def assert_resumed(resumed: qtab.Run, whole: qtab.Run) -> None:
     assert resumed.completed
 
 
+PROFILE: Any = settings.default
+
+
 @pytest.mark.parametrize("algorithm", get_args(Algorithm))
+@settings(max_examples=PROFILE.max_examples // 2)  # each resumes twice: the run, and the one that was saved
 @given(data=st.data())
 def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, data):
     config = data.draw(run_settings(algorithm))
@@ -43,15 +47,14 @@ def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, dat
     after = data.draw(st.integers(1, episodes))
     whole = qtab.train("MountainCar-v0", **config)
     part = stopped("MountainCar-v0", after, **config)
-    if data.draw(st.booleans()):
-        path = tmp_path_factory.mktemp("resumed") / "run.npz"
-        part.save(path)
-        part = qtab.load(path)
-    if part.completed:
-        with pytest.raises(ValueError, match="episodes must be given for a run that has finished"):
-            qtab.resume(part)
-    else:
-        assert_resumed(qtab.resume(part), whole)
+    path = tmp_path_factory.getbasetemp() / f"{algorithm}.npz"
+    part.save(path)
+    for stored in (part, qtab.load(path)):
+        if stored.completed:
+            with pytest.raises(ValueError, match="episodes must be given for a run that has finished"):
+                qtab.resume(stored)
+        else:
+            assert_resumed(qtab.resume(stored), whole)
 
 
 class StoppedError(Exception):

@@ -33,10 +33,13 @@ def right_calls(run: qtab.Run, env: gym.Env) -> None:
     runs = qtab.load_runs("runs.npz")
     runs = qtab.train_many(lambda: env, range(3), bins=(3, 4), discretizer="bins")
     sweep: qtab.Sweep = qtab.sweep("MountainCar-v0", {"epsilon": [0.1, 0.2]}, store=Path("a.db"), n_steps=2)
+    playback: qtab.Playback = qtab.play(run, 3, seed=0, window=False, fps=10)
+    animation: qtab.Animation = qtab.animate(run, "learning.gif", what="policy")
+    run.to_html(Path("run.html"), optimum=-97.7, env=env)
     evaluation: qtab.Evaluation = qtab.evaluate(run, 10, seed=0, max_episode_steps=1000)
     config: qtab.Config = run.config.replace(env="Taxi-v4", learning_rate=0.5, tiles=None)
     config = qtab.Config("Taxi-v4", tiles=8, discretizer="tiles", scale=[])
-    del table, runs, sweep, evaluation, config
+    del table, runs, sweep, playback, animation, evaluation, config
 
 
 def stop_soon(progress: qtab.Progress) -> bool:
@@ -72,6 +75,10 @@ def wrong_calls(run: qtab.Run, progress: qtab.Progress) -> None:
     qtab.evaluate(run, learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
     qtab.evaluate(run, algorithm="qlearning")  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
     qtab.evaluate(run, max_episode_steps="many")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.play(run, epsiodes=2)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
+    qtab.play(run, window="yes")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.animate(run, what="value")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    run.to_html()  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
     run.config.replace(learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
     run.config.replace(discretizer="hexagons")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.Config(learnig_rate=0.1)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]

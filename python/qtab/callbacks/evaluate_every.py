@@ -71,7 +71,7 @@ class EvaluateEvery(BaseCallback):
     def __call__(self, progress: Progress) -> bool | None:
         """Evaluates the greedy policy."""
         seed = _evaluation_seed(progress.config) if self.seed is None else self.seed
-        self.evaluations.append(evaluate(progress.run, self.episodes, seed, self.env))
+        self.evaluations.append(evaluate(progress.run, self.episodes, seed, self.env, progress=False))
         self.evaluated_at.append(progress.episodes)
         return None
 

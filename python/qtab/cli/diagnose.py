@@ -48,7 +48,7 @@ def run(arguments: list[str]) -> int:
         report.add(**{name: getattr(diagnosis, name) for name in facts})
         if options.what_if and any(finding.changes for finding in diagnosis):
             with usage_errors(("seeds",)):
-                tried = diagnosis.what_if(options.seeds)
+                tried = diagnosis.what_if(options.seeds, progress=report.progress)
             report.text(f"\n{tried}")
             report.add(what_if=_facts(tried))
     return 0

@@ -48,6 +48,7 @@ def run(arguments: list[str]) -> int:
                 max_episode_steps=options.max_episode_steps,
                 method=options.method,
                 env_kwargs=options.env_kwargs,
+                progress=report.progress,
             )
         report.text(str(result))
         report.add(**{name: getattr(result, name) for name in FACTS})

@@ -60,7 +60,7 @@ def run(arguments: list[str]) -> int:
                 visits = counts_visits(earlier, False)
                 options = TrainingOptions(visits=visits, snapshots=asked.snapshots)
                 snapshots = snapshots_of(options, resolved.config.episodes, earlier)
-                best = optimum_of(resolved, asked.optimum)
+                best = optimum_of(resolved, asked.optimum, report.progress)
             with outputs:
                 report.text(_header(earlier, resolved))
                 wanted = tuple(number for number in snapshots if number > len(earlier.episode_returns))

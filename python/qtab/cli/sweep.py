@@ -1,7 +1,7 @@
 """``qtab sweep``."""
 
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,12 +10,11 @@ import gymnasium as gym
 import tyro
 
 from qtab._utils import checks
-from qtab._utils.progress import ProgressBar
 from qtab.cli.parsing import parse
 from qtab.cli.reporting import OutputFlags, Report
 from qtab.cli.study_file import read_study
 from qtab.cli.usage import UsageError, one_line, usage_errors
-from qtab.sweeps import StoreError, Sweep, SweepProgress, sweep
+from qtab.sweeps import StoreError, Sweep, sweep
 
 COMMAND = "qtab sweep"
 DEFAULT_SEEDS = 100
@@ -59,20 +58,20 @@ def _run(options: Arguments, report: Report) -> None:
         given = {"seeds": DEFAULT_SEEDS, **study.options}
         if options.threads is not None:
             given["threads"] = options.threads
-        with _names_file(options.study), _says_what_is_kept(store, report), _Bar(options.study.stem, report) as bar:
-            result = sweep(study.env, study.grid, store=store, callback=bar.show, **given, **study.config)
+        with _names_file(options.study), _says_what_is_kept(store, report):
+            result = sweep(study.env, study.grid, store=store, progress=report.progress, **given, **study.config)
     runs, settings = _counted(len(result), "run"), _counted(len(result.settings), "setting")
     report.text(f"{runs} of {settings} in {store}, {result.failed} failed")
     report.add(**_facts(result), store=store, confirmation=None)
     if options.confirm is not None:
-        with usage_errors(), _names_file(options.study), _Bar("confirm", report) as bar:
+        with usage_errors(), _names_file(options.study):
             confirmation = result.confirm(
                 options.confirm,
                 top=options.top,
                 store=options.confirm_store,
                 threads=given.get("threads"),
                 memory_limit=given.get("memory_limit"),
-                callback=bar.show,
+                progress=report.progress,
             )
             text = str(confirmation)
         report.text(text)
@@ -94,27 +93,6 @@ def _facts(result: Sweep) -> dict[str, Any]:
             for setting in result.ranking()
         ],
     }
-
-
-class _Bar:
-    """A progress bar that is created with the first progress, which tells the number of runs."""
-
-    def __init__(self, description: str, report: Report) -> None:
-        self._description, self._progress, self._opened = description, report.progress, ExitStack()
-        self._bar: ProgressBar | None = None
-
-    def __enter__(self) -> "_Bar":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._opened.close()
-
-    def show(self, progress: SweepProgress) -> None:
-        if self._bar is None:
-            self._bar = self._opened.enter_context(
-                ProgressBar(progress.total, "run", self._progress, self._description)
-            )
-        self._bar.move_to(progress.runs)
 
 
 @contextmanager

@@ -22,7 +22,7 @@ def run(arguments: list[str]) -> int:
             with usage_errors(flags, "env"):
                 outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record, report.text)
                 snapshots = snapshot_episodes(asked.snapshots, resolved.config.episodes)
-                best = optimum_of(resolved, asked.optimum)
+                best = optimum_of(resolved, asked.optimum, report.progress)
             with outputs:
                 report.text(_header(resolved))
                 Training(resolved, report, outputs, best, asked.visits, snapshots).run()

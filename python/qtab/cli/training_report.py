@@ -25,12 +25,14 @@ def backend_words(config: Config) -> str:
     return f"{config.env} {'in Rust' if config.backend == 'rust' else 'stepped by Gymnasium in Python'}"
 
 
-def optimum_of(resolved: ResolvedRun, always: bool) -> Optimum | None:
+def optimum_of(resolved: ResolvedRun, always: bool, progress: bool | None) -> Optimum | None:
     """Returns the optimum of a run's environment; None if it takes more than a second, unless ``always`` is set."""
     if not (always or _has_quick_optimum(resolved)):
         return None
     config = resolved.config
-    return optimum(config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps)
+    return optimum(
+        config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps, progress=progress
+    )
 
 
 def _has_quick_optimum(resolved: ResolvedRun) -> bool:

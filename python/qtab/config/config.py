@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils import html
 from qtab._utils.fields import with_fields
 from qtab.config.choices import (
     Algorithm,
@@ -183,6 +184,14 @@ class Config:
         unhashable = ("env_kwargs", "initial_q", "discretizer")
         return hash(tuple(value for name, value in vars(self).items() if name not in unhashable))
 
+    def _repr_html_(self) -> str:
+        """The settings that apply as a table, for notebooks."""
+        given = {name: value for name, value in vars(self).items() if value is not None}
+        if not self.env_kwargs:
+            del given["env_kwargs"]
+        shown = {name: _short(value) for name, value in given.items()}
+        return html.summary(f"Config of {self.env}", shown)
+
     def replace(self, **changes: "Unpack[ConfigSettings]") -> "Config":
         """Returns a copy with some settings changed.
 
@@ -200,6 +209,12 @@ DEFAULTS: Mapping[str, Any] = {
     for field in dataclasses.fields(Config)
 }
 """The default of each field."""
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        return f"array of shape {value.shape}"
+    return repr(value)
 
 
 def _comparable(value: Any) -> Any:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from qtab.config import Config
 from qtab.diagnosis.sample import Sample, sample_steps
 from qtab.envs.registry import entry_for_id, gymnasium_id, spec_of
+from qtab.envs.stored import spec_of_run
 from qtab.planning.optimum import Optimum
 from qtab.planning.solve import optimum as solve
 from qtab.reference.streams import agent_stream
@@ -46,9 +47,13 @@ class Facts:
         """The config of the run."""
         return self.run.config
 
-    @property
+    @cached_property
     def can_repeat(self) -> bool:
-        """Whether the run can be repeated quickly: Rust steps its environment."""
+        """Whether the run can be repeated quickly: Rust steps its environment, which can be made from its id."""
+        try:
+            spec_of_run(self.config.env)
+        except (gym.error.UnregisteredEnv, ModuleNotFoundError):
+            return False
         return self.config.backend == "rust" and len(self.run.episode_returns) > 0
 
     @cached_property
@@ -67,7 +72,7 @@ class Facts:
         """Episodes of the greedy policy; None where they cannot be played quickly."""
         if not (self.can_repeat and self.is_finite):
             return None
-        return evaluate(self.run, EVALUATION_EPISODES, seed=0)
+        return evaluate(self.run, EVALUATION_EPISODES, seed=0, progress=False)
 
     @cached_property
     def random(self) -> Run | None:

@@ -16,7 +16,7 @@ FLOATS = (np.dtype(np.float32), np.dtype(np.float64))
 """The dtypes of the Box spaces that qtab supports."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Actions:
     """The environment's actions, in the order of the columns of the Q table."""
 
@@ -25,6 +25,12 @@ class Actions:
     """The number of the first action, where the action space is Discrete."""
     values: NDArray[np.floating] | None = None
     """(count, d) in the dtype of the space: the actions themselves, where the action space is a Box."""
+
+    def __repr__(self) -> str:
+        if self.values is None:
+            return f"<Actions: {self.count}, numbered from {self.first}>"
+        listed = shown(self.values.tolist() if self.values.shape[1:] != (1,) else self.values[:, 0].tolist())
+        return f"<Actions: {self.count}, {listed}>"
 
     def __len__(self) -> int:
         return self.count

@@ -21,7 +21,7 @@ MAX_RESTORED_BINS = 10**7
 """A file with more bins than this along all components would take much more memory than its size."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Composite(Discretizer):
     """The components of a :class:`Layout`: each is an index, or belongs to a :class:`Group`.
 

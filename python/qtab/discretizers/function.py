@@ -15,7 +15,7 @@ from qtab.config.discretizer import function_name
 from qtab.discretizers.base import Discretizer, check_table_size
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Function(Discretizer):
     """The user's function: every observation is given to it, whatever its space."""
 

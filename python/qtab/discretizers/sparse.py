@@ -15,7 +15,7 @@ from qtab.discretizers.composite import Composite
 from qtab.discretizers.function import Function, rows_of
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sparse(Discretizer):
     """A table of ``max_rows`` rows, which the cells get in the order in which they are met during training.
 

@@ -66,7 +66,7 @@ def common_norm(grids: Sequence[NDArray[np.float64]]) -> "Normalize":
     """Returns one scale of colors for the finite values of several pictures."""
     from matplotlib.colors import Normalize
 
-    finite = np.concatenate([grid[np.isfinite(grid)] for grid in grids])
+    finite = np.concatenate([np.zeros(0), *(grid[np.isfinite(grid)] for grid in grids)])
     return Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0, 1)
 
 

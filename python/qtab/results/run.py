@@ -20,6 +20,7 @@ from qtab.results import behaviour, run_file, saving
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
+from qtab.results.page import WithPage
 from qtab.results.run_state import RunState
 from qtab.results.snapshots import Snapshots
 from qtab.results.summary import FINAL_EPISODES, default_block
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 @with_fields
 @dataclass(frozen=True, eq=False, repr=False)
-class Run:
+class Run(WithPage):
     """A finished or interrupted run: its config, its episodes, and what it learned."""
 
     config: Config
@@ -248,7 +249,7 @@ class Run:
         saving.write(Path(path), run_file.RUN, self, header, arrays)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Recording:
     """One episode that can be replayed."""
 
@@ -258,6 +259,9 @@ class Recording:
     """The state of the environment's bit generator before the episode's reset."""
     actions: tuple[Any, ...]
     """What ``env.step`` was given: integers, with the start of a Discrete space added, or arrays."""
+
+    def __repr__(self) -> str:
+        return f"<Recording of episode {self.episode}: {len(self.actions):,} actions>"
 
 
 def _sum(parts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:

@@ -20,6 +20,9 @@ class RunState:
     snapshots: tuple[int, ...] = ()
     """The numbers of episodes at which snapshots are still to be taken, ascending."""
 
+    def __repr__(self) -> str:
+        return f"<RunState of {len(self.checkpoint):,} bytes>"
+
     def array(self) -> NDArray[np.uint8]:
         """Returns the checkpoint as a file holds it."""
         return np.frombuffer(self.checkpoint, np.uint8)

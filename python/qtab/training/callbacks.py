@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from qtab import _core
 from qtab._utils.fields import with_fields
 from qtab.config import Config
+from qtab.results.summary import FINAL_EPISODES
 from qtab.training.rates import Rates
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @with_fields
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Progress:
     """The progress of a run, as a callback receives it. Later calls receive longer arrays with the same beginning.
 
@@ -37,6 +38,12 @@ class Progress:
     lengths: NDArray[np.int64]
     """(episodes,): the steps of each finished episode."""
     _source: "ProgressSource | None" = field(default=None, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        """One line: the returns are not shown."""
+        last = self.returns[-FINAL_EPISODES:]
+        mean = f", the last {len(last)} at {last.mean():.2f}" if len(last) else ""
+        return f"<Progress: {self.episodes:,} of {self.total:,} episodes{mean}>"
 
     @property
     def episode(self) -> int:

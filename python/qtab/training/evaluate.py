@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks, html, svg
 from qtab._utils.fields import with_fields
 from qtab._utils.frames import episode_frame
+from qtab._utils.progress import check_progress
 from qtab.config import Config
 from qtab.config.options import OPTIONS
 from qtab.config.unknown import suggesting
@@ -21,6 +22,7 @@ from qtab.envs.registry import spec_of
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
 from qtab.training.given_env import check_env, check_spaces
+from qtab.training.options import TrainingOptions
 from qtab.training.resolve import log_python_stepping, resolve
 from qtab.training.rows_met import greedy_table, with_rows_met
 from qtab.training.train import train_resolved
@@ -119,6 +121,7 @@ def evaluate(
     *,
     env_kwargs: Mapping[str, Any] | None = None,
     max_episode_steps: int | None = None,
+    progress: bool | None = None,
 ) -> Evaluation:
     """Plays episodes with a run's greedy policy, without exploration and without learning.
 
@@ -133,6 +136,8 @@ def evaluate(
         env_kwargs: Keyword arguments for the environment's constructor; None takes those of the run, or with ``env``
             none.
         max_episode_steps: The time limit of an episode, in steps; None takes that of the run.
+        progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the episodes take
+            more than a second.
 
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
@@ -140,6 +145,7 @@ def evaluate(
         ValueError: for an argument out of range, or an environment with other spaces than the run's.
     """
     checks.instance("run", run, Run)
+    check_progress(progress)
     check_env(env)
     config = run.config
     if env is None:
@@ -169,7 +175,7 @@ def evaluate(
     if env is not None:
         log_python_stepping(resolved)
     try:
-        played = train_resolved(resolved)
+        played = train_resolved(resolved, TrainingOptions(progress=progress))
     finally:
         resolved.close()
     return Evaluation(
