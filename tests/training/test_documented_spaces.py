@@ -73,7 +73,7 @@ def test_a_space_is_served_as_documented(space: str, happens: str, write: str) -
     check(lambda: Sampled(eval(space, NAMES)), happens, write)  # noqa: S307
 
 
-@pytest.mark.parametrize(("wrapper", "name", "happens", "write"), cases())
+@pytest.mark.parametrize(("wrapper", "name", "happens", "write"), list(cases()))
 def test_a_wrapper_is_served_as_documented(wrapper: str, name: str, happens: str, write: str) -> None:
     if any(image in wrapper for image in IMAGES):
         pytest.importorskip("pygame", reason="frames need pygame")

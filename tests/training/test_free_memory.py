@@ -40,7 +40,7 @@ def test_a_discrete_space_of_a_billion_states_is_refused(free: int) -> None:
         ("MountainCar-v0", {"discretizer": "tiles", "hashed_rows": 10**7}, "hashed_rows"),
         ("MountainCar-v0", {"discretizer": lambda _: 0, "shape": 10**7}, "shape"),
         ("FrozenLake-v1", {"max_rows": 10**7}, "max_rows"),
-        (Sampled(Box(0, 999, (3,), int)), {}, "the observation space"),  # type: ignore[arg-type]
+        (Sampled(Box(0, 999, (3,), int)), {}, "the observation space"),
     ],
     ids=str,
 )
