@@ -143,3 +143,15 @@ def test_many_runs_share_a_function(tmp_path: Path) -> None:
     assert loaded[1].predict(observation) == runs[1].predict(observation)
     with pytest.raises(ValueError, match="is the function 'cells'"):
         qtab.load_runs(tmp_path / "runs.npz")[1].predict(observation)
+
+
+@pytest.mark.slow
+def test_a_store_knows_a_function_by_its_name(tmp_path: Path) -> None:
+    settings: dict[str, Any] = {"shape": (19, 15), "episodes": 2, "max_episode_steps": 30, "seeds": 2}
+    first, again = (
+        qtab.sweep("MountainCar-v0", {"discount": [0.9]}, discretizer=cells, store=tmp_path / "s.db", **settings)
+        for _ in range(2)
+    )
+    assert first.columns["final_return"].tolist() == again.columns["final_return"].tolist()
+    with pytest.raises(qtab.StoreError, match="belongs to another sweep"):
+        qtab.sweep("MountainCar-v0", {"discount": [0.9]}, discretizer=len, store=tmp_path / "s.db", **settings)

@@ -132,6 +132,37 @@ def test_the_values_of_a_mixed_space_are_drawn_also_with_tiles() -> None:
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("room", "speed[0]")
 
 
+def test_each_key_has_its_discretizer_in_every_use_of_the_run(tmp_path: Path) -> None:
+    parts: Any = {
+        "room": Discrete(3),
+        "speed": Box(-1.0, 1.0, (2,)),
+        "heat": Box(0.0, 9.0, ()),
+        "far": Box(0, 10**6, ()),
+    }
+    env = Sampled(Dict(parts))
+    chosen: Any = {"speed": "bins", "heat": {"discretizer": "edges", "edges": [[1, 5]]}, "far": "identity"}
+    with pytest.raises(ValueError, match=r"discretizer\['far'\] must be 'bins', 'tiles' or another one for floats"):
+        qtab.train(env, discretizer=chosen, **SETTINGS)
+    chosen["far"] = {"discretizer": "tiles", "tiles": 4, "high": [100]}
+    run = qtab.train(env, discretizer=chosen, **SETTINGS)
+    assert run.config.discretizer == {
+        "speed": {"discretizer": "bins", "bins": (10, 10), "low": (-1.0, -1.0), "high": (1.0, 1.0)},
+        "heat": {"discretizer": "edges", "edges": ((1.0, 5.0),)},
+        "far": {"discretizer": "tiles", "tilings": 8, "tiles": (4,), "low": (0.0,), "high": (100.0,)},
+    }
+    assert run.tables.shape == (1, 3 * 10 * 10 * 3 * 8 * 5, 3)
+    assert qtab.verify(run, env=env).equal
+    run.save(tmp_path / "run.npz")
+    loaded = qtab.load(tmp_path / "run.npz")
+    assert loaded.config == run.config
+    assert hash(loaded.config) == hash(run.config)
+    observation = env.observation_space.sample()
+    assert loaded.discretizer.active_rows(observation).tolist() == run.discretizer.active_rows(observation).tolist()
+    assert qtab.evaluate(loaded, episodes=2, seed=1, env=env).lengths.sum() > 0
+    assert len(qtab.resume(loaded, 5, env=env).episode_returns) == 5
+    assert_same_run(qtab.train(env, config=loaded.config), run)
+
+
 @pytest.mark.parametrize(
     ("space", "discretizer", "text"),
     [

@@ -110,7 +110,7 @@ class Composite(Discretizer):
     @cached_property
     def counts(self) -> tuple[int, ...]:
         """How many rows each component has: 0 for those that are tiled, and for integers without bounds."""
-        spans = [last - first for part in self.layout.parts for first, last in zip(part.low, part.high, strict=True)]
+        spans = (last - first for first, last in self._bounds)
         counts = [int(span) + 1 if math.isfinite(span) else 0 for span in spans]
         for group in self.groups:
             sizes = group.discretizer.shape if group.discretizer.has_cells else (0,) * len(group.components)
@@ -132,7 +132,6 @@ class Composite(Discretizer):
 
     def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
         """Returns the edges of the cells: for an index the numbers halfway between the integers."""
-        lows = [low for part in self.layout.parts for low in part.low]
         grouped = {
             component: edges
             for group in self.groups
@@ -140,8 +139,12 @@ class Composite(Discretizer):
         }
         return tuple(
             grouped[component] if component in grouped else low - 0.5 + np.arange(count + 1.0)
-            for component, (low, count) in enumerate(zip(lows, self.counts, strict=True))
+            for component, ((low, _), count) in enumerate(zip(self._bounds, self.counts, strict=True))
         )
+
+    @cached_property
+    def _bounds(self) -> list[tuple[float, float]]:
+        return [bounds for part in self.layout.parts for bounds in zip(part.low, part.high, strict=True)]
 
     @cached_property
     def _is_whole(self) -> bool:
@@ -248,7 +251,8 @@ class Composite(Discretizer):
         outside = indices & bounded & ((cells < 0) | (cells >= counts))
         if outside.any():
             component = int(np.argmax(outside))
-            raise ValueError(f"{self.component_names[component]} lies outside the observation space")
+            value = int(cells[component]) + self._bounds[component][0]
+            raise ValueError(f"{self.component_names[component]} is {value}, outside the observation space")
         return cells
 
     def same_space(self, other: Discretizer) -> bool:
