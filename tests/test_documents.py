@@ -80,6 +80,16 @@ def test_the_readmes_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert (tmp_path / "learning_curve.png").stat().st_size > 0
 
 
+def test_the_python_of_the_page_on_actions_runs() -> None:
+    namespace: dict[str, Any] = {}
+    for block in PYTHON.findall((ROOT / "docs/actions.md").read_text(encoding="utf-8")):
+        exec(block, namespace)  # noqa: S102 - our own page
+    assert namespace["run"].action_names[1] == "{dimmer: 1, lamps: (0, 1)}"
+    assert repr(namespace["run"].predict(0)[0]) == "{'dimmer': 2, 'lamps': array([1, 1], dtype=int8)}"
+    assert namespace["taxi"].action_masks.shape == (500, 6)
+    assert namespace["lake"].config.backend == "rust"
+
+
 class Recorder:
     """Stands for a tracking library: takes any call, and writes down its name and arguments."""
 

@@ -4,7 +4,7 @@ The extension parses it once into its own enums. The words of each union stand t
 and its like); a test holds the two lists together.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 
 import numpy as np
@@ -32,10 +32,26 @@ class PythonEnvSpec(TypedDict):
     env: Any
     first_action: int
     """The environment's number of the first action, where its space is Discrete."""
-    actions: Sequence[NDArray[np.floating]]
-    """The actions themselves, where its space is a Box; empty for a Discrete space."""
+    actions: Sequence[Any]
+    """The actions themselves, as ``step`` takes them; empty for a Discrete space."""
+    action_mask: "MaskSourceSpec"
 
 
+class ConventionalMaskSource(TypedDict):
+    """No masks, or Gymnasium's ``info["action_mask"]``."""
+
+    type: Literal["none", "info"]
+
+
+class FunctionMaskSource(TypedDict):
+    """Masks by a function."""
+
+    type: Literal["function"]
+    function: Callable[[Any], Any]
+    """From an observation to its mask."""
+
+
+MaskSourceSpec: TypeAlias = ConventionalMaskSource | FunctionMaskSource
 EnvironmentSpec: TypeAlias = NativeEnvSpec | PythonEnvSpec
 
 # Discretizers
@@ -241,6 +257,23 @@ AlgorithmSpec: TypeAlias = (
 )
 
 
+class UnknownMasksSpec(TypedDict):
+    """Every state has all actions (none), or the environment gives the masks (observed)."""
+
+    type: Literal["none", "observed"]
+
+
+class KnownMasksSpec(TypedDict):
+    """Masks that are known before the first episode."""
+
+    type: Literal["known"]
+    available: NDArray[np.bool_]
+    """(rows, actions)"""
+
+
+ActionMasksSpec: TypeAlias = UnknownMasksSpec | KnownMasksSpec
+
+
 class RunSpec(TypedDict):
     """A run, but for its seed."""
 
@@ -253,6 +286,7 @@ class RunSpec(TypedDict):
     learning_rate: LearningRateSpec
     discount: float
     initial_q: InitialQSpec
+    action_masks: ActionMasksSpec
     terminal_update: TerminalUpdate
     on_truncation: OnTruncation
     episodes: int
@@ -275,6 +309,8 @@ class Results(TypedDict):
     """(runs, values), or (runs, 0) where tables are not kept."""
     finished: NDArray[np.bool_]
     """(runs,)"""
+    masks: NDArray[np.bool_]
+    """(runs, values) or (runs, 0): the action masks of runs that are stepped in Python, beside the tables."""
 
 
 Solution: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]

@@ -24,7 +24,7 @@ def wide(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_help_has_the_explanations_of_the_api(capsys: pytest.CaptureFixture[str]) -> None:
     text = help_of(capsys)
-    own = {"env", "edges", "actions", "initial_q"}
+    own = {"env", "edges", "actions", "action_mask", "initial_q"}
     assert [name for name, words in explanations().items() if name not in own and words not in text] == []
     for group in ("environment", "run", "learning", "exploration", "discretizer"):
         assert f"{group} options" in text

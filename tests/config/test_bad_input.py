@@ -278,11 +278,8 @@ SPACES = {
         ScriptedEnv([], dtype=np.uint8, high=255, dimensions=100),
         "scale must hold 100 numbers",
     ),
-    "many actions at once": (
-        ScriptedEnv([], actions=gym.spaces.MultiDiscrete([2, 2])),
-        "action space must be Discrete or a Box",
-    ),
-    "yes or no": (ScriptedEnv([], actions=gym.spaces.MultiBinary(1)), "action space must be Discrete or a Box"),
+    "texts": (ScriptedEnv([], actions=gym.spaces.Text(3)), "action space must be Discrete, MultiDiscrete"),
+    "too many actions": (ScriptedEnv([], actions=gym.spaces.MultiBinary(17)), "at most 65536 actions, got .* 131,072"),
 }
 
 

@@ -93,15 +93,12 @@ def test_listed_actions_are_used_unchanged() -> None:
         (gym.spaces.Box(-np.inf, np.inf, (1,)), 3, r"^actions must be the actions themselves .*no finite bounds"),
         (gym.spaces.Box(-1, 1, (20,)), 3, r"^actions must give at most 65536 actions, got 3 along each of 20"),
         (
-            gym.spaces.Box(-1, 1, (2, 2)),
-            3,
-            r"^the action space must be Discrete or a Box of one axis of float32",
-        ),
-        (
             gym.spaces.Box(0, 9, (1,), np.int64),
             3,
-            r"^the action space must be Discrete or a Box of one axis of float32",
+            r"^actions must give integers for the action space Box.*, got 3 along",
         ),
+        (gym.spaces.Box(0, 9, (1,), np.int64), (0, 2.5), r"^actions must hold integers for the action space Box"),
+        (gym.spaces.Box(0, 9, (2,), np.int64), ((0, 10),), r"^actions must lie in the action space Box"),
     ],
     ids=str,
 )

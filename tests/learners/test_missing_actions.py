@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
-from support.learner_settings import learning_rates, own_options
+from support.learner_settings import explorations, learning_rates, own_options
 
 BIAS = "qtab/MaximizationBias-v0"
 ALGORITHMS = sorted({"q_learning", "sarsa", "expected_sarsa", "double_q_learning", "n_step_sarsa", "sarsa_lambda"})
-ALGORITHMS += ["true_online_sarsa_lambda", "watkins_q_lambda", "dyna_q"]
+ALGORITHMS += ["true_online_sarsa_lambda", "watkins_q_lambda", "dyna_q", "dyna_q_plus"]
 
 
 def some_of_a(missing=8):
@@ -36,9 +36,7 @@ def settings(draw):
         **draw(own_options(algorithm)),
         "algorithm": algorithm,
         "initial_q": np.array(rows),
-        "epsilon": draw(st.floats(0, 1)),
-        "ties": draw(st.sampled_from(["first", "random"])),
-        "epsilon_schedule": draw(st.sampled_from(["constant", "linear"])),
+        **draw(explorations()),
         "seed": draw(st.integers(0, 2**32 - 1)),
         "episodes": 30,
     }
@@ -114,14 +112,6 @@ def test_bad_rewards_are_refused(settings, error, message):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        (
-            {"algorithm": "dyna_q_plus"},
-            "algorithm must be .* or 'dyna_q' for an initial_q that contains -inf, got 'dyna_q_plus'",
-        ),
-        (
-            {"exploration": "softmax", "preset": None, "epsilon": None},
-            "exploration must be 'epsilon_greedy' for an initial_q",
-        ),
         ({"initial_q": some_of_a(10)}, "initial_q must leave every state at least one action"),
         ({"initial_q": -some_of_a()}, "initial_q must hold finite numbers"),
         ({"initial_q": np.full((3, 10), np.nan)}, "initial_q must hold finite numbers"),

@@ -10,6 +10,7 @@ from gymnasium.spaces import Box, Dict, Text
 
 import qtab
 from support.environments import Sampled
+from support.gridworld import Tutorial
 from support.parity import assert_same_run
 
 SETTINGS: dict[str, Any] = {"episodes": 3, "seed": 5, "max_episode_steps": 40}
@@ -155,3 +156,26 @@ def test_a_store_knows_a_function_by_its_name(tmp_path: Path) -> None:
     assert first.columns["final_return"].tolist() == again.columns["final_return"].tolist()
     with pytest.raises(qtab.StoreError, match="belongs to another sweep"):
         qtab.sweep("MountainCar-v0", {"discount": [0.9]}, discretizer=len, store=tmp_path / "s.db", **settings)
+
+
+def test_a_mask_function_is_given_the_environments_own_observation() -> None:
+    def mask(observation: Any) -> Any:
+        assert isinstance(observation, dict)
+        return np.array([True, observation["agent"][0] != 1, True, True])
+
+    run = qtab.train(Tutorial(3), action_mask=mask, episodes=5, seed=0, max_episode_steps=50)
+    assert run.action_masks is not None
+    assert not run.action_masks[1][..., 1].all()  # those cells that were met
+    assert run.action_masks[[0, 2]].all()
+    assert qtab.verify(run, env=Tutorial(3)).equal
+    by_function = qtab.train(
+        Tutorial(3),
+        discretizer=lambda o: (*o["agent"], *o["target"]),
+        shape=(3, 3, 3, 3),
+        action_mask=mask,
+        episodes=5,
+        seed=0,
+        max_episode_steps=50,
+    )
+    assert by_function.tables.tobytes() == run.tables.tobytes()
+    assert qtab.verify(by_function, env=Tutorial(3)).equal

@@ -19,6 +19,9 @@ def right_calls(run: qtab.Run, env: gym.Env) -> None:
     run = qtab.train(gym.spec("MountainCar-v0"), learning_rate=np.float32(0.1), seed=np.int64(3), epsilon=None)
     run = qtab.train("Pendulum-v1", actions=3, initial_q=(-1, 1), edges=[[0.0], [0.0, 1.0], np.zeros(1)])
     run = qtab.train("Taxi-v4", initial_q=np.zeros((500, 6)), env_kwargs={"fickle_passenger": True}, preset="solved")
+    run = qtab.train("Taxi-v4", action_mask=lambda state: [state > 0] * 6)
+    run = qtab.train("Taxi-v4", action_mask=True)
+    run.predict(0, action_masks=np.ones(6, np.int8))
     run = qtab.train(config=run.config, episodes=10)
     run = qtab.train("MountainCar-v0", config={"learning_rate": 0.1}, callback=stop_soon, record=1)
     run = qtab.train("MountainCar-v0", **qtab.presets("MountainCar-v0")["solved"])
@@ -56,6 +59,7 @@ def wrong_calls(run: qtab.Run, progress: qtab.Progress) -> None:
     qtab.train("MountainCar-v0", learning_rate="fast")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", learning_rate=None)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", episodes=1e3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    qtab.train("Taxi-v4", action_mask="info")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", scale="10")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", callback=3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     qtab.train("MountainCar-v0", callback=[3])  # type: ignore[list-item]  # pyright: ignore[reportArgumentType]

@@ -73,6 +73,11 @@ def read_str(words: Words) -> str:
     return words[0]
 
 
+def read_flag(words: Words) -> bool:
+    """Reads True or False."""
+    return read_choice(words, ("True", "False")) == "True"
+
+
 def read_floats(words: Words) -> tuple[float, ...]:
     """Reads numbers."""
     return tuple(read_float([word]) for word in words)

@@ -29,6 +29,7 @@ _BY_NAME: Mapping[str, Any] = {
     "env_kwargs": ("[KEY VALUE ...]", "*", constructors.read_pairs),
     "edges": ("[NUMBER,...] ...", "*", constructors.read_edges),
     "actions": ("COUNT|ACTION ACTION ...", "*", constructors.read_actions),
+    "action_mask": ("{True,False}", 1, constructors.read_flag),
     "initial_q": ("LOW HIGH|VALUE|FILE", "*", constructors.read_initial_q),
 }
 _BY_TYPE: Mapping[Any, Any] = {
@@ -43,6 +44,8 @@ _EXPLANATIONS = {
     "edges": "The inner edges between the bins of each component of the observation, such as [-0.5,0,0.5] [0].",
     "actions": "The actions to choose from if the action space is a Box: the number of evenly spaced values along each "
     "component, or the actions themselves, [X,Y] if they have several components.",
+    "action_mask": "Whether to take only the actions that the environment's masks leave: by its method action_masks(), "
+    "or else in info['action_mask'].",
     "initial_q": "The initial Q table: drawn uniformly from a range, one number everywhere, or that of a saved run.",
 }
 """The settings whose values look different on the command line."""

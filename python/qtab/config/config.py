@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import html
 from qtab._utils.fields import with_fields
+from qtab.config.action_mask import Mask
 from qtab.config.choices import (
     Algorithm,
     Backend,
@@ -130,6 +131,11 @@ class Config:
     """Which of several greedy actions to take: the first, as np.argmax does, or a random one."""
     temperature: float | None = None
     """τ: softmax chooses an action with probability proportional to exp(Q / τ); above 0."""
+
+    action_mask: Mask = False
+    """Which actions each observation has: those of the environment's masks (True), by its method action_masks() or else
+    in info["action_mask"]; those of a function, from an observation to (actions,) booleans or 0 and 1; or all (False).
+    Actions that are masked are never chosen, and their values never used."""
 
     # The discretizer
 

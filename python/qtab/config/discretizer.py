@@ -1,6 +1,5 @@
 """The setting ``discretizer``: a name, a function, or a name and its options for each key of the observation."""
 
-import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -46,16 +45,6 @@ def function_name(function: Callable[[Any], Any]) -> str:
     if isinstance(function, MissingFunction):
         return function.name
     return str(getattr(function, "__qualname__", type(function).__qualname__))
-
-
-LEFT_OUT = ("shape", "max_rows")
-"""Settings that files and stores leave out where they have no value, because earlier versions did not have them."""
-
-
-def stored_fields(config: Any) -> dict[str, Any]:
-    """Returns the settings of a config as files and stores hold them."""
-    fields = ((field.name, getattr(config, field.name)) for field in dataclasses.fields(config))
-    return {name: value for name, value in fields if name not in LEFT_OUT or value is not None}
 
 
 def stored_function(config: dict[str, Any]) -> dict[str, str]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.shown import shown
+from qtab.config.action_mask import mask_setting
 from qtab.config.choices import CHOICES
 from qtab.config.discretizer import uses_tiles
 from qtab.config.keyed_discretizers import check_limits, checked_discretizer
@@ -38,10 +39,9 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
         most = LARGEST_MT19937_SEED if checked["bit_generator"] == "MT19937" else None
         checked["seed"] = checks.integer("seed", checked["seed"], least=0, most=most)
     check_options(checked)
-    if isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any():
-        for name, bad in (("algorithm", "dyna_q_plus"), ("exploration", "softmax"), ("discretizer", "tiles")):
-            if checked[name] == bad or (name == "discretizer" and uses_tiles(checked[name])):
-                raise ValueError(other_choice(name, bad, (bad,), "for an initial_q that contains -inf"))
+    missing = isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any()
+    if missing and uses_tiles(checked["discretizer"]):
+        raise ValueError(other_choice("discretizer", "tiles", ("tiles",), "for an initial_q that contains -inf"))
     most_rate = 2 if uses_tiles(checked["discretizer"]) else 1
     checks.real("learning_rate", checked["learning_rate"], 0, most_rate)
     _at_most(checked, "min_epsilon", "epsilon", OPTIONS["epsilon"].default)
@@ -220,6 +220,7 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "low": _each(checks.finite),
     "high": _each(checks.finite),
     "actions": _actions,
+    "action_mask": mask_setting,
     "initial_q": _initial_q,
     "max_episode_steps": _count,
     "preset": _text,

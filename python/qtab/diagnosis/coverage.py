@@ -16,8 +16,7 @@ SHOWN = 3
 def coverage(facts: Facts) -> Finding | None:
     """Finds that in many visited states some actions were never tried."""
     tried, visited = facts.tried, facts.visited
-    has_action = np.isfinite(facts.initial_tables).all(axis=0)
-    entries = has_action & visited[:, np.newaxis]
+    entries = facts.has_action & visited[:, np.newaxis]
     if not entries.any():
         return None
     untried = float(1.0 - tried[entries].mean())

@@ -211,7 +211,14 @@ class Facts:
     def q_values(self) -> NDArray[np.float64]:
         """(rows, actions): the values; the mean of two tables."""
         mean: NDArray[np.float64] = self.run.tables.mean(axis=0)
-        return mean
+        return np.where(self.has_action, mean, -np.inf)
+
+    @cached_property
+    def has_action(self) -> NDArray[np.bool_]:
+        """(rows, actions): which actions each state has."""
+        not_missing: NDArray[np.bool_] = np.asarray(np.isfinite(self.initial_tables).all(axis=0))
+        masks = self.run.action_masks
+        return not_missing if masks is None else not_missing & masks.reshape(not_missing.shape)
 
     @cached_property
     def sample(self) -> Sample | None:

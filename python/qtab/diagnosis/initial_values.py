@@ -45,7 +45,7 @@ def too_pessimistic(facts: Facts) -> Finding | None:
     epsilon = float(epsilons(config, len(facts.run.episode_returns)).mean())
     if epsilon > LITTLE_EPSILON:
         return None
-    untried = ~facts.tried & np.isfinite(facts.initial_tables).all(axis=0)
+    untried = ~facts.tried & facts.has_action
     values = facts.q_values
     hidden = (untried & (values < values.max(axis=1, keepdims=True))).any(axis=1) & visited
     greedy_tried = facts.tried[np.arange(len(values)), values.argmax(axis=1)]

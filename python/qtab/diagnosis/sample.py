@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.discretizers.composite_actions import flat
 from qtab.results.run import Run
 from qtab.training.run_env import make_run_env
 from qtab.training.train import train
@@ -69,6 +70,10 @@ def sample_steps(run: Run) -> Sample:
         env.close()
     observations = np.array(visited)
     active = run.discretizer.active_rows
-    known = np.array([run.actions[column] for column in range(len(run.actions))]).reshape(len(run.actions), -1)
-    columns = (np.array(taken).reshape(-1, 1, known.shape[1]) == known).all(axis=-1).argmax(axis=-1)
+    known = np.array([flat(run.actions[column]) for column in range(len(run.actions))])
+    columns = (
+        (np.array([flat(action) for action in taken]).reshape(-1, 1, known.shape[1]) == known)
+        .all(axis=-1)
+        .argmax(axis=-1)
+    )
     return Sample(active(observations), columns, active(np.array(following)), np.array(rewards), observations)

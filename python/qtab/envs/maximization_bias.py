@@ -5,6 +5,7 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from numpy.typing import NDArray
 
 from qtab._utils import checks
 
@@ -21,7 +22,7 @@ class MaximizationBiasEnv(gym.Env[Any, Any]):
 
     State A has only the actions right (0) and left (1); larger numbers act as left. ``info["action_mask"]``, (actions,)
     int8, marks the valid actions, as in Gymnasium's Taxi. A learner of this package excludes the others by -inf in
-    ``initial_q``, as the preset does.
+    ``initial_q``, as the preset does, or with ``action_mask=True``.
 
     Args:
         actions: The number of actions in B. The book says "many".
@@ -67,8 +68,12 @@ class MaximizationBiasEnv(gym.Env[Any, Any]):
         u, v = self.np_random.random(), self.np_random.random()
         return self.mean + self.deviation * (math.sqrt(-2.0 * math.log(1.0 - u)) * math.cos(math.tau * v))
 
-    def _info(self) -> dict[str, Any]:
+    def action_mask(self, state: int) -> NDArray[np.int8]:
+        """Returns (actions,): 1 for the actions that a state has."""
         mask = np.ones(self.actions, np.int8)
-        if self.state == A:
+        if state == A:
             mask[LEFT + 1 :] = 0
-        return {"action_mask": mask}
+        return mask
+
+    def _info(self) -> dict[str, Any]:
+        return {"action_mask": self.action_mask(self.state)}

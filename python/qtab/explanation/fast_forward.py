@@ -42,8 +42,10 @@ class Start:
 def start_of(run: Run, episode: int) -> Start | None:
     """Returns the start of an episode; None where only the steps before it tell what the agent drew or counted."""
     config = run.config
-    by_values = config.ties == "random" or (
-        isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q).any()
+    by_values = (
+        config.ties == "random"
+        or config.action_mask is not False
+        or (isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q).any())
     )
     if config.backend != "rust" or config.algorithm in TABLES_ONLY or by_values:
         return None

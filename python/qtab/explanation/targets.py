@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.reference.action_masks import ActionMasks
 from qtab.reference.policies import Policy
 from qtab.reference.task import value, values
 
@@ -13,7 +14,13 @@ Table = NDArray[np.float64]
 
 
 def bootstrap(
-    algorithm: str, tables: Sequence[Table], table: int, next_state: list[int], next_action: int, policy: Policy
+    algorithm: str,
+    tables: Sequence[Table],
+    table: int,
+    next_state: list[int],
+    next_action: int,
+    policy: Policy,
+    masks: ActionMasks,
 ) -> float:
     """Returns the value of a next state that is not terminal.
 
@@ -24,15 +31,16 @@ def bootstrap(
         next_state: The active rows of the next state.
         next_action: The next action, for algorithms that learn from it.
         policy: The policy, for Expected Sarsa.
+        masks: Which actions the states have.
     """
     Q = tables[table]  # noqa: N806 - the book's name
-    next_values = values(Q, next_state)
+    if algorithm in ("sarsa", "n_step_sarsa", "sarsa_lambda", "true_online_sarsa_lambda"):
+        return value(Q, next_state, next_action)
+    next_values = masks.masked(next_state, values(Q, next_state))
     if algorithm == "double_q_learning":
         return value(tables[1 - table], next_state, int(np.argmax(next_values)))
     if algorithm == "expected_sarsa":
         return _expected(policy.probabilities(next_values), next_values)
-    if algorithm in ("sarsa", "n_step_sarsa", "sarsa_lambda", "true_online_sarsa_lambda"):
-        return float(next_values[next_action])
     return float(np.max(next_values))
 
 

@@ -13,6 +13,7 @@ from qtab.explanation.fast_forward import Start
 from qtab.explanation.records import Choice, Trace, Update
 from qtab.explanation.targets import bootstrap, discounted
 from qtab.explanation.updates import UnfinishedUpdate, finish_update
+from qtab.reference.action_masks import ActionMasks
 from qtab.reference.observer import Observer
 from qtab.reference.policies import Policy
 from qtab.reference.schedules import LearningRate, Schedule
@@ -54,8 +55,13 @@ class Watcher(Observer):
         self.steps: list[SeenStep] = []
         self._stream: ObservedStream
         self._policy: Policy | None = None
+        self._masks: ActionMasks
         self._unfinished: UnfinishedUpdate | None = None
         self._draws: list[float] = []
+
+    def masks(self, masks: ActionMasks) -> None:
+        """Keeps the action masks, which are filled in as states are seen."""
+        self._masks = masks
 
     def stream(self, stream: AgentStream) -> AgentStream:
         """Returns a stream that keeps the last number that decided."""
@@ -165,7 +171,7 @@ class Watcher(Observer):
         assert self._policy is not None  # noqa: S101 - it is given before the first step
         next_action = self.choices[end].action if len(self.choices) > end else -1
         following = bootstrap(
-            self.config.algorithm, self.tables, table, list(last.next_rows), next_action, self._policy
+            self.config.algorithm, self.tables, table, list(last.next_rows), next_action, self._policy, self._masks
         )
         return step, rewards, following
 

@@ -115,6 +115,8 @@ def _of_runs(
 ) -> Subject:
     algorithm = config.algorithm.replace("_", " ")
     summed = tables[:, 0] if tables.shape[1] == 1 else (tables[:, 0] + tables[:, 1]) / 2
+    if source.action_masks is not None:
+        summed = np.where(source.action_masks.reshape(summed.shape), summed, -np.inf)
     return Subject(
         source,
         config.env,

@@ -16,6 +16,7 @@ from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.labels import check_title
 from qtab.plots.subject import subject_of
 from qtab.plots.values import values
+from qtab.results.action_values import mask_of_step
 from qtab.results.run import Run
 
 if TYPE_CHECKING:
@@ -89,11 +90,15 @@ def _play(run: Run | Optimum, env: gym.Env | None, episodes: int, seed: int) -> 
     played = []
     with made as playing:
         for index in range(episodes):
-            observation, _ = playing.reset(seed=seed if index == 0 else None)
+            observation, info = playing.reset(seed=seed if index == 0 else None)
             observations, over, terminated, state = [observation], False, False, None
             while not over:
-                action, state = run.predict(observation, state)
-                observation, _, terminated, truncated, _ = playing.step(action)
+                if isinstance(run, Run):
+                    mask = mask_of_step(run.config, playing, observation, info)
+                    action, state = run.predict(observation, state, action_masks=mask)
+                else:
+                    action, state = run.predict(observation, state)
+                observation, _, terminated, truncated, info = playing.step(action)
                 observations.append(observation)
                 over = bool(terminated or truncated)
             played.append((np.array(observations), bool(terminated)))

@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.reference.task import Result, Task, value, values
+from qtab.reference.task import Result, Task, value
 
 
 def double_q_learning(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
@@ -17,7 +17,7 @@ def double_q_learning(env: gym.Env, config: Config, stop_after: int | None = Non
         rate2.schedule.value = rate1.schedule.value
         state, over = task.reset(), False
         while not over:
-            action = task.policy.choose(values(Q1, state) + values(Q2, state))
+            action = task.policy.choose(task.values(Q1, state) + task.values(Q2, state))
             step = task.step(action)
 
             # A coin decides which table learns:
@@ -26,7 +26,7 @@ def double_q_learning(env: gym.Env, config: Config, stop_after: int | None = Non
             if step.terminal:
                 task.end(Q, state, action, step.reward, rate)
             else:
-                greedy = int(np.argmax(values(Q, step.state)))
+                greedy = int(np.argmax(task.values(Q, step.state)))
                 target = step.reward + task.discount * value(other, step.state, greedy)
                 task.update(Q, state, action, target, rate)
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.config.algorithms import DynaQ
-from qtab.reference.task import Result, Rows, Table, Task, values
+from qtab.reference.task import Result, Rows, Table, Task
 
 
 def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
@@ -41,4 +41,4 @@ def learn(task: Task, Q: Table, state: Rows, action: int, reward: float, next_st
     if next_state is None:
         task.end(Q, state, action, reward)
     else:
-        task.update(Q, state, action, reward + task.discount * float(np.max(values(Q, next_state))))
+        task.update(Q, state, action, reward + task.discount * float(np.max(task.values(Q, next_state))))

@@ -34,7 +34,8 @@ def dyna_q_plus(env: gym.Env, config: Config, stop_after: int | None = None) -> 
 
             for _ in range(options.planning_steps):
                 row = list(model)[int(task.rng.integers(0, len(model)))]
-                any_action = int(task.rng.integers(0, task.n_actions))
+                valid = task.valid_actions(Q, [row])
+                any_action = valid[int(task.rng.integers(0, len(valid)))]
                 reward, after = model[row].get(any_action, (0.0, [row]))
                 # The reward grows with the time since the pair was last tried: R + κ √τ
                 bonus = options.time_weight * math.sqrt(now - int(last_tried[row, any_action]))

@@ -5,7 +5,7 @@ import math
 import gymnasium as gym
 
 from qtab.config import Config
-from qtab.reference.task import Result, Task, values
+from qtab.reference.task import Result, Task
 
 
 def expected_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
@@ -23,7 +23,7 @@ def expected_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) 
             if step.terminal:
                 task.end(Q, state, action, step.reward)
             else:
-                next_values = values(Q, step.state)
+                next_values = task.values(Q, step.state)
                 shares = zip(task.policy.probabilities(next_values), next_values, strict=True)
                 terms = [p * float(q) for p, q in shares if (p, q) != (0.0, -math.inf)]
                 expected = terms[0]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from qtab.reference.streams import AgentStream
 
 if TYPE_CHECKING:
+    from qtab.reference.action_masks import ActionMasks
     from qtab.reference.policies import Policy
     from qtab.reference.schedules import LearningRate
 
@@ -19,6 +20,9 @@ Table = NDArray[np.float64]
 
 class Observer:
     """Sees the parts of a task and every update. This one does nothing with them."""
+
+    def masks(self, masks: "ActionMasks") -> None:
+        """Called with the action masks, which are filled in as states are seen."""
 
     def stream(self, stream: AgentStream) -> AgentStream:
         """Returns the agent's random numbers, or the same numbers observed."""

@@ -34,19 +34,15 @@ class EpsilonGreedy:
         self.rng = rng
         self.epsilon = epsilon_schedule(config)
         self.random_ties = config.ties == "random"
-        self.has_masked_actions = isinstance(config.initial_q, np.ndarray) and bool(np.isneginf(config.initial_q).any())
+        self.config = config
 
     def choose(self, values: Values) -> int:
         """Always draws one ``random()``; one integer more to explore, or to choose among several greedy actions."""
         if self.rng.random() < 1.0 - self.epsilon.value:
             greedy = self.greedy(values)
             return greedy[0] if len(greedy) == 1 else greedy[int(self.rng.integers(0, len(greedy)))]
-        valid = self.valid_actions(values)
+        valid = valid_actions(self.config, values)
         return valid[int(self.rng.integers(0, len(valid)))]
-
-    def valid_actions(self, values: Values) -> list[int]:
-        """Returns the actions that a state has. The values of those that it does not have are -inf."""
-        return [action for action, value in enumerate(values) if not (self.has_masked_actions and value == -math.inf)]
 
     def greedy(self, values: Values) -> list[int]:
         """Returns the greedy actions to choose from: the first, or with random ties all of them."""
@@ -57,7 +53,7 @@ class EpsilonGreedy:
     def probabilities(self, values: Values) -> list[float]:
         """Returns ε / n for each of the n actions that there are, and shares the rest among the greedy ones."""
         epsilon, greedy = self.epsilon.value, self.greedy(values)
-        valid = self.valid_actions(values)
+        valid = valid_actions(self.config, values)
         shares = [epsilon / len(valid) if action in valid else 0.0 for action in range(len(values))]
         for action in greedy:
             shares[action] += (1.0 - epsilon) / len(greedy)
@@ -82,7 +78,7 @@ class Softmax:
             reached += share
             if drawn < reached:
                 return action
-        return len(values) - 1
+        return int(np.flatnonzero(values != -math.inf)[-1])
 
     def probabilities(self, values: Values) -> list[float]:
         """Returns exp(Q / τ) over their sum, shifted by the largest value so that nothing overflows."""
@@ -95,6 +91,14 @@ class Softmax:
 
     def end_episode(self) -> None:
         """The temperature is constant."""
+
+
+def valid_actions(config: Config, values: Values) -> list[int]:
+    """Returns the actions that a state has. Those that it does not have are worth -inf, by a mask or from the start."""
+    missing_at_first = isinstance(config.initial_q, np.ndarray) and bool(np.isneginf(config.initial_q).any())
+    if config.action_mask is False and not missing_at_first:
+        return list(range(len(values)))
+    return [action for action, value in enumerate(values) if value != -math.inf]
 
 
 def policy(config: Config, rng: AgentStream) -> Policy:

@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.reference.task import Result, Task, values
+from qtab.reference.task import Result, Task
 
 
 def q_learning(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
@@ -31,7 +31,7 @@ def q_learning(env: gym.Env, config: Config, stop_after: int | None = None) -> R
             if step.terminal:
                 task.end(Q, state, action, step.reward)
             else:
-                target = step.reward + task.discount * float(np.max(values(Q, step.state)))
+                target = step.reward + task.discount * float(np.max(task.values(Q, step.state)))
                 task.update(Q, state, action, target)
 
             state, over = step.state, step.over

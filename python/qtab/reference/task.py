@@ -1,7 +1,7 @@
 """What all learners share: the discretized environment, the schedules, the policy, and the record of episodes."""
 
 from collections.abc import Iterator
-from copy import copy
+from copy import deepcopy
 from dataclasses import dataclass
 
 import gymnasium as gym
@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from qtab._utils.checks import required
 from qtab.config import Config
+from qtab.reference.action_masks import ActionMasks
 from qtab.reference.actions import actions
 from qtab.reference.observations import discretizer
 from qtab.reference.observer import current_observer
-from qtab.reference.policies import policy
+from qtab.reference.policies import policy, valid_actions
 from qtab.reference.schedules import LearningRate
 from qtab.reference.streams import agent_stream
 
@@ -47,7 +48,9 @@ class Task:
         self.discount = config.discount
         self.actions = actions(env, config)
         self.n_actions = len(self.actions)
+        self.masks = ActionMasks(env, config)
         self.observer = current_observer()
+        self.observer.masks(self.masks)
         self.rng = self.observer.stream(agent_stream(self.seed, config.bit_generator))
         self.discretizer = discretizer(env, config)
         self.n_rows = int(np.prod(self.discretizer.shape))
@@ -89,20 +92,33 @@ class Task:
 
     def reset(self) -> Rows:
         """Starts an episode. Only the first reset seeds the environment."""
-        observation, _ = self.env.reset(seed=self.seed if len(self.returns) == 1 else None)
-        return self.discretizer.rows(observation)
+        observation, info = self.env.reset(seed=self.seed if len(self.returns) == 1 else None)
+        state = self.discretizer.rows(observation)
+        self.masks.see(state, observation, info)
+        return state
 
     def step(self, action: int) -> Step:
         """Takes a step. At a time-out the state is not terminal, unless the config makes that mistake."""
-        observation, reward, terminated, truncated, _ = self.env.step(copy(self.actions[action]))
+        observation, reward, terminated, truncated, info = self.env.step(deepcopy(self.actions[action]))
         self.returns[-1] += float(reward)
         self.lengths[-1] += 1
         terminal = terminated or (truncated and self.config.on_truncation == "terminate")
-        return Step(float(reward), self.discretizer.rows(observation), bool(terminal), bool(terminated or truncated))
+        state = self.discretizer.rows(observation)
+        if not terminated:  # a terminal state may have no action
+            self.masks.see(state, observation, info)
+        return Step(float(reward), state, bool(terminal), bool(terminated or truncated))
 
     def choose(self, Q: Table, state: Rows) -> int:
         """Returns an action by the policy."""
-        return self.policy.choose(values(Q, state))
+        return self.policy.choose(self.values(Q, state))
+
+    def values(self, Q: Table, state: Rows) -> NDArray[np.float64]:
+        """Returns Q(S, ·), with -inf for the actions that S does not have."""
+        return self.masks.masked(state, values(Q, state))
+
+    def valid_actions(self, Q: Table, state: Rows) -> list[int]:
+        """Returns the actions that S has: all, unless a mask or the initial table says otherwise."""
+        return valid_actions(self.config, self.values(Q, state))
 
     def update(self, Q: Table, state: Rows, action: int, target: float, rate: LearningRate | None = None) -> None:
         """Q(S, A) <- Q(S, A) + α [target - Q(S, A)]; the active rows of S share the change."""

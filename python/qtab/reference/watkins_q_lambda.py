@@ -5,7 +5,7 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.config.algorithms import EligibilityTraces
-from qtab.reference.task import Result, Task, value, values
+from qtab.reference.task import Result, Task, value
 from qtab.reference.traces import apply_td_error, decay, mark
 
 
@@ -28,7 +28,7 @@ def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None
             target, greedy = step.reward, False
             if not step.terminal:
                 next_action = task.choose(Q, step.state)
-                next_values = values(Q, step.state)
+                next_values = task.values(Q, step.state)
                 greedy = bool(next_values[next_action] == np.max(next_values))
                 target = step.reward + task.discount * float(np.max(next_values))
             apply_td_error(task, Q, z, target - value(Q, state, action))

@@ -30,8 +30,9 @@ class Agent:
     """Keyword arguments of the environment's constructor."""
     max_episode_steps: int
     """The time limit, in steps."""
-    act: Callable[[Any, Any], tuple[Any, Any]]
-    """Takes an observation and a state, None at first; returns the action as ``env.step`` takes it, and the state."""
+    act: Callable[[Any, Any, Any], tuple[Any, Any]]
+    """Takes an observation, a state, None at first, and the action mask, None without one; returns the action as
+    ``env.step`` takes it, and the state."""
 
 
 def agent_of(source: Any) -> Agent:
@@ -44,20 +45,25 @@ def agent_of(source: Any) -> Agent:
         config = source.config
         return Agent(source, config.env, config.env_kwargs, int(config.max_episode_steps or 0), _greedy(source))
     if isinstance(source, Optimum):
-        return Agent(source, source.env, source.env_kwargs, source.max_episode_steps, source.predict)
+        best = source
+        return Agent(
+            best, best.env, best.env_kwargs, best.max_episode_steps, lambda seen, state, _: best.predict(seen, state)
+        )
     hint = "; qtab.load reads one from a file" if isinstance(source, str) or hasattr(source, "__fspath__") else ""
     raise TypeError(f"run must be a Run or an Optimum, got {shown(source)}{hint}")
 
 
-def _greedy(run: Run) -> Callable[[Any, Any], tuple[Any, Any]]:
+def _greedy(run: Run) -> Callable[[Any, Any, Any], tuple[Any, Any]]:
     """Returns the policy that :func:`qtab.evaluate` plays, to the bit."""
     table = greedy_table(run)[0]
 
-    def act(observation: Any, state: Any) -> tuple[Any, Any]:
+    def act(observation: Any, state: Any, mask: Any) -> tuple[Any, Any]:
         rows = run.discretizer.active_rows(observation)
         values = table[rows[0]].copy()
         for row in rows[1:]:  # from left to right, as the learners add; np.sum would add in pairs
             values += table[row]
+        if mask is not None:
+            values[~mask] = -np.inf
         return run.actions[int(np.argmax(values))], state
 
     return act

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.rendering.agent import Agent
+from qtab.results.action_values import mask_of_step
+from qtab.results.run import Run
 
 
 @dataclass(frozen=True)
@@ -41,12 +43,15 @@ def play_episodes(
     """
     returns, lengths, ends = list[float](), list[int](), list[bool]()
     for episode in range(episodes):
-        observation, _ = env.reset(seed=seed if episode == 0 else None)
+        observation, info = env.reset(seed=seed if episode == 0 else None)
         episode_return, length, over, terminated, state = 0.0, 0, False, False, None
         goes_on = see(episode, 0)
         while goes_on and not over:
-            action, state = agent.act(observation, state)
-            observation, reward, terminated, truncated, _ = env.step(action)
+            mask = None
+            if isinstance(agent.source, Run):
+                mask = mask_of_step(agent.source.config, env, observation, info)
+            action, state = agent.act(observation, state, mask)
+            observation, reward, terminated, truncated, info = env.step(action)
             episode_return += float(reward)
             length += 1
             over = bool(terminated or truncated)

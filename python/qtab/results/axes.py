@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,12 +56,24 @@ def action_names(env: str, actions: Actions) -> tuple[str, ...]:
     known = describe(env)
     if actions.values is not None:
         quantities = known.continuous_actions
-        if len(quantities) != actions.values.shape[1]:
+        components = actions.values.reshape(len(actions), -1)
+        if len(quantities) != components.shape[1]:
             quantities = ()
-        return tuple(_named_values(action.tolist(), quantities) for action in actions.values)
+        return tuple(_named_values(action.tolist(), quantities) for action in components)
+    if actions.composite is not None:
+        return tuple(_named_parts(action) for action in actions.objects())
     named = known.actions if len(known.actions) == len(actions) or known.layout == "" else ()
     neutral = [f"action {actions.first + index}" for index in range(len(actions))]
     return (*named, *neutral[len(named) :])[: len(actions)]
+
+
+def _named_parts(action: Any) -> str:
+    """The numbers of a composite action, and the keys where it is a dict."""
+    if isinstance(action, dict):
+        return "{" + ", ".join(f"{key}: {_named_parts(part)}" for key, part in action.items()) + "}"
+    if isinstance(action, tuple):
+        return "(" + ", ".join(map(_named_parts, action)) + ")"
+    return str(action) if isinstance(action, int) else _named_values(action.ravel().tolist(), ())
 
 
 def _named_values(values: Sequence[float], quantities: Sequence[Quantity]) -> str:

@@ -38,8 +38,10 @@ def sample(probabilities: NDArray[np.float64], generator: np.random.Generator) -
 
 
 def _available(config: Config, values: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which actions there are: -inf marks the others in an initial table."""
-    if isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q).any():
+    """Which actions there are: -inf marks the others, by a mask or in an initial table."""
+    if config.action_mask is not False or (
+        isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q).any()
+    ):
         return ~np.isneginf(values)
     return np.ones(values.shape, dtype=np.bool_)
 

@@ -1,4 +1,4 @@
-"""What a run file holds only where it was asked for: visits and snapshots."""
+"""What a run file holds only where it was asked for: visits, action masks and snapshots."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,8 @@ def optional_arrays(run: "Run") -> dict[str, NDArray[Any]]:
     arrays: dict[str, NDArray[Any]] = {}
     if run.visits is not None:
         arrays["visits"] = run.visits
+    if run.action_masks is not None:
+        arrays["action_masks"] = run.action_masks
     if run.snapshots is not None:
         arrays["snapshot_episodes"] = run.snapshots.episodes
         arrays["snapshot_tables"] = run.snapshots.tables
@@ -45,6 +47,8 @@ def restore_optional(
         if visits.dtype != np.int64 or visits.shape != shape or (visits < 0).any():
             raise ValueError(f"its visits are not counts of shape {shape}")
         fields["visits"] = visits
+    if "action_masks" in stored:
+        fields["action_masks"] = checked_masks(stored["action_masks"], (*cells, tables.shape[-1]))
     if "snapshot_episodes" in stored or "snapshot_tables" in stored:
         episodes, snapshots = stored["snapshot_episodes"], stored["snapshot_tables"]
         if episodes.dtype != np.int64 or episodes.ndim != 1 or (np.diff(episodes) <= 0).any():
@@ -55,3 +59,14 @@ def restore_optional(
             raise ValueError("its snapshots do not fit its tables")
         fields["snapshots"] = Snapshots(episodes, snapshots)
     return fields
+
+
+def checked_masks(masks: NDArray[Any], shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Returns the action masks in a file.
+
+    Raises:
+        ValueError: if they are not booleans of this shape, or leave a state no action.
+    """
+    if masks.dtype != np.bool_ or masks.shape != shape or not masks.any(axis=-1).all():
+        raise ValueError(f"its action masks are not booleans of shape {shape} that leave each state an action")
+    return masks

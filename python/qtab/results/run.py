@@ -1,14 +1,14 @@
 """``qtab.Run``: the result of a training run."""
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks, html, svg
 from qtab._utils.fields import with_fields
@@ -16,7 +16,7 @@ from qtab._utils.frames import episode_frame
 from qtab.config import Config
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
-from qtab.results import behaviour, run_file, saving
+from qtab.results import action_values, behaviour, plain_data, run_file, saving
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
@@ -64,6 +64,9 @@ class Run(WithPage):
     they were not counted."""
     snapshots: Snapshots | None = field(default=None, repr=False)
     """The tables at several episodes, where ``snapshots=`` asked for them; None elsewhere."""
+    action_masks: NDArray[np.bool_] | None = field(default=None, repr=False)
+    """(*cells, actions): which actions each cell has, as last seen; all, where it was never seen. None without
+    ``action_mask=``, and with tile coding."""
     state: RunState | None = field(default=None, repr=False)
     """What :func:`qtab.resume` needs; None for runs of ``train_many`` and from files of earlier versions."""
 
@@ -103,17 +106,19 @@ class Run(WithPage):
 
     @property
     def q_table(self) -> NDArray[np.float64]:
-        """(*cells, actions): the values that the greedy policy reads; of two tables the sum.
+        """(*cells, actions): the values that the greedy policy reads; of two tables the sum; -inf for masked actions.
 
         Raises:
             ValueError: with tile coding, which has no cells.
         """
         self._require_cells("q_table", "q_values")
-        return _sum(self.tables).reshape(*self.discretizer.shape, len(self.actions))
+        return action_values.of_cells(self)
 
     @property
-    def policy(self) -> NDArray[Any]:
-        """(*cells,): the greedy action of each cell, the first of several; (*cells, d) for actions of a Box.
+    def policy(self) -> Any:
+        """(*cells,): the greedy action of each cell, the first of several; (*cells, *shape) if actions are arrays.
+
+        Of a Tuple or Dict space it is a tuple or dict of these.
 
         Raises:
             ValueError: with tile coding, which has no cells; :meth:`predict` works.
@@ -145,8 +150,7 @@ class Run(WithPage):
             TypeError: if the observation does not hold numbers (integers for a discrete space).
             ValueError: if it has another shape than the space, or lies outside the space.
         """
-        active = np.moveaxis(self.discretizer.active_rows(observation), -1, 0)
-        return _sum(_sum(table[rows] for rows in active) for table in self.tables)
+        return action_values.of_observations(self, observation)
 
     def values(self, observation: Any) -> Any:
         """Returns the value of an observation under the greedy policy, or the (n,) values of n observations.
@@ -167,6 +171,7 @@ class Run(WithPage):
         state: Any = None,  # noqa: ARG002 - Stable-Baselines3's signature
         episode_start: Any = None,  # noqa: ARG002
         deterministic: bool = True,
+        action_masks: ArrayLike | None = None,
     ) -> tuple[Any, None]:
         """Returns the action of an observation as ``env.step`` takes it, and None, as Stable-Baselines3 does.
 
@@ -180,6 +185,7 @@ class Run(WithPage):
             deterministic: True takes the greedy action. False draws an action from the behaviour policy, with the ε
                 or the temperature that the last episode of the training left: an ε that fell to 0 leaves the greedy
                 action. The draws come from a generator of this run, which is seeded by its seed.
+            action_masks: (actions,) or (n, actions): which actions there are. None: by the run's ``action_mask``.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space), or ``deterministic`` is
@@ -188,7 +194,7 @@ class Run(WithPage):
         """
         if not isinstance(deterministic, bool | np.bool_):
             raise TypeError(f"deterministic must be True or False, got {deterministic!r}")
-        values = self.q_values(observation)
+        values = action_values.to_choose_from(self, observation, action_masks)
         if deterministic:
             columns = np.argmax(values, axis=-1)
         else:
@@ -221,6 +227,13 @@ class Run(WithPage):
             ModuleNotFoundError: without pandas; the message names the ``pip install``.
         """
         return episode_frame(self.episode_returns, self.episode_lengths, self.terminated)
+
+    def to_json(self, path: "str | os.PathLike[str]") -> None:
+        """Writes the greedy policy as plain data: tables, discretizer, actions. ``docs/policies.md`` has its keys.
+
+        It raises what :meth:`save` does.
+        """
+        plain_data.write(self, Path(path))
 
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes the run to one ``.npz`` file: arrays and a JSON header, never a pickle. :func:`qtab.load` reads it.
@@ -262,12 +275,3 @@ class Recording:
 
     def __repr__(self) -> str:
         return f"<Recording of episode {self.episode}: {len(self.actions):,} actions>"
-
-
-def _sum(parts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Adds from left to right, as the learners do; ``np.sum`` would add in pairs."""
-    first, *others = parts
-    total: NDArray[np.float64] = np.array(first)
-    for part in others:
-        total += part
-    return total

@@ -58,6 +58,8 @@ class Runs:
     """How long all runs took together, in wall-clock time."""
     versions: Mapping[str, str]
     """The versions of qtab, Gymnasium, NumPy and Python, and the platform."""
+    action_masks: NDArray[np.bool_] | None = None
+    """(runs, *cells, actions): which actions each cell of each run has; see :attr:`qtab.Run.action_masks`."""
 
     def __repr__(self) -> str:
         runs, episodes = self.episode_returns.shape
@@ -133,6 +135,7 @@ class Runs:
             completed=True,
             seconds=self.seconds / len(self),
             versions=self.versions,
+            action_masks=None if self.action_masks is None else self.action_masks[index],
         )
 
     def _part(self, part: slice) -> "Runs":
@@ -145,6 +148,7 @@ class Runs:
             episode_lengths=self.episode_lengths[part],
             terminated=self.terminated[part],
             tables=None if self.tables is None else self.tables[part],
+            action_masks=None if self.action_masks is None else self.action_masks[part],
             seconds=self.seconds * len(seeds) / max(len(self), 1),
         )
 

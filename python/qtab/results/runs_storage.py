@@ -9,11 +9,17 @@ from qtab import discretizers
 from qtab.discretizers.base import MAX_TABLE_SIZE
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent_runs
+from qtab.results.optional_arrays import checked_masks
 from qtab.results.runs import Runs
-from qtab.results.storage import check_function, integer, opened, shared_fields
+from qtab.results.storage import check_function, integer, opened, shared_fields, with_action_mask
 
 
-def load_runs(path: "str | os.PathLike[str]", *, discretizer: Callable[[Any], Any] | None = None) -> Runs:
+def load_runs(
+    path: "str | os.PathLike[str]",
+    *,
+    discretizer: Callable[[Any], Any] | None = None,
+    action_mask: Callable[[Any], Any] | None = None,
+) -> Runs:
     """Reads runs that :meth:`qtab.Runs.save` wrote, after checking that not a byte of them was changed.
 
     As for :func:`qtab.load`, no module is imported because a file names it.
@@ -21,6 +27,7 @@ def load_runs(path: "str | os.PathLike[str]", *, discretizer: Callable[[Any], An
     Args:
         path: The file.
         discretizer: As for :func:`qtab.load`.
+        action_mask: As for :func:`qtab.load`.
 
     Raises:
         OSError: if the file is missing or cannot be read.
@@ -32,7 +39,7 @@ def load_runs(path: "str | os.PathLike[str]", *, discretizer: Callable[[Any], An
     with opened(path, "file of runs") as file:
         runs = _runs(run_file.read(file, run_file.RUNS), discretizer)
     check_function(discretizer, runs.config)
-    return runs
+    return runs if action_mask is None else with_action_mask(runs, action_mask)
 
 
 def _runs(content: run_file.Content, function: Callable[[Any], Any] | None) -> Runs:
@@ -51,9 +58,14 @@ def _runs(content: run_file.Content, function: Callable[[Any], Any] | None) -> R
     rows = integer(header, "rows")
     if not rows < MAX_TABLE_SIZE:  # a file without tables may be much smaller than what its rows would need
         raise ValueError(f"its number of rows must be less than 2**32, got {rows}")
+    discretizer = discretizers.restore(shared["config"], stored, rows)
+    if "action_masks" in stored:
+        arrays["action_masks"] = checked_masks(
+            stored["action_masks"], (len(seeds), *discretizer.shape, len(shared["actions"]))
+        )
     runs = Runs(
         seeds=tuple(seeds),
-        discretizer=discretizers.restore(shared["config"], stored, rows),
+        discretizer=discretizer,
         **shared,
         **{"tables": None, **arrays},
     )

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config.config import replace_checked
-from qtab.config.discretizer import stored_fields, stored_function
+from qtab.config.discretizer import stored_function
+from qtab.config.stored import stored_settings
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent_runs
+from qtab.results.stored_actions import describe_parts
 
 if TYPE_CHECKING:
     from qtab.results.run import Run
@@ -38,7 +40,7 @@ def write(
     stored = dict(arrays) | result.discretizer.arrays()
     if result.actions.values is not None:
         stored["actions"] = result.actions.values
-    config = stored_fields(result.config)
+    config = stored_settings(result.config)
     if isinstance(result.config.initial_q, np.ndarray):
         stored["initial_q"] = result.config.initial_q
         config["initial_q"] = None
@@ -52,6 +54,8 @@ def write(
         "versions": dict(result.versions),
         **header,
     }
+    if result.actions.composite is not None:
+        content["action_parts"] = describe_parts(result.actions)
     kwargs = result.config.env_kwargs
     try:
         text = run_file.encode(content, kind)
@@ -68,5 +72,6 @@ def save_runs(runs: "Runs", path: Path) -> None:
         check_consistent_runs(runs)
     except ValueError as error:
         raise ValueError(f"these runs cannot be saved: {error}") from None
-    arrays = {name: getattr(runs, name) for name in run_file.ARRAYS if getattr(runs, name) is not None}
+    names = (*run_file.ARRAYS, "action_masks")
+    arrays = {name: getattr(runs, name) for name in names if getattr(runs, name) is not None}
     write(path, run_file.RUNS, runs, {"seeds": runs.seeds, "rows": runs.discretizer.n_rows}, arrays)

@@ -4,28 +4,40 @@ import logging
 import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from qtab import discretizers
 from qtab._utils.shown import shown
 from qtab.config import Config
+from qtab.config.action_mask import STORED
+from qtab.config.config import replace_checked
 from qtab.config.discretizer import MissingFunction
 from qtab.config.options import defaults
-from qtab.discretizers.actions import Actions
 from qtab.envs.stored import stored_id
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import restore_optional
 from qtab.results.run import Run
 from qtab.results.run_state import RunState
+from qtab.results.stored_actions import restore_actions
+
+if TYPE_CHECKING:
+    from qtab.results.runs import Runs
 
 _LOGGER = logging.getLogger("qtab")
+Result = TypeVar("Result", Run, "Runs")
 _MAX_REASON = 400
 """The characters of the reason in an error: it may show values from the file."""
 
 
-def load(path: "str | os.PathLike[str]", *, discretizer: Callable[[Any], Any] | None = None) -> Run:
+def load(
+    path: "str | os.PathLike[str]",
+    *,
+    discretizer: Callable[[Any], Any] | None = None,
+    action_mask: Callable[[Any], Any] | None = None,
+) -> Run:
     """Reads a run that :meth:`qtab.Run.save` wrote, after checking that not a byte of it was changed.
 
     :func:`qtab.load_runs` reads the file of many runs, and :func:`qtab.load_sweep` the store of a sweep.
@@ -40,6 +52,8 @@ def load(path: "str | os.PathLike[str]", *, discretizer: Callable[[Any], Any] | 
         path: The file.
         discretizer: The function that was the run's discretizer, of which a file holds only the name. Without it the
             run is loaded as well, but cannot read an observation.
+        action_mask: The function that gave the action masks of a run that was trained with one, which its file does
+            not hold. Without it the run can be looked at, and predicts for the cells that it has seen.
 
     Raises:
         OSError: if the file is missing or cannot be read.
@@ -55,7 +69,21 @@ def load(path: "str | os.PathLike[str]", *, discretizer: Callable[[Any], Any] | 
         _LOGGER.warning(
             "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
         )
-    return run
+    return run if action_mask is None else with_action_mask(run, action_mask)
+
+
+def with_action_mask(run: Result, action_mask: Callable[[Any], Any]) -> Result:
+    """Returns a run, or runs, from a file with the function that the file does not hold.
+
+    Raises:
+        TypeError: if it is not a function.
+        ValueError: if they were not trained with one.
+    """
+    if not callable(action_mask):
+        raise TypeError(f"action_mask must be a function of the observation, got {shown(action_mask)}")
+    if run.config.action_mask != STORED:
+        raise ValueError("action_mask must be left out for a run that was not trained with a function")
+    return replace(run, config=replace_checked(run.config, action_mask=action_mask))
 
 
 @contextmanager
@@ -128,7 +156,12 @@ def shared_fields(content: run_file.Content, function: Callable[[Any], Any] | No
         raise ValueError(f"its versions must map names to texts, got {versions!r}")
     return {
         "config": _config(header, stored, function),
-        "actions": Actions(integer(header, "actions"), integer(header, "first_action"), stored.get("actions")),
+        "actions": restore_actions(
+            integer(header, "actions"),
+            integer(header, "first_action"),
+            stored.get("actions"),
+            header.get("action_parts"),
+        ),
         "completed": header["completed"],
         "seconds": float(seconds),
         "versions": versions,

@@ -13,8 +13,9 @@ import numpy as np
 from qtab._utils import checks
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
 from qtab.config import DEFAULTS
-from qtab.config.discretizer import function_name, stored_fields
+from qtab.config.discretizer import function_name
 from qtab.config.layers import Base, over
+from qtab.config.stored import stored_settings
 from qtab.config.unknown import check_names
 from qtab.sweeps import designs
 from qtab.sweeps.description import Description, read_description
@@ -65,7 +66,7 @@ class Study:
     def description(self) -> Description:
         """The study as a store describes it."""
         configs = [
-            {name: value for name, value in stored_fields(resolved.config).items() if name != "seed"}
+            {name: value for name, value in stored_settings(resolved.config).items() if name != "seed"}
             for resolved in self.resolved
         ]
         settings = [dict(setting) for setting in self.settings]

@@ -98,8 +98,8 @@ class Progress:
             ValueError: with tile coding, which has no cells.
         """
         discretizer = self._current("q_table").discretizer
-        if not discretizer.has_cells:
-            return self.run.q_table  # its error says what works instead
+        if not discretizer.has_cells or self.config.action_mask is not False:
+            return self.run.q_table  # of tile coding its error says what works instead
         first, *others = self.tables
         values: NDArray[np.float64] = sum(others, first.copy())
         return values.reshape(*discretizer.shape, -1)

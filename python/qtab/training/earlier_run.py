@@ -14,6 +14,7 @@ from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
+from qtab.config.action_mask import STORED
 from qtab.config.config import replace_checked
 from qtab.config.discretizer import MissingFunction
 from qtab.config.layers import over
@@ -22,7 +23,7 @@ from qtab.envs.registry import versioned
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
 from qtab.results.snapshots import resumed_snapshot_episodes, snapshot_episodes
-from qtab.results.storage import load
+from qtab.results.storage import load, with_action_mask
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
@@ -32,23 +33,27 @@ _LOGGER = logging.getLogger("qtab")
 _SCHEDULES = {"epsilon_schedule": "epsilon", "learning_rate_schedule": "learning_rate"}
 
 
-def earlier_run(name: str, run: Any) -> Run:
+def earlier_run(name: str, run: Any, action_mask: Any = None) -> Run:
     """Returns a run that is given itself or by the path of its file.
 
     Args:
         name: The argument that gives it, for messages.
         run: Its value.
+        action_mask: The function of its action masks, which a file does not hold; anything else changes nothing.
 
     Raises:
         OSError: if the file cannot be read.
         TypeError: if it is neither a run nor a path.
         ValueError: for a file that is not a run.
     """
-    if isinstance(run, Run):
-        return run
-    if not isinstance(run, str | os.PathLike):
-        raise TypeError(f"{name} must be a Run or the path of a saved run, got {shown(run)}")
-    return load(Path(run))
+    if not isinstance(run, Run):
+        if not isinstance(run, str | os.PathLike):
+            raise TypeError(f"{name} must be a Run or the path of a saved run, got {shown(run)}")
+        run = load(Path(run))
+    found: Run = run
+    if callable(action_mask) and found.config.action_mask == STORED:
+        return with_action_mask(found, action_mask)
+    return found
 
 
 def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> ResolvedRun:

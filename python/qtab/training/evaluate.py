@@ -34,6 +34,7 @@ TABLE_SETTINGS = (
     "discretizer",
     *(name for name, option in OPTIONS.items() if option.choice == "discretizer"),
     "actions",
+    "action_mask",
 )
 """The settings that say what the rows and columns of a table stand for."""
 

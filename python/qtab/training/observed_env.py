@@ -1,5 +1,6 @@
 """The environment as the extension steps it, where its observations have to be read in Python first."""
 
+from collections.abc import Callable
 from typing import Any
 
 import gymnasium as gym
@@ -12,7 +13,13 @@ class ObservedEnv(gym.Wrapper[Any, Any, Any, Any]):
 
     def __init__(self, env: gym.Env, discretizer: Discretizer) -> None:
         super().__init__(env)
-        self._observe = discretizer.observe
+        self._discretizer = discretizer
+        self.observation: Any = None
+        """The last observation as the environment returned it."""
+
+    def _observe(self, observation: Any) -> Any:
+        self.observation = observation
+        return self._discretizer.observe(observation)
 
     def __str__(self) -> str:
         """The environment's own text, which messages show."""
@@ -31,3 +38,7 @@ class ObservedEnv(gym.Wrapper[Any, Any, Any, Any]):
         if isinstance(answer, tuple) and len(answer) == 5:
             return self._observe(answer[0]), *answer[1:]
         return answer
+
+    def of_observation(self, function: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        """Returns a function, such as one for action masks, that is given the environment's own observations."""
+        return lambda _read: function(self.observation)

@@ -20,6 +20,7 @@ from qtab import _core
 from qtab._spec import Results
 from qtab.envs.registry import spec_of
 from qtab.training.resolve import resolve
+from qtab.training.resolved_run import masks_of
 
 POLL_SECONDS = 0.2
 """How often to look for Ctrl-C, which does not interrupt a wait on Windows, and in a worker for the pool's end."""
@@ -113,12 +114,14 @@ def _fill(index: int, future: "Future[Any]", results: Results) -> Exception | No
     answer = future.result()
     if isinstance(answer, Exception):
         return answer
-    returns, lengths, terminated, tables = answer
+    returns, lengths, terminated, tables, masks = answer
     results["returns"][index] = returns
     results["lengths"][index] = lengths
     results["terminated"][index] = terminated
     if tables is not None:
         results["tables"][index] = tables
+        if masks is not None:
+            results["masks"][index] = masks.ravel()
     results["finished"][index] = True
     return None
 
@@ -175,7 +178,8 @@ def _train(seed: int, keep_tables: bool) -> Any:
             trainer = _core.Trainer(resolved.spec(), resolved.seed)
             train_unless_stopped(trainer, resolved.config.episodes)
             tables = trainer.tables() if keep_tables else None
-            return *trainer.take_episodes(), tables
+            masks = masks_of(trainer, resolved) if keep_tables else None
+            return *trainer.take_episodes(), tables, masks
         finally:
             resolved.close()
     except Exception as error:

@@ -25,6 +25,7 @@ from qtab.discretizers.actions import Actions, choose_actions
 from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import native_env
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
+from qtab.training.action_masks import known_masks, observed_masks
 from qtab.training.preset_fit import infer_discretizer, set_aside
 from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun
 
@@ -32,6 +33,7 @@ _LOGGER = logging.getLogger("qtab")
 _logged: set[str] = set()
 """The environments whose default time limit was logged in this process, and the messages that were."""
 READ_IN_PYTHON = "a function as the discretizer, or max_rows, reads each observation in Python"
+MASKS_BY_STEP = "its action masks are known only from step to step"
 UNLIMITED_MAX_EPISODE_STEPS = 10_000
 """The time limit in training for environments that have none."""
 
@@ -146,8 +148,17 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     of_preset = {name: value for name, value in of_preset.items() if getattr(config, name) is not DEFAULTS[name]}
     with naming_preset(config.preset, of_preset, request.asked):
         discretizer = discretizers.build(env.observation_space, config, len(actions))
-    if discretizer.reads_space and isinstance(environment, NativeEnvironment):
-        environment, python_reason = _read_in_python(request, actions, owns_env), READ_IN_PYTHON
+    masks = None
+    if isinstance(environment, NativeEnvironment):
+        if not discretizer.reads_space:
+            masks = known_masks(config.action_mask, env, discretizer, len(actions))
+        if masks is None:
+            python_reason = READ_IN_PYTHON if discretizer.reads_space else MASKS_BY_STEP
+            if config.backend == "rust":
+                raise rust_unavailable(python_reason)
+    if masks is None:
+        masks = observed_masks(config.action_mask, env)
+        environment = PythonEnvironment(env, actions, owns_env, masks)
     own_limit = config.max_episode_steps or request.time_limit
     max_episode_steps = own_limit or UNLIMITED_MAX_EPISODE_STEPS
     seed = int(np.random.SeedSequence().generate_state(1)[0]) if config.seed is None else config.seed
@@ -164,6 +175,7 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         environment=environment,
         discretizer=discretizer,
         actions=actions,
+        masks=masks,
         algorithm=algorithm_settings(config),
         policy=policy(config),
         learning_rate=learning_rate(config),
@@ -185,12 +197,6 @@ def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[E
                 raise rust_unavailable(str(error)) from None
             reason = str(error)
     return PythonEnvironment(request.env, actions, owns_env), reason
-
-
-def _read_in_python(request: _Request, actions: Actions, owns_env: bool) -> PythonEnvironment:
-    if request.config.backend == "rust":
-        raise rust_unavailable(READ_IN_PYTHON)
-    return PythonEnvironment(request.env, actions, owns_env)
 
 
 def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> Any:

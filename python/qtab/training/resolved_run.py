@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._spec import EnvironmentSpec, NativeEnvSpec, PythonEnvSpec, RunSpec
@@ -17,6 +19,7 @@ from qtab.config.schedules import LearningRate
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.envs.registry import EnvEntry
+from qtab.training.action_masks import NO_MASKS, ActionMasks
 from qtab.training.exclusive import exclusively
 from qtab.training.observed_env import ObservedEnv
 
@@ -48,6 +51,7 @@ class PythonEnvironment:
     actions: Actions
     owns_env: bool
     """Whether to close the environment after the run."""
+    masks: ActionMasks = NO_MASKS
 
     def spec(self) -> PythonEnvSpec:
         """Returns the environment as the extension takes it."""
@@ -55,7 +59,8 @@ class PythonEnvironment:
             "type": "python",
             "env": self.env,
             "first_action": self.actions.first,
-            "actions": self.actions.arrays(),
+            "actions": self.actions.objects(),
+            "action_mask": self.masks.source,
         }
 
     def exclusively(self) -> AbstractContextManager[None]:
@@ -80,6 +85,7 @@ class ResolvedRun:
     environment: Environment
     discretizer: Discretizer
     actions: Actions
+    masks: ActionMasks
     algorithm: AlgorithmSettings
     policy: Policy
     learning_rate: LearningRate
@@ -106,7 +112,10 @@ class ResolvedRun:
     def _env_spec(self) -> EnvironmentSpec:
         spec = self.environment.spec()
         if spec["type"] == "python" and self.discretizer.reads_space:
-            return {**spec, "env": ObservedEnv(spec["env"], self.discretizer)}
+            env, masks = ObservedEnv(spec["env"], self.discretizer), spec["action_mask"]
+            if masks["type"] == "function":
+                masks = {"type": "function", "function": env.of_observation(masks["function"])}
+            return {**spec, "env": env, "action_mask": masks}
         return spec
 
     def spec(self) -> RunSpec:
@@ -122,8 +131,15 @@ class ResolvedRun:
             "learning_rate": self.learning_rate.spec(),
             "discount": config.discount,
             "initial_q": initial_q_spec(config.initial_q),
+            "action_masks": self.masks.spec(),
             "terminal_update": config.terminal_update,
             "on_truncation": config.on_truncation,
             "episodes": config.episodes,
             "bit_generator": config.bit_generator,
         }
+
+
+def masks_of(trainer: _core.Trainer, resolved: ResolvedRun) -> NDArray[np.bool_] | None:
+    """Returns (*cells, actions): which actions each cell has, as last seen; None without masks, or without cells."""
+    masks = trainer.action_masks() if resolved.discretizer.has_cells else None
+    return None if masks is None else masks.reshape(*resolved.discretizer.shape, len(resolved.actions))

@@ -5,6 +5,7 @@ import math
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab.config.options import n_tables
+from qtab.training.action_masks import mask_bytes
 from qtab.training.options import TrainingOptions
 from qtab.training.resolved_run import ResolvedRun
 
@@ -34,7 +35,8 @@ def bytes_in_progress(resolved: ResolvedRun) -> int:
     per_value = 8 + BYTES_PER_VALUE.get(resolved.config.algorithm, 0)
     if resolved.learning_rate.spec()["type"] == "visits":
         per_value += BYTES_PER_VISIT_COUNT
-    return resolved.config.episodes * BYTES_PER_EPISODE + values * per_value
+    masks = mask_bytes(resolved.masks, resolved.discretizer, len(resolved.actions))
+    return resolved.config.episodes * BYTES_PER_EPISODE + values * per_value + masks
 
 
 def check_run(resolved: ResolvedRun, options: TrainingOptions, snapshots: int) -> int:

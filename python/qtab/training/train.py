@@ -35,7 +35,7 @@ from qtab.training.earlier_run import (
 )
 from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.resolved_run import ResolvedRun, masks_of
 from qtab.training.restore import restore, state_of
 from qtab.training.run_memory import check_run, tables_shape
 
@@ -105,7 +105,7 @@ def train(
         resolved = resolve(env, over(base, settings))
     else:
         asked = over(base, settings)
-        earlier = with_function(earlier_run("resume", resume), asked.get("discretizer"))
+        earlier = with_function(earlier_run("resume", resume, asked.get("action_mask")), asked.get("discretizer"))
         options = replace(options, visits=counts_visits(earlier, visits))
         check_agrees(earlier, env, asked)
         made = env if isinstance(env, gym.Env) else None
@@ -217,5 +217,6 @@ def _run(
         recordings=recordings,
         visits=None if visits is None else visits.reshape(*resolved.discretizer.shape, len(resolved.actions)),
         snapshots=collector.snapshots(),
+        action_masks=masks_of(trainer, resolved),
         state=state_of(trainer, resolved, collector.to_take),
     )

@@ -27,6 +27,7 @@ from qtab.config.signature import with_settings
 from qtab.discretizers import Sparse
 from qtab.envs.matching import equal_environments
 from qtab.results.runs import Runs
+from qtab.training.action_masks import mask_bytes
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_memory import bytes_in_progress, tables_shape
@@ -215,7 +216,9 @@ def allocate_results(resolved: ResolvedRun, runs: int, at_once: int, keep_tables
     """
     episodes = resolved.config.episodes
     values = math.prod(tables_shape(resolved, 1))
-    stored = BYTES_PER_RUN + episodes * BYTES_PER_EPISODE + (8 * values if keep_tables else 0)
+    keep_masks = keep_tables and not resolved.is_native and resolved.discretizer.has_cells
+    masks = mask_bytes(resolved.masks, resolved.discretizer, len(resolved.actions)) if keep_masks else 0
+    stored = BYTES_PER_RUN + episodes * BYTES_PER_EPISODE + (8 * values if keep_tables else 0) + masks
     needed = runs * stored + at_once * bytes_in_progress(resolved)
     check_memory(f"{runs} runs of {episodes} episodes", needed, limit)
     return {
@@ -224,6 +227,7 @@ def allocate_results(resolved: ResolvedRun, runs: int, at_once: int, keep_tables
         "terminated": np.empty((runs, episodes), dtype=np.bool_),
         "tables": np.empty((runs, values if keep_tables else 0)),
         "finished": np.zeros(runs, dtype=np.bool_),
+        "masks": np.ones((runs, masks), dtype=np.bool_),
     }
 
 
@@ -260,4 +264,14 @@ def _runs(
         completed=completed,
         seconds=time.perf_counter() - began,
         versions=versions(),
+        action_masks=_masks(resolved, results, rows) if keep_tables else None,
     )
+
+
+def _masks(resolved: ResolvedRun, results: Results, rows: Any) -> NDArray[np.bool_] | None:
+    """(runs, *cells, actions): the masks of runs in Rust are known from the start; None where there are none."""
+    shape = (*resolved.discretizer.shape, len(resolved.actions))
+    runs = len(results["finished"][rows])
+    if resolved.masks.known is not None:
+        return np.broadcast_to(resolved.masks.known.reshape(shape), (runs, *shape))
+    return results["masks"][rows].reshape(runs, *shape) if results["masks"].shape[1] else None

@@ -37,6 +37,7 @@ fn agent(rows: usize, n_active: usize) -> Agent {
         learning_rate: LearningRate::scheduled(Schedule::constant(0.3), n_active),
         discount: 1.0,
         terminal_update: TerminalUpdate::Target,
+        masks: None,
     }
 }
 

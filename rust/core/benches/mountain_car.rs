@@ -31,6 +31,7 @@ fn learner(rng: &mut impl Rng) -> QLearner {
         learning_rate: 0.2,
         discount: 0.9,
         terminal_update: TerminalUpdate::Assign,
+        masks: None,
     };
     TdLearner { agent, rule: QLearning }
 }

@@ -28,6 +28,7 @@
 //!     learning_rate: 0.2,
 //!     discount: 0.9,
 //!     terminal_update: TerminalUpdate::Assign,
+//!     masks: None,
 //! };
 //! let mut trainer = Trainer::new(task, TdLearner { agent, rule: QLearning }, rng);
 //! trainer.advance(Budget { episodes: 100, work: u64::MAX }).unwrap();

@@ -134,6 +134,11 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
             let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length, .. } = episode;
             loop {
                 let transition = self.task.step(&mut state, action)?;
+                if let Some(mask) = self.task.action_mask()
+                    && let Next::NonTerminal(next_state) | Next::Truncated(next_state) = transition.next
+                {
+                    self.learner.set_action_mask(next_state, mask);
+                }
                 episode_return += transition.reward;
                 length += 1;
                 action = self.learner.learn(active, action, transition.reward, transition.next, rng);
@@ -181,6 +186,9 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
 
     pub(crate) fn begin_episode(&mut self, rng: &mut impl Rng) -> Result<EpisodeState<T::State, T::Active>, T::Error> {
         let (state, active) = self.task.reset()?;
+        if let Some(mask) = self.task.action_mask() {
+            self.learner.set_action_mask(active, mask);
+        }
         let action = self.learner.first_action(active, rng);
         Ok(EpisodeState { state, active, action, episode_return: 0.0, length: 0, unfinished: None })
     }
@@ -224,6 +232,7 @@ mod tests {
             learning_rate: LearningRate::scheduled(Schedule::constant(0.1), 1),
             discount: 0.9,
             terminal_update: TerminalUpdate::Target,
+            masks: None,
         };
         let learner = TruncationHandling { learner: TdLearner { agent, rule: rule.clone() }, terminate };
         let mut whole = Trainer::new(task, learner, Pcg64::new(&seed));
@@ -263,6 +272,7 @@ mod tests {
             learning_rate: LearningRate::scheduled(Schedule::constant(0.1), 1),
             discount: 0.9,
             terminal_update: TerminalUpdate::Target,
+            masks: None,
         };
         let rule = DynaQ::new(Model::new(ROWS, ACTIONS, &stop).expect("a small model"), 99);
         let mut trainer = Trainer::new(task, TdLearner { agent, rule }, Pcg64::new(&seed));

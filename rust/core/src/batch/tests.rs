@@ -59,6 +59,7 @@ where
         learning_rate,
         discount: settings.discount,
         terminal_update: settings.terminal_update,
+        masks: None,
     };
     let task = NativeTask::new(env, features, Some(settings.max_episode_steps), Pcg64::new(&seed));
     Trainer::new(task, TdLearner { agent, rule: QLearning }, rng)

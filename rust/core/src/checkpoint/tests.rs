@@ -45,6 +45,7 @@ impl Setup {
             },
             discount: 0.9,
             terminal_update: TerminalUpdate::Target,
+            masks: None,
         }
     }
 

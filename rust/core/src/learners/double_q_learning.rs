@@ -1,6 +1,6 @@
 //! Double Q-learning (H. van Hasselt, 2010; Sutton & Barto, equation 6.10).
 
-use super::common::{Agent, Learner};
+use super::common::{Agent, Learner, available};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::numeric::argmax;
 use crate::policies::Policy;
@@ -35,7 +35,7 @@ impl DoubleQLearning {
 
     #[inline]
     fn choose(&mut self, rows: &[u32], rng: &mut impl Rng) -> usize {
-        self.sums.copy_from_slice(self.agent.table.action_values(rows));
+        self.sums.copy_from_slice(self.agent.action_values(rows));
         for (sum, value) in self.sums.iter_mut().zip(self.second_table.action_values(rows)) {
             *sum += value;
         }
@@ -52,7 +52,7 @@ impl<R: Copy + AsRef<[u32]>> Learner<R> for DoubleQLearning {
     #[inline]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
         let first = rng.random() < 0.5;
-        let Agent { table, learning_rate, discount, terminal_update, .. } = &mut self.agent;
+        let Agent { table, learning_rate, discount, terminal_update, masks, .. } = &mut self.agent;
         let (updated, other, learning_rate) = if first {
             (table, &self.second_table, learning_rate)
         } else {
@@ -60,8 +60,9 @@ impl<R: Copy + AsRef<[u32]>> Learner<R> for DoubleQLearning {
         };
         match next {
             Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
-                let greedy = argmax(updated.action_values(next_state.as_ref()));
-                let target = reward + *discount * other.value(next_state.as_ref(), greedy);
+                let rows = next_state.as_ref();
+                let greedy = argmax(available::<0>(masks, rows, updated.action_values(rows)));
+                let target = reward + *discount * other.value(rows, greedy);
                 updated.update(state.as_ref(), action, target, learning_rate);
             }
             Next::Terminal => {
@@ -69,6 +70,15 @@ impl<R: Copy + AsRef<[u32]>> Learner<R> for DoubleQLearning {
             }
         }
         if let Next::NonTerminal(next_state) = next { self.choose(next_state.as_ref(), rng) } else { 0 }
+    }
+
+    #[inline]
+    fn set_action_mask(&mut self, state: R, mask: &[bool]) {
+        self.agent.set_action_mask(state, mask);
+    }
+
+    fn action_masks(&self) -> Option<&[bool]> {
+        self.agent.action_masks()
     }
 
     #[inline]

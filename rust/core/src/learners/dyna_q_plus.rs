@@ -8,7 +8,7 @@ use crate::random::Rng;
 use crate::tasks::Next;
 
 /// Dyna-Q whose planning updates use the reward R + κ √τ, where τ is the number of steps since the pair was last tried in
-/// the environment. Planning considers all actions of a visited state. An action that was never tried is assumed to lead
+/// the environment. Planning considers all actions that a visited state has. An action that was never tried is assumed to lead
 /// back to the same state with a reward of 0 (the book's footnote), and its τ counts from the start of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynaQPlus {
@@ -77,7 +77,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
     fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
         for _ in 0..self.progress.take() {
             let row = self.model.sample_state(rng);
-            let action = rng.integers(agent.table.num_actions() as u32) as usize;
+            let action = agent.sample_action([row], rng);
             let ModelEntry { reward, next } =
                 self.model.entry(row, action).unwrap_or(ModelEntry { reward: 0.0, next: Some(row) });
             let elapsed = (self.now - self.last_tried[agent.table.weight_index(row, action)]) as f64;

@@ -29,8 +29,7 @@ where
     ) -> usize {
         match next {
             Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
-                let target = reward
-                    + agent.discount * agent.policy.expected_value(agent.table.action_values(next_state.as_ref()));
+                let target = reward + agent.discount * agent.expected_value(next_state);
                 agent.update(state, action, target);
             }
             Next::Terminal => agent.update_terminal(state, action, reward),

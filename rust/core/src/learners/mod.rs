@@ -12,7 +12,9 @@ mod sarsa_lambda;
 mod true_online_sarsa_lambda;
 mod watkins_q_lambda;
 
-pub use common::{Agent, Learner, Model, ModelEntry, TdLearner, TraceKind, Traces, TruncationHandling, UpdateRule};
+pub use common::{
+    ActionMasks, Agent, Learner, Model, ModelEntry, TdLearner, TraceKind, Traces, TruncationHandling, UpdateRule,
+};
 pub use double_q_learning::DoubleQLearning;
 pub use dyna_q::DynaQ;
 pub use dyna_q_plus::DynaQPlus;

@@ -31,12 +31,12 @@ where
         // The cases repeat the target: shared code would slow the specialized run down by a twentieth.
         match next {
             Next::NonTerminal(next_state) => {
-                let target = reward + agent.discount * maximum(agent.table.action_values(next_state.as_ref()));
+                let target = reward + agent.discount * maximum(agent.action_values(next_state));
                 agent.update(state, action, target);
                 agent.choose(next_state, rng)
             }
             Next::Truncated(next_state) => {
-                let target = reward + agent.discount * maximum(agent.table.action_values(next_state.as_ref()));
+                let target = reward + agent.discount * maximum(agent.action_values(next_state));
                 agent.update(state, action, target);
                 0
             }

@@ -37,10 +37,11 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
         let value = agent.value(state, action);
         let (next_action, target, greedy) = match agent.sample_next(next, rng) {
             Some((next_state, next_action)) => {
-                let values = agent.table.action_values(next_state.as_ref());
+                let values = agent.action_values(next_state);
                 let largest = maximum(values);
                 // An action that ties for the maximum is greedy, even if it was chosen by exploring.
-                (next_action, reward + agent.discount * largest, values[next_action] == largest)
+                let greedy = values[next_action] == largest;
+                (next_action, reward + agent.discount * largest, greedy)
             }
             None => (0, reward, false),
         };

@@ -47,7 +47,7 @@ impl Policy for AnyPolicy {
             }
             Self::MaskedEpsilonGreedy { epsilon, ties } => {
                 if rng.random() >= 1.0 - epsilon.value() {
-                    random_action(values, is_available, rng)
+                    random_available_action(values, rng)
                 } else {
                     ties.greedy(values, rng)
                 }
@@ -74,10 +74,16 @@ impl Policy for AnyPolicy {
     }
 }
 
+/// A random action among those that are available.
+#[inline]
+pub(crate) fn random_available_action(values: &[f64], rng: &mut impl Rng) -> usize {
+    random_action(values, is_available, rng)
+}
+
 /// Whether an action with this value is available.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "`Iterator::filter` passes references")]
 #[inline]
-fn is_available(value: &f64) -> bool {
+pub(super) fn is_available(value: &f64) -> bool {
     *value != f64::NEG_INFINITY
 }
 

@@ -7,6 +7,7 @@ mod softmax;
 mod tie_breaking;
 
 pub use any_policy::AnyPolicy;
+pub(crate) use any_policy::random_available_action;
 pub use epsilon_greedy::EpsilonGreedy;
 pub use policy::Policy;
 pub use softmax::Softmax;

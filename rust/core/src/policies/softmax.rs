@@ -1,10 +1,11 @@
 //! The softmax policy.
 
 use super::Policy;
+use super::any_policy::is_available;
 use crate::numeric::{maximum, sum};
 use crate::random::Rng;
 
-/// The softmax (Boltzmann) policy: π(a) ∝ exp(Q(a) / τ) with the temperature τ (Sutton & Barto, equation 2.11).
+/// The softmax (Boltzmann) policy over the available actions: π(a) ∝ exp(Q(a) / τ) with the temperature τ (Sutton & Barto, equation 2.11).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Softmax {
     temperature: f64,
@@ -43,11 +44,12 @@ impl Policy for Softmax {
             threshold < cumulative
         });
         // Rounding can leave the last sum slightly below 1.
-        chosen.unwrap_or(probabilities.len() - 1)
+        chosen.or_else(|| values.iter().rposition(is_available)).unwrap_or(0)
     }
 
     fn expected_value(&mut self, values: &[f64]) -> f64 {
-        sum(self.probabilities(values).iter().zip(values).map(|(probability, value)| probability * value))
+        let pairs = self.probabilities(values).iter().zip(values).filter(|(_, value)| is_available(value));
+        sum(pairs.map(|(probability, value)| probability * value))
     }
 
     fn end_episode(&mut self) {}
@@ -56,6 +58,16 @@ impl Policy for Softmax {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::{Pcg64, SeedSequence};
+
+    #[test]
+    fn an_unavailable_action_is_neither_chosen_nor_counted() {
+        let values = [f64::NEG_INFINITY, 0.5, 0.5, f64::NEG_INFINITY];
+        let mut softmax = Softmax::new(1.0, 4);
+        assert_eq!(softmax.expected_value(&values), 0.5);
+        let mut rng = Pcg64::new(&SeedSequence::new(&[1]));
+        assert!((0..100).all(|_| [1, 2].contains(&softmax.choose(&values, &mut rng))));
+    }
 
     #[test]
     fn probabilities_are_exponential_in_the_values() {

@@ -14,6 +14,7 @@ struct StatefulTask<T: Task> {
 trait DynTask<R, X> {
     fn reset(&mut self) -> Result<R, X>;
     fn step(&mut self, action: usize) -> Result<Transition<R>, X>;
+    fn action_mask(&self) -> Option<&[bool]>;
     fn visits(&self) -> Option<&[i64]>;
     fn active_rows(&self) -> Result<R, X>;
     fn resumes_episodes(&self) -> bool;
@@ -30,6 +31,10 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
     fn step(&mut self, action: usize) -> Result<Transition<T::Active>, X> {
         let Some(state) = &mut self.state else { unreachable!("a trainer resets a task before it steps it") };
         Ok(self.task.step(state, action)?)
+    }
+
+    fn action_mask(&self) -> Option<&[bool]> {
+        self.task.action_mask()
     }
 
     fn visits(&self) -> Option<&[i64]> {
@@ -54,6 +59,8 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
 pub struct BoxedTask<R, X> {
     task: Box<dyn DynTask<R, X> + Send>,
     step_work: u64,
+    /// Whether the task has action masks. Where it has none, no call is made to ask for them.
+    has_masks: bool,
 }
 
 impl<R: ActiveRows + 'static, X: 'static> BoxedTask<R, X> {
@@ -63,7 +70,11 @@ impl<R: ActiveRows + 'static, X: 'static> BoxedTask<R, X> {
         T: Task<Active = R, State: Send> + Send + 'static,
         X: From<T::Error>,
     {
-        Self { step_work: task.step_work(), task: Box::new(StatefulTask { task, state: None }) }
+        Self {
+            step_work: task.step_work(),
+            has_masks: task.action_mask().is_some(),
+            task: Box::new(StatefulTask { task, state: None }),
+        }
     }
 }
 
@@ -83,6 +94,11 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
     #[inline]
     fn step_work(&self) -> u64 {
         self.step_work
+    }
+
+    #[inline]
+    fn action_mask(&self) -> Option<&[bool]> {
+        if self.has_masks { self.task.action_mask() } else { None }
     }
 
     fn visits(&self) -> Option<&[i64]> {

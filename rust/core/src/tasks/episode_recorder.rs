@@ -84,6 +84,11 @@ impl<T: RngSnapshot> Task for EpisodeRecorder<T> {
         self.task.step_work()
     }
 
+    #[inline]
+    fn action_mask(&self) -> Option<&[bool]> {
+        self.task.action_mask()
+    }
+
     fn active_rows(&self, state: &T::State) -> Result<T::Active, Self::Error> {
         self.task.active_rows(state).map_err(TrainingError::Task)
     }

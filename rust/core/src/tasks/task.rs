@@ -52,6 +52,13 @@ pub trait Task {
         0
     }
 
+    /// Which actions the last state has, the one that `reset` or `step` led to; `None` if each state has all of them, or if
+    /// the learner knows the masks. Unspecified after a terminal state.
+    #[inline]
+    fn action_mask(&self) -> Option<&[bool]> {
+        None
+    }
+
     /// How often each action was taken in each row, row by row; `None` where visits are not counted.
     fn visits(&self) -> Option<&[i64]> {
         None

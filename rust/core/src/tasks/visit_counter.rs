@@ -61,6 +61,11 @@ impl<T: Task> Task for VisitCounter<T> {
         self.task.step_work()
     }
 
+    #[inline]
+    fn action_mask(&self) -> Option<&[bool]> {
+        self.task.action_mask()
+    }
+
     fn visits(&self) -> Option<&[i64]> {
         Some(&self.visits)
     }

@@ -12,6 +12,9 @@ use qtab_core::numeric::Float;
 
 use crate::error::RunError;
 
+/// Observations of at most so many components are read without an allocation.
+const FEW_COMPONENTS: usize = 32;
+
 /// Reads the observations of one observation space.
 pub(crate) trait ObservationReader {
     type Active: ActiveRows;
@@ -43,7 +46,7 @@ impl<T, F> BoxReader<T, F> {
     }
 }
 
-impl<T: Float + numpy::Element, F: Features<[T]>> ObservationReader for BoxReader<T, F> {
+impl<T: Float + Default + numpy::Element, F: Features<[T]>> ObservationReader for BoxReader<T, F> {
     type Active = F::Active;
 
     fn active_rows(&self, observation: &Bound<'_, PyAny>) -> Result<F::Active, RunError> {
@@ -61,11 +64,14 @@ impl<T: Float + numpy::Element, F: Features<[T]>> ObservationReader for BoxReade
         if array.len()? != self.dimensions {
             return Err(self.wrong_shape(array).into());
         }
-        let values = array.readonly();
-        match values.as_slice() {
-            Ok(values) => Ok(self.features.active_rows(values)?),
-            Err(_) => Ok(self.features.active_rows(&values.as_array().to_vec())?),
+        // Item by item, without NumPy's record of borrowed arrays, which takes longer than the rest of a step.
+        let item = |index| array.get_owned(index).unwrap_or_default();
+        let mut few = [T::default(); FEW_COMPONENTS];
+        if let Some(values) = few.get_mut(..self.dimensions) {
+            values.iter_mut().enumerate().for_each(|(index, value)| *value = item(index));
+            return Ok(self.features.active_rows(values)?);
         }
+        Ok(self.features.active_rows(&(0..self.dimensions).map(item).collect::<Vec<_>>())?)
     }
 }
 

@@ -9,7 +9,7 @@ use qtab_core::random::Rng;
 use qtab_core::schedules::LearningRate;
 
 use crate::error::allocation;
-use crate::spec::{LearningRateSpec, PolicySpec, RunSpec};
+use crate::spec::{AlgorithmSpec, LearningRateSpec, PolicySpec, RunSpec};
 
 /// The agent of any learner, with its first table.
 pub(super) fn generic_agent(
@@ -20,12 +20,20 @@ pub(super) fn generic_agent(
     stop: &StopFlag<'_>,
 ) -> PyResult<Agent> {
     let shape = (n_rows, spec.num_actions);
+    let masks = match spec.algorithm {
+        // It plans with actions that it has not tried.
+        AlgorithmSpec::DynaQPlus { .. } if spec.action_masks.is_none() => {
+            spec.initial_q.masks(n_rows * spec.num_actions, spec.num_actions)?
+        }
+        _ => spec.action_masks.build(shape, n_active, stop)?,
+    };
     Ok(Agent {
         table: spec.initial_q.table((0, spec.algorithm.n_tables()), shape, rng, stop)?,
         policy: policy(spec),
         learning_rate: learning_rate(spec, n_rows * spec.num_actions, n_active, stop).map_err(allocation)?,
         discount: spec.discount,
         terminal_update: spec.terminal_update,
+        masks,
     })
 }
 
@@ -34,7 +42,7 @@ pub(super) fn policy(spec: &RunSpec) -> AnyPolicy {
     match spec.policy {
         PolicySpec::EpsilonGreedy { epsilon, ties } => {
             let epsilon = epsilon.build(spec.episodes);
-            if spec.initial_q.has_masked_actions() {
+            if spec.initial_q.has_masked_actions() || !spec.action_masks.is_none() {
                 AnyPolicy::MaskedEpsilonGreedy { epsilon, ties }
             } else {
                 AnyPolicy::EpsilonGreedy { epsilon, ties }

@@ -1,45 +1,48 @@
 //! What the methods of a Python environment return, checked against Gymnasium's API.
 
+use pyo3::Borrowed;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyDict, PyFloat, PyString, PyTuple};
 
 /// What `step` returned.
-pub(super) struct Answer<'py> {
-    pub(super) observation: Bound<'py, PyAny>,
+pub(super) struct Answer<'a, 'py> {
+    pub(super) observation: Borrowed<'a, 'py, PyAny>,
     pub(super) reward: f64,
     pub(super) terminated: bool,
     pub(super) truncated: bool,
+    pub(super) info: Borrowed<'a, 'py, PyAny>,
 }
 
-impl<'py> Answer<'py> {
+impl<'a, 'py> Answer<'a, 'py> {
     /// Takes apart what `env.step` returned.
-    pub(super) fn of_step(env: &Bound<'py, PyAny>, answer: &Bound<'py, PyAny>) -> PyResult<Self> {
+    pub(super) fn of_step(env: &Bound<'py, PyAny>, answer: &'a Bound<'py, PyAny>) -> PyResult<Self> {
         let expected = "a tuple (observation, reward, terminated, truncated, info)";
         let values = tuple_of(env, "step", expected, 5, answer)?;
-        let reward = values.get_item(1)?;
         Ok(Self {
-            observation: values.get_item(0)?,
-            reward: finite(env, &reward)?,
-            terminated: flag(env, "terminated", &values.get_item(2)?)?,
-            truncated: flag(env, "truncated", &values.get_item(3)?)?,
+            observation: values.get_borrowed_item(0)?,
+            reward: finite(env, &*values.get_borrowed_item(1)?)?,
+            terminated: flag(env, "terminated", &*values.get_borrowed_item(2)?)?,
+            truncated: flag(env, "truncated", &*values.get_borrowed_item(3)?)?,
+            info: values.get_borrowed_item(4)?,
         })
     }
 }
 
-/// The observation in what `env.reset` returned.
-pub(super) fn observation_after_reset<'py>(
+/// The observation and the info in what `env.reset` returned.
+pub(super) fn of_reset<'py>(
     env: &Bound<'py, PyAny>,
     answer: &Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let expected = "a tuple (observation, info)";
     let values = tuple_of(env, "reset", expected, 2, answer)?;
-    if !values.get_item(1)?.is_instance_of::<PyDict>() {
+    let info = values.get_item(1)?;
+    if !info.is_instance_of::<PyDict>() {
         // Two components of an observation, as `reset` returned it before Gymnasium.
-        return Err(wrong_type(env, "reset", "a dict as the info", &values.get_item(1)?));
+        return Err(wrong_type(env, "reset", "a dict as the info", &info));
     }
-    values.get_item(0)
+    Ok((values.get_item(0)?, info))
 }
 
 fn tuple_of<'a, 'py>(
@@ -104,7 +107,7 @@ fn message(env: &Bound<'_, PyAny>, method: &str, expected: &str, got: &str) -> S
 /// The longest value that a message shows, in characters.
 const SHOWN: usize = 80;
 
-fn shortened(value: &Bound<'_, PyAny>) -> String {
+pub(super) fn shortened(value: &Bound<'_, PyAny>) -> String {
     let text = value.repr().map_or_else(|_| "an object without a repr".into(), |text| text.to_string());
     if text.chars().count() <= SHOWN {
         return text;

@@ -1,15 +1,18 @@
 //! Training runs of every type behind one interface, and how a run is built from its spec.
 
+mod action_mask;
 mod agent;
 mod answers;
 mod factory;
 mod generic;
+mod python_env;
 mod python_task;
 mod run;
 mod specialized;
 
 pub(crate) use factory::{RunBatch, RunFactory};
 pub(crate) use generic::{generic, generic_box};
-pub(crate) use python_task::{PythonEnv, python_run};
+pub(crate) use python_env::PythonEnv;
+pub(crate) use python_task::python_run;
 pub(crate) use run::{AnyRecordings, BuiltRun, Run};
 pub(crate) use specialized::{QLearningBatching, specialized};

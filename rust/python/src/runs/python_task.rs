@@ -2,7 +2,6 @@
 
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::features::MAX_TILINGS;
 use qtab_core::numeric::Float;
@@ -11,49 +10,24 @@ use qtab_core::{Features, StopFlag, Task};
 
 use super::answers::{self, Answer};
 use super::generic::boxed_run;
+use super::python_env::PythonEnv;
 use super::{AnyRecordings, BuiltRun};
 use crate::convert::{BoxReader, ObservationReader, Seed};
 use crate::error::RunError;
-use crate::spec::{DiscretizerSpec, Fields, FloatType, RunSpec};
+use crate::spec::{DiscretizerSpec, FloatType, RunSpec};
 
 /// How many steps of Q-learning on a grid a step in Python counts as. It may take a millisecond.
 const STEP_WORK: u64 = 127;
 
-/// A Python environment, and how the learner's actions are passed to it.
-pub(crate) struct PythonEnv {
-    env: Py<PyAny>,
-    /// The environment's number of the first action, `Discrete.start`.
-    first_action: i64,
-    /// The arrays that the actions of a continuous space stand for; empty for a discrete space.
-    actions: Vec<Py<PyAny>>,
-}
-
-impl PythonEnv {
-    pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
-        Ok(Self {
-            env: fields.any("env")?.unbind(),
-            first_action: fields.get("first_action")?,
-            actions: fields.get("actions")?,
-        })
-    }
-
-    /// What the environment's `step` takes. An array is a copy, so that the environment may write to it.
-    fn action<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
-        match self.actions.get(index) {
-            Some(action) => action.bind(py).call_method0(intern!(py, "copy")),
-            None => Ok(self.first_action.saturating_add_unsigned(index as u64).into_pyobject(py)?.into_any()),
-        }
-    }
-}
-
 /// A run that steps a Python environment.
 pub(crate) fn python_run(
     py: Python<'_>,
-    env: PythonEnv,
+    mut env: PythonEnv,
     spec: &RunSpec,
     seed: &Seed,
     (record, stop): (usize, &StopFlag<'_>),
 ) -> PyResult<BuiltRun> {
+    env.keep_actions(py, spec.num_actions)?;
     let task = TaskBuilder { env, first_seed: seed.to_python(py)?.unbind(), spec, seed, record, stop };
     if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
         return task.run(reader.clone(), reader.n_rows());
@@ -81,7 +55,7 @@ impl TaskBuilder<'_> {
     /// With the observations of a Box of dtype `T`.
     fn box_run<T>(self, to_dtype: impl Fn(f64) -> T, dimensions: usize) -> PyResult<BuiltRun>
     where
-        T: Float + numpy::Element + 'static,
+        T: Float + Default + numpy::Element + 'static,
     {
         if let DiscretizerSpec::Tiles(tiles) = &self.spec.discretizer {
             let tiles = tiles.tile_coding::<T, MAX_TILINGS>();
@@ -99,7 +73,8 @@ impl TaskBuilder<'_> {
     {
         let Self { env, first_seed, spec, seed, record, stop } = self;
         let (max_episode_steps, shape) = (spec.max_episode_steps, (n_rows, spec.discretizer.n_active()));
-        let task = PythonTask { env, first_seed, seeded: false, max_episode_steps, reader };
+        let mask = vec![true; spec.num_actions];
+        let task = PythonTask { env, first_seed, seeded: false, max_episode_steps, reader, mask };
         let (run, recordings) = boxed_run(task, shape, seed, spec, (record, stop), AnyRecordings::Python)?;
         Ok(BuiltRun { run, recordings, steps_python: true })
     }
@@ -112,6 +87,8 @@ struct PythonTask<R> {
     seeded: bool,
     max_episode_steps: u64,
     reader: R,
+    /// Which actions the last state has, where the environment has action masks.
+    mask: Vec<bool>,
 }
 
 impl<R: ObservationReader> Task for PythonTask<R> {
@@ -122,33 +99,41 @@ impl<R: ObservationReader> Task for PythonTask<R> {
 
     fn reset(&mut self) -> Result<(u64, R::Active), RunError> {
         Python::attach(|py| {
-            let env = self.env.env.bind(py);
-            let arguments = PyDict::new(py);
-            if !self.seeded {
-                arguments.set_item(intern!(py, "seed"), &self.first_seed)?;
-            }
-            let answer = env.call_method(intern!(py, "reset"), (), Some(&arguments))?;
+            let answer = self.env.reset(py, (!self.seeded).then_some(&self.first_seed))?;
             self.seeded = true;
-            Ok((0, self.reader.active_rows(&answers::observation_after_reset(env, &answer)?)?))
+            let env = self.env.bind(py);
+            let (observation, info) = answers::of_reset(env, &answer)?;
+            let rows = self.reader.active_rows(&observation)?;
+            self.env.masks.read((env, "reset"), &observation, &info, &mut self.mask)?;
+            Ok((0, rows))
         })
     }
 
     fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<R::Active>, RunError> {
         Python::attach(|py| {
-            let env = self.env.env.bind(py);
-            let answer = env.call_method1(intern!(py, "step"), (self.env.action(py, action)?,))?;
-            let Answer { observation, reward, terminated, truncated } = Answer::of_step(env, &answer)?;
+            let answer = self.env.step(py, action)?;
+            let env = self.env.bind(py);
+            let Answer { observation, reward, terminated, truncated, info } = Answer::of_step(env, &answer)?;
             *elapsed += 1;
             let rows = self.reader.active_rows(&observation)?;
-            let next = if terminated {
-                Next::Terminal
-            } else if truncated || *elapsed >= self.max_episode_steps {
+            if terminated {
+                // Nothing is chosen in a terminal state: it may have no action left.
+                return Ok(Transition { reward, next: Next::Terminal });
+            }
+            if !self.env.masks.is_none() {
+                self.env.masks.read((env, "step"), &observation, &info, &mut self.mask)?;
+            }
+            let next = if truncated || *elapsed >= self.max_episode_steps {
                 Next::Truncated(rows)
             } else {
                 Next::NonTerminal(rows)
             };
             Ok(Transition { reward, next })
         })
+    }
+
+    fn action_mask(&self) -> Option<&[bool]> {
+        (!self.env.masks.is_none()).then_some(&self.mask)
     }
 
     fn step_work(&self) -> u64 {
@@ -178,7 +163,7 @@ impl<R: ObservationReader> RngSnapshot for PythonTask<R> {
             if !self.seeded {
                 return Ok(self.first_seed.clone_ref(py));
             }
-            let env = self.env.env.bind(py);
+            let env = self.env.bind(py);
             let generator = env.getattr(intern!(py, "unwrapped"))?.getattr(intern!(py, "np_random"))?;
             Ok(generator.getattr(intern!(py, "bit_generator"))?.getattr(intern!(py, "state"))?.unbind())
         })

@@ -25,6 +25,9 @@ pub(crate) trait Run: Send {
     /// How often each action was taken in each row; None where visits are not counted.
     fn visits(&self) -> Option<&[i64]>;
 
+    /// Which actions the states have, row by row; None if each has all of them.
+    fn action_masks(&self) -> Option<&[bool]>;
+
     /// Saves or restores all but the tables and the finished episodes.
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 
@@ -64,6 +67,10 @@ where
         self.task().visits()
     }
 
+    fn action_masks(&self) -> Option<&[bool]> {
+        self.learner().action_masks()
+    }
+
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         Trainer::persist(self, checkpoint)
     }
@@ -96,6 +103,10 @@ impl Run for Box<dyn Run> {
 
     fn visits(&self) -> Option<&[i64]> {
         (**self).visits()
+    }
+
+    fn action_masks(&self) -> Option<&[bool]> {
+        (**self).action_masks()
     }
 
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {

@@ -76,7 +76,7 @@ where
     let one_step =
         matches!(spec.algorithm, AlgorithmSpec::QLearning | AlgorithmSpec::Sarsa | AlgorithmSpec::ExpectedSarsa);
     let fits = spec.num_actions == N && env.num_actions() == N && spec.bit_generator == BitGenerator::Pcg64;
-    if !one_step || !fits || spec.terminate_on_truncation || record > 0 {
+    if !one_step || !fits || !spec.action_masks.is_none() || spec.terminate_on_truncation || record > 0 {
         return generic(env, features, spec, record);
     }
     let builder = Builder::<E, F, N> { env, features, spec: Arc::clone(spec) };
@@ -145,6 +145,7 @@ where
                 learning_rate: learning_rate.clone(),
                 discount: spec.discount,
                 terminal_update: spec.terminal_update,
+                masks: None,
             };
             let task =
                 NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));

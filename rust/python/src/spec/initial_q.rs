@@ -6,6 +6,7 @@ use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
 use qtab_core::QTable;
 use qtab_core::StopFlag;
+use qtab_core::learners::ActionMasks;
 use qtab_core::memory::{collect, filled, from_fn};
 use qtab_core::random::Rng;
 
@@ -43,6 +44,18 @@ impl InitialQSpec {
     /// Whether some states lack actions, which a first value of -∞ says.
     pub(crate) fn has_masked_actions(&self) -> bool {
         matches!(self, Self::Given(values) if values.contains(&f64::NEG_INFINITY))
+    }
+
+    /// The same as masks, for learners that must know them beside the values; None where no state lacks an action.
+    pub(crate) fn masks(&self, size: usize, num_actions: usize) -> PyResult<Option<Box<ActionMasks>>> {
+        match self {
+            Self::Given(values) if self.has_masked_actions() => {
+                let first_table = values.iter().take(size).map(|value| *value != f64::NEG_INFINITY);
+                let available = collect(first_table).map_err(allocation)?;
+                Ok(Some(Box::new(ActionMasks::known(available, num_actions))))
+            }
+            _ => Ok(None),
+        }
     }
 
     /// Table number `index` of `n_tables`, as it is before the first episode.

@@ -1,6 +1,7 @@
 //! A run as Python describes it (`qtab/_spec.py`), parsed once: every tag becomes a variant, every word a value, and what
 //! is unknown is refused here.
 
+mod action_masks;
 mod algorithm;
 mod discretizer;
 mod fields;
@@ -12,6 +13,7 @@ mod schedule;
 use pyo3::prelude::*;
 use qtab_core::q_table::TerminalUpdate;
 
+pub(crate) use action_masks::ActionMasksSpec;
 pub(crate) use algorithm::{ALGORITHMS, AlgorithmSpec, TraceSpec};
 pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType};
 pub(crate) use fields::{Fields, Variant};
@@ -33,6 +35,7 @@ pub(crate) struct RunSpec {
     pub(crate) learning_rate: LearningRateSpec,
     pub(crate) discount: f64,
     pub(crate) initial_q: InitialQSpec,
+    pub(crate) action_masks: ActionMasksSpec,
     pub(crate) terminal_update: TerminalUpdate,
     pub(crate) terminate_on_truncation: bool,
     pub(crate) episodes: u64,
@@ -59,6 +62,7 @@ impl RunSpec {
             learning_rate: LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?,
             discount: fields.get("discount")?,
             initial_q: InitialQSpec::parse(&fields.nested("initial_q")?)?,
+            action_masks: ActionMasksSpec::parse(&fields.nested("action_masks")?)?,
             terminal_update: fields
                 .word("terminal_update", &[("target", TerminalUpdate::Target), ("assign", TerminalUpdate::Assign)])?,
             terminate_on_truncation: fields.word("on_truncation", &[("bootstrap", false), ("terminate", true)])?,

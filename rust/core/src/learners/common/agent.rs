@@ -1,7 +1,8 @@
 //! The parts that all learners share: the Q table, the policy and the constants of an update.
 
-use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::policies::{AnyPolicy, Policy};
+use super::ActionMasks;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::policies::{AnyPolicy, Policy, random_available_action};
 use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::Rng;
 use crate::schedules::{LearningRate, StepSize};
@@ -32,6 +33,8 @@ pub struct Agent<const N: usize = 0, P = AnyPolicy, A = LearningRate> {
     pub discount: f64,
     /// The update at a terminal state.
     pub terminal_update: TerminalUpdate,
+    /// Which actions the states have; `None` if each has all of them. Ignored with `N` > 0.
+    pub masks: Option<Box<ActionMasks>>,
 }
 
 impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
@@ -39,7 +42,45 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn choose(&mut self, rows: impl AsRef<[u32]>, rng: &mut impl Rng) -> usize {
-        self.policy.choose(self.table.action_values(rows.as_ref()), rng)
+        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(rows.as_ref()));
+        self.policy.choose(values, rng)
+    }
+
+    /// The action values of the state with these active rows. The value of an action that the state does not have is -∞.
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+    #[inline(always)]
+    pub fn action_values(&mut self, rows: impl AsRef<[u32]>) -> &[f64] {
+        available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(rows.as_ref()))
+    }
+
+    /// The expected value Σₐ π(a) Q(a) of the state with these active rows.
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+    #[inline(always)]
+    pub fn expected_value(&mut self, rows: impl AsRef<[u32]>) -> f64 {
+        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(rows.as_ref()));
+        self.policy.expected_value(values)
+    }
+
+    /// A random action among those that the state with these active rows has: `rng.integers` of their number.
+    #[inline]
+    pub fn sample_action(&mut self, rows: impl AsRef<[u32]>, rng: &mut impl Rng) -> usize {
+        match &self.masks {
+            None => rng.integers(self.table.num_actions() as u32) as usize,
+            Some(_) => random_available_action(self.action_values(rows), rng),
+        }
+    }
+
+    /// Takes over which actions a state has.
+    #[inline]
+    pub fn set_action_mask(&mut self, rows: impl AsRef<[u32]>, mask: &[bool]) {
+        if let Some(masks) = &mut self.masks {
+            masks.set(rows.as_ref(), mask);
+        }
+    }
+
+    /// Which actions the states have, row by row; `None` if each has all of them.
+    pub fn action_masks(&self) -> Option<&[bool]> {
+        self.masks.as_deref().map(ActionMasks::available)
     }
 
     /// Samples A′ in the next state S′ and returns both; `None` if S′ is terminal. If the episode is truncated, A′ is
@@ -96,8 +137,11 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         if N > 0 { 1 } else { row_work(self.table.num_actions()) }
     }
 
-    /// Saves or restores what the learning rate has counted.
+    /// Saves or restores what the learning rate has counted, and which actions the states had.
     pub(crate) fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        if let Some(masks) = &mut self.masks {
+            masks.persist(checkpoint)?;
+        }
         self.learning_rate.persist_counts(checkpoint)
     }
 
@@ -105,5 +149,19 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     pub fn end_episode(&mut self) {
         self.policy.end_episode();
         self.learning_rate.end_episode();
+    }
+}
+
+/// Action values, with -∞ for the actions that the state with these active rows does not have.
+#[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+#[inline(always)]
+pub(in crate::learners) fn available<'a, const N: usize>(
+    masks: &'a mut Option<Box<ActionMasks>>,
+    rows: &[u32],
+    values: &'a [f64],
+) -> &'a [f64] {
+    match masks {
+        Some(masks) if N == 0 => masks.masked(rows, values),
+        _ => values,
     }
 }

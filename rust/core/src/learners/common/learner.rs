@@ -14,6 +14,17 @@ pub trait Learner<R> {
     /// Learns from one step and returns the next action. The result is ignored at the end of an episode.
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize;
 
+    /// Takes over which actions a state has, before it chooses or learns from them. The task says which.
+    #[inline]
+    fn set_action_mask(&mut self, state: R, mask: &[bool]) {
+        let (_, _) = (state, mask);
+    }
+
+    /// Which actions the states have, row by row; `None` if each has all of them.
+    fn action_masks(&self) -> Option<&[bool]> {
+        None
+    }
+
     /// The work of the last step, as [`Budget`](crate::Budget) counts it. At least 1.
     #[inline]
     fn work(&self) -> u64 {

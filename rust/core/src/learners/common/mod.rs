@@ -1,5 +1,6 @@
 //! What the learning algorithms share: the learner trait, the agent, eligibility traces, the model of Dyna.
 
+mod action_masks;
 mod agent;
 mod learner;
 mod model;
@@ -11,7 +12,9 @@ mod traces;
 mod truncation_handling;
 mod update_rule;
 
+pub use action_masks::ActionMasks;
 pub use agent::Agent;
+pub(in crate::learners) use agent::available;
 pub(crate) use agent::{MAX_WORK_PER_CALL, VALUES_PER_WORK};
 pub use learner::Learner;
 pub(super) use model::single_row;

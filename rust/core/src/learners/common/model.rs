@@ -172,7 +172,7 @@ impl Agent {
     pub(crate) fn update_from_entry(&mut self, row: u32, action: usize, entry: ModelEntry) {
         match entry.next {
             Some(next) => {
-                let target = entry.reward + self.discount * maximum(self.table.row(next));
+                let target = entry.reward + self.discount * maximum(self.action_values([next]));
                 self.update([row], action, target);
             }
             None => self.update_terminal([row], action, entry.reward),

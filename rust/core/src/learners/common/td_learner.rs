@@ -36,6 +36,15 @@ where
     }
 
     #[inline]
+    fn set_action_mask(&mut self, state: R, mask: &[bool]) {
+        self.agent.set_action_mask(state, mask);
+    }
+
+    fn action_masks(&self) -> Option<&[bool]> {
+        self.agent.action_masks()
+    }
+
+    #[inline]
     fn work(&self) -> u64 {
         self.rule.work(&self.agent)
     }

@@ -14,6 +14,7 @@ pub(crate) fn agent(values: &[f64]) -> Agent {
         learning_rate: LearningRate::scheduled(Schedule::constant(0.5), 1),
         discount: 0.5,
         terminal_update: TerminalUpdate::Target,
+        masks: None,
     }
 }
 

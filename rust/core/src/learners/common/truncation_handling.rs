@@ -40,6 +40,15 @@ impl<R, L: Learner<R>> Learner<R> for TruncationHandling<L> {
     }
 
     #[inline]
+    fn set_action_mask(&mut self, state: R, mask: &[bool]) {
+        self.learner.set_action_mask(state, mask);
+    }
+
+    fn action_masks(&self) -> Option<&[bool]> {
+        self.learner.action_masks()
+    }
+
+    #[inline]
     fn work(&self) -> u64 {
         self.learner.work()
     }

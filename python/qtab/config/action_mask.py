@@ -1,0 +1,55 @@
+"""The setting ``action_mask``: where the masks of a run come from, and what a mask must be."""
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils.shown import shown
+
+Mask: TypeAlias = bool | str | Callable[[Any], Any]
+"""Whether the environment gives masks, or a function that does; ``STORED`` in the config of a run from a file."""
+
+STORED = "function"
+"""What stands for a function in a file, which cannot hold one."""
+FORGOTTEN = (
+    "action_mask must be given: the run was trained with a function, which its file does not hold; "
+    "qtab.load(path, action_mask=f) gives it back"
+)
+
+
+def mask_setting(name: str, value: Any) -> Mask:
+    """Checks the value of the setting.
+
+    Raises:
+        TypeError: if it is neither a boolean nor a function.
+    """
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    if callable(value) or (isinstance(value, str) and value == STORED):
+        checked: Mask = value
+        return checked
+    raise TypeError(
+        f"{name} must be True (the environment gives the masks), False or a function of the observation, "
+        f"got {shown(value)}"
+    )
+
+
+def checked_mask(name: str, mask: Any, n_actions: int) -> NDArray[np.bool_]:
+    """Returns one mask as (actions,) booleans.
+
+    Raises:
+        TypeError: if it does not hold booleans or integers.
+        ValueError: if it has another shape, holds other integers than 0 and 1, or leaves no action.
+    """
+    given = np.asarray(mask)
+    if given.dtype.kind not in "bui":
+        raise TypeError(f"{name} must be an array of {n_actions} booleans, one for each action, got {shown(mask)}")
+    if given.shape != (n_actions,):
+        raise ValueError(f"{name} must have shape ({n_actions},), with an item for each action, got {given.shape}")
+    if not np.isin(given, (0, 1)).all():
+        raise ValueError(f"{name} must hold booleans, or 0 and 1, got {shown(mask)}")
+    if not given.any():
+        raise ValueError(f"{name} must leave at least one action, got {shown(mask)}")
+    return given.astype(np.bool_)

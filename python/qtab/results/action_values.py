@@ -1,0 +1,108 @@
+"""The action values of a run, with -inf for the actions that an observation does not have."""
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.config import Config
+from qtab.config.action_mask import FORGOTTEN, checked_mask
+
+if TYPE_CHECKING:
+    from qtab.results.run import Run
+
+
+def summed(parts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Adds from left to right, as the learners do; ``np.sum`` would add in pairs."""
+    first, *others = parts
+    total: NDArray[np.float64] = np.array(first)
+    for part in others:
+        total += part
+    return total
+
+
+def of_cells(run: "Run") -> NDArray[np.float64]:
+    """Returns (*cells, actions): the values that the greedy policy reads; of two tables the sum."""
+    values = summed(run.tables).reshape(*run.discretizer.shape, len(run.actions))
+    return values if run.action_masks is None else np.where(run.action_masks, values, -np.inf)
+
+
+def of_observations(run: "Run", observation: Any) -> NDArray[np.float64]:
+    """Returns the (actions,) values of an observation, or the (n, actions) values of n observations."""
+    rows = run.discretizer.active_rows(observation)
+    values = _of_rows(run, rows)
+    available = _available(run, observation, rows)
+    return values if available is None else np.where(available, values, -np.inf)
+
+
+def to_choose_from(run: "Run", observation: Any, action_masks: Any) -> NDArray[np.float64]:
+    """Returns the values of observations to choose an action by, masked by ``action_masks`` if they are given.
+
+    Raises:
+        TypeError: if the masks do not hold booleans or integers.
+        ValueError: if they do not fit, or none are given and none are known.
+    """
+    rows = run.discretizer.active_rows(observation)
+    values = _of_rows(run, rows)
+    if action_masks is not None:
+        given = np.asarray(action_masks)
+        masks = [checked_mask("action_masks", mask, values.shape[-1]) for mask in np.atleast_2d(given)]
+        if len(masks) != len(np.atleast_2d(values)) or given.ndim > values.ndim:
+            raise ValueError(f"action_masks must have shape {values.shape}, an item for each action, got {given.shape}")
+        return np.where(np.reshape(masks, values.shape), values, -np.inf)
+    available = _available(run, observation, rows)
+    if available is not None:
+        return np.where(available, values, -np.inf)
+    if run.config.action_mask is True:
+        raise ValueError(
+            "action_masks must be given: the run was trained with the masks of its environment, and has no cells "
+            "whose masks it could keep"
+        )
+    if isinstance(run.config.action_mask, str):
+        raise ValueError(FORGOTTEN)
+    return values
+
+
+def _of_rows(run: "Run", rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    active = np.moveaxis(rows, -1, 0)
+    return summed(summed(table[row] for row in active) for table in run.tables)
+
+
+def _available(run: "Run", observation: Any, rows: NDArray[np.int64]) -> NDArray[np.bool_] | None:
+    """Which actions the observations have, of shape (..., actions): by the function, or as last seen in their cells."""
+    setting = run.config.action_mask
+    if callable(setting):
+        n_actions = len(run.actions)
+        if rows.ndim == 1:
+            return checked_mask("action_mask", setting(observation), n_actions)
+        masks = [checked_mask("action_mask", setting(one), n_actions) for one in observation]
+        return np.array(masks, np.bool_).reshape(-1, n_actions)
+    if run.action_masks is None:
+        return None
+    known: NDArray[np.bool_] = run.action_masks.reshape(-1, len(run.actions))
+    return known[rows[..., 0]]
+
+
+def mask_of_step(config: Config, env: gym.Env, observation: Any, info: Mapping[str, Any]) -> NDArray[np.bool_] | None:
+    """Returns the mask of what an environment's ``reset`` or ``step`` has just returned; None without masks.
+
+    Raises:
+        TypeError: if it does not hold booleans or integers.
+        ValueError: if it does not fit, there is none, or the function that gives it is not known.
+    """
+    setting = config.action_mask
+    if setting is False:
+        return None
+    if isinstance(setting, str):
+        raise ValueError(FORGOTTEN)
+    if callable(setting):
+        name, given = "action_mask", setting(observation)
+    elif env.has_wrapper_attr("action_masks"):
+        name, given = "action_masks()", env.get_wrapper_attr("action_masks")()
+    elif "action_mask" in info:
+        name, given = "info['action_mask']", info["action_mask"]
+    else:
+        raise ValueError("info must have an 'action_mask', as in the run's training")
+    return checked_mask(name, given, np.size(given))
