@@ -112,3 +112,21 @@ def test_what_json_does_not_have_is_refused(tmp_path):
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(OSError, match="path"):
         qtab.train("FrozenLake-v1", episodes=2, seed=0).to_json(tmp_path)
+
+
+def test_actions_of_parts_are_lists_and_dicts(tmp_path):
+    class Levers(gym.Env[Any, Any]):
+        observation_space = gym.spaces.Discrete(1)
+        action_space = gym.spaces.Dict(
+            {"pair": gym.spaces.Tuple((gym.spaces.Discrete(2, start=3), gym.spaces.MultiBinary(1)))}
+        )
+
+        def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+            return 0, {}
+
+        def step(self, action: Any) -> Any:
+            return 0, 1.0, True, False, {}
+
+    qtab.train(Levers(), episodes=1, seed=0, max_episode_steps=5).to_json(tmp_path / "run.json")
+    pairs = [[3, [0]], [3, [1]], [4, [0]], [4, [1]]]
+    assert strict(tmp_path / "run.json")["actions"] == [{"pair": pair} for pair in pairs]

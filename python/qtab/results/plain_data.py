@@ -31,9 +31,7 @@ def plain_data(run: "Run") -> dict[str, Any]:
         "episodes": len(run.episode_returns),
         "discretizer": dict(discretizer.spec()),
         "shape": list(discretizer.shape),
-        "actions": list(range(actions.first, actions.first + len(actions)))
-        if actions.values is None
-        else actions.values.tolist(),
+        "actions": [_plain(actions[column]) for column in range(len(actions))],
         "q_tables": [_rows(table) for table in run.tables],
         "versions": dict(run.versions),
     }
@@ -57,6 +55,15 @@ def write(run: "Run", path: Path) -> None:
         raise type(error)(f"env_kwargs must hold what JSON can, got {run.config.env_kwargs!r}: {error}") from None
     with replacing(path) as temporary:
         temporary.write_text(text + "\n", encoding="utf-8")
+
+
+def _plain(action: Any) -> Any:
+    """Returns an action as numbers, lists and dicts."""
+    if isinstance(action, dict):
+        return {name: _plain(part) for name, part in action.items()}
+    if isinstance(action, tuple):
+        return [_plain(part) for part in action]
+    return action.tolist() if isinstance(action, np.ndarray | np.generic) else action
 
 
 def _rows(table: NDArray[np.float64]) -> list[list[float | None]]:
