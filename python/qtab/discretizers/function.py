@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._spec import IdentitySpec
+from qtab._discretizer_spec import IdentitySpec
 from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.discretizer import function_name
