@@ -126,3 +126,11 @@ def test_a_verified_run_leaves_its_rows_as_they_are() -> None:
     assert qtab.verify(run, 3, env=Tutorial(3)).equal
     assert run.discretizer.n_met == met  # type: ignore[attr-defined]
     assert_same_run(run, qtab.train(Tutorial(3), config=run.config))
+
+
+def test_plain_data_does_not_leave_out_how_observations_are_read(tmp_path: Path) -> None:
+    for max_rows in (81, None):
+        run = qtab.train(Tutorial(3), max_rows=max_rows, **SETTINGS)
+        with pytest.raises(ValueError, match=r"^this run cannot be written: plain data describes"):
+            run.to_json(tmp_path / "policy.json")
+        assert not (tmp_path / "policy.json").exists()
