@@ -259,6 +259,8 @@ class Run(WithPage):
             header["generator"] = self.state.generator
             if self.state.snapshots:
                 header["snapshots"] = self.state.snapshots
+            if self.state.extensions:
+                header["extensions"] = self.state.extensions
         saving.write(Path(path), run_file.RUN, self, header, arrays)
 
 

@@ -169,8 +169,8 @@ def shared_fields(content: run_file.Content, function: Callable[[Any], Any] | No
 
 
 def _state(header: Mapping[str, Any], array: Any) -> RunState:
-    # Versions that did not continue snapshots wrote none.
-    return RunState.restore(array, header["generator"], header.get("snapshots", []))
+    # Versions that did not continue snapshots or note extensions wrote none.
+    return RunState.restore(array, header["generator"], header.get("snapshots", []), header.get("extensions", []))
 
 
 def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Callable[[Any], Any] | None) -> Config:

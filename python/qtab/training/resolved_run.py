@@ -95,6 +95,8 @@ class ResolvedRun:
     """Whether the environment has no time limit, so that ``max_episode_steps`` is qtab's default."""
     python_reason: str | None
     """Why the environment is stepped in Python, where that was not asked for, and what would help; None otherwise."""
+    extensions: tuple[tuple[int, int], ...] = ()
+    """Those of :class:`qtab.results.run_state.RunState`."""
 
     @property
     def is_native(self) -> bool:

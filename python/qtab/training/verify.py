@@ -23,6 +23,7 @@ from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.envs.stored import spec_of_run
 from qtab.reference import LEARNERS
 from qtab.results.run import Run
+from qtab.training.extensions import repeatable
 from qtab.training.given_env import check_env, check_spaces
 from qtab.training.repetition import repeats_itself, wrapper_with_statistics
 from qtab.training.resolve import resolve
@@ -129,16 +130,23 @@ def verify(
         TypeError: for an argument of the wrong type.
         MemoryError: if the tables of the reference do not fit into what is free.
         ValueError: for an argument out of range, an environment with other spaces than the run's, or an interrupted run
-            without ``episodes``.
+            without ``episodes``. Of a run that was resumed with more episodes while a rate fell, only the episodes
+            before can be compared.
     """
     checks.instance("run", run, Run)
     check_env(env)
     if progress is not None and not callable(progress):
         raise TypeError(f"progress must be callable, got {shown(progress)}")
     finished = len(run.episode_returns)
+    run, most = repeatable(run)
     if episodes is None and not run.completed:
-        raise ValueError(f"episodes must be given for a run that was stopped early, at most {finished}")
+        raise ValueError(f"episodes must be given for a run that was stopped early, at most {most}")
     count = checks.integer("episodes", finished if episodes is None else episodes, least=1, most=finished)
+    if count > most:
+        raise ValueError(
+            f"episodes must be at most {most:,} for a run that was extended after so many, since its rates then fell "
+            f"over more of them, got {episodes!r}"
+        )
     config = run.config
     if env is None:
         spec_of_run(config.env)
