@@ -16,6 +16,7 @@ from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.action_mask import STORED
 from qtab.config.config import replace_checked
+from qtab.config.discretizer import MissingFunction
 from qtab.config.layers import over
 from qtab.config.options import is_set
 from qtab.envs.registry import versioned
@@ -27,6 +28,7 @@ from qtab.training.extensions import extensions, falling_rates
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.rows_met import continued
 
 _LOGGER = logging.getLogger("qtab")
 
@@ -71,9 +73,17 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
     config = _config(name, run, episodes)
     if env is None:
         spec_of_run(config.env)  # the name of a class without an id is not taken for one
-    resolved = resolve(config.env if env is None else env, over(_without_kwargs(config, env), {}))
+    resolved = continued(resolve(config.env if env is None else env, over(_without_kwargs(config, env), {})), run)
     _log_what_differs(run, config)
     return replace(resolved, extensions=extensions(run, config))
+
+
+def with_function(run: Run, function: Any) -> Run:
+    """Returns a run from a file with the function that was its discretizer, where one is given."""
+    if not isinstance(run.config.discretizer, MissingFunction) or not callable(function):
+        return run
+    config = replace_checked(run.config, discretizer=function)
+    return replace(run, config=config, discretizer=run.discretizer.with_function(function))
 
 
 def check_agrees(run: Run, env: str | EnvSpec | gym.Env | None, settings: Mapping[str, Any]) -> None:

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks, html
+from qtab._utils.arrays import same_bytes
 from qtab._utils.fields import with_fields
+from qtab._utils.memory import check_memory, memory_limit
 from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
@@ -126,9 +128,10 @@ def verify(
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, an environment with other spaces than the run's, or for an
-            interrupted run without ``episodes``. Of a run that was resumed with more episodes while a rate fell, only
-            the episodes before can be compared.
+        MemoryError: if the tables of the reference do not fit into what is free.
+        ValueError: for an argument out of range, an environment with other spaces than the run's, or an interrupted run
+            without ``episodes``. Of a run that was resumed with more episodes while a rate fell, only the episodes
+            before can be compared.
     """
     checks.instance("run", run, Run)
     check_env(env)
@@ -153,6 +156,7 @@ def verify(
         with closing(gym.make(env)) as made:
             check_spaces(run, made)
             return verify(run, episodes, made, progress)
+    check_memory("the tables of the reference", 2 * run.tables.nbytes, memory_limit(None))
     recorder = _Recorder(_environment(config, env), count, progress)
     try:
         table, returns, lengths = LEARNERS[config.algorithm](recorder, config, stop_after=count)
@@ -170,7 +174,7 @@ def verify(
         episodes=count,
         returns_equal=returns.tobytes() == run.episode_returns[:count].tobytes(),
         lengths_equal=lengths.tobytes() == run.episode_lengths[:count].tobytes(),
-        table_equal=table.tobytes() == ours.tobytes(),
+        table_equal=same_bytes(table, ours),
         episode=episode,
         step=None if episode is None else _first_step(config, env, run, recorder, episode),
         versions=versions(),
