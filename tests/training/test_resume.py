@@ -1,5 +1,6 @@
 """A run that is stopped, saved and resumed equals the uninterrupted one, bit for bit."""
 
+import gc
 import logging
 import signal
 from collections.abc import Callable
@@ -67,6 +68,7 @@ def stopped_by_a_timer(seconds: float, env: str, **config: Any) -> qtab.Run:
     def stop(*_: Any) -> None:
         raise StoppedError
 
+    gc.disable()  # an exception raised while hypothesis's callback sees a collection would be lost
     before = signal.signal(signal.SIGVTALRM, stop)
     signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
     try:
@@ -75,6 +77,7 @@ def stopped_by_a_timer(seconds: float, env: str, **config: Any) -> qtab.Run:
     finally:
         signal.setitimer(signal.ITIMER_VIRTUAL, 0)
         signal.signal(signal.SIGVTALRM, before)
+        gc.enable()
     run: qtab.Run = caught.value.run  # type: ignore[attr-defined]
     return run
 
