@@ -138,7 +138,7 @@ def test_an_environment_in_python_is_diagnosed_by_what_the_run_holds() -> None:
     diagnosis = qtab.diagnose(qtab.train(Room(), seed=0, episodes=5))
     assert diagnosis.solved is None
     assert "exploration" in diagnosis.not_made
-    assert "Not checked, as this needs an environment with an id that Rust steps" in str(diagnosis)
+    assert "Not checked, as Rust cannot repeat this run" in str(diagnosis)
     changed = qtab.diagnose(qtab.train(Room(), seed=0, episodes=5, epsilon=0.5, epsilon_schedule="constant"))
     with pytest.raises(ValueError, match="what_if needs an environment with an id to make it again, and Room has none"):
         changed.what_if()
@@ -192,3 +192,8 @@ def test_bad_arguments_are_named(article: qtab.Run) -> None:
         solved.what_if()
     with pytest.raises(ValueError, match="seeds must be at least 2"):
         qtab.diagnose(article, seeds=0).what_if(1)
+
+
+def test_an_extended_run_is_diagnosed_without_repeating_it() -> None:
+    part = qtab.train(LAKE, preset="solved", seed=0, episodes=200)
+    assert "noisy values" in qtab.diagnose(qtab.resume(part, 400)).not_made

@@ -78,7 +78,7 @@ def test_a_page_has_all_parts_and_needs_nothing_else(tmp_path: Path) -> None:
     assert (control["type"], control["max"], control["aria-valuetext"]) == ("range", "2", "after 300 episodes")
     assert page.all("button")[0]["type"] == "button"
     assert "prefers-color-scheme:dark" in page.source
-    assert "Diagnosis of Run of FrozenLake-v1" in page.source
+    assert "Diagnosis of the run of FrozenLake-v1" in page.source
     for name, value in (("episodes", "300"), ("algorithm", "q_learning"), ("qtab", qtab.__version__)):
         assert f'<th scope="row">{name}</th><td>{value}</td>' in page.source
 

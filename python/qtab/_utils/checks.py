@@ -3,7 +3,8 @@
 import math
 import operator
 from collections.abc import Collection, Mapping, Set
-from os import PathLike
+from os import PathLike, fspath
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -142,6 +143,20 @@ def instance(name: str, value: Any, kind: type) -> None:
     if not isinstance(value, kind):
         article = "an" if kind.__name__[0] in "AEIO" else "a"
         raise TypeError(f"{name} must be {article} {kind.__name__}, got {shown(value)}{load_hint(value)}")
+
+
+def path(name: str, value: Any) -> Path:
+    """Returns a path.
+
+    Raises:
+        TypeError: if ``value`` is neither a string nor a path.
+        ValueError: if it has a null character, which no path can have.
+    """
+    if not isinstance(value, str | PathLike) or not isinstance(fspath(value), str):
+        raise TypeError(f"{name} must be a path, got {shown(value)}")
+    if "\0" in fspath(value):
+        raise ValueError(f"{name} must be a path, got {shown(fspath(value))}, which has a null character")
+    return Path(value)
 
 
 def load_hint(value: Any) -> str:

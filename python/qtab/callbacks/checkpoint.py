@@ -83,8 +83,7 @@ def file_path(name: str, path: "str | os.PathLike[str]") -> Path:
         TypeError: if it is not a path.
         ValueError: if it names no file.
     """
-    if not isinstance(path, str | os.PathLike):
-        raise TypeError(f"{name} must be a path, got {path!r}")
-    if not Path(path).name:
+    target = checks.path(name, path)
+    if not target.name:
         raise ValueError(f"{name} must name a file, got {str(path)!r}")
-    return Path(path)
+    return target

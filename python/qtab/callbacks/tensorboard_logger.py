@@ -2,11 +2,11 @@
 
 import os
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 
+from qtab._utils import checks
 from qtab._utils.extras import missing
 from qtab.callbacks.evaluate_every import EvaluateEvery
 from qtab.callbacks.metrics import MetricsLogger
@@ -40,9 +40,7 @@ class TensorBoardLogger(MetricsLogger):
         evaluation: EvaluateEvery | None = None,
     ) -> None:
         super().__init__(every, metrics, evaluation)
-        if not isinstance(folder, str | os.PathLike):
-            raise TypeError(f"folder must be a path, got {folder!r}")
-        self.folder = Path(folder)
+        self.folder = checks.path("folder", folder)
         self._writer: Any = None
 
     def on_start(self, config: Config, env: gym.Env | None) -> None:

@@ -74,7 +74,7 @@ class Diagnosis:
     def heading(self) -> str:
         """The run and whether it solved its environment, in one line."""
         word = {True: "solved", False: "not solved", None: "no threshold or optimum is known"}[self.solved]
-        return f"Diagnosis of {repr(self.run)[1:-1]}: {word}"
+        return f"Diagnosis of the run {repr(self.run)[1:-1].removeprefix('Run ')}: {word}"
 
     def what_if(self, seeds: "int | Iterable[int]" = SEEDS, *, progress: bool | None = None) -> WhatIf:
         """Tries the advised changes, one at a time, over the same seeds, and compares each with the run's settings.
@@ -99,7 +99,5 @@ class Diagnosis:
         elif self.unremarkable:
             lines.append(f"Nothing to report on: {', '.join(self.unremarkable)}.")
         if self.not_made:
-            lines.append(
-                f"Not checked, as this needs an environment with an id that Rust steps: {', '.join(self.not_made)}."
-            )
+            lines.append(f"Not checked, as Rust cannot repeat this run: {', '.join(self.not_made)}.")
         return lines

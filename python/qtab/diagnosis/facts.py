@@ -19,6 +19,7 @@ from qtab.reference.streams import agent_stream
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES
 from qtab.training.evaluate import Evaluation, evaluate
+from qtab.training.extensions import repeatable
 from qtab.training.train import train
 from qtab.training.train_many import seed_sequence, train_many
 
@@ -50,12 +51,13 @@ class Facts:
 
     @cached_property
     def can_repeat(self) -> bool:
-        """Whether the run can be repeated quickly: Rust steps its environment, which can be made from its id."""
+        """Whether the whole run can be repeated quickly: Rust steps its environment, which can be made from its id."""
         try:
             spec_of_run(self.config.env)
         except (gym.error.UnregisteredEnv, ModuleNotFoundError):
             return False
-        return self.config.backend == "rust" and len(self.run.episode_returns) > 0
+        finished = len(self.run.episode_returns)
+        return self.config.backend == "rust" and repeatable(self.run)[1] == finished > 0
 
     @cached_property
     def is_finite(self) -> bool:

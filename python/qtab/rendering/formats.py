@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils import checks
 from qtab._utils.extras import missing
 from qtab._utils.files import check_writable, replacing
-from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
 from qtab.rendering.frames import Frames
 
@@ -37,10 +37,7 @@ def check_video_path(path: Any) -> Path:
         TypeError: if it is not a path.
         ValueError: if the suffix is not that of a known format.
     """
-    try:
-        target = Path(path)
-    except TypeError:
-        raise TypeError(f"path must be a path, got {shown(path)}") from None
+    target = checks.path("path", path)
     if target.suffix.lower() not in FORMATS:
         suggestion = did_you_mean(target.suffix.lower(), FORMATS) if target.suffix else ""
         raise ValueError(f"path must end in one of {', '.join(FORMATS)}, got {str(path)!r}{suggestion}")

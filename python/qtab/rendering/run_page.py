@@ -4,13 +4,13 @@ import dataclasses
 import io
 import os
 from collections.abc import Mapping
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 
+from qtab._utils import checks
 from qtab._utils.files import check_writable, replacing
 from qtab._utils.page import page, paragraph, picture, section, table
 from qtab._utils.shown import shown
@@ -49,10 +49,7 @@ def write_page(
     progress: bool | None = None,
 ) -> None:
     """Writes the page; see :meth:`qtab.Run.to_html` for the arguments and the errors."""
-    try:
-        target = Path(path)
-    except TypeError:
-        raise TypeError(f"path must be a path, got {shown(path)}") from None
+    target = checks.path("path", path)
     check_env(env)
     check_writable("path", target)
     text = _page(run, optimum, at, layout, env, progress)

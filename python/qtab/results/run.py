@@ -4,7 +4,6 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -233,7 +232,7 @@ class Run(WithPage):
 
         It raises what :meth:`save` does.
         """
-        plain_data.write(self, Path(path))
+        plain_data.write(self, checks.path("path", path))
 
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes the run to one ``.npz`` file: arrays and a JSON header, never a pickle. :func:`qtab.load` reads it.
@@ -261,7 +260,7 @@ class Run(WithPage):
                 header["snapshots"] = self.state.snapshots
             if self.state.extensions:
                 header["extensions"] = self.state.extensions
-        saving.write(Path(path), run_file.RUN, self, header, arrays)
+        saving.write(checks.path("path", path), run_file.RUN, self, header, arrays)
 
 
 @dataclass(frozen=True, repr=False)

@@ -4,7 +4,6 @@ import operator
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -194,7 +193,7 @@ class Runs:
             TypeError: if the environment's keyword arguments hold what JSON cannot.
             ValueError: if they hold a number that JSON cannot, or the runs are not what training returns.
         """
-        save_runs(self, Path(path))
+        save_runs(self, checks.path("path", path))
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns the columns of :meth:`summaries` as a data frame with one row per run.

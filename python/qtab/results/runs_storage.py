@@ -2,10 +2,10 @@
 
 import os
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from qtab import discretizers
+from qtab._utils import checks
 from qtab.discretizers.base import MAX_TABLE_SIZE
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent_runs
@@ -35,7 +35,7 @@ def load_runs(
         ValueError: if it is not a file of runs, is damaged, or comes from another version of the format; the message
             says why.
     """
-    path = Path(path)
+    path = checks.path("path", path)
     with opened(path, "file of runs") as file:
         runs = _runs(run_file.read(file, run_file.RUNS), discretizer)
     check_function(discretizer, runs.config)

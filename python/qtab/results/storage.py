@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from qtab import discretizers
+from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.action_mask import STORED
@@ -61,7 +62,7 @@ def load(
         ValueError: if it is not a run file, is damaged, or comes from another version of the format; the
             message says why.
     """
-    path = Path(path)
+    path = checks.path("path", path)
     with opened(path, "run file") as file:
         run = _run(run_file.read(file), discretizer)
     check_function(discretizer, run.config)
