@@ -35,6 +35,18 @@ class Silent(Walk):
         return observation, 1.0 + self.rewards * 2.0**-52, *rest
 
 
+class Belated(Walk):
+    """Draws rewards from the generator that it had before the last reset."""
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        self.generator = self.np_random
+        return super().reset(seed=seed, options=options)
+
+    def step(self, action: Any) -> Any:
+        observation, _, *rest = super().step(action)
+        return observation, self.generator.random(), *rest
+
+
 SETTINGS: dict[str, Any] = {"scale": (2, 2), "seed": 0, "episodes": 5, "max_episode_steps": 40}
 
 
@@ -48,6 +60,16 @@ def test_an_environment_that_does_not_repeat_itself_is_told_from_a_difference_of
     assert report.wrapper is None
     assert "the environment does not repeat itself" in str(report)
     assert "does not show a fault of qtab" in str(report)
+
+
+@pytest.mark.parametrize("seed_before", [None, 0])
+def test_a_generator_that_is_seeded_too_late_is_told_from_a_difference_of_qtab(seed_before):
+    run = qtab.train(Belated(start=5), **SETTINGS)
+    env = Belated(start=5)
+    if seed_before is not None:
+        env.reset(seed=seed_before)
+    report = qtab.verify(run, env=env)
+    assert (report.equal, report.repeats) == (False, False)
 
 
 def test_a_difference_in_an_environment_that_repeats_itself_is_told():

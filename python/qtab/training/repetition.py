@@ -1,4 +1,4 @@
-"""Whether an environment repeats itself: the same seed and the same actions twice, with the same outcome."""
+"""Whether an environment repeats itself: the same seed and the same actions, with the same outcome."""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -10,20 +10,30 @@ from gymnasium.wrappers.utils import RunningMeanStd
 
 
 def repeats_itself(
-    make: Callable[[], AbstractContextManager[gym.Env]], seed: int, actions: Sequence[Sequence[Any]]
+    make: Callable[[], AbstractContextManager[gym.Env]],
+    seed: int,
+    actions: Sequence[Sequence[Any]],
+    returns: Sequence[float],
 ) -> bool:
-    """Plays episodes twice, and returns whether all observations, rewards and ends were the same to the last bit.
+    """Plays episodes twice more, and returns whether all was the same to the last bit.
+
+    Between the two it compares observations, rewards and ends, and with the first time the returns. The last time
+    begins with a reset by another seed: some environments draw from the generator of the reset before.
 
     Args:
         make: Called for each time; it returns the environment, which is left when the time is over.
         seed: The seed of the first reset; no other reset has one.
         actions: The actions of each episode, which stops where the environment ends it.
+        returns: The return of each episode when these actions were taken first.
     """
     outcomes = []
-    for _ in range(2):
+    for seeds_before in ((), (seed + 1,)):
         with make() as env:
+            for other in seeds_before:
+                env.reset(seed=other)
             outcomes.append(_play(env, seed, actions))
-    return outcomes[0] == outcomes[1]
+    (first, first_returns), (second, _) = outcomes
+    return first == second and first_returns == list(returns)
 
 
 def wrapper_with_statistics(env: gym.Env) -> str | None:
@@ -35,18 +45,20 @@ def wrapper_with_statistics(env: gym.Env) -> str | None:
     return None
 
 
-def _play(env: gym.Env, seed: int, actions: Sequence[Sequence[Any]]) -> list[int]:
-    """Returns a hash for each reset and each step."""
-    outcomes = []
+def _play(env: gym.Env, seed: int, actions: Sequence[Sequence[Any]]) -> tuple[list[int], list[float]]:
+    """Returns a hash for each reset and each step, and the return of each episode."""
+    outcomes, returns = [], []
     for episode, episode_actions in enumerate(actions):
         observation, _ = env.reset(seed=seed if episode == 0 else None)
         outcomes.append(hash(_encoded(observation)))
+        returns.append(0.0)
         for action in episode_actions:
             observation, reward, terminated, truncated, _ = env.step(action)
             outcomes.append(hash(_encoded((observation, reward, terminated, truncated))))
+            returns[-1] += float(reward)
             if terminated or truncated:
                 break
-    return outcomes
+    return outcomes, returns
 
 
 def _encoded(value: Any) -> bytes:

@@ -189,7 +189,7 @@ def verify(
     actions = recorder.actions if episode is None else recorder.actions[: episode + 1]
     return replace(
         verification,
-        repeats=repeats_itself(make, verification.seed, actions),
+        repeats=repeats_itself(make, verification.seed, actions, returns[: len(actions)].tolist()),
         wrapper=None if env is None else wrapper_with_statistics(env),
     )
 
