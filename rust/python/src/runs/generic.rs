@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::features::{ActiveRows, MAX_TILINGS};
+use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
     TdLearner, Traces, TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
@@ -18,7 +18,7 @@ use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
 use crate::rng::environment_rng;
-use crate::spec::{AlgorithmSpec, DiscretizerSpec, RunSpec, TraceSpec};
+use crate::spec::{AlgorithmSpec, DiscretizerSpec, RunSpec, TilesSpec, TraceSpec};
 
 /// Runs in an environment whose observations are `M` float32 numbers, with any discretizer of a Box.
 pub(crate) fn generic_box<E, const M: usize>(
@@ -34,12 +34,30 @@ where
         return Err(invalid("discretizer", format!("one for observations of {M} components"), dimensions));
     }
     match &spec.discretizer {
-        // Eight tilings are the usual number; room for more costs time at every step.
-        DiscretizerSpec::Tiles(tiles) if tiles.tilings <= 8 => {
-            generic(env, tiles.tile_coding::<f32, 8>(), spec, record)
-        }
-        DiscretizerSpec::Tiles(tiles) => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec, record),
+        // Compiled for the usual numbers of tilings, which halves the time of a step.
+        DiscretizerSpec::Tiles(tiles) => match tiles.tilings {
+            8 => fixed_tilings::<E, M, 8>(env, tiles, spec, record),
+            16 => fixed_tilings::<E, M, 16>(env, tiles, spec, record),
+            32 => fixed_tilings::<E, M, 32>(env, tiles, spec, record),
+            _ => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec, record),
+        },
         grid => generic(env, grid.grid(|bound| bound as f32)?, spec, record),
+    }
+}
+
+/// Runs with exactly `N` tilings.
+fn fixed_tilings<E, const M: usize, const N: usize>(
+    env: E,
+    tiles: &TilesSpec,
+    spec: &Arc<RunSpec>,
+    record: usize,
+) -> PyResult<Box<dyn RunFactory>>
+where
+    E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
+{
+    match FixedTileCoding::<f32, M, N>::new(&tiles.tile_coding()) {
+        Some(tiles) => generic(env, tiles, spec, record),
+        None => Err(invalid("discretizer", format!("{N} tilings of {M} components"), "others")),
     }
 }
 

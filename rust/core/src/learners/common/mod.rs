@@ -2,12 +2,14 @@
 
 mod action_masks;
 mod agent;
+mod eligible_weights;
 mod learner;
 mod model;
 mod planning_progress;
 mod td_learner;
 #[cfg(test)]
 pub(super) mod test_support;
+mod trace_passes;
 mod traces;
 mod truncation_handling;
 mod update_rule;

@@ -1,0 +1,102 @@
+//! The passes over traces, compiled for each instruction set. They work in whole blocks, because the number of traces is
+//! hard to predict and the number of blocks is not.
+
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
+/// The number of traces per iteration.
+pub(super) const BLOCK: usize = 16;
+
+/// A vector register of the widest instruction set. A wider array would not stay in one.
+const LANES: usize = 4;
+
+type Vector = [f64; LANES];
+
+/// z ← γλ z, where `factor` is γλ. Returns whether a trace has fallen to the cutoff, and writes to `fallen` in which
+/// blocks.
+pub(super) struct Decay<'a> {
+    pub(super) traces: &'a mut [f64],
+    pub(super) fallen: &'a mut [bool],
+    pub(super) factor: f64,
+    pub(super) cutoff: f64,
+}
+
+impl Decay<'_> {
+    /// Decays some traces. Bits of `fallen` are set in the lanes where one has fallen to the cutoff.
+    #[inline(always)]
+    fn decay(traces: &mut Vector, factor: f64, cutoff: f64, fallen: &mut [u64; LANES]) {
+        for (trace, fallen) in traces.iter_mut().zip(fallen) {
+            *trace *= factor;
+            *fallen |= if trace.abs() <= cutoff { u64::MAX } else { 0 };
+        }
+    }
+}
+
+impl pulp::NullaryFnOnce for Decay<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let mut any = false;
+        for (traces, fallen) in self.traces.as_chunks_mut::<BLOCK>().0.iter_mut().zip(self.fallen) {
+            let mut lanes = [0; LANES];
+            for traces in traces.as_chunks_mut().0 {
+                Self::decay(traces, self.factor, self.cutoff, &mut lanes);
+            }
+            *fallen = lanes != [0; LANES];
+            any |= *fallen;
+        }
+        any
+    }
+}
+
+/// w ← w + `step` z, then [`Decay`].
+pub(super) struct ApplyAndDecay<'a> {
+    pub(super) values: &'a mut [f64],
+    pub(super) step: f64,
+    pub(super) decay: Decay<'a>,
+}
+
+impl pulp::NullaryFnOnce for ApplyAndDecay<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let Self { values, step, decay: Decay { traces, fallen, factor, cutoff } } = self;
+        let mut any = false;
+        let blocks = values.as_chunks_mut::<BLOCK>().0.iter_mut().zip(traces.as_chunks_mut::<BLOCK>().0);
+        for ((values, traces), fallen) in blocks.zip(fallen) {
+            let mut lanes = [0; LANES];
+            for (values, traces) in values.as_chunks_mut::<LANES>().0.iter_mut().zip(traces.as_chunks_mut().0) {
+                apply(values, traces, step);
+                Decay::decay(traces, factor, cutoff, &mut lanes);
+            }
+            *fallen = lanes != [0; LANES];
+            any |= *fallen;
+        }
+        any
+    }
+}
+
+#[inline(always)]
+fn apply(values: &mut Vector, traces: &Vector, step: f64) {
+    for (value, trace) in values.iter_mut().zip(traces) {
+        *value += step * trace;
+    }
+}
+
+/// w ← w + `step` z.
+pub(super) struct Apply<'a> {
+    pub(super) values: &'a mut [f64],
+    pub(super) traces: &'a [f64],
+    pub(super) step: f64,
+}
+
+impl pulp::NullaryFnOnce for Apply<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let vectors = self.values.as_chunks_mut::<LANES>().0.iter_mut().zip(self.traces.as_chunks().0);
+        vectors.for_each(|(values, traces)| apply(values, traces, self.step));
+    }
+}
