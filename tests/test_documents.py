@@ -68,12 +68,13 @@ def test_the_readme_has_its_two_commands() -> None:
 
 
 def test_the_readmes_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In order and in one namespace, as a reader would paste it, with fewer seeds."""
+    """In order and in one namespace, as a reader would paste it, with fewer seeds and snapshots."""
     monkeypatch.chdir(tmp_path)
     blocks = PYTHON.findall((ROOT / "README.md").read_text(encoding="utf-8"))
     namespace: dict[str, object] = {}
     for block in blocks:
-        exec(re.sub(r"seeds=\d+", "seeds=4", block), namespace)  # noqa: S102 - our own page
+        fewer = re.sub(r"snapshots=\d+", "snapshots=2", re.sub(r"seeds=\d+", "seeds=4", block))
+        exec(fewer, namespace)  # noqa: S102 - our own page
     assert len(blocks) > 5
     assert isinstance(namespace["run"], qtab.Run)
     assert (tmp_path / "learning_curve.png").stat().st_size > 0

@@ -1,6 +1,7 @@
 """The layout of the repository: few modules at the top, imports in one direction, short files."""
 
 import ast
+import functools
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -37,6 +38,12 @@ def import_statements(node: ast.AST, in_function: bool = False) -> Iterator[tupl
             yield from import_statements(child, in_function or isinstance(child, ast.FunctionDef))
 
 
+@functools.cache
+def imports_of(path: Path) -> list[tuple[ast.Import | ast.ImportFrom, bool]]:
+    """The imports of a file, and whether each is inside a function."""
+    return list(import_statements(ast.parse(path.read_text(encoding="utf-8"))))
+
+
 def imported_names(statement: ast.Import | ast.ImportFrom) -> list[str]:
     """The full names that a statement may bind: ``from qtab import envs`` names ``qtab.envs``."""
     if isinstance(statement, ast.Import):
@@ -49,7 +56,7 @@ def import_graph(with_functions: bool) -> Graph:
     known = modules()
     graph: Graph = {name: set() for name in known}
     for name, path in known.items():
-        for statement, in_function in import_statements(ast.parse(path.read_text(encoding="utf-8"))):
+        for statement, in_function in imports_of(path):
             if in_function and not with_functions:
                 continue
             for imported in imported_names(statement):
@@ -77,7 +84,7 @@ def test_imports_are_absolute() -> None:
     relative = [
         f"{path.relative_to(ROOT)}:{statement.lineno}"
         for path in modules().values()
-        for statement, _ in import_statements(ast.parse(path.read_text(encoding="utf-8")))
+        for statement, _ in imports_of(path)
         if isinstance(statement, ast.ImportFrom) and statement.level
     ]
     assert relative == []

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from qtab.envs import register as _register
 
 _MODULES = {
+    "Animation": "qtab.rendering.animate",
     "Axis": "qtab.results.axes",
     "Config": "qtab.config",
     "Confirmation": "qtab.sweeps.confirm",
@@ -22,6 +23,7 @@ _MODULES = {
     "Explanation": "qtab.explanation.explanation",
     "Gap": "qtab.planning.gap",
     "Optimum": "qtab.planning.optimum",
+    "Playback": "qtab.rendering.play",
     "Progress": "qtab.training.callbacks",
     "Recording": "qtab.results.run",
     "Run": "qtab.results.run",
@@ -33,6 +35,7 @@ _MODULES = {
     "SweepProgress": "qtab.sweeps.progress",
     "TabularEnv": "qtab.envs.tabular",
     "Verification": "qtab.training.verify",
+    "animate": "qtab.rendering.animate",
     "book": "qtab.book",
     "callbacks": "qtab.callbacks",
     "designs": "qtab.sweeps.designs",
@@ -40,8 +43,10 @@ _MODULES = {
     "evaluate": "qtab.training.evaluate",
     "explain": "qtab.explanation.explain",
     "load": "qtab.results.storage",
+    "load_runs": "qtab.results.runs_storage",
     "load_sweep": "qtab.sweeps.results",
     "optimum": "qtab.planning.solve",
+    "play": "qtab.rendering.play",
     "plot": "qtab.plots.run",
     "plots": "qtab.plots",
     "presets": "qtab.config.presets",
@@ -71,10 +76,15 @@ if TYPE_CHECKING:
     from qtab.planning.optimum import Optimum as Optimum
     from qtab.planning.solve import optimum as optimum
     from qtab.plots.run import plot as plot
+    from qtab.rendering.animate import Animation as Animation
+    from qtab.rendering.animate import animate as animate
+    from qtab.rendering.play import Playback as Playback
+    from qtab.rendering.play import play as play
     from qtab.results.axes import Axis as Axis
     from qtab.results.run import Recording as Recording
     from qtab.results.run import Run as Run
     from qtab.results.runs import Runs as Runs
+    from qtab.results.runs_storage import load_runs as load_runs
     from qtab.results.snapshots import Snapshots as Snapshots
     from qtab.results.storage import load as load
     from qtab.sweeps import designs as designs

@@ -107,21 +107,64 @@ def test_a_bar_appears_by_itself_in_a_notebook_only(monkeypatch: pytest.MonkeyPa
     assert not ProgressBar(3, "run", False).is_shown
 
 
-CELL = """
+def test_without_ipywidgets_a_bar_of_text_comes_without_a_warning(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in [name for name in sys.modules if name.partition(".")[0] in ("tqdm", "ipywidgets")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "ipywidgets", None)  # cannot be imported
+    monkeypatch.setitem(sys.modules, "IPython.html.widgets", None)  # where they were before
+    monkeypatch.setattr("qtab._utils.progress.in_notebook", lambda: True)
+    qtab.evaluate(qtab.train("FrozenLake-v1", seed=0, episodes=5, progress=False), 20, seed=0, progress=True)
+    assert "0/20" in capsys.readouterr().err
+
+
+def test_a_wrong_progress_is_refused_even_where_no_bar_would_come() -> None:
+    run = qtab.train("FrozenLake-v1", seed=0, episodes=200)
+    sweep = qtab.sweep("FrozenLake-v1", {"discount": [0.9]}, 1, episodes=5)
+    wrong: Any = 1
+    for call in (
+        lambda: qtab.evaluate(run, progress=wrong),
+        lambda: qtab.optimum("FrozenLake-v1", progress=wrong),
+        lambda: qtab.sweep("FrozenLake-v1", {"discount": [0.9]}, 1, episodes=5, progress=wrong),
+        lambda: sweep.confirm(1, progress=wrong),
+        lambda: qtab.diagnose(run).what_if(2, progress=wrong),
+    ):
+        with pytest.raises(TypeError, match=r"^progress must be True, False or None, got 1$"):
+            call()
+
+
+CELLS = {
+    "picture": """
 import qtab
 from qtab.callbacks import LivePlot
 run = qtab.train("MountainCar-v0", seed=0, episodes=500, callback=LivePlot(seconds=0), progress=True)
-runs = qtab.train_many("MountainCar-v0", 4, episodes=20, progress=True)
-"""
+""",
+    "train_many": "runs = qtab.train_many('MountainCar-v0', 4, episodes=20, progress=True)",
+    "sweep": "sweep = qtab.sweep('FrozenLake-v1', {'discount': [0.9, 1.0]}, 3, episodes=50, progress=True)",
+    "confirm": "confirmation = sweep.confirm(7, progress=True)",
+    "evaluate": "evaluation = qtab.evaluate(run, 11, progress=True)",
+    "optimum": "optimum = qtab.optimum('FrozenLake-v1', progress=True)",
+    "what_if": "tried = qtab.diagnose(qtab.train('FrozenLake-v1', seed=0, episodes=300)).what_if(13, progress=True)",
+    "book": "result = qtab.book.run('example-6.5', runs=17, progress=True)",
+    "stopped": "run = qtab.train('MountainCar-v0', episodes=19, callback=lambda p: False, progress=True)",
+}
+TOTALS = {500: 500, 4: 4, 6: 6, 7: 7, 11: 11, 1: 1, 26: 26, 34: 34}
+"""The number of units of each bar, and how many of them are done at its end."""
 
 
 @pytest.mark.slow
-def test_a_kernel_shows_the_picture_and_widgets() -> None:
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of Jupyter's libraries
+def test_a_kernel_shows_the_picture_and_a_widget_for_every_long_call() -> None:
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(CELL)])
+    pytest.importorskip("ipywidgets")
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in CELLS.values()])
     done = nbclient.NotebookClient(notebook, timeout=60, kernel_name="python3").execute()
-    outputs = done.cells[0].outputs
-    shown = [output.data for output in outputs if output.output_type == "display_data"]
-    assert sum("image/png" in data for data in shown) == 1
-    assert sum("application/vnd.jupyter.widget-view+json" in data for data in shown) >= 1
-    assert [output for output in outputs if output.output_type == "error"] == []
+    outputs = {name: cell.outputs for name, cell in zip(CELLS, done.cells, strict=True)}
+    assert sum("image/png" in output.data for output in outputs["picture"]) == 1
+    models = done.metadata.widgets["application/vnd.jupyter.widget-state+json"].state.values()
+    bars = [model.state for model in models if model.model_name == "FloatProgressModel"]
+    assert {int(bar["max"]): int(bar["value"]) for bar in bars}.items() >= TOTALS.items()
+    # Nothing is left of the widgets, which a saved notebook could not show again.
+    for name in list(CELLS)[1:]:
+        assert [dict(output.data) for output in outputs[name]] == [{"text/plain": ""}], name

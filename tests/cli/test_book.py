@@ -7,7 +7,6 @@ import pytest
 
 import qtab
 from support.command import environment, qtab_here, refused
-from support.command import qtab as command
 from support.posix import posix_only
 
 
@@ -18,7 +17,7 @@ def test_without_a_name_the_experiments_are_listed(tmp_path):
 
 
 def test_an_experiment_prints_its_settings_and_its_table(tmp_path):
-    done = command("book", "8.2", "--runs", "3", "--plot", "maze.png", "--save", "maze.csv", cwd=tmp_path)
+    done = qtab_here("book", "8.2", "--runs", "3", "--plot", "maze.png", "--save", "maze.csv", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("Figure 8.2: Dyna-Q")
     assert "α = 0.1, ε = 0.1, γ = 0.95" in done.stdout

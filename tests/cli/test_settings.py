@@ -7,7 +7,7 @@ import pytest
 from qtab.cli.train_arguments import parse_arguments
 from qtab.cli.usage import UsageError
 from qtab.config.explanations import explanations
-from support.command import qtab
+from support.command import qtab_here
 
 
 def help_of(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
@@ -81,9 +81,9 @@ def test_a_bad_flag_is_named_with_what_fits(arguments: list[str], message: str) 
 
 
 def test_the_values_of_a_preset_yield_to_a_flag(tmp_path: Path) -> None:
-    done = qtab("train", "--algorithm", "n_step_sarsa", "--preset", "article", "--episodes", "2", cwd=tmp_path)
+    done = qtab_here("train", "--algorithm", "n_step_sarsa", "--preset", "article", "--episodes", "2", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    done = qtab("train", "--terminal-update", "assign", "--algorithm", "n_step_sarsa", cwd=tmp_path)
+    done = qtab_here("train", "--terminal-update", "assign", "--algorithm", "n_step_sarsa", cwd=tmp_path)
     assert done.stderr.startswith(
         "qtab train: error: --terminal-update must be 'target' for --algorithm 'n_step_sarsa'"
     )

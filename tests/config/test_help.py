@@ -8,7 +8,10 @@ import pytest
 
 import qtab
 
-CLASSES = [qtab.Config, qtab.Evaluation, qtab.Progress, qtab.Verification]
+CLASSES = [
+    *(qtab.Config, qtab.Evaluation, qtab.Gap, qtab.Optimum, qtab.Progress, qtab.Run, qtab.Runs),
+    qtab.Verification,
+]
 
 
 @pytest.mark.parametrize("kind", CLASSES, ids=lambda kind: kind.__name__)

@@ -105,6 +105,17 @@ def test_a_diagnosis_prints_and_can_be_searched(diagnosis: qtab.Diagnosis) -> No
         diagnosis["coverage"]
 
 
+def test_visits_tell_untried_actions_from_values_that_stayed_the_same() -> None:
+    settings: dict[str, Any] = {"initial_q": 0.0, "epsilon": 1.0, "epsilon_schedule": "constant", "episodes": 300}
+    settings |= {"seed": 3}
+    counted = qtab.diagnose(qtab.train(LAKE, visits=True, **settings), seeds=0)
+    assert counted.run.visits is not None
+    assert counted.facts.visited.tolist() == counted.run.visits.any(axis=1).tolist()
+    assert "coverage" not in counted
+    guessed = qtab.diagnose(qtab.train(LAKE, **settings), seeds=0)
+    assert guessed["coverage"].title.endswith("or their values never changed.")
+
+
 def test_other_seeds_give_the_rank() -> None:
     run = qtab.train(LAKE, preset="solved", episodes=500, seed=13)
     evidence = qtab.diagnose(run, seeds=40)["unlucky seed"].evidence
@@ -119,10 +130,17 @@ def test_an_environment_in_python_is_diagnosed_by_what_the_run_holds() -> None:
     diagnosis = qtab.diagnose(qtab.train(Room(), seed=0, episodes=5))
     assert diagnosis.solved is None
     assert "exploration" in diagnosis.not_made
-    assert "Not checked, as Rust does not step this environment" in str(diagnosis)
+    assert "Not checked, as this needs an environment with an id that Rust steps" in str(diagnosis)
     changed = qtab.diagnose(qtab.train(Room(), seed=0, episodes=5, epsilon=0.5, epsilon_schedule="constant"))
     with pytest.raises(ValueError, match="what_if needs an environment with an id to make it again, and Room has none"):
         changed.what_if()
+
+
+def test_a_table_without_an_id_is_diagnosed_by_what_the_run_holds() -> None:
+    table = {0: {0: [(1.0, 1, 0.0, False)]}, 1: {0: [(1.0, 1, 1.0, True)]}}
+    run = qtab.train(qtab.TabularEnv(table, [1.0, 0.0]), max_episode_steps=5, seed=0, episodes=5)
+    assert run.config.backend == "rust"
+    assert "exploration" in qtab.diagnose(run).not_made
 
 
 @pytest.mark.parametrize(
@@ -153,7 +171,7 @@ def test_an_interrupted_run_is_diagnosed() -> None:
 def test_bad_arguments_are_named(article: qtab.Run) -> None:
     with pytest.raises(TypeError, match=r"run must be a Run, got 'run\.npz'; qtab\.load"):
         qtab.diagnose("run.npz")  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="optimum must be a Optimum, got 3"):
+    with pytest.raises(TypeError, match="optimum must be an Optimum, got 3"):
         qtab.diagnose(article, 3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="run must have env 'FrozenLake-v1' as this optimum has"):
         qtab.diagnose(article, qtab.optimum(LAKE))

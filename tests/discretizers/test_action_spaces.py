@@ -104,6 +104,8 @@ def test_runs_train_verify_predict_replay_and_are_saved(kind: str, tmp_path: Any
     assert space.contains(action)
     _spoil(action)
     assert flat(run.predict(0)[0]) == expected[int(np.argmax(run.q_table[0]))]
+    step = qtab.explain(run, episode=0, env=Picky(space))[0]
+    assert step.action_name == run.action_names[step.choice.action]
     for recording in run.recordings:
         assert replay_episode(Picky(space), recording) == run.episode_returns[recording.episode]
     run.save(tmp_path / "run.npz")

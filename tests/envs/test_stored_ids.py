@@ -1,14 +1,20 @@
 """A file never chooses a module to import: its environment must be registered, or the user passes it."""
 
+import contextlib
 import pickle
+import sqlite3
 import sys
 from typing import Any
 
 import gymnasium as gym
 import pytest
+from matplotlib.figure import Figure
 
 import qtab
+from qtab import plots
 from qtab.envs.stored import StoredId, stored_id
+from qtab.sweeps.digests import study_digest, to_text
+from qtab.sweeps.report import report
 from support.environments import Walk
 from support.run_files import members_of, with_header, with_right_digest, write_members
 
@@ -42,10 +48,18 @@ USES: dict[str, Any] = {
     "optimum": qtab.optimum,
     "its id": lambda run: qtab.optimum(run.config.env),
     "pickled": lambda run: qtab.evaluate(pickle.loads(pickle.dumps(run))),  # noqa: S301
+    "explain": qtab.explain,
+    "trajectory": lambda run: plots.trajectory(run, Figure().subplots(), episodes=1),
 }
+LOOKS: dict[str, Any] = {
+    "values": lambda run: plots.values(run, Figure().subplots()),
+    "policy": lambda run: plots.policy(run, Figure().subplots()),
+    "diagnose": lambda run: qtab.diagnose(run, seeds=0),
+}
+"""They need the environment only for what they can do without."""
 
 
-@pytest.mark.parametrize("use", USES.values(), ids=USES)
+@pytest.mark.parametrize("use", [*USES.values(), *LOOKS.values()], ids=[*USES, *LOOKS])
 def test_nothing_is_imported_for_a_registered_environment(named, use):
     run = named("FrozenLake-v1")
     assert run.config.env == f"{MODULE}:FrozenLake-v1"
@@ -60,6 +74,45 @@ def test_an_environment_that_is_not_registered_is_refused_with_what_helps(named,
         use(run)
     if not isinstance(caught.value, ValueError):
         assert f"import {MODULE} first, or pass env=" in str(caught.value)
+    assert MODULE not in sys.modules
+
+
+@pytest.fixture
+def named_store(named, tmp_path):
+    """Returns a function that makes a store which names ``MODULE`` as the package of its environment."""
+
+    def make(env: str) -> Any:
+        path = tmp_path / "study.db"
+        qtab.sweep("FrozenLake-v1", {"learning_rate": [0.1, 0.2]}, seeds=2, episodes=2, store=path)
+        with contextlib.closing(sqlite3.connect(path)) as connection:
+            meta = dict(connection.execute("SELECT name, value FROM meta"))
+            changed = meta | {"study": meta["study"].replace('"FrozenLake-v1"', f'"{MODULE}:{env}"')}
+            changed["digest"] = to_text(int(meta["digest"], 16) ^ study_digest(meta) ^ study_digest(changed))
+            connection.executemany(
+                "UPDATE meta SET value = ? WHERE name = ?", [*zip(changed.values(), changed, strict=True)]
+            )
+            connection.commit()
+        return qtab.load_sweep(path)
+
+    return make
+
+
+def test_the_store_of_a_sweep_chooses_no_module_either(named_store, tmp_path):
+    sweep = named_store("FrozenLake-v1")
+    assert sweep.env == sweep.configs[1]["env"] == f"{MODULE}:FrozenLake-v1"
+    assert qtab.train(sweep.env, episodes=1).config.env == sweep.env
+    assert len(sweep.confirm(1).confirmed) == 1
+    assert report(sweep, tmp_path / "report")
+    assert MODULE not in sys.modules
+
+
+def test_a_store_of_an_environment_that_is_not_registered_is_refused_with_what_helps(named_store):
+    sweep = named_store("Unknown-v0")
+    for env in (sweep.env, sweep.configs[1]["env"]):
+        with pytest.raises(gym.error.UnregisteredEnv, match=f"import {MODULE} first, or pass env="):
+            qtab.train(env)
+    with pytest.raises(ValueError, match="must be registered, or given as env="):
+        sweep.confirm(1)
     assert MODULE not in sys.modules
 
 
@@ -104,5 +157,8 @@ class MountainCar(Walk):
 def test_the_name_of_a_class_is_not_taken_for_an_id():
     run = qtab.train(MountainCar(start=5), scale=(3, 0.7), seed=0, episodes=2, max_episode_steps=20)
     assert run.config.env == "MountainCar"
-    with pytest.raises(gym.error.UnregisteredEnv, match="pass env="):
-        qtab.evaluate(run)
+    for use in (qtab.evaluate, lambda run: qtab.resume(run, 3), lambda run: qtab.train(resume=run, seed=0, episodes=3)):
+        with pytest.raises(
+            gym.error.UnregisteredEnv, match=r"environment 'MountainCar' is not registered .*: pass env="
+        ):
+            use(run)

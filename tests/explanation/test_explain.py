@@ -205,7 +205,9 @@ def test_an_environment_object_is_explained_with_a_new_one() -> None:
         ("Taxi-v4", "taxi in row", {"south", "north", "east", "west", "pick up", "drop off"}),
         ("Blackjack-v1", "player's sum", {"stick", "hit"}),
         ("CartPole-v1", "cart position", {"push left", "push right"}),
-        ("Pendulum-v1", "cos", {"(-2)", "(0)", "(2)"}),
+        ("Pendulum-v1", "cos θ", {"torque -2 N m", "torque 0 N m", "torque 2 N m"}),
+        ("Acrobot-v1", "cos θ1", {"torque -1", "torque 0", "torque +1"}),
+        ("qtab/MaximizationBias-v0", "state A", {"left", "right"}),
     ],
 )
 def test_states_and_actions_are_named(env: str, state: str, action: set[str]) -> None:
@@ -213,6 +215,13 @@ def test_states_and_actions_are_named(env: str, state: str, action: set[str]) ->
     step = qtab.explain(run)[0]
     assert step.state.startswith(state)
     assert step.action_name in action
+
+
+def test_an_episode_of_one_step_is_named_in_the_singular() -> None:
+    blackjack = qtab.train("Blackjack-v1", seed=0, episodes=10)
+    short, long = int(np.argmin(blackjack.episode_lengths)), int(np.argmax(blackjack.episode_lengths))
+    assert f"episode {short}: 1 step, " in qtab.explain(blackjack, short).heading
+    assert f"{blackjack.episode_lengths[long]} steps, " in qtab.explain(blackjack, long).heading
 
 
 def test_it_prints_as_text_and_as_a_table() -> None:

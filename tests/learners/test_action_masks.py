@@ -31,7 +31,9 @@ def of_first_number(observation: Any) -> Any:
 def masked_runs(draw: st.DrawFn) -> tuple[NDArray[Any], str, dict[str, Any]]:
     states, actions = draw(st.integers(1, 4)), draw(st.integers(1, 5))
     rows = st.lists(st.booleans(), min_size=actions, max_size=actions).filter(any)
-    masks = np.array([draw(rows) for _ in range(states)], draw(st.sampled_from([np.int8, np.bool_, np.int64])))
+    masks: NDArray[Any] = np.array(
+        [draw(rows) for _ in range(states)], draw(st.sampled_from([np.int8, np.bool_, np.int64]))
+    )
     algorithm = draw(st.sampled_from(ALGORITHMS))
     shown = draw(st.sampled_from(["discrete", "box"]))
     features: dict[str, Any] = {"discretizer": "identity"}
@@ -211,6 +213,7 @@ def test_predictions_keep_to_the_masks() -> None:
 
 
 def test_tile_coding_predicts_with_a_mask_or_a_function() -> None:
+    pytest.importorskip("matplotlib").use("agg")
     env = MaskedGraph(MASKS, shown="box")
     run = qtab.train(env, action_mask=True, seed=0, **TILES, **SHORT)
     assert run.action_masks is None
@@ -218,6 +221,7 @@ def test_tile_coding_predicts_with_a_mask_or_a_function() -> None:
     with pytest.raises(ValueError, match=r"^action_masks must be given: the run was trained with the masks of its env"):
         run.predict(observation)
     assert run.predict(observation, action_masks=MASKS[1])[0] == 3
+    qtab.plots.trajectory(run, env=env, seed=0)  # with the masks of the environment, which refuses other actions
     run = qtab.train(env, action_mask=lambda seen: MASKS[min(int(seen[0]), 2)], seed=0, **TILES, **SHORT)
     assert run.predict(observation)[0] == 3
     assert run.predict(np.stack([observation, observation]))[0].tolist() == [3, 3]
@@ -251,6 +255,8 @@ def test_a_saved_run_asks_for_the_function_of_its_masks(tmp_path: Any) -> None:
     assert again.config == run.config
     assert qtab.verify(again, env=MaskedGraph(MASKS, "none")).equal
     assert qtab.evaluate(again, episodes=2, seed=0, env=MaskedGraph(MASKS, "none")).lengths.min() > 0
+    longer = qtab.train(MaskedGraph(MASKS, "none"), resume=tmp_path / "run.npz", action_mask=masks, episodes=20)
+    assert_same_run(longer, qtab.resume(again, 20, env=MaskedGraph(MASKS, "none")))
     with pytest.raises(TypeError, match=r"^action_mask must be a function of the observation, got True"):
         qtab.load(tmp_path / "run.npz", action_mask=True)  # type: ignore[arg-type]
 
@@ -266,17 +272,19 @@ def test_a_run_that_was_stopped_is_resumed_exactly(algorithm: Any, backend: Any)
     assert_same_run(qtab.resume(part), whole)
 
 
-def test_many_runs_keep_to_the_masks_too() -> None:
+def test_many_runs_keep_to_the_masks_too(tmp_path: Any) -> None:
     runs = qtab.train_many("Taxi-v4", seeds=2, action_mask=True, episodes=5, tables=True)
     assert_same_run(runs[1], qtab.train("Taxi-v4", seed=1, action_mask=True, episodes=5))
     assert runs[0].q_table.min() == -np.inf
     assert runs[:1][0].action_masks is not None
+    runs.save(tmp_path / "runs.npz")
+    assert qtab.load_runs(tmp_path / "runs.npz")[1].q_table.tobytes() == runs[1].q_table.tobytes()
 
 
 def test_an_explanation_shows_the_masked_values() -> None:
     for algorithm in ("q_learning", "expected_sarsa", "double_q_learning"):
         run = qtab.train("Taxi-v4", action_mask=True, seed=0, episodes=3, max_episode_steps=20, algorithm=algorithm)
-        (step, *_) = qtab.explain(run, episode=2)
+        step = qtab.explain(run, episode=2)[0]
         env: Any = gym.make("Taxi-v4").unwrapped
         assert np.isneginf(step.choice.values).tolist() == (env.action_mask(step.observation) == 0).tolist()
         assert np.isfinite(step.updates[0].target)
@@ -285,3 +293,23 @@ def test_an_explanation_shows_the_masked_values() -> None:
 def test_a_diagnosis_does_not_ask_for_masked_actions() -> None:
     run = qtab.train("Taxi-v4", action_mask=True, seed=0, episodes=2500)
     assert "coverage" not in [finding.name for finding in qtab.diagnose(run).findings]
+
+
+class Legal(gym.Wrapper[Any, Any, Any, Any]):
+    """Refuses what the mask excludes."""
+
+    def reset(self, **kwargs: Any) -> Any:
+        observation, self.info = self.env.reset(**kwargs)
+        return observation, self.info
+
+    def step(self, action: Any) -> Any:
+        assert self.info["action_mask"][action]
+        *answer, self.info = self.env.step(action)
+        return (*answer, self.info)
+
+
+def test_a_played_episode_is_that_of_evaluate() -> None:
+    run = qtab.train("Taxi-v4", action_mask=True, seed=0, episodes=30, max_episode_steps=25)
+    played = qtab.play(run, 2, seed=5, window=False, env=Legal(gym.make("Taxi-v4", render_mode="rgb_array")))
+    evaluated = qtab.evaluate(run, 2, seed=5)
+    assert played.returns.tobytes() == evaluated.returns.tobytes()

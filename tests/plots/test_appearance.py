@@ -10,7 +10,9 @@ from matplotlib.colors import to_rgb
 import qtab
 from qtab import plots
 from qtab.config.choices import CHOICES
+from qtab.plots.axes import new_figure
 from qtab.plots.colors import COLORS
+from qtab.plots.labels import finish
 
 RETURNS = np.cumsum(np.random.default_rng(0).normal(1, 5, size=(12, 300)), axis=1)
 RUN = qtab.train("MountainCar-v0", seed=0, episodes=120)
@@ -78,6 +80,21 @@ def test_the_title_and_the_settings_of_a_run_do_not_overlap(width: float) -> Non
     assert box.x0 > title.x1 or box.y1 < title.y0
     assert box.y0 > ax.get_window_extent().y1
     assert box.x1 < figure.bbox.x1
+
+
+@pytest.mark.parametrize("width", [4.0, 6.0, 8.0])
+def test_a_long_title_fills_its_lines_and_stays_in_the_figure(width: float) -> None:
+    figure = new_figure(width, 4.5)
+    ax = figure.subplots()
+    ax.plot([1, 2], [-2000, 0])
+    finish(ax, "Episode", "Return", "Example 6.6: Sarsa and Q-learning on the cliff, mean returns of 100 episodes")
+    figure.draw_without_rendering()
+    extent = ax._left_title.get_window_extent()  # type: ignore[attr-defined]
+    assert extent.x1 <= figure.bbox.x1
+    lines = ax.get_title("left").split("\n")
+    assert len(lines) > 1
+    needed = extent.width * (len(lines[0]) + 1 + len(lines[1].split()[0])) / max(map(len, lines))
+    assert needed > 0.85 * ax.get_window_extent().width  # there was no room for the next word
 
 
 @pytest.mark.parametrize("draw", DRAWN.values(), ids=DRAWN)

@@ -12,8 +12,7 @@ import qtab
 from qtab import plots
 from qtab.envs import grid_worlds
 from qtab.envs.registry import ENTRIES, EXTRA
-from qtab.plots.panels import brightness
-from qtab.plots.schedule import rate_at
+from qtab.plots.colors import brightness, is_dark
 
 PICTURES: tuple[Any, ...] = (plots.values, plots.policy, plots.visits, plots.trajectory)
 SHORT: dict[str, Any] = {"episodes": 5, "seed": 0, "visits": True, "max_episode_steps": 40}
@@ -53,13 +52,21 @@ def test_every_environment_can_be_drawn(env: str) -> None:
 @pytest.mark.parametrize("picture", [plots.values, plots.policy])
 def test_dark_styles_have_light_letters_and_dark_cells_where_nothing_is_known(picture: Any) -> None:
     unknown = qtab.train("FrozenLake-v1", episodes=1, seed=0, visits=True)
-    for style, is_dark in (("default", False), ("dark_background", True)):
+    for style, dark in (("default", False), ("dark_background", True)):
         with plt.style.context(style):
             ax = picture(unknown)
             [start] = [text for text in ax.texts if text.get_text() == "S"]
-            assert (brightness(start.get_color()) > 0.5) is is_dark
+            assert (brightness(start.get_color()) > 0.5) is dark
             grey = next(mesh for mesh in ax.collections if type(mesh).__name__ == "QuadMesh").get_cmap()(0.0)
-            assert (brightness(grey) < 0.5) is is_dark
+            assert (brightness(grey) < 0.5) is dark
+
+
+def test_the_background_decides_what_is_dark_and_the_text_where_it_is_transparent() -> None:
+    for face, text, dark in (("#202020", "black", True), ("white", "white", False), ("none", "white", True)):
+        with plt.rc_context({"text.color": text}):
+            ax = Figure(facecolor=face).subplots()
+            ax.set_facecolor("none")
+            assert is_dark(ax) is dark, face
 
 
 def test_values_are_those_of_the_table_and_grey_where_it_was_never_updated(car: qtab.Run) -> None:
@@ -226,9 +233,9 @@ def test_a_picture_of_visits_needs_visits() -> None:
 
 @pytest.mark.parametrize(
     ("wrong", "message"),
-    [(3, "run must be a Run, Runs or an Optimum, got 3"), ("run.npz", "run must be a Run, Runs or an Optimum")],
+    [(3, "run must be a Run, Runs or an Optimum, got 3"), ("run.npz", r"got 'run\.npz'; qtab\.load reads one")],
 )
-def test_what_cannot_be_drawn_is_refused(wrong: Any, message: str) -> None:
+def test_what_cannot_be_drawn_is_refused(car: qtab.Run, wrong: Any, message: str) -> None:
     with pytest.raises(TypeError, match=message):
         plots.values(wrong)
     with pytest.raises(ValueError, match="run must hold at least one run, got an empty list"):
@@ -236,6 +243,11 @@ def test_what_cannot_be_drawn_is_refused(wrong: Any, message: str) -> None:
     run = qtab.train(CAR, episodes=1, seed=0)
     with pytest.raises(ValueError, match="optimum must be that of 'MountainCar-v0', the run's environment"):
         plots.difference(run, qtab.optimum("FrozenLake-v1"))
+    for draw in (*PICTURES, plots.schedule):
+        with pytest.raises(TypeError, match="title must be a str, got 3"):
+            draw(car, title=3)
+    with pytest.raises(TypeError, match="numbers must be True or False, got 'no'"):
+        plots.values(car, numbers="no")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -251,6 +263,7 @@ def test_what_cannot_be_drawn_is_refused(wrong: Any, message: str) -> None:
 def test_the_schedule_is_that_of_the_reference(chosen: dict[str, Any]) -> None:
     from qtab.config.policies import EpsilonGreedy
     from qtab.config.policies import policy as policy_of
+    from qtab.config.schedules import rates
     from qtab.reference.schedules import epsilon_schedule
 
     run = qtab.train(CAR, episodes=30, seed=0, **chosen)
@@ -262,7 +275,7 @@ def test_the_schedule_is_that_of_the_reference(chosen: dict[str, Any]) -> None:
         for _ in range(30):
             expected.append(reference.value)
             reference.end_episode()
-        np.testing.assert_allclose(rate_at(behaviour.epsilon, np.arange(30), 30), expected, atol=1e-12)
+        np.testing.assert_allclose(rates(behaviour.epsilon, np.arange(30), 30), expected, atol=1e-12)
 
 
 def test_the_overview_has_four_panels(car: qtab.Run) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 import qtab
 from qtab.discretizers import Discretizer, Identity
-from qtab.envs.descriptions import DESCRIPTIONS, describe
+from qtab.envs.descriptions import DESCRIPTIONS, UNKNOWN, describe
 from qtab.envs.registry import ENTRIES, EXTRA
 
 IDS = [*ENTRIES, *EXTRA]
@@ -126,3 +126,8 @@ def test_values_are_the_largest_action_values(chosen: dict[str, Any]) -> None:
     one = run.values(observations[1])
     assert isinstance(one, float)
     assert one == values[1]
+
+
+def test_only_the_version_at_the_end_of_an_id_is_left_out():
+    assert describe("FrozenLake-variant-v0") is UNKNOWN
+    assert describe("somewhere:FrozenLake-v12") is DESCRIPTIONS["FrozenLake"]

@@ -9,7 +9,7 @@ import pytest
 import qtab
 from qtab.config.schedules import epsilon
 from qtab.reference.schedules import epsilon_schedule
-from qtab.results.behaviour import action_probabilities, rate_after, sample
+from qtab.results.behaviour import action_probabilities, sample
 
 LAKE = "FrozenLake-v1"
 
@@ -68,7 +68,7 @@ def test_epsilon_is_that_of_the_reference_after_each_episode(settings):
     config = qtab.train(LAKE, seed=0, episodes=12, epsilon=0.9, **settings).config
     expected = epsilon_schedule(config)
     for episodes in range(13):
-        assert rate_after(epsilon(config), episodes, 12) == pytest.approx(expected.value, abs=1e-12)
+        assert epsilon(config).after(episodes, 12) == pytest.approx(expected.value, abs=1e-12)
         expected.end_episode()
 
 

@@ -4,10 +4,12 @@ from typing import Any
 
 import numpy as np
 
+ARRAYS = (np.ndarray, np.generic)
+
 
 def bitwise(value: Any) -> Any:
     """A value in a form whose ``==`` compares to the last bit; NaN equals itself, and -0.0 is not 0.0."""
-    if isinstance(value, np.ndarray | np.generic):
+    if isinstance(value, ARRAYS):
         return type(value), value.dtype, value.shape, value.tobytes()
     if isinstance(value, float):
         return float, value.hex()
@@ -22,16 +24,23 @@ def bitwise(value: Any) -> Any:
 
 def identical(one: Any, other: Any) -> bool:
     """Whether two values have the same bits: as ``bitwise(one) == bitwise(other)``, and faster."""
+    if one is other:
+        return True
     kind = type(one)
     if kind is not type(other):
         return False
     if kind is float:
         return bool(one.hex() == other.hex())
     if kind is tuple or kind is list:
-        return len(one) == len(other) and all(map(identical, one, other))
+        if len(one) != len(other):
+            return False
+        for item, counterpart in zip(one, other, strict=True):
+            if item is not counterpart and not identical(item, counterpart):
+                return False
+        return True
     if kind is dict:
         return one.keys() == other.keys() and all(identical(item, other[name]) for name, item in one.items())
-    if isinstance(one, np.ndarray | np.generic):
+    if isinstance(one, ARRAYS):
         return one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
     return bool(one == other)
 

@@ -20,7 +20,11 @@ def ours(name: str, num_envs: int, **kwargs: Any) -> Any:
 
 
 def theirs(name: str, num_envs: int, mode: AutoresetMode = AutoresetMode.NEXT_STEP, **kwargs: Any) -> SyncVectorEnv:
-    return SyncVectorEnv([lambda: gym.make(name, **kwargs)] * num_envs, autoreset_mode=mode)
+    first = gym.make(name, **kwargs)
+    table = getattr(first.unwrapped, "P", None)
+    # Making the table again for each sub-environment would take most of a test; no step changes it.
+    copies = [lambda: copy.deepcopy(first, {id(table): table})] * num_envs
+    return SyncVectorEnv(copies, autoreset_mode=mode)
 
 
 def assert_equal(one: Any, other: Any) -> None:

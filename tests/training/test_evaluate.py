@@ -107,10 +107,12 @@ def test_a_loaded_run_evaluates_like_the_saved_one(learned, tmp_path):
     assert qtab.evaluate(loaded, 9, seed=3).returns.tolist() == qtab.evaluate(learned, 9, seed=3).returns.tolist()
 
 
-def test_both_backends_evaluate_the_same():
-    settings: dict[str, Any] = {"seed": 0, "episodes": 600}
+def test_both_backends_evaluate_the_same(learned):
+    settings: dict[str, Any] = {"seed": 0, "episodes": 5, "initial_q": learned.q_table}
     fast, slow = (qtab.train("MountainCar-v0", backend=backend, **settings) for backend in ("rust", "gymnasium"))
-    assert qtab.evaluate(fast, 9, seed=3).returns.tolist() == qtab.evaluate(slow, 9, seed=3).returns.tolist()
+    returns = qtab.evaluate(fast, 9, seed=3).returns
+    assert len(set(returns.tolist())) > 1
+    assert returns.tolist() == qtab.evaluate(slow, 9, seed=3).returns.tolist()
 
 
 def test_evaluation_does_not_change_the_run(learned):

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from typing import Any
 
 import pytest
 
@@ -12,27 +13,16 @@ from support.posix import posix_only
 pytestmark = posix_only
 
 
-@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
-def test_ctrl_c_stops_an_endless_episode_and_keeps_the_run(backend):
-    done = in_a_process(f"""
+BACKENDS = ["rust", "gymnasium"]
+SETTINGS = ["", "bit_generator='MT19937'", "record=3", "callback=print, callback_every=10**8"]
+ENDLESS_EPISODE = """
 once_it_trains(ctrl_c)
 try:
     qtab.train("MountainCar-v0", backend={backend!r}, **ENDLESS)
 except KeyboardInterrupt as interrupt:
     report(interrupt.run)
-""")
-    run = json.loads(done.stdout)
-    assert run["completed"] is False
-    assert run["episodes"] == 0
-    assert run["learned"] > 10
-    assert run["finite"]
-
-
-@pytest.mark.parametrize(
-    "settings", ["", "bit_generator='MT19937'", "record=3", "callback=print, callback_every=10**8"]
-)
-def test_ctrl_c_between_episodes_keeps_the_finished_ones(settings):
-    done = in_a_process(f"""
+"""
+BETWEEN_EPISODES = """
 once_it_trains(ctrl_c)
 try:
     qtab.train("MountainCar-v0", episodes=10**8, seed=0, {settings})
@@ -42,8 +32,30 @@ except KeyboardInterrupt as interrupt:
     again = qtab.train("MountainCar-v0", episodes=10**8, seed=0, callback=lambda progress: False,
                        callback_every=count, bit_generator=run.config.bit_generator)
     report(run, same=again.episode_returns.tobytes() == run.episode_returns.tobytes())
-""")
-    run = json.loads(done.stdout)
+"""
+
+
+@pytest.fixture(scope="module")
+def interrupted() -> dict[str, dict[str, Any]]:
+    """What is left of each run that Ctrl-C stopped, one after the other in a single process."""
+    scripts = [ENDLESS_EPISODE.format(backend=backend) for backend in BACKENDS]
+    scripts += [BETWEEN_EPISODES.format(settings=settings) for settings in SETTINGS]
+    lines = in_a_process("".join(scripts)).stdout.splitlines()
+    return dict(zip([*BACKENDS, *SETTINGS], map(json.loads, lines), strict=True))
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_ctrl_c_stops_an_endless_episode_and_keeps_the_run(interrupted, backend):
+    run = interrupted[backend]
+    assert run["completed"] is False
+    assert run["episodes"] == 0
+    assert run["learned"] > 10
+    assert run["finite"]
+
+
+@pytest.mark.parametrize("settings", SETTINGS)
+def test_ctrl_c_between_episodes_keeps_the_finished_ones(interrupted, settings):
+    run = interrupted[settings]
     assert run["completed"] is False
     assert run["episodes"] > 0
     assert run["same"]

@@ -33,6 +33,10 @@ def test_what_an_algorithm_keeps_for_each_value_counts(settings):
     with pytest.raises(MemoryError, match=r"^1 episodes need"):
         qtab.train(CAR, episodes=1, memory_limit=2 * table + 100, **settings)
     assert qtab.train(CAR, episodes=1, memory_limit=2 * table + 100, algorithm="sarsa").completed
+    shared: dict[str, Any] = {"grid": {"discount": [0.9]}, "seeds": 1, "episodes": 1, "memory_limit": table + 1000}
+    with pytest.raises(MemoryError, match=r"^runs of 1 episodes need"):
+        qtab.sweep(CAR, **shared, **settings)
+    assert len(qtab.sweep(CAR, **shared, algorithm="sarsa")) == 1
 
 
 @pytest.mark.parametrize(("limit", "error"), [(0, ValueError), (1.5, TypeError), (True, TypeError)])

@@ -14,6 +14,8 @@ from support.environments import ScriptedEnv, Walk
 from support.parity import assert_same_as_reference, assert_same_run, table_to_go_on_from
 
 LEARNED = table_to_go_on_from()
+QUICK = 143
+"""A seed with which the first episode reaches the goal after 1,304 steps, not after many thousands."""
 UNIT = st.sampled_from([0.0, 0.1, 0.5, 1.0]) | st.floats(0.0, 1.0)
 EPSILONS = st.tuples(UNIT, UNIT).map(sorted)
 RANGES = st.sampled_from([(-1.0, 1.0), (0.0, 0.0), (-200.0, -100.0)]) | st.tuples(
@@ -78,16 +80,16 @@ def test_all_three_implementations_agree_at_the_goal_and_at_the_time_limit(bit_g
 
 
 def test_all_three_implementations_agree_on_long_episodes():
-    run = assert_three_ways_equal(seed=1, episodes=2, max_episode_steps=5000)
+    run = assert_three_ways_equal(seed=QUICK, episodes=2, max_episode_steps=2000)
     assert run.terminated.any()
     assert run.episode_lengths.max() > 200
 
 
 def test_the_last_step_allowed_can_reach_the_goal():
     # Terminated wins where the time limit falls on the same step.
-    free = qtab.train("MountainCar-v0", seed=1, episodes=1, max_episode_steps=50_000)
+    free = qtab.train("MountainCar-v0", seed=QUICK, episodes=1, max_episode_steps=50_000)
     assert free.terminated[0]
-    run = assert_three_ways_equal(seed=1, episodes=1, max_episode_steps=int(free.episode_lengths[0]))
+    run = assert_three_ways_equal(seed=QUICK, episodes=1, max_episode_steps=int(free.episode_lengths[0]))
     assert run.terminated[0]
     assert_same_run(run, free)
 

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from typing import Any, get_args
 
 import gymnasium as gym
+import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
@@ -34,7 +35,11 @@ def assert_resumed(resumed: qtab.Run, whole: qtab.Run) -> None:
     assert resumed.completed
 
 
+PROFILE: Any = settings.default
+
+
 @pytest.mark.parametrize("algorithm", get_args(Algorithm))
+@settings(max_examples=PROFILE.max_examples // 2)  # each resumes twice: the run, and the one that was saved
 @given(data=st.data())
 def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, data):
     config = data.draw(run_settings(algorithm))
@@ -42,15 +47,14 @@ def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, dat
     after = data.draw(st.integers(1, episodes))
     whole = qtab.train("MountainCar-v0", **config)
     part = stopped("MountainCar-v0", after, **config)
-    if data.draw(st.booleans()):
-        path = tmp_path_factory.mktemp("resumed") / "run.npz"
-        part.save(path)
-        part = qtab.load(path)
-    if part.completed:
-        with pytest.raises(ValueError, match="episodes must be given for a run that has finished"):
-            qtab.resume(part)
-    else:
-        assert_resumed(qtab.resume(part), whole)
+    path = tmp_path_factory.getbasetemp() / f"{algorithm}.npz"
+    part.save(path)
+    for stored in (part, qtab.load(path)):
+        if stored.completed:
+            with pytest.raises(ValueError, match="episodes must be given for a run that has finished"):
+                qtab.resume(stored)
+        else:
+            assert_resumed(qtab.resume(stored), whole)
 
 
 class StoppedError(Exception):
@@ -95,10 +99,17 @@ LONG: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
 def test_a_run_stopped_in_the_middle_of_an_episode_resumes_exactly(env, bit_generator):
     config = {"episodes": 2_000_000, "max_episode_steps": 1000, "seed": 3, "bit_generator": bit_generator, **LONG[env]}
+    config["visits"] = True
     part = stopped_by_a_timer(0.03, env, **config)
     finished = len(part.episode_returns)
-    part = qtab.resume(part, callback=until(finished + 20), callback_every=20)
-    assert_same_run(part, stopped(env, len(part.episode_returns), **config))
+    part = qtab.resume(part, callback=until(finished + 20), callback_every=20, snapshots=[finished + 1])
+    whole = stopped(env, len(part.episode_returns), snapshots=[finished + 1], **config)
+    assert_same_run(part, whole)
+    assert part.visits is not None
+    np.testing.assert_array_equal(part.visits, whole.visits)
+    assert part.snapshots is not None
+    assert whole.snapshots is not None
+    assert part.snapshots.tables.tobytes() == whole.snapshots.tables.tobytes()
 
 
 def test_more_episodes_spread_the_schedules_over_all_of_them(caplog):

@@ -47,6 +47,8 @@ def test_a_callback_sees_finished_runs_and_does_not_change_them(seeds, threads, 
         assert progress.returns.tobytes() == runs.episode_returns[: progress.runs].tobytes()
         assert progress.lengths.tobytes() == runs.episode_lengths[: progress.runs].tobytes()
         assert progress.seconds <= runs.seconds
+        assert_same_runs(progress.finished, runs[: progress.runs])
+        assert progress.finished.completed is (progress.runs == len(seeds))
 
 
 @pytest.mark.parametrize("no", [False, np.False_, 0])

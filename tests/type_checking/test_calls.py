@@ -10,7 +10,7 @@ from support.repository import ROOT
 
 FOLDER = Path(__file__).parent
 CHECKERS = {
-    "mypy": ["mypy", "--strict", str(FOLDER / "calls.py")],
+    "mypy": ["mypy", "--config-file", str(FOLDER / "mypy.ini"), str(FOLDER / "calls.py")],
     "pyright": ["pyright", "--project", str(FOLDER), "--pythonpath", sys.executable],
 }
 

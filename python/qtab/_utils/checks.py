@@ -140,8 +140,13 @@ def instance(name: str, value: Any, kind: type) -> None:
         TypeError: if it is not; for a path the message suggests :func:`qtab.load`.
     """
     if not isinstance(value, kind):
-        hint = "; qtab.load reads one from a file" if isinstance(value, str | PathLike) else ""
-        raise TypeError(f"{name} must be a {kind.__name__}, got {shown(value)}{hint}")
+        article = "an" if kind.__name__[0] in "AEIO" else "a"
+        raise TypeError(f"{name} must be {article} {kind.__name__}, got {shown(value)}{load_hint(value)}")
+
+
+def load_hint(value: Any) -> str:
+    """Returns what helps where a path was given instead of what is in the file; nothing for other values."""
+    return "; qtab.load reads one from a file" if isinstance(value, str | PathLike) else ""
 
 
 def required(name: str, value: T | None) -> T:

@@ -31,11 +31,12 @@ def with_fields(cls: C) -> C:
         return cls
     written, lines = {}, []
     for statement, following in pairwise([*getattr(tree, "body", []), ast.Pass()]):
-        match statement, following:
-            case ast.AnnAssign(target=ast.Name(id=name), annotation=annotation), _:
-                written[name] = ast.unparse(annotation).strip("'")
-        match statement, following:
-            case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+        if not isinstance(statement, ast.AnnAssign) or not isinstance(statement.target, ast.Name):
+            continue
+        name = statement.target.id
+        written[name] = ast.unparse(statement.annotation).strip("'")
+        match following:
+            case ast.Expr(value=ast.Constant(value=str(text))):
                 entry = f"{name} ({written[name]}): {' '.join(text.split())}"
                 lines.append(textwrap.fill(entry, 112, initial_indent=" " * 4, subsequent_indent=" " * 8))
     cls.__doc__ = "\n\n".join([inspect.cleandoc(cls.__doc__ or ""), "\n".join(["Attributes:", *lines]), ""])

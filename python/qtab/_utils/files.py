@@ -21,7 +21,7 @@ _MAX_STEM, _MAX_SUFFIX = 30, 20
 
 
 @contextmanager
-def replacing(path: Path, name: str = "path") -> Iterator[Path]:
+def replacing(path: Path) -> Iterator[Path]:
     """Yields a temporary path with the same suffix in the same folder, which replaces ``path`` if no error occurs.
 
     A symbolic link stays, and its target is replaced. The new file has the permissions of the old one, or else those
@@ -29,12 +29,11 @@ def replacing(path: Path, name: str = "path") -> Iterator[Path]:
 
     Args:
         path: The file to write.
-        name: The name of the argument, for messages.
 
     Raises:
         OSError: if the file cannot be written, or if something is there that is not a regular file.
     """
-    target = check_writable(name, path)
+    target = check_writable("path", path)
     with _temporary_file(target) as temporary:
         yield temporary
         with temporary.open("rb+") as written:

@@ -48,6 +48,36 @@ def listing(
     return _box(heading, "".join(lines), picture)
 
 
+def report(heading: str, columns: Sequence[str], rows: Sequence[Sequence[object]], notes: Sequence[str] = ()) -> str:
+    """Returns a table of sentences, which are wrapped but not cut.
+
+    Args:
+        heading: What the result is.
+        columns: The names of the columns; none for a table without a head.
+        rows: The values of each row; every text is escaped, and its lines stay lines. Of several lines in the
+            first column, the first is the row's title.
+        notes: Lines below the table.
+    """
+    lines = [
+        "<tr>"
+        + "".join(_sentences(tag, str(value).splitlines(), column == 0) for column, value in enumerate(row))
+        + "</tr>"
+        for tag, row in [*([("th", columns)] if columns else []), *(("td", row) for row in rows)]
+    ]
+    below = "".join(f'<div style="flex-basis:100%">{escape(note)}</div>' for note in notes)
+    return _box(heading, "".join(lines) if rows else "", below)
+
+
+def _sentences(tag: str, lines: Sequence[str], is_title: bool) -> str:
+    """A cell that is wide enough for sentences where it has several lines; the first one can be a title."""
+    style = f"{_CELL};padding:4px 16px 4px 0;text-align:left;vertical-align:top;border-top:1px solid #8886"
+    escaped = [escape(line) for line in lines]
+    if len(lines) > 1:
+        style += ";min-width:18em"
+        escaped[0] = f"<b>{escaped[0]}</b>" if is_title else escaped[0]
+    return f'<{tag} style="{style}">{"<br/>".join(escaped)}</{tag}>'
+
+
 def _row(tag: str, values: Sequence[object], color: str) -> str:
     dot = f'<span style="{_DOT};background:{color}"></span>' if color else ""
     first, *others = values

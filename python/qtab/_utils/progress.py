@@ -2,12 +2,12 @@
 
 import sys
 import time
-import warnings
 from collections.abc import Iterator
 from typing import Any
 
 from qtab._utils.extras import missing
 from qtab._utils.notebook import in_notebook
+from qtab._utils.notebook_bar import notebook_bar
 
 SECONDS_BETWEEN_UPDATES = 0.1
 """The approximate time between two updates of the bar."""
@@ -82,24 +82,37 @@ class ProgressBar:
             self._bar.update(done - self._bar.n)
 
 
-def _tqdm(total: int, unit: str, progress: bool | None, description: str | None) -> Any:
+def check_progress(progress: Any) -> None:
+    """Checks the argument ``progress`` of a function that may not come to show a bar.
+
+    Raises:
+        TypeError: if it is neither a boolean nor None.
+    """
     if not (progress is None or isinstance(progress, bool)):
         raise TypeError(f"progress must be True, False or None, got {progress!r}")
+
+
+def _tqdm(total: int, unit: str, progress: bool | None, description: str | None) -> Any:
+    check_progress(progress)
     if progress is False or (progress is None and not is_terminal(sys.stderr) and not in_notebook()):
         return None
+    options = {
+        "total": total,
+        "unit": f" {unit}s",
+        "desc": description,
+        "delay": 0.0 if progress else DELAY_SECONDS,
+        "leave": False,
+        "dynamic_ncols": True,
+    }
     try:
         if in_notebook():
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # without ipywidgets the bar is text, which needs no warning
-                from tqdm.auto import tqdm
-        else:
-            from tqdm import tqdm
+            return notebook_bar(**options)
+        from tqdm import tqdm
     except ModuleNotFoundError as error:
         if progress:
             raise missing(error, "cli") from None
         return None
-    delay = 0.0 if progress else DELAY_SECONDS
-    return tqdm(total=total, unit=f" {unit}s", desc=description, delay=delay, leave=False, dynamic_ncols=True)
+    return tqdm(**options)
 
 
 def is_terminal(stream: Any) -> bool:

@@ -6,7 +6,7 @@ MAX_EPISODE_STEPS = 5_000
 """The time limit of an experiment that does not set another one."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Description:
     """An experiment in words, with the layout of its table and figure."""
 
@@ -41,3 +41,7 @@ class Description:
     def heading(self) -> str:
         """``"Figure 10.4: ..."``."""
         return f"{self.name.replace('-', ' ').capitalize()}: {self.title}"
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f"<{type(self).__name__} {self.heading}>"

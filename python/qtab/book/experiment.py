@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils import checks
+from qtab._utils import checks, html
 from qtab._utils.progress import ProgressBar
 from qtab.book import runner
 from qtab.book.description import Description
@@ -23,11 +23,23 @@ BATCH_RUNS = 5_000
 """Runs are trained and measured in batches of this size, which bounds the memory and moves the progress bar."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Experiment(Description):
     """An experiment of the book that can be run."""
 
     settings: Sequence[Setting]
+
+    def _repr_html_(self) -> str:
+        """What the experiment is, for notebooks."""
+        facts = {
+            "run it": f"qtab.book.run({self.name!r})",
+            "in the book": self.book,
+            "not in the book": self.unspecified,
+            "lines": "; ".join(dict.fromkeys(setting.line for setting in self.settings)),
+            "runs": f"{self.runs:,} of each setting",
+            "axes": f"{self.y_label} by {self.x_label}",
+        }
+        return html.report(self.heading, (), list(facts.items()))
 
     def run(
         self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None

@@ -28,7 +28,7 @@ Draw: TypeAlias = Callable[["Result", "Axes | None"], "Axes"]
 """Draws a result on axes, or on a new figure, and returns the axes."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Line:
     """A line of a figure; all arrays are (points,)."""
 
@@ -45,6 +45,14 @@ class Line:
     """The number of runs of the setting that diverged."""
     drawn: bool = True
     """Whether the figure shows the line."""
+
+    def __repr__(self) -> str:
+        """One line of text: the points are not shown."""
+        count = len(self.x)
+        points = f"{count:,} point{'' if count == 1 else 's'}"
+        if count:
+            points += f" from {self.x[0]:g} to {self.x[-1]:g}"
+        return f"<Line {self.name!r}: {points}, {self.runs:,} runs>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)

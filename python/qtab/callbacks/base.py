@@ -1,10 +1,14 @@
 """What the callbacks of this package have in common, and what one of your own can be built on."""
 
+import inspect
 from abc import ABC, abstractmethod
+from pathlib import Path
+from typing import Any
 
 import gymnasium as gym
 
 from qtab._utils import checks
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.training.callbacks import Progress
 
@@ -26,6 +30,14 @@ class BaseCallback(ABC):
     def __init__(self, every: int | None = None) -> None:
         self.every = None if every is None else checks.integer("every", every, least=1)
 
+    def __repr__(self) -> str:
+        """The arguments that differ from their defaults, as Python spells them."""
+        parameters = inspect.signature(type(self)).parameters.values()
+        found = {one.name: getattr(self, one.name, one.default) for one in parameters}
+        changed = [one.name for one in parameters if repr(found[one.name]) != repr(one.default)]
+        given = [f"{name}={_shown(found[name])}" for name in changed]
+        return f"{type(self).__name__}({', '.join(given)})"
+
     def on_start(self, config: Config, env: gym.Env | None) -> None:  # noqa: B027 - need not do anything
         """Called before the first episode, to begin anew and to refuse what cannot work.
 
@@ -40,3 +52,7 @@ class BaseCallback(ABC):
 
     def on_end(self) -> None:  # noqa: B027 - need not do anything
         """Called once after :meth:`on_start` succeeded, also after an exception: closes what that opened."""
+
+
+def _shown(value: Any) -> str:
+    return repr(str(value)) if isinstance(value, Path) else shown(value)

@@ -70,8 +70,8 @@ class EvaluateEvery(BaseCallback):
 
     def __call__(self, progress: Progress) -> bool | None:
         """Evaluates the greedy policy."""
-        seed = _seed_of_its_own(progress.config) if self.seed is None else self.seed
-        self.evaluations.append(evaluate(progress.run, self.episodes, seed, self.env))
+        seed = _evaluation_seed(progress.config) if self.seed is None else self.seed
+        self.evaluations.append(evaluate(progress.run, self.episodes, seed, self.env, progress=False))
         self.evaluated_at.append(progress.episodes)
         return None
 
@@ -87,7 +87,7 @@ def _require_another(config: Config, env: gym.Env | None) -> None:
         raise ValueError(f"env must be given: {config.env!r} does not make the wrappers of the run's ({names})")
 
 
-def _seed_of_its_own(config: Config) -> int:
+def _evaluation_seed(config: Config) -> int:
     """A seed that depends on the run's, whose bits are unrelated to it."""
     child = np.random.SeedSequence(config.seed).spawn(1)[0]
     return int(child.generate_state(1)[0])

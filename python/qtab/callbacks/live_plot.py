@@ -49,7 +49,7 @@ class LivePlot(BaseCallback):
         if self._shows:
             from qtab.plots.axes import new_figure
 
-            new_figure()  # matplotlib is there
+            new_figure()  # without matplotlib this fails now, and not in the middle of the training
 
     def __call__(self, progress: Progress) -> None:
         """Replaces the picture, unless the last one is too recent."""

@@ -11,14 +11,18 @@ from qtab.cli.usage import USER_ERRORS, UsageError, one_line, with_origin
 
 SUBCOMMANDS = {
     "train": "train a tabular agent, save and plot the run, replay its last episodes",
+    "resume": "continue a saved run exactly where it stopped, or for more episodes",
     "verify": "repeat a saved run with Gymnasium and NumPy, and compare the results byte for byte",
     "explain": "show steps of an episode of a saved run: each choice, and each update with its numbers",
     "diagnose": "say why a saved run did not solve its environment, and what to change",
+    "watch": "show the greedy policy of a saved run in a window",
+    "record": "write a video of the greedy policy of a saved run: MP4, GIF or HTML",
     "optimum": "compute the best policy of an environment: exact from a table, or the best known",
     "sweep": "train many settings with many seeds, as a study file describes; resumes if called again",
     "report": "turn the store of a sweep into tables, plots and one HTML page",
     "book": "run an experiment of Sutton & Barto's book: its settings, a table, a figure",
     "bench": "compare the speed of this package with Gymnasium and the article's loop",
+    "completion": "print the script with which bash or zsh completes commands, flags and choices",
 }
 """The subcommands with their help. Each is a module of this package with ``run(arguments) -> exit code``."""
 
@@ -68,7 +72,7 @@ def _fail(name: str, message: str, code: int) -> int:
 
 
 def _help() -> str:
-    commands = "\n".join(f"  {name:8}{summary}" for name, summary in SUBCOMMANDS.items())
+    commands = "\n".join(f"  {name:11}{summary}" for name, summary in SUBCOMMANDS.items())
     return (
         "usage: qtab COMMAND [OPTIONS]\n\n"
         "Tabular reinforcement learning on Gymnasium environments, in Rust.\n\n"

@@ -6,18 +6,23 @@ from typing import Annotated, Any
 
 import tyro
 
-from qtab._utils.progress import print_above
 from qtab.cli.constructors import OPTIONAL_FLOAT, OPTIONAL_INT, PAIRS
 from qtab.cli.parsing import parse
+from qtab.cli.reporting import OutputFlags, Report
 from qtab.cli.usage import usage_errors
 from qtab.config import Config
 from qtab.planning import optimum
 
 COMMAND = "qtab optimum"
+FACTS = (
+    *("env", "env_kwargs", "max_episode_steps", "discount", "method", "exact", "label"),
+    *("expected_return", "reward_threshold", "seconds"),
+)
+"""What the JSON object holds."""
 
 
 @dataclass(frozen=True)
-class Arguments:
+class Arguments(OutputFlags):
     """Compute the best policy of an environment: exact from its transition table, or the best known."""
 
     env: tyro.conf.Positional[str] = Config.env
@@ -35,13 +40,16 @@ class Arguments:
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
     options = parse(Arguments, COMMAND, arguments)
-    with usage_errors(("max_episode_steps", "discount", "method", "env_kwargs"), "env"):
-        result = optimum(
-            options.env,
-            discount=options.discount,
-            max_episode_steps=options.max_episode_steps,
-            method=options.method,
-            env_kwargs=options.env_kwargs,
-        )
-    print_above(str(result))
+    with Report(COMMAND, options) as report:
+        with usage_errors(("max_episode_steps", "discount", "method", "env_kwargs"), "env"):
+            result = optimum(
+                options.env,
+                discount=options.discount,
+                max_episode_steps=options.max_episode_steps,
+                method=options.method,
+                env_kwargs=options.env_kwargs,
+                progress=report.progress,
+            )
+        report.text(str(result))
+        report.add(**{name: getattr(result, name) for name in FACTS})
     return 0

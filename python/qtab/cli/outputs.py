@@ -1,5 +1,6 @@
 """The files, the window and the videos of ``qtab train``: checked before the training, written after it."""
 
+from collections.abc import Callable
 from contextlib import ExitStack, closing
 from pathlib import Path
 from types import TracebackType
@@ -29,6 +30,7 @@ class Outputs:
         plot: The file to draw the learning curve to, or None.
         watch: The number of last episodes to show in a window, or None.
         record: The folder for videos of the last episodes, or None.
+        say: Prints a line about what was written.
 
     Raises:
         ModuleNotFoundError: if an optional library is missing; it names the ``pip install``.
@@ -37,9 +39,17 @@ class Outputs:
     """
 
     def __init__(
-        self, config: Config, save: Path | None, plot: Path | None, watch: int | None, record: Path | None
+        self,
+        config: Config,
+        save: Path | None,
+        plot: Path | None,
+        watch: int | None,
+        record: Path | None,
+        say: Callable[[str], None] = print_above,
     ) -> None:
-        self._save, self._plot, self._record = save, plot, record
+        self._save, self._plot, self._record, self._say = save, plot, record, say
+        self.files: dict[str, Path] = {}
+        """What was written, by the argument that asked for it."""
         if watch is not None:
             checks.integer("watch", watch, least=1)
         if plot is not None:
@@ -72,23 +82,26 @@ class Outputs:
         """
         if self._save is not None:
             run.save(self._save)
-            print_above(f"Saved the run to {self._save}")
+            self.files["save"] = self._save
+            self._say(f"Saved the run to {self._save}")
         if self._plot is not None:
             save_plot(run, self._plot, optimum)
-            print_above(f"Saved the plot to {self._plot}")
+            self.files["plot"] = self._plot
+            self._say(f"Saved the plot to {self._plot}")
 
     def show(self, run: Run) -> None:
         """Replays the recorded episodes in videos and in the window."""
         different = 0
-        if self._recorder is not None:
+        if self._recorder is not None and self._record is not None:
             different = self._recorder.record(run)
-            print_above(f"Saved {counted(len(run.recordings), 'video')} to {self._record}")
+            self.files["record"] = self._record
+            self._say(f"Saved {counted(len(run.recordings), 'video')} to {self._record}")
         if self._screen is not None:
-            print_above(f"Showing {last_episodes(len(run.recordings))}")
+            self._say(f"Showing {last_episodes(len(run.recordings))}")
             different = replay_all(self._screen, run)
         if different:
             returned = f"{different} of them returned something else than in training"
-            print_above(f"{returned}: the environment keeps state besides its random generator")
+            self._say(f"{returned}: the environment keeps state besides its random generator")
 
 
 def counted(count: int, noun: str) -> str:

@@ -68,7 +68,7 @@ def _reason(paragraphs: Sequence[str], kind: Any, known: Collection[str]) -> str
         return f"{missing[1]} needs a value"
     if missing := re.match(r"Missing from qtab \w+: (\w+) (.+?)\.? \(required\)", summary):
         return f"{missing[1]} must be given: {missing[2][0].lower()}{missing[2][1:]}"
-    return re.sub(r"^Error parsing (--[\w-]+): must ", r"\1 must ", summary)
+    return re.sub(r"^Error parsing (--[\w-]+|[A-Z]+): must ", r"\1 must ", summary)
 
 
 def _unknown(words: Sequence[str], kind: Any, known: Collection[str]) -> str:
@@ -78,7 +78,7 @@ def _unknown(words: Sequence[str], kind: Any, known: Collection[str]) -> str:
         return f"unexpected argument {shown(words[0])}"
     word = word.partition("=")[0]
     name = word.lstrip("-").replace("-", "_")
-    flags, positional = _arguments(kind)
+    flags, positional = arguments_of(kind)
     if name in positional:
         return f"unknown option {shown(word)[1:-1]} ({name} is given without a flag)"
     names = {*flags, *known}
@@ -86,8 +86,8 @@ def _unknown(words: Sequence[str], kind: Any, known: Collection[str]) -> str:
     return f"unknown option {shown(word)[1:-1]}" + (f" (did you mean {flag(found)}?)" if found else "")
 
 
-def _arguments(kind: Any) -> tuple[set[str], set[str]]:
-    """The names of a dataclass's flags and of its positional arguments."""
+def arguments_of(kind: Any) -> tuple[set[str], set[str]]:
+    """Returns the names of a dataclass's flags and of its positional arguments."""
     hints = get_type_hints(kind, include_extras=True)
     also_flags = {name.removesuffix("_flag") for name in hints if name.endswith("_flag")}
     positional = {name for name, hint in hints.items() if "Positional" in repr(hint)} - also_flags

@@ -1,26 +1,27 @@
 """``qtab sweep``."""
 
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import gymnasium as gym
 import tyro
 
 from qtab._utils import checks
-from qtab._utils.progress import ProgressBar, print_above
 from qtab.cli.parsing import parse
+from qtab.cli.reporting import OutputFlags, Report
 from qtab.cli.study_file import read_study
 from qtab.cli.usage import UsageError, one_line, usage_errors
-from qtab.sweeps import StoreError, SweepProgress, sweep
+from qtab.sweeps import StoreError, Sweep, sweep
 
 COMMAND = "qtab sweep"
 DEFAULT_SEEDS = 100
 
 
 @dataclass(frozen=True)
-class Arguments:
+class Arguments(OutputFlags):
     """Train every setting of a study with the same seeds. An interrupted sweep resumes if it is called again."""
 
     study: tyro.conf.Positional[Path]
@@ -41,6 +42,12 @@ class Arguments:
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
     options = parse(Arguments, COMMAND, arguments)
+    with Report(COMMAND, options) as report:
+        _run(options, report)
+    return 0
+
+
+def _run(options: Arguments, report: Report) -> None:
     with usage_errors():
         if options.threads is not None:
             checks.threads(options.threads)
@@ -51,42 +58,41 @@ def run(arguments: list[str]) -> int:
         given = {"seeds": DEFAULT_SEEDS, **study.options}
         if options.threads is not None:
             given["threads"] = options.threads
-        with _names_file(options.study), _says_what_is_kept(store), _Bar(options.study.stem) as bar:
-            result = sweep(study.env, study.grid, store=store, callback=bar.show, **given, **study.config)
+        with _names_file(options.study), _says_what_is_kept(store, report):
+            result = sweep(study.env, study.grid, store=store, progress=report.progress, **given, **study.config)
     runs, settings = _counted(len(result), "run"), _counted(len(result.settings), "setting")
-    print_above(f"{runs} of {settings} in {store}, {result.failed} failed")
+    report.text(f"{runs} of {settings} in {store}, {result.failed} failed")
+    report.add(**_facts(result), store=store, confirmation=None)
     if options.confirm is not None:
-        with usage_errors(), _names_file(options.study), _Bar("confirm") as bar:
+        with usage_errors(), _names_file(options.study):
             confirmation = result.confirm(
                 options.confirm,
                 top=options.top,
                 store=options.confirm_store,
                 threads=given.get("threads"),
                 memory_limit=given.get("memory_limit"),
-                callback=bar.show,
+                progress=report.progress,
             )
             text = str(confirmation)
-        print_above(text)
-    return 0
+        report.text(text)
+        chosen = zip(confirmation.chosen, confirmation.confirmed.mean_final_returns().tolist(), strict=True)
+        report.add(confirmation=[{"setting": setting, "mean_final_return": mean} for setting, mean in chosen])
 
 
-class _Bar:
-    """A progress bar that is created with the first progress, which tells the number of runs."""
-
-    def __init__(self, description: str) -> None:
-        self._description, self._opened = description, ExitStack()
-        self._bar: ProgressBar | None = None
-
-    def __enter__(self) -> "_Bar":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._opened.close()
-
-    def show(self, progress: SweepProgress) -> None:
-        if self._bar is None:
-            self._bar = self._opened.enter_context(ProgressBar(progress.total, "run", None, self._description))
-        self._bar.move_to(progress.runs)
+def _facts(result: Sweep) -> dict[str, Any]:
+    """Returns what the JSON object says of a sweep: its settings, the best first."""
+    means = result.mean_final_returns().tolist()
+    return {
+        "env": result.env,
+        "runs": len(result),
+        "failed": result.failed,
+        "seeds": len(result.seeds),
+        "seconds": result.seconds,
+        "ranking": [
+            {"setting": setting, "values": result.settings[setting], "mean_final_return": means[setting]}
+            for setting in result.ranking()
+        ],
+    }
 
 
 @contextmanager
@@ -103,13 +109,13 @@ def _names_file(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _says_what_is_kept(store: Path) -> Iterator[None]:
+def _says_what_is_kept(store: Path, report: Report) -> Iterator[None]:
     """Prints on Ctrl-C what is kept in the store."""
     try:
         yield
     except KeyboardInterrupt as error:
         runs = _counted(len(getattr(error, "run", ())), "run")
-        print_above(f"interrupted: kept {runs} in {store}; the same command resumes")
+        report.text(f"interrupted: kept {runs} in {store}; the same command resumes")
         raise
 
 

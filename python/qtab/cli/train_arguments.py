@@ -9,6 +9,7 @@ import tyro
 
 from qtab.cli.constructors import OPTIONAL_INT
 from qtab.cli.parsing import parse
+from qtab.cli.reporting import OutputFlags
 from qtab.cli.settings import flag_groups, read_config
 from qtab.cli.usage import UsageError, usage_errors
 from qtab.config import DEFAULTS, Config
@@ -23,7 +24,7 @@ _File: TypeAlias = Annotated[Path | None, tyro.conf.arg(metavar="FILE")]
 
 
 @dataclass(frozen=True)
-class Arguments:
+class Arguments(OutputFlags):
     """Train a tabular agent. The defaults shown are those of the environment, the preset and the file given."""
 
     env: Annotated[

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils import html
 from qtab._utils.fields import with_fields
 from qtab.config.action_mask import Mask
 from qtab.config.choices import (
@@ -181,6 +182,14 @@ class Config:
         """The hash of all settings but ``env_kwargs`` and ``initial_q``, whose values may not have one."""
         return hash(tuple(value for name, value in vars(self).items() if name not in ("env_kwargs", "initial_q")))
 
+    def _repr_html_(self) -> str:
+        """The settings that apply as a table, for notebooks."""
+        given = {name: value for name, value in vars(self).items() if value is not None}
+        if not self.env_kwargs:
+            del given["env_kwargs"]
+        shown = {name: _short(value) for name, value in given.items()}
+        return html.summary(f"Config of {self.env}", shown)
+
     def replace(self, **changes: "Unpack[ConfigSettings]") -> "Config":
         """Returns a copy with some settings changed.
 
@@ -198,6 +207,12 @@ DEFAULTS: Mapping[str, Any] = {
     for field in dataclasses.fields(Config)
 }
 """The default of each field."""
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        return f"array of shape {value.shape}"
+    return repr(value)
 
 
 def _comparable(value: Any) -> Any:

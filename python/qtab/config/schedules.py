@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
 from qtab._spec import ConstantSpec, ExponentialSpec, LinearSpec, VisitsSpec
 from qtab._utils.checks import required
 from qtab.config.config import Config
@@ -18,6 +21,10 @@ class Constant:
         """Returns the schedule as the extension takes it."""
         return {"type": "constant", "value": self.value}
 
+    def after(self, episodes: int, total: int) -> float:  # noqa: ARG002 - as the others
+        """Returns the value."""
+        return self.value
+
 
 @dataclass(frozen=True)
 class Linear:
@@ -30,6 +37,11 @@ class Linear:
     def spec(self) -> LinearSpec:
         """Returns the schedule as the extension takes it."""
         return {"type": "linear", "value": self.value, "minimum": self.minimum, "warm_up": self.warm_up}
+
+    def after(self, episodes: int, total: int) -> float:
+        """Returns the value after some of a run's ``total`` episodes, up to the rounding of each subtraction."""
+        reduction = (self.value - self.minimum) / (total - self.warm_up)
+        return max(self.value - reduction * max(episodes - self.warm_up, 0), self.minimum)
 
 
 @dataclass(frozen=True)
@@ -50,6 +62,10 @@ class Exponential:
             "decay": self.decay,
             "warm_up": self.warm_up,
         }
+
+    def after(self, episodes: int, total: int) -> float:  # noqa: ARG002 - as the others
+        """Returns the value after some episodes, up to the rounding of each multiplication."""
+        return max(self.value * self.decay ** max(episodes - self.warm_up, 0), self.minimum)
 
 
 @dataclass(frozen=True)
@@ -100,3 +116,8 @@ def epsilon(config: Config) -> Schedule:
     if kind == "linear":
         return Linear(value, minimum, warm_up)
     return Exponential(value, minimum, required("epsilon_decay", config.epsilon_decay), warm_up)
+
+
+def rates(schedule: Schedule, episodes: NDArray[np.int64], total: int) -> NDArray[np.float64]:
+    """Returns (n,): the value of a schedule in each of n episodes, numbered from 0, of a run of ``total`` episodes."""
+    return np.array([schedule.after(episode, total) for episode in episodes.tolist()])

@@ -29,7 +29,7 @@ def coarse_grid(facts: Facts) -> Finding | None:
     mixed = mixed_cells(facts)
     if mixed is not None:
         evidence["share of states whose best action is not their cell's"] = mixed
-        meaning += f" {percent(mixed)} of the states need another action than most of their cell."
+        meaning += f" {percent(mixed)} of the states need another action than most states of their cell."
     changes = (*_finer(facts), *_tiles(facts))
     return Finding(
         name="grid too coarse",

@@ -14,27 +14,27 @@ SHOWN = 3
 
 
 def coverage(facts: Facts) -> Finding | None:
-    """Finds that in many visited states some actions still have their initial value."""
-    changed, visited = facts.changed, facts.visited
+    """Finds that in many visited states some actions were never tried."""
+    tried, visited = facts.tried, facts.visited
     entries = facts.has_action & visited[:, np.newaxis]
     if not entries.any():
         return None
-    untried = float(1.0 - changed[entries].mean())
+    untried = float(1.0 - tried[entries].mean())
     if untried <= MOST_UNTRIED:
         return None
     run = facts.run
-    states = np.flatnonzero((entries & ~changed).sum(axis=1))
+    states = np.flatnonzero((entries & ~tried).sum(axis=1))
     where = ", ".join(_place(facts, int(row)) for row in states[:SHOWN])
-    per_entry = float(run.episode_lengths.sum()) * run.discretizer.n_active / max(int(changed.sum()), 1)
+    per_entry = float(run.episode_lengths.sum()) * run.discretizer.n_active / max(int(tried.sum()), 1)
     more = 5 * facts.config.episodes
     return Finding(
         name="coverage",
-        title="Many actions were never tried, or their values never changed.",
+        title="Many actions were never tried" + (", or their values never changed." if run.visits is None else "."),
         evidence={
-            "share of unchanged values in visited states": untried,
+            "share of untried actions in visited states": untried,
             "visited states": int(visited.sum()),
             "states of the table": len(visited),
-            "updates per changed value": per_entry,
+            "updates per tried action": per_entry,
         },
         meaning=f"{percent(untried)} of the values in visited states are still the initial ones, such as in {where}. "
         "The greedy policy compares them with learned values.",

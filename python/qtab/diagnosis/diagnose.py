@@ -55,7 +55,7 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
             else:
                 findings.append(finding)
                 if name == "divergence":
-                    break  # no other check means anything then
+                    break  # the other checks would misread such values
     return Diagnosis(
         run=run,
         solved=facts.solved,

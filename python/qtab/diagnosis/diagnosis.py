@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from html import escape
 
+from qtab._utils import html
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, shown
+from qtab.diagnosis.finding import COLUMNS, Finding
 from qtab.diagnosis.what_if import WhatIf, try_changes
 from qtab.results.run import Run
 
@@ -42,23 +42,8 @@ class Diagnosis:
 
     def _repr_html_(self) -> str:
         """The findings as a table, for notebooks."""
-        rows = "".join(
-            "<tr>"
-            + "".join(
-                f"<td>{cell}</td>"
-                for cell in (
-                    f"<b>{escape(finding.title)}</b><br>{escape(finding.meaning)}",
-                    "<br>".join(f"{escape(name)}: {shown(value)}" for name, value in finding.evidence.items()),
-                    escape(finding.advice),
-                )
-            )
-            + "</tr>"
-            for finding in self.findings
-        )
-        head = "<tr><th>finding</th><th>evidence</th><th>change</th></tr>"
-        table = f"<table><thead>{head}</thead><tbody>{rows}</tbody></table>" if self.findings else ""
-        footer = "".join(f"<p>{escape(line)}</p>" for line in self._footer())
-        return f"<p>{escape(self.heading)}</p>{table}{footer}"
+        rows = [finding.cells() for finding in self.findings]
+        return html.report(self.heading, COLUMNS, rows, self._footer())
 
     def __len__(self) -> int:
         return len(self.findings)
@@ -91,18 +76,20 @@ class Diagnosis:
         word = {True: "solved", False: "not solved", None: "no threshold or optimum is known"}[self.solved]
         return f"Diagnosis of {repr(self.run)[1:-1]}: {word}"
 
-    def what_if(self, seeds: "int | Iterable[int]" = SEEDS) -> WhatIf:
+    def what_if(self, seeds: "int | Iterable[int]" = SEEDS, *, progress: bool | None = None) -> WhatIf:
         """Tries the advised changes, one at a time, over the same seeds, and compares each with the run's settings.
 
         Args:
             seeds: The seeds, at least two, as for :func:`qtab.train_many`.
+            progress: Whether to show a progress bar over all runs. None shows one on a terminal or in a notebook if
+                they take more than a second.
 
         Raises:
             ModuleNotFoundError: if SciPy, which the intervals need, is not installed.
             ValueError: for fewer than two seeds, if no finding advises a change, or if the run's environment cannot be
                 made from its id.
         """
-        return try_changes(self.facts, self.findings, seeds)
+        return try_changes(self.facts, self.findings, seeds, progress)
 
     def _footer(self) -> list[str]:
         lines = []
@@ -112,5 +99,7 @@ class Diagnosis:
         elif self.unremarkable:
             lines.append(f"Nothing to report on: {', '.join(self.unremarkable)}.")
         if self.not_made:
-            lines.append(f"Not checked, as Rust does not step this environment: {', '.join(self.not_made)}.")
+            lines.append(
+                f"Not checked, as this needs an environment with an id that Rust steps: {', '.join(self.not_made)}."
+            )
         return lines

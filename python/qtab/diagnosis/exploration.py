@@ -59,7 +59,7 @@ def lasting_exploration(facts: Facts) -> Finding | None:
     config = facts.config
     if config.exploration != "epsilon_greedy":
         return None
-    last = float(epsilons(config, len(facts.run.episode_returns))[1][-1])
+    last = float(epsilons(config, len(facts.run.episode_returns))[-1])
     if last <= MOST_EPSILON:
         return None
     return Finding(
@@ -67,7 +67,7 @@ def lasting_exploration(facts: Facts) -> Finding | None:
         title="The agent still explores a lot at the end.",
         evidence={"epsilon of the last episode": last, "steps between random actions": 1.0 / last},
         meaning=f"One step in {1.0 / last:.2g} is random to the end. Episodes that need many right steps in "
-        "a row fail, and values learned from the actions taken are those of a clumsy policy.",
+        "a row fail, and on-policy algorithms learn the values of this exploring policy.",
         advice="let epsilon fall to 0: epsilon_schedule='linear', min_epsilon=0.0",
         changes=({"epsilon_schedule": "linear", "min_epsilon": 0.0},),
     )

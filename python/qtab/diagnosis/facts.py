@@ -1,4 +1,4 @@
-"""What the checks look at: a run, and what repeating it and its environment tell. Each fact is computed when used."""
+"""What the checks look at: a run, its repetition, and its environment. Each fact is computed when it is first used."""
 
 from contextlib import suppress
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from qtab.config import Config
 from qtab.diagnosis.sample import Sample, sample_steps
 from qtab.envs.registry import entry_for_id, gymnasium_id, spec_of
+from qtab.envs.stored import spec_of_run
 from qtab.planning.optimum import Optimum
 from qtab.planning.solve import optimum as solve
 from qtab.reference.streams import agent_stream
@@ -23,13 +24,13 @@ from qtab.training.train_many import train_many
 EVALUATION_EPISODES = 100
 RANDOM_EPISODES = 500
 MAX_QUICK_UPDATES = 10**8
-"""The optimum of a table takes less than a second with at most so many updates, and is then computed."""
+"""The optimum of a table is computed if it needs at most this many updates, which take less than a second."""
 BEST_KNOWN_MOUNTAIN_CAR = -97.668
 """The expected return that ``qtab.optimum("MountainCar-v0")`` finds in seconds."""
 SHORTEST_MOUNTAIN_CAR, LONGEST_MOUNTAIN_CAR = 83, 104
 """The lengths of its routes: from the best and from the worst start."""
 OTHER_SEEDS_STEPS = 10**7
-"""So many steps, times the active rows, are spent on training other seeds."""
+"""How many steps, times the number of active rows, training with other seeds may take."""
 FEWEST_SEEDS, MOST_SEEDS = 8, 40
 
 
@@ -46,9 +47,13 @@ class Facts:
         """The config of the run."""
         return self.run.config
 
-    @property
+    @cached_property
     def can_repeat(self) -> bool:
-        """Whether the run can be repeated quickly: Rust steps its environment."""
+        """Whether the run can be repeated quickly: Rust steps its environment, which can be made from its id."""
+        try:
+            spec_of_run(self.config.env)
+        except (gym.error.UnregisteredEnv, ModuleNotFoundError):
+            return False
         return self.config.backend == "rust" and len(self.run.episode_returns) > 0
 
     @cached_property
@@ -67,7 +72,7 @@ class Facts:
         """Episodes of the greedy policy; None where they cannot be played quickly."""
         if not (self.can_repeat and self.is_finite):
             return None
-        return evaluate(self.run, EVALUATION_EPISODES, seed=0)
+        return evaluate(self.run, EVALUATION_EPISODES, seed=0, progress=False)
 
     @cached_property
     def random(self) -> Run | None:
@@ -189,9 +194,18 @@ class Facts:
         return np.asarray(np.any(self.run.tables != self.initial_tables, axis=0))
 
     @cached_property
+    def tried(self) -> NDArray[np.bool_]:
+        """(rows, actions): whether the action was taken there: by the run's visits, or else whether its value changed.
+
+        Without visits, an update that leaves the value as it was goes unnoticed, such as one of 0 towards 0.
+        """
+        visits = self.run.visits
+        return self.changed if visits is None else np.asarray(visits.reshape(self.changed.shape) > 0)
+
+    @cached_property
     def visited(self) -> NDArray[np.bool_]:
-        """(rows,): whether any value of a row has changed."""
-        return np.asarray(np.any(self.changed, axis=1))
+        """(rows,): whether any action was taken there."""
+        return np.asarray(np.any(self.tried, axis=1))
 
     @cached_property
     def q_values(self) -> NDArray[np.float64]:
@@ -202,7 +216,7 @@ class Facts:
     @cached_property
     def has_action(self) -> NDArray[np.bool_]:
         """(rows, actions): which actions each state has."""
-        not_missing: NDArray[np.bool_] = np.isfinite(self.initial_tables).all(axis=0)
+        not_missing: NDArray[np.bool_] = np.asarray(np.isfinite(self.initial_tables).all(axis=0))
         masks = self.run.action_masks
         return not_missing if masks is None else not_missing & masks.reshape(not_missing.shape)
 
@@ -231,5 +245,5 @@ class Facts:
             return self.given_seeds
         work = int(self.run.episode_lengths.sum()) * self.run.discretizer.n_active
         affordable = min(OTHER_SEEDS_STEPS // max(work, 1), MOST_SEEDS)
-        # A few seeds are worth waiting a little longer.
+        # Fewer seeds than this say little: they may take up to twice as long.
         return max(affordable, FEWEST_SEEDS) if 2 * affordable >= FEWEST_SEEDS else 0

@@ -4,8 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from qtab._utils import html
 
-@dataclass(frozen=True)
+COLUMNS = ("finding", "evidence", "change")
+"""The columns of a table of findings."""
+
+
+@dataclass(frozen=True, repr=False)
 class Finding:
     """A likely reason why a run did not solve its environment."""
 
@@ -21,6 +26,19 @@ class Finding:
     """What to change."""
     changes: tuple[Mapping[str, Any], ...] = field(default=())
     """Settings to try, each as keyword arguments of :func:`qtab.train`; :meth:`qtab.Diagnosis.what_if` tries them."""
+
+    def __repr__(self) -> str:
+        """One line: ``print`` shows the whole finding."""
+        return f"<Finding {self.name!r}: {self.title}>"
+
+    def cells(self) -> tuple[str, str, str]:
+        """Returns the finding in the columns of a table: see ``COLUMNS``."""
+        evidence = "\n".join(f"{name}: {shown(value)}" for name, value in self.evidence.items())
+        return f"{self.title}\n{self.meaning}", evidence, self.advice
+
+    def _repr_html_(self) -> str:
+        """A table of one row, for notebooks."""
+        return html.report(f"Finding {self.name!r}", COLUMNS, [self.cells()])
 
     def __str__(self) -> str:
         """A few lines: the title, the evidence, the meaning and the advice."""

@@ -42,13 +42,13 @@ def too_pessimistic(facts: Facts) -> Finding | None:
     config, visited = facts.config, facts.visited
     if config.exploration != "epsilon_greedy" or not visited.any():
         return None
-    epsilon = float(epsilons(config, len(facts.run.episode_returns))[1].mean())
+    epsilon = float(epsilons(config, len(facts.run.episode_returns)).mean())
     if epsilon > LITTLE_EPSILON:
         return None
-    untried = ~facts.changed & facts.has_action
+    untried = ~facts.tried & facts.has_action
     values = facts.q_values
-    hidden = (untried & (values < values.max(axis=1, keepdims=True))).any(axis=1) & facts.changed.any(axis=1)
-    greedy_tried = facts.changed[np.arange(len(values)), values.argmax(axis=1)]
+    hidden = (untried & (values < values.max(axis=1, keepdims=True))).any(axis=1) & visited
+    greedy_tried = facts.tried[np.arange(len(values)), values.argmax(axis=1)]
     share = float(np.mean((hidden & greedy_tried)[visited]))
     if share <= MOST_STATES:
         return None

@@ -4,46 +4,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
+from qtab.config.schedules import ByVisits, epsilon, learning_rate, rates
 
 POINTS = 1000
-"""So many episodes, evenly spaced, stand for all."""
+"""The largest number of episodes, evenly spaced, at which a rate is computed."""
 
 
 def learning_rates(config: Config, episodes: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Returns evenly spaced episodes, the last one included, and the learning rate in each."""
-    return _rates(
-        config.learning_rate_schedule,
-        config.learning_rate,
-        config.min_learning_rate or 0.0,
-        config.learning_rate_decay,
-        config.learning_rate_warm_up or 0,
-        config.episodes,
-        episodes,
-    )
+    """Returns (n,) evenly spaced episodes, the last one included, and (n,) learning rates; by visits the first one."""
+    points, rate = _evenly_spaced(episodes), learning_rate(config)
+    if isinstance(rate, ByVisits):
+        return points, np.full(len(points), rate.value)
+    return points, rates(rate, points, config.episodes)
 
 
-def epsilons(config: Config, episodes: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Returns evenly spaced episodes, the last one included, and the exploration rate in each."""
-    return _rates(
-        config.epsilon_schedule or "constant",
-        config.epsilon or 0.0,
-        config.min_epsilon or 0.0,
-        config.epsilon_decay,
-        config.epsilon_warm_up or 0,
-        config.episodes,
-        episodes,
-    )
+def epsilons(config: Config, episodes: int) -> NDArray[np.float64]:
+    """Returns (n,): the exploration rate of an epsilon-greedy policy in evenly spaced episodes, the last included."""
+    return rates(epsilon(config), _evenly_spaced(episodes), config.episodes)
 
 
-def _rates(
-    kind: str, first: float, least: float, decay: float | None, warm_up: int, total: int, episodes: int
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    points = np.unique(np.linspace(0, episodes - 1, min(episodes, POINTS)).astype(np.int64))
-    falls = np.maximum(points - warm_up, 0)
-    if kind == "linear":
-        rates = np.maximum(first - falls * ((first - least) / max(total - warm_up, 1)), least)
-    elif kind == "exponential" and decay is not None:
-        rates = np.maximum(first * decay ** falls.astype(np.float64), least)
-    else:
-        rates = np.full(len(points), first)
-    return points, rates
+def _evenly_spaced(episodes: int) -> NDArray[np.int64]:
+    return np.unique(np.linspace(0, episodes - 1, min(episodes, POINTS)).astype(np.int64))

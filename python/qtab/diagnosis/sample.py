@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.envs.registry import ENTRIES, gymnasium_id
+from qtab.discretizers.composite_actions import flat
 from qtab.results.run import Run
+from qtab.training.run_env import make_run_env
 from qtab.training.train import train
 
 SAMPLE_STEPS = 20_000
@@ -51,10 +51,8 @@ def sample_steps(run: Run) -> Sample:
         callback=lambda progress: progress.episodes < finished,
         callback_every=finished,
     )
-    name, config = gymnasium_id(run.config.env), run.config
-    env = gym.make(f"qtab/{name}" if name in ENTRIES else config.env, disable_env_checker=True, **config.env_kwargs)
-    visited, columns, following, rewards = [], [], [], []
-    column_of = {_key(run.actions[column]): column for column in range(len(run.actions))}
+    env = make_run_env(run.config)
+    visited, taken, following, rewards = [], [], [], []
     try:
         plain: Any = env.unwrapped
         for recording in repeated.recordings:
@@ -64,7 +62,7 @@ def sample_steps(run: Run) -> Sample:
             observation, _ = plain.reset()
             for action in recording.actions[:SAMPLE_STEPS]:
                 visited.append(observation)
-                columns.append(column_of[_key(action)])
+                taken.append(action)
                 observation, reward, *_ = plain.step(action)
                 following.append(observation)
                 rewards.append(float(reward))
@@ -72,8 +70,10 @@ def sample_steps(run: Run) -> Sample:
         env.close()
     observations = np.array(visited)
     active = run.discretizer.active_rows
-    return Sample(active(observations), np.array(columns), active(np.array(following)), np.array(rewards), observations)
-
-
-def _key(action: Any) -> tuple[float, ...]:
-    return tuple(np.ravel(action).tolist())
+    known = np.array([flat(run.actions[column]) for column in range(len(run.actions))])
+    columns = (
+        (np.array([flat(action) for action in taken]).reshape(-1, 1, known.shape[1]) == known)
+        .all(axis=-1)
+        .argmax(axis=-1)
+    )
+    return Sample(active(observations), columns, active(np.array(following)), np.array(rewards), observations)

@@ -1,4 +1,4 @@
-"""Truncation: time-outs that are learned from as if the episode had ended by itself."""
+"""Truncation: time-outs that are treated as terminal states."""
 
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, percent
@@ -15,7 +15,7 @@ def truncation(facts: Facts) -> Finding | None:
         title="Time-outs are treated as terminal states.",
         evidence={"episodes that timed out": timed_out, "share of all episodes": share},
         meaning=f"{percent(share)} of the episodes end by the time limit. The state where that happens depends on the "
-        "clock, which the agent does not see, and is learned to be worth nothing more.",
+        "clock, which the agent does not see, and its value is learned as if nothing followed.",
         advice="use on_truncation='bootstrap': the value of the last state then counts",
         changes=({"on_truncation": "bootstrap"},),
     )

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils import html
+from qtab._utils.progress import ProgressBar, check_progress
 from qtab.config import Config
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, as_keywords, shown
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from qtab.stats.comparisons import Comparison
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Trial:
     """A change that was tried."""
 
@@ -34,6 +35,13 @@ class Trial:
     """The change against the run's settings, paired by seed; None where those diverge."""
     solved: int | None
     """The number of seeds that solved the environment; None where neither threshold nor optimum is known."""
+
+    def __repr__(self) -> str:
+        """One line: the change, and what it gained."""
+        gained = "" if self.comparison is None else f", difference {_interval(self.comparison)}"
+        solved = "" if self.solved is None else f", {self.solved} of {len(self.returns)} seeds solved"
+        change = as_keywords(self.change)
+        return f"<Trial of {change}: mean return {shown(float(self.returns.mean()))}{gained}{solved}>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,12 +81,8 @@ class WhatIf:
 
     def _repr_html_(self) -> str:
         """The changes as a table, for notebooks."""
-        head, *rows = self._rows()
-        body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
-        names = "".join(f"<th>{escape(cell)}</th>" for cell in head)
-        failures = "".join(f"<p>{escape(line)}</p>" for line in self._failures())
-        table = f"<table><thead><tr>{names}</tr></thead><tbody>{body}</tbody></table>"
-        return f"<p>{escape(self._heading())}</p>{table}{failures}"
+        columns, *rows = self._rows()
+        return html.report(self._heading(), columns, rows, self._failures())
 
     def _heading(self) -> str:
         config = self.config
@@ -94,10 +98,7 @@ class WhatIf:
             ["none", "diverged" if diverged else shown(float(self.returns.mean())), "", self._share(self.solved)]
         )
         for trial in self.results:
-            difference = ""
-            if trial.comparison is not None:
-                interval = trial.comparison.difference
-                difference = f"{interval.estimate:+.4g} [{interval.low:+.4g}, {interval.high:+.4g}]"
+            difference = "" if trial.comparison is None else _interval(trial.comparison)
             mean = shown(float(trial.returns.mean()))
             rows.append([as_keywords(trial.change), mean, difference, self._share(trial.solved)])
         return rows
@@ -109,10 +110,11 @@ class WhatIf:
         return [f"{change} failed: {reason}" for change, reason in self.failed.items()]
 
 
-def try_changes(facts: Facts, findings: Sequence[Finding], seeds: int | Iterable[int]) -> WhatIf:
+def try_changes(facts: Facts, findings: Sequence[Finding], seeds: int | Iterable[int], progress: bool | None) -> WhatIf:
     """Trains the settings of a run, and each change that the findings advise; see :meth:`qtab.Diagnosis.what_if`."""
     from qtab.stats import compare
 
+    check_progress(progress)
     config = facts.config
     changes = {as_keywords(change): (finding.name, change) for finding in findings for change in finding.changes}
     if not changes:
@@ -126,30 +128,43 @@ def try_changes(facts: Facts, findings: Sequence[Finding], seeds: int | Iterable
     numbers = seed_numbers(seeds)
     if len(numbers) < 2:
         raise ValueError(f"seeds must be at least 2, to compare them in pairs, got {len(numbers)}")
-    try:
-        before = train_many(config=config, seeds=numbers).final_returns()
-    except OverflowError:
-        before = np.full(len(numbers), np.nan)
     results, failed = [], {}
-    for text, (name, change) in changes.items():
+    with ProgressBar((1 + len(changes)) * len(numbers), "run", progress, "what if") as bar:
         try:
-            runs = _changed(config, change, numbers)
-        except (OverflowError, ValueError) as error:
-            failed[text] = str(error)
-            continue
-        returns = runs.final_returns()
-        comparison = None if np.isnan(before).any() else compare(returns, before)
-        results.append(Trial(change, name, returns, comparison, _solved(facts, returns)))
+            before = _train(config, {}, numbers, bar, 0).final_returns()
+        except OverflowError:
+            before = np.full(len(numbers), np.nan)
+        for done, (text, (name, change)) in enumerate(changes.items(), 1):
+            try:
+                runs = _train(config, change, numbers, bar, done)
+            except (OverflowError, ValueError) as error:
+                failed[text] = str(error)
+                bar.move_to((done + 1) * len(numbers))
+                continue
+            returns = runs.final_returns()
+            comparison = None if np.isnan(before).any() else compare(returns, before)
+            results.append(Trial(change, name, returns, comparison, _solved(facts, returns)))
     results.sort(key=lambda trial: -float(trial.returns.mean()))
     return WhatIf(config, numbers, before, _solved(facts, before), tuple(results), failed)
 
 
-def _changed(config: Config, change: Mapping[str, Any], seeds: Sequence[int]) -> Runs:
-    """Trains with a change. A preset replaces all settings except for those of the environment."""
+def _train(config: Config, change: Mapping[str, Any], seeds: Sequence[int], bar: ProgressBar, done: int) -> Runs:
+    """Trains with a change, and moves the bar, on which the runs of some changes are done.
+
+    A preset replaces all settings except for those of the environment.
+    """
+    watched: dict[str, Any] = {"progress": False}
+    if bar.is_shown:
+        watched["callback"] = lambda progress: bar.move_to(done * len(seeds) + progress.runs)
     if "preset" in change:
         environment: dict[str, Any] = {"env_kwargs": config.env_kwargs, "max_episode_steps": config.max_episode_steps}
-        return train_many(config.env, seeds, **environment, **change)
-    return train_many(config=config, seeds=seeds, **change)
+        return train_many(config.env, seeds, **watched, **environment, **change)
+    return train_many(config=config, seeds=seeds, **watched, **change)
+
+
+def _interval(comparison: "Comparison") -> str:
+    found = comparison.difference
+    return f"{found.estimate:+.4g} [{found.low:+.4g}, {found.high:+.4g}]"
 
 
 def _solved(facts: Facts, returns: NDArray[np.float64]) -> int | None:

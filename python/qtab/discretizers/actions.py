@@ -20,7 +20,7 @@ _KINDS = "fiub"
 """The kinds of dtypes that the actions of a Box may have."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Actions:
     """The environment's actions, in the order of the columns of the Q table.
 
@@ -34,6 +34,12 @@ class Actions:
     """(count, *shape) in the dtype of the space: the actions themselves, where they are arrays."""
     composite: "Composite[Actions] | None" = None
     """Of which actions they are made, where the action space is a Tuple or a Dict."""
+
+    def __repr__(self) -> str:
+        if self.values is None:
+            return f"<Actions: {self.count}, numbered from {self.first}>"
+        listed = shown(self.values.tolist() if self.values.shape[1:] != (1,) else self.values[:, 0].tolist())
+        return f"<Actions: {self.count}, {listed}>"
 
     def __len__(self) -> int:
         return self.count

@@ -12,14 +12,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
 from qtab._spec import DiscretizerSpec
+from qtab._utils import html
 from qtab._utils.shown import shown
 from qtab.config import Config
+
+MAX_SHOWN = 20
+"""A notebook shows this many components of an observation at most."""
 
 MAX_TABLE_SIZE = 2**32
 """Rows are numbered in 32 bits."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Discretizer(ABC):
     """Maps the observations of a space to rows of the Q table. Rust computes the rows, here as in training."""
 
@@ -30,6 +34,23 @@ class Discretizer(ABC):
 
     has_cells: ClassVar[bool] = True
     """Whether exactly one row is active, the cell of an observation, so that the table has an axis per component."""
+
+    def __repr__(self) -> str:
+        """One line: the number of cells along each component, or the number of rows."""
+        if self.has_cells:
+            cells = "1 cell" if self.n_rows == 1 else f"{' × '.join(f'{count:,}' for count in self.shape)} cells"
+            return f"<{type(self).__name__}: {cells}>"
+        return f"<{type(self).__name__}: {self.n_rows:,} rows, {self.n_active} of them active>"
+
+    def _repr_html_(self) -> str:
+        """A table of the components of the observation, for notebooks."""
+        edges = self.cell_edges()
+        rows = [
+            (index, f"{one[0]:.6g}", f"{one[-1]:.6g}", f"{len(one) - 1:,}") if len(one) else (index, "", "", "0")
+            for index, one in enumerate(edges)
+        ]
+        cells = "cells" if self.has_cells else "tiles"
+        return html.listing(repr(self)[1:-1], ("component", "from", "to", cells), rows[:MAX_SHOWN])
 
     @classmethod
     @abstractmethod

@@ -15,7 +15,7 @@ from qtab.discretizers.box import Span, box_of, per_dimension, span
 from qtab.discretizers.edges import Edges
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Bins(Edges):
     """A grid of bins of equal width. What lies outside the span belongs to the outermost bins."""
 

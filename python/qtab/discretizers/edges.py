@@ -15,7 +15,7 @@ from qtab.discretizers.base import check_table_size
 from qtab.discretizers.box import BoxDiscretizer, box_of, check_stored_bounds
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Edges(BoxDiscretizer):
     """A grid of bins. An edge belongs to the bin above it; the outermost bins have no outer edge."""
 

@@ -13,7 +13,7 @@ from qtab.config import Config
 from qtab.discretizers.base import Discretizer, check_table_size
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Identity(Discretizer):
     """Integers from ``low`` to ``high``, both int64; each combination is a cell, numbered in C order."""
 

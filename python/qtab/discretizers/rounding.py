@@ -14,7 +14,7 @@ from qtab.discretizers.base import check_table_size
 from qtab.discretizers.box import BoxDiscretizer, box_of, check_stored_bounds
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Rounding(BoxDiscretizer):
     """Rounds each component of the observation to the nearest cell. Observations outside the space are refused."""
 

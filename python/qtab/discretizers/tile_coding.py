@@ -18,7 +18,7 @@ MAX_OFFSETS = 2**32
 """Each tile is divided into as many parts as there are tilings, and positions are counted in such parts."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TileCoding(BoxDiscretizer):
     """Several tilings of a box, each shifted by a different fraction of a tile. One row of each tiling is active."""
 

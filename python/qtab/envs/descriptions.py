@@ -4,6 +4,7 @@ They come from Gymnasium's documentation, which names the components of observat
 pictures, ``run.axes`` and ``run.action_names`` show them. An environment that is not listed has neutral names.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
@@ -122,13 +123,16 @@ DESCRIPTIONS: Mapping[str, Description] = {
 }
 """The environments by their id, without its version."""
 
+VERSION = re.compile(r"-v\d+$")
+"""The end of an id."""
+
 UNKNOWN = Description()
 """The description of an environment that is not listed."""
 
 
 def describe(env: str) -> Description:
     """Returns the description of an id, of Gymnasium's or of this package's; ``UNKNOWN`` for any other."""
-    full_name = env.rpartition(":")[2].partition("-v")[0]
+    full_name = VERSION.sub("", env.rpartition(":")[2])
     return DESCRIPTIONS.get(full_name) or DESCRIPTIONS.get(gymnasium_id(full_name), UNKNOWN)
 
 

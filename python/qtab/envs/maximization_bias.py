@@ -22,7 +22,7 @@ class MaximizationBiasEnv(gym.Env[Any, Any]):
 
     State A has only the actions right (0) and left (1); larger numbers act as left. ``info["action_mask"]``, (actions,)
     int8, marks the valid actions, as in Gymnasium's Taxi. A learner of this package excludes the others by -inf in
-    ``initial_q``, as the preset does.
+    ``initial_q``, as the preset does, or with ``action_mask=True``.
 
     Args:
         actions: The number of actions in B. The book says "many".

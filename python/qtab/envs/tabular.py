@@ -56,6 +56,13 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
         self.observation_space = gym.spaces.Discrete(states)
         self.action_space = gym.spaces.Discrete(actions)
 
+    def __repr__(self) -> str:
+        """One line; Gymnasium shows an environment without an id by its address."""
+        if self.spec is not None:
+            return super().__repr__()
+        states, actions = len(self.P), len(self.P[0])
+        return f"<{type(self).__name__}: {_counted(states, 'state')}, {_counted(actions, 'action')}>"
+
     def _reset_in_python(self) -> tuple[int, dict[str, Any]]:
         """Resets in Gymnasium's code, for first-state distributions that Rust does not support, such as a list."""
         self.s = categorical_sample(self.initial_state_distrib, self.np_random)
@@ -78,3 +85,7 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
 def _copy(transition: Transition) -> Transition:
     probability, next_state, reward, terminated = transition
     return float(probability), next_state, reward, terminated
+
+
+def _counted(count: int, unit: str) -> str:
+    return f"{count:,} {unit}{'' if count == 1 else 's'}"

@@ -1,4 +1,4 @@
-"""Watches a policy, and tells from what it drew why it chose an action."""
+"""Why a policy chose an action: what it drew, and the values that it compared."""
 
 from collections.abc import Callable
 
@@ -11,7 +11,7 @@ from qtab.reference.streams import AgentStream
 
 
 class ObservedStream:
-    """The same random numbers; the last float is kept."""
+    """An agent's random numbers, of which the last float is kept."""
 
     def __init__(self, stream: AgentStream, kept: list[float]) -> None:
         self._kept = kept
@@ -30,7 +30,7 @@ class ObservedStream:
 
 
 class ObservedPolicy:
-    """The same policy; ``chose`` receives the values and the action of each choice."""
+    """A policy that reports the values and the action of each choice to ``chose``."""
 
     def __init__(self, policy: Policy, chose: Callable[[NDArray[np.float64], int], None]) -> None:
         self._policy, self._chose = policy, chose

@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
-from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.explanation.explanation import Explanation
 from qtab.explanation.fast_forward import Start, start_of
 from qtab.explanation.records import ExplainedStep
 from qtab.explanation.watcher import SeenStep, Watcher
-from qtab.explanation.words import action_name, map_columns, state_in_words
+from qtab.explanation.words import map_columns, state_in_words
 from qtab.reference import LEARNERS
 from qtab.reference.observer import observed_by
 from qtab.reference.schedules import LearningRate
 from qtab.results.run import Run
+from qtab.training.run_env import make_run_env
 
 
 def explain(
@@ -108,7 +108,10 @@ class _Repeated:
 def _repeat(run: Run, episode: int, env: gym.Env | None, start: Start | None, progress: bool | None) -> _Repeated:
     """Repeats a run with the reference up to the end of an episode, from its first one or from the one itself."""
     watcher = Watcher(run.config, lambda row: _cell(run, row), start)
-    stepped = _environment(run.config, env)
+    if env is None:
+        stepped = make_run_env(run.config)
+    else:
+        stepped = gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", run.config.max_episode_steps))
     episodes = episode + 1 if start is None else 1
     try:
         with ProgressBar(episodes, "episode", progress, "repeating") as bar, observed_by(watcher):
@@ -119,19 +122,6 @@ def _repeat(run: Run, episode: int, env: gym.Env | None, start: Start | None, pr
     finally:
         if env is None:
             stepped.close()
-
-
-def _environment(config: Config, env: gym.Env | None) -> gym.Env:
-    """The environment as the run had it. For an id it is qtab's class, which is equal to Gymnasium's and faster."""
-    if env is not None:
-        return gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", config.max_episode_steps))
-    name = gymnasium_id(config.env)
-    return gym.make(
-        f"qtab/{name}" if name in ENTRIES else config.env,
-        max_episode_steps=config.max_episode_steps,
-        disable_env_checker=True,
-        **config.env_kwargs,
-    )
 
 
 def _cell(run: Run, row: int) -> tuple[int, ...] | None:
@@ -159,7 +149,7 @@ def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> E
         cell=_cell(run, step.rows[0]),
         state=state_in_words(env, step.observation, columns),
         action=run.actions[choice.action],
-        action_name=action_name(env, choice.action, run.actions[choice.action]),
+        action_name=run.action_names[choice.action],
         choice=choice,
         reward=step.reward,
         next_observation=step.next_observation,
@@ -210,7 +200,7 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
             config = self._run.config
             rows = self._active_rows(observation)
             terminal = terminated or (truncated and config.on_truncation == "terminate")
-            self._watcher.took(
+            self._watcher.record(
                 SeenStep(
                     observation=self._observation,
                     rows=self._rows,

@@ -52,9 +52,10 @@ class Explanation:
     @property
     def heading(self) -> str:
         """The run, the episode and its rates, in one line."""
-        config, choice = self.config, self.steps[0].choice
+        config, choice, length = self.config, self.steps[0].choice, self.episode_length
         rate = f"temperature {choice.temperature:.6g}" if choice.epsilon is None else f"epsilon {choice.epsilon:.6g}"
         return (
-            f"{config.env}, {config.algorithm}, seed {config.seed}, episode {self.episode}: {self.episode_length} "
-            f"steps, return {self.episode_return:.6g}; {rate}, α = {self.learning_rate:.6g}, γ = {config.discount:.6g}"
+            f"{config.env}, {config.algorithm}, seed {config.seed}, episode {self.episode}: "
+            f"{length} step{'' if length == 1 else 's'}, return {self.episode_return:.6g}; "
+            f"{rate}, α = {self.learning_rate:.6g}, γ = {config.discount:.6g}"
         )

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from qtab._utils import html
+
 Reason = Literal["greedy", "tie broken", "explored", "softmax"]
 
 
@@ -136,6 +138,21 @@ class ExplainedStep:
     """The number of values with a trace, all of which changed."""
     pending: tuple[int, ...]
     """The steps that n-step Sarsa has not updated yet."""
+
+    def _repr_html_(self) -> str:
+        """The step as a table, for notebooks."""
+        rows: list[tuple[str, object]] = [
+            ("state", self.state),
+            ("action", self.action_name),
+            ("why", self.choice),
+            ("reward", f"{self.reward:.6g}"),
+            ("next state", self.next_state + (", terminal" if self.terminated else "")),
+        ]
+        for update in self.updates:
+            equations = zip(update.equations, update.numbers, strict=True)
+            rows.append(("update", "\n".join(f"{symbols}\n{numbers}" for symbols, numbers in equations)))
+            rows.append(("value", f"{update.before:.6g} -> {update.after:.6g}, TD error {update.error:.6g}"))
+        return html.report(f"Step {self.step}", (), rows)
 
     @property
     def target(self) -> float | None:

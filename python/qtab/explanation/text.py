@@ -1,8 +1,8 @@
 """An explanation as plain text and as an HTML table."""
 
 from collections.abc import Sequence
-from html import escape
 
+from qtab._utils.html import report
 from qtab.explanation.equations import number
 from qtab.explanation.records import ExplainedStep, Update
 
@@ -25,9 +25,7 @@ def text(heading: str, steps: Sequence[ExplainedStep]) -> str:
 
 def html(heading: str, steps: Sequence[ExplainedStep]) -> str:
     """Returns a table with a row for each step."""
-    head = "".join(f"<th>{escape(name)}</th>" for name in COLUMNS)
-    body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in _cells(step))}</tr>" for step in steps)
-    return f"<p>{escape(heading)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    return report(heading, COLUMNS, [_cells(step) for step in steps])
 
 
 def details(step: ExplainedStep) -> list[tuple[str, str]]:
@@ -110,7 +108,6 @@ def _cells(step: ExplainedStep) -> list[str]:
     if update is not None:
         numbers = [number(value) for value in (update.target, update.error, update.before, update.after)]
     lines = details(step)[4:]
-    equation = "<br>".join(escape(f"{name}: {line}" if name else line) for name, line in lines)
+    equation = "\n".join(f"{name}: {line}" if name else line for name, line in lines)
     state = f"{step.state}; {place(step.rows, step.cell)}"
-    plain = [str(step.step), state, step.action_name, str(step.choice), number(step.reward), *numbers]
-    return [*map(escape, plain), equation]
+    return [str(step.step), state, step.action_name, str(step.choice), number(step.reward), *numbers, equation]

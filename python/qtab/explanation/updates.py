@@ -11,7 +11,7 @@ ActionValues = tuple[tuple[float, ...], ...]
 
 
 @dataclass
-class Begun:
+class UnfinishedUpdate:
     """An update before the values change."""
 
     step: int | None
@@ -27,34 +27,38 @@ class Begun:
     old_value: float | None = None
 
 
-def finished(begun: Begun, config: Config, cell: tuple[int, ...] | None, weights: ActionValues) -> Update:
+def finish_update(
+    unfinished: UnfinishedUpdate, config: Config, cell: tuple[int, ...] | None, weights: ActionValues
+) -> Update:
     """Returns an update whose values have changed to ``weights``."""
-    weights_before = tuple(row[begun.action] for row in begun.weights)
-    weights_after = tuple(row[begun.action] for row in weights)
+    weights_before = tuple(row[unfinished.action] for row in unfinished.weights)
+    weights_after = tuple(row[unfinished.action] for row in weights)
     before, after = total(weights_before), total(weights_after)
-    name = f"Q{begun.table + 1}(S, A)" if config.algorithm == "double_q_learning" else "Q(S, A)"
+    name = f"Q{unfinished.table + 1}(S, A)" if config.algorithm == "double_q_learning" else "Q(S, A)"
     lines = []
-    if begun.step is not None:
-        symbol = bootstrap_symbol(config.algorithm, begun.table)
-        lines.append(target_equation(symbol, begun.rewards, config.discount, begun.bootstrap, begun.target))
-    sizes = begun.rows, begun.step_sizes, begun.traces
-    if begun.old_value is None:
-        lines.append(update_equation(name, before, begun.target, after, *sizes))
+    if unfinished.step is not None:
+        symbol = bootstrap_symbol(config.algorithm, unfinished.table)
+        lines.append(
+            target_equation(symbol, unfinished.rewards, config.discount, unfinished.bootstrap, unfinished.target)
+        )
+    sizes = unfinished.rows, unfinished.step_sizes, unfinished.traces
+    if unfinished.old_value is None:
+        lines.append(update_equation(name, before, unfinished.target, after, *sizes))
     else:
-        lines.append(true_online_equation(name, before, begun.target, after, begun.old_value, *sizes))
+        lines.append(true_online_equation(name, before, unfinished.target, after, unfinished.old_value, *sizes))
     return Update(
-        step=begun.step,
-        table=begun.table,
-        rows=begun.rows,
+        step=unfinished.step,
+        table=unfinished.table,
+        rows=unfinished.rows,
         cell=cell,
-        action=begun.action,
-        rewards=begun.rewards,
-        bootstrap=begun.bootstrap,
-        target=begun.target,
-        error=begun.target - before,
-        step_sizes=begun.step_sizes,
-        traces=begun.traces,
-        old_value=begun.old_value,
+        action=unfinished.action,
+        rewards=unfinished.rewards,
+        bootstrap=unfinished.bootstrap,
+        target=unfinished.target,
+        error=unfinished.target - before,
+        step_sizes=unfinished.step_sizes,
+        traces=unfinished.traces,
+        old_value=unfinished.old_value,
         before=before,
         after=after,
         weights_before=weights_before,

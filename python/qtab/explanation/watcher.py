@@ -12,7 +12,7 @@ from qtab.explanation.choices import ObservedPolicy, ObservedStream, explained
 from qtab.explanation.fast_forward import Start
 from qtab.explanation.records import Choice, Trace, Update
 from qtab.explanation.targets import bootstrap, discounted
-from qtab.explanation.updates import Begun, finished
+from qtab.explanation.updates import UnfinishedUpdate, finish_update
 from qtab.reference.action_masks import ActionMasks
 from qtab.reference.observer import Observer
 from qtab.reference.policies import Policy
@@ -56,7 +56,7 @@ class Watcher(Observer):
         self._stream: ObservedStream
         self._policy: Policy | None = None
         self._masks: ActionMasks
-        self._begun: Begun | None = None
+        self._unfinished: UnfinishedUpdate | None = None
         self._draws: list[float] = []
 
     def masks(self, masks: ActionMasks) -> None:
@@ -90,7 +90,7 @@ class Watcher(Observer):
         if self.start is not None:
             self._stream.draw_from(self.start.stream)
 
-    def took(self, step: SeenStep) -> None:
+    def record(self, step: SeenStep) -> None:
         """Receives a step of the environment, before the learner learns from it."""
         self.finish()
         self.steps.append(step)
@@ -106,12 +106,14 @@ class Watcher(Observer):
             step, rewards, following = None, (), None  # planning
         else:
             step, rewards, following = self._target(table)
-        self._begun = Begun(step, table, tuple(state), action, rewards, following, target, self._weights(table, state))
+        self._unfinished = UnfinishedUpdate(
+            step, table, tuple(state), action, rewards, following, target, self._weights(table, state)
+        )
 
     def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:  # noqa: N803, ARG002
         """Ends it."""
-        if self._begun is not None:
-            self._begun.step_sizes = tuple(step_sizes or ())
+        if self._unfinished is not None:
+            self._unfinished.step_sizes = tuple(step_sizes or ())
             self._end()
 
     def before_traces(self, Q: Table, z: Table, error: float, rate: LearningRate) -> None:  # noqa: N803, ARG002
@@ -121,11 +123,13 @@ class Watcher(Observer):
         step, rewards, following = self._target(0)
         seen, action = self.steps[step], self.choices[step].action
         target = discounted(rewards, self.config.discount, following)
-        begun = Begun(step, 0, seen.rows, action, rewards, following, target, self._weights(0, seen.rows))
-        begun.step_sizes = tuple(rate.step(row, action) for row in seen.rows)
-        begun.traces = tuple(float(z[row, action]) for row in seen.rows)
+        unfinished = UnfinishedUpdate(
+            step, 0, seen.rows, action, rewards, following, target, self._weights(0, seen.rows)
+        )
+        unfinished.step_sizes = tuple(rate.step(row, action) for row in seen.rows)
+        unfinished.traces = tuple(float(z[row, action]) for row in seen.rows)
         if self.config.algorithm == "true_online_sarsa_lambda":
-            begun.old_value = (self.steps[step - 1].updates[0].bootstrap or 0.0) if step > 0 else 0.0
+            unfinished.old_value = (self.steps[step - 1].updates[0].bootstrap or 0.0) if step > 0 else 0.0
         traced = np.argwhere(z != 0.0)
         order = np.argsort(-np.abs(z[z != 0.0]), kind="stable")[:SHOWN_TRACES]
         seen.n_traces = len(traced)
@@ -133,11 +137,11 @@ class Watcher(Observer):
             Trace(row, self.cell(row), column, float(z[row, column]), float(Q[row, column]), float("nan"))
             for row, column in traced[order].tolist()
         )
-        self._begun = begun
+        self._unfinished = unfinished
 
     def finish(self) -> None:
         """Ends the update of the traces, if there is one."""
-        if self._begun is not None:
+        if self._unfinished is not None:
             seen, Q = self.steps[-1], self.tables[0]  # noqa: N806
             seen.traces = tuple(
                 Trace(one.row, one.cell, one.action, one.trace, one.before, float(Q[one.row, one.action]))
@@ -175,7 +179,9 @@ class Watcher(Observer):
         return tuple(tuple(self.tables[table][row].tolist()) for row in rows)
 
     def _end(self) -> None:
-        begun, self._begun = self._begun, None
-        if begun is not None:
-            update = finished(begun, self.config, self.cell(begun.rows[0]), self._weights(begun.table, begun.rows))
-            (self.steps[-1].planning if begun.step is None else self.steps[-1].updates).append(update)
+        unfinished, self._unfinished = self._unfinished, None
+        if unfinished is not None:
+            update = finish_update(
+                unfinished, self.config, self.cell(unfinished.rows[0]), self._weights(unfinished.table, unfinished.rows)
+            )
+            (self.steps[-1].planning if unfinished.step is None else self.steps[-1].updates).append(update)

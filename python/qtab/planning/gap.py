@@ -6,11 +6,15 @@ from typing import Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils import html
+from qtab._utils.fields import with_fields
+
 Number = TypeVar("Number", float, NDArray[np.float64])
 """A float for one run, (runs,) float64 for many."""
 
 
-@dataclass(frozen=True, eq=False)
+@with_fields
+@dataclass(frozen=True, eq=False, repr=False)
 class Gap(Generic[Number]):
     """The expected return of the optimum, the returns of a run, and how much these fall short of it."""
 
@@ -35,9 +39,30 @@ class Gap(Generic[Number]):
         """The optimum minus ``greedy_return``."""
         return self.optimum - self.greedy_return
 
+    def __repr__(self) -> str:
+        """One line, of many runs with their means."""
+        count = f" of {np.size(self.final_return)} runs" if np.ndim(self.final_return) else ""
+        return f"<Gap{count}: {self}>"
+
+    def _repr_html_(self) -> str:
+        """A table of the returns and the gaps, for notebooks."""
+        heading = f"Gap of {np.size(self.final_return)} runs" if np.ndim(self.final_return) else "Gap"
+        rows = [
+            ("greedy policy", *map(_shown, (self.greedy_return, self.greedy))),
+            ("last 100 episodes of training", *map(_shown, (self.final_return, self.final))),
+            (self.label, f"{self.optimum:.4g}", ""),
+        ]
+        return html.listing(heading, ("", "return", "gap"), rows)
+
     def __str__(self) -> str:
         greedy_return, standard_error, gap = (
             float(np.mean(value)) for value in (self.greedy_return, self.standard_error, self.greedy)
         )
         uncertainty = f" ± {standard_error:.2g}" if standard_error > 0 else ""
         return f"greedy policy {greedy_return:.4g}{uncertainty}, {self.label} {self.optimum:.4g}, gap {gap:.2g}"
+
+
+def _shown(value: float | NDArray[np.float64]) -> str:
+    """A number; of many runs the mean and the range."""
+    mean = f"{float(np.mean(value)):.4g}" if np.size(value) else "-"
+    return f"{mean} ({np.min(value):.4g} to {np.max(value):.4g})" if np.size(value) > 1 else mean

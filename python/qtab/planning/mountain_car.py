@@ -61,5 +61,5 @@ class MountainCarSolver:
 
     def greedy_return(self, run: Run) -> tuple[float, float]:
         """Returns the mean return of a run's greedy policy over 1,000 episodes, and its standard error."""
-        evaluation = evaluate(run, EVALUATION_EPISODES, seed=0)
+        evaluation = evaluate(run, EVALUATION_EPISODES, seed=0, progress=False)
         return evaluation.mean_return, evaluation.standard_error

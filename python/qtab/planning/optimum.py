@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
 from qtab.envs.registry import gymnasium_id, spec_of
 from qtab.planning.gap import Gap
@@ -36,6 +37,7 @@ class Solver(Protocol):
         """Returns the expected return of a run's greedy policy, and its standard error."""
 
 
+@with_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Optimum:
     """The best policy of an environment: exact from a transition table, or the best known."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
+from qtab._utils.progress import ProgressBar, check_progress
 from qtab._utils.shown import shown
 from qtab.config.unknown import suggesting
 from qtab.discretizers import Identity
@@ -31,6 +32,8 @@ from qtab.results.runs import Runs
 from qtab.training.resolve import UNLIMITED_MAX_EPISODE_STEPS
 
 SEARCH = "search"
+SEARCH_STAGES = 2
+"""The search first computes values on a grid, then routes."""
 
 
 @suggesting
@@ -41,6 +44,7 @@ def optimum(
     max_episode_steps: int | None = None,
     method: str | None = None,
     env_kwargs: Mapping[str, Any] | None = None,
+    progress: bool | None = None,
 ) -> Optimum:
     """Computes the best policy of an environment, its values, and its expected return under the time limit.
 
@@ -60,6 +64,8 @@ def optimum(
             a discount, policy iteration considers only policies that end the episode. For MountainCar-v0,
             ``"search"``.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
+        progress: Whether to show a progress bar over the stages of the search. None shows one on a terminal or in a
+            notebook if it takes more than a second.
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
@@ -67,15 +73,16 @@ def optimum(
         ValueError: for an argument out of range, an environment whose optimum is not known, or values that are
             unbounded without a discount.
     """
+    check_progress(progress)
     if isinstance(env, Run | Runs):
-        return _optimum_for_run(env, discount, max_episode_steps, method, env_kwargs)
+        return _optimum_for_run(env, discount, max_episode_steps, method, env_kwargs, progress)
     if max_episode_steps is not None:
         max_episode_steps = checks.count("max_episode_steps", max_episode_steps, least=1)
     if isinstance(env, gym.Env):
         if env_kwargs is not None:
             raise ValueError(f"env_kwargs must be None if env is an environment object, got {shown(env_kwargs)}")
         name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
-        return _optimum_for_env(name, env, max_episode_steps, discount, method)
+        return _optimum_for_env(name, env, max_episode_steps, discount, method, progress)
     if not isinstance(env, str | EnvSpec):
         raise TypeError(f"env must be an environment id, an EnvSpec, an environment or a run, got {shown(env)}")
     if env_kwargs is not None and not isinstance(env_kwargs, Mapping):
@@ -84,7 +91,7 @@ def optimum(
     spec = env if isinstance(env, EnvSpec) else spec_of(name)
     made = gym.make(spec, **(env_kwargs or {}))
     try:
-        return _optimum_for_env(name, made, max_episode_steps, discount, method)
+        return _optimum_for_env(name, made, max_episode_steps, discount, method, progress)
     finally:
         made.close()
 
@@ -95,6 +102,7 @@ def _optimum_for_run(
     max_episode_steps: int | None,
     method: str | None,
     env_kwargs: Mapping[str, Any] | None,
+    progress: bool | None,
 ) -> Optimum:
     config = run.config
     if env_kwargs is not None:
@@ -111,11 +119,17 @@ def _optimum_for_run(
         max_episode_steps=max_episode_steps or config.max_episode_steps,
         method=method,
         env_kwargs=config.env_kwargs,
+        progress=progress,
     )
 
 
 def _optimum_for_env(
-    name: str, env: gym.Env, max_episode_steps: int | None, discount: float | None, method: str | None
+    name: str,
+    env: gym.Env,
+    max_episode_steps: int | None,
+    discount: float | None,
+    method: str | None,
+    progress: bool | None,
 ) -> Optimum:
     started = time.perf_counter()
     unwrapped: Any = env.unwrapped
@@ -132,10 +146,12 @@ def _optimum_for_env(
     methods = (SEARCH,) if is_mountain_car else METHODS
     method = methods[0] if method is None else checks.choice("method", method, methods)
     steps = max_episode_steps or time_limit(env) or UNLIMITED_MAX_EPISODE_STEPS
-    if is_mountain_car:
-        best = _search_mountain_car(unwrapped, discount, steps)
-    else:
-        best = _solve_table(unwrapped, method, discount, steps)
+    with ProgressBar(SEARCH_STAGES if is_mountain_car else 1, "stage", progress, "optimum") as bar:
+        if is_mountain_car:
+            best = _search_mountain_car(unwrapped, discount, steps, bar)
+        else:
+            best = _solve_table(unwrapped, method, discount, steps)
+            bar.move_to(1)
     return Optimum(
         env=name,
         env_kwargs={} if env.spec is None else dict(env.spec.kwargs),
@@ -189,14 +205,16 @@ def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int)
     )
 
 
-def _search_mountain_car(env: Any, discount: float, max_episode_steps: int) -> _Best:
+def _search_mountain_car(env: Any, discount: float, max_episode_steps: int, bar: ProgressBar) -> _Best:
     if discount != 1.0:
         raise ValueError(f"discount must be 1 for method 'search', which counts steps, got {shown(discount)}")
     names = _core.parameter_names("MountainCar")
     searched = _core.MountainCarSearch(
         [(name, checks.finite(name, getattr(env, name))) for name in names], max_episode_steps
     )
+    bar.move_to(1)
     search = search_routes(searched, max_episode_steps)
+    bar.move_to(SEARCH_STAGES)
     cost_to_go, action_costs_to_go = searched.steps()
     shape = (len(search.positions), len(search.velocities))
     q_values = -action_costs_to_go.reshape(*shape, -1)

@@ -51,9 +51,11 @@ def shown_figure(width: float = 8, height: float = 4.5) -> "Figure":
         return new_figure(width, height)
     try:
         from matplotlib import pyplot as plt
+
+        from qtab.plots.shown_figure import ShownFigure
     except ModuleNotFoundError as error:
         raise missing(error, "plot") from None
-    return plt.figure(figsize=(width, height), layout="constrained")
+    return plt.figure(figsize=(width, height), layout="constrained", FigureClass=ShownFigure)
 
 
 @contextmanager

@@ -19,7 +19,7 @@ COLORS = (
 SEQUENTIAL = "viridis"
 """The colormap of ordered values."""
 _DARK = 0.35
-"""A background of less luminance than this is dark."""
+"""A background of less brightness than this is dark."""
 _LIGHTENED = 0.45
 """How far colors are mixed with white on a dark background."""
 
@@ -47,14 +47,21 @@ def text_color() -> Any:
 
 
 def is_dark(ax: "Axes") -> bool:
-    """Returns whether the background of the axes, or of the figure behind transparent ones, is dark."""
+    """Returns whether the background is dark: that of the axes, or of the figure behind transparent axes."""
     from matplotlib.colors import to_rgba
 
     for background in (ax.get_facecolor(), ax.figure.get_facecolor()):
-        red, green, blue, alpha = to_rgba(background)
-        if alpha >= 0.5:
-            return 0.2126 * red + 0.7152 * green + 0.0722 * blue < _DARK
-    return False
+        if to_rgba(background)[3] >= 0.5:
+            return brightness(background) < _DARK
+    return brightness(ax.title.get_color()) > 0.5  # both are transparent: bright text is meant for dark pages
+
+
+def brightness(chosen: Any) -> float:
+    """Returns how bright a color looks, from 0 to 1."""
+    from matplotlib.colors import to_rgb
+
+    red, green, blue = to_rgb(chosen)
+    return 0.299 * red + 0.587 * green + 0.114 * blue
 
 
 def palette(

@@ -10,7 +10,9 @@ from qtab.envs.registry import gymnasium_id
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.panels import axes_for, color_bar, draw_cells, finish_panel, is_dark, shade_unknown, write_numbers
+from qtab.plots.colors import is_dark
+from qtab.plots.labels import check_title
+from qtab.plots.panels import axes_for, color_bar, draw_cells, finish_panel, shade_unknown, write_numbers
 from qtab.plots.subject import Subject, subject_of
 from qtab.results.run import Run
 from qtab.results.runs import Runs
@@ -60,6 +62,7 @@ def difference(
         raise TypeError(f"run must be a Run or Runs, got {run!r}")
     if not isinstance(optimum, Optimum):
         raise TypeError(f"optimum must be a result of qtab.optimum, got {optimum!r}")
+    check_title(title)
     subject, best = subject_of("run", run), subject_of("optimum", optimum)
     _check_same(subject, best)
     raster = arrange(subject, at, layout, sampled=optimum.search is not None)

@@ -3,6 +3,7 @@
 import re
 from typing import TYPE_CHECKING, Any
 
+from qtab._utils import checks
 from qtab.plots.colors import text_color
 
 if TYPE_CHECKING:
@@ -18,6 +19,16 @@ MAX_LEGEND = 0.6
 _LEGEND_SIZES = (1.0, 0.85, 0.7)
 """Tried in turn where a legend is too high."""
 _NOTE = "qtab-note"
+
+
+def check_title(title: str | None) -> None:
+    """Checks the argument ``title`` of a plot that has a title of its own.
+
+    Raises:
+        TypeError: if it is neither None nor a string.
+    """
+    if title is not None:
+        checks.instance("title", title, str)
 
 
 def finish(
@@ -73,9 +84,22 @@ def category_ticks(ax: "Axes", names: list[str]) -> None:
         ax.set_xticks(range(len(names)), broken)
 
 
-def fitted(text: str, points: float, size: float) -> str:
+def fitted(text: str, points: float, size: float, weight: str = "normal") -> str:
     """Returns a text broken into lines of at most a width, in points, for a font size."""
-    return _broken(text, max(10, int(points / (CHARACTER * size))))
+    width = _width(text, size, weight)
+    if width <= points:
+        return text
+    # A line can have wider letters than the rest.
+    return _broken(text, max(10, int(0.95 * points * len(text) / width)))
+
+
+def _width(text: str, size: float, weight: str = "normal") -> float:
+    """Returns the width of a line of text in points."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    font = FontProperties(size=size, weight=weight)
+    return float(text_to_path.get_text_width_height_descent(text, font, False)[0])
 
 
 def _broken(text: str, room: int) -> str:
@@ -101,12 +125,15 @@ def add_titles(ax: "Axes", title: str, note: str) -> None:
     for text in list(ax.texts):
         if text.get_gid() == _NOTE:
             text.remove()
-    room, _ = _size(ax)
     size = _font_size(ax.title)
     small = size / 1.2
+    widths = _width(title, size, "bold"), _width(note, small)
+    if max(widths) > _size(ax)[0] and (engine := ax.figure.get_layout_engine()) is not None:
+        engine.execute(ax.figure.figure)  # which can make the axes wider
+    room, _ = _size(ax)
     style: dict[str, Any] = {"fontsize": small, "color": text_color(), "alpha": 0.7}
     pad = rcParams["axes.titlepad"]
-    is_wide = (len(title) + 3) * 1.1 * CHARACTER * size + len(note) * CHARACTER * small <= room
+    is_wide = sum(widths) + 2 * size <= room
     ax.set_title(note if is_wide else "", loc="right", pad=pad, **style)
     if note and not is_wide:
         lines = fitted(note, room, small)
@@ -116,7 +143,7 @@ def add_titles(ax: "Axes", title: str, note: str) -> None:
         text.set_gid(_NOTE)
         pad += (lines.count("\n") + 1) * 1.25 * small + 0.3 * small
     if title:
-        ax.set_title(fitted(title, room, 1.1 * size), loc="left", fontweight="bold", pad=pad)
+        ax.set_title(fitted(title, room, size, "bold"), loc="left", fontweight="bold", pad=pad)
 
 
 def add_legend(ax: "Axes", title: str = "") -> None:
@@ -154,10 +181,11 @@ def add_legend(ax: "Axes", title: str = "") -> None:
 def _legend(ax: "Axes", handles: Any, names: list[str], title: str, size: float, has_layout: bool) -> Any:
     """Adds a legend in a font size, below the axes or inside them, with as many columns as fit."""
     width, _ = _size(ax)
-    labels = [fitted(name, width - HANDLE * size, size) for name in names]
+    room = 0.9 * width  # the layout can move the axes to the right once the legend is there
+    labels = [fitted(name, room - HANDLE * size, size) for name in names]
     longest = max((len(line) for label in labels for line in label.split("\n")), default=1)
     style: dict[str, Any] = {
-        **{"fontsize": size, "title": fitted(title, width, size) or None, "title_fontsize": size, "alignment": "left"},
+        **{"fontsize": size, "title": fitted(title, room, size) or None, "title_fontsize": size, "alignment": "left"},
         **{"edgecolor": "none", "framealpha": 0.85, "columnspacing": 1.5},
         "ncols": max(1, min(len(labels), int(width / ((longest * CHARACTER + HANDLE) * size)))),
     }

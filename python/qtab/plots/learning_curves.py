@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from qtab.planning import Optimum
+    from qtab.stats import Interval
 
 MAX_SINGLE_RUNS = 200
 """The maximum number of single runs that are drawn behind the statistic."""
@@ -97,23 +98,34 @@ def learning_curves(
     names, heading = _names(drawn, statistic, f"{100 * confidence:.4g}%")
     for name, runs, curve, hue in zip(names, means, points, hues, strict=True):
         x = block * (np.arange(runs.shape[1]) + 1)
-        if curve is None:
-            y: Any = runs[0]
-        else:
-            y = [point.estimate for point in curve]
-            low, high = [point.low for point in curve], [point.high for point in curve]
-            ax.fill_between(x, low, high, color=hue, alpha=0.3, linewidth=0, zorder=2)
-            if len(drawn) <= MAX_CLOUDS:
-                faint: dict[str, Any] = {"color": hue, "linewidth": 0.6, "alpha": max(0.04, min(0.4, 8 / len(runs)))}
-                ax.plot(x, runs[:MAX_SINGLE_RUNS].T, rasterized=True, zorder=1, **faint)
-        marker: dict[str, Any] = {"marker": "o", "markersize": 4} if len(x) == 1 else {}
-        ax.plot(x, y, color=hue, linewidth=2.2, label=name, zorder=3, **marker)
+        if curve is not None and len(drawn) <= MAX_CLOUDS:
+            faint: dict[str, Any] = {"color": hue, "linewidth": 0.6, "alpha": max(0.04, min(0.4, 8 / len(runs)))}
+            ax.plot(x, runs[:MAX_SINGLE_RUNS].T, rasterized=True, zorder=1, **faint)
+        _draw_curve(ax, x, runs, curve, hue, name)
     mark_optimum(ax, optimum)
     mark_threshold(ax, threshold, only_env(drawn))
     episode_ticks(ax)
     return finish(
         ax, "Episode", f"Return, mean of {counted_episodes(block)}", title, legend_title=joined(note, heading)
     )
+
+
+def _draw_curve(
+    ax: "Axes",
+    x: NDArray[np.int64],
+    runs: NDArray[np.float64],
+    curve: "list[Interval] | None",
+    hue: Any,
+    name: str,
+) -> None:
+    """Draws a statistic with its interval, or the means of a single run."""
+    y: Any = runs[0]
+    if curve is not None:
+        y = [point.estimate for point in curve]
+        low, high = [point.low for point in curve], [point.high for point in curve]
+        ax.fill_between(x, low, high, color=hue, alpha=0.3, linewidth=0, zorder=2)
+    marker: dict[str, Any] = {"marker": "o", "markersize": 4} if len(x) == 1 else {}
+    ax.plot(x, y, color=hue, linewidth=2.2, label=name, zorder=3, **marker)
 
 
 def _names(drawn: list[Entry], statistic: str, confidence: str) -> tuple[list[str], str]:

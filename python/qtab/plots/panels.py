@@ -1,15 +1,19 @@
 """What the pictures of tables share: panels with one scale of colors, and colors for light and dark styles."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.plots.arrangements import Raster
+from qtab.envs.registry import gymnasium_id
+from qtab.plots.arrangements import Raster, arrange
+from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DARK, LIGHT
 from qtab.plots.axes import axes_or_new, shown_figure
-from qtab.plots.subject import Subject, subject_of
+from qtab.plots.colors import brightness, is_dark
+from qtab.plots.labels import check_title
+from qtab.plots.subject import Drawable, Subject, subject_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,18 +22,26 @@ if TYPE_CHECKING:
 MAX_PANELS_IN_A_ROW = 3
 
 
-def subjects_of(name: str, source: Any) -> list[Subject]:
-    """Returns the subjects of one run, of Runs or of an optimum, or of a sequence of them.
+def arranged(
+    run: Drawable | Sequence[Drawable], at: Mapping[str, float] | None, layout: Layout | None, title: str | None
+) -> list[tuple[Subject, Raster]]:
+    """Returns what the panels of a picture show, each with where it shows which state.
+
+    Args:
+        run: The argument ``run`` of a plot: a run, Runs or an optimum, or a sequence of them.
+        at: The components of the observation that are held fixed.
+        layout: The map of an environment with numbered states; None takes the known one.
+        title: The title of the picture, which is only checked.
 
     Raises:
-        TypeError: for anything else.
-        ValueError: for an empty sequence, and runs whose tables were not kept.
+        TypeError: for an argument of the wrong type.
+        ValueError: for an empty sequence, different environments, runs without tables, or an argument that does not
+            fit the environment.
     """
-    if not isinstance(source, list | tuple):
-        return [subject_of(name, source)]
-    if not source:
-        raise ValueError(f"{name} must hold at least one run, got an empty {type(source).__name__}")
-    return [subject_of(f"{name}[{index}]", one) for index, one in enumerate(source)]
+    check_title(title)
+    subjects = _subjects_of("run", run)
+    _check_same_environment("run", subjects)
+    return [(subject, arrange(subject, at, layout)) for subject in subjects]
 
 
 def axes_for(rasters: Sequence[Raster], ax: "Axes | None") -> "list[Axes]":
@@ -52,20 +64,6 @@ def axes_for(rasters: Sequence[Raster], ax: "Axes | None") -> "list[Axes]":
     for unused in grid.ravel()[len(rasters) :]:
         unused.set_axis_off()
     return list(grid.ravel()[: len(rasters)])
-
-
-def is_dark(ax: "Axes") -> bool:
-    """Returns whether the background is dark."""
-    # The background itself can be transparent; the style's letters tell.
-    return brightness(ax.title.get_color()) > 0.5
-
-
-def brightness(color: Any) -> float:
-    """Returns how bright a color looks, from 0 to 1."""
-    from matplotlib.colors import to_rgb
-
-    red, green, blue = to_rgb(color)
-    return 0.299 * red + 0.587 * green + 0.114 * blue
 
 
 def ink(ax: "Axes") -> str:
@@ -126,22 +124,34 @@ def color_bar(axes: "Sequence[Axes]", raster: Raster, image: Any, label: str, ex
     return bar
 
 
-def check_same_environment(subjects: Sequence[Subject], name: str) -> None:
-    """Checks that panels with one scale of colors show one environment.
-
-    Raises:
-        ValueError: if they do not.
-    """
-    from qtab.envs.registry import gymnasium_id
-
-    names = {gymnasium_id(subject.env) for subject in subjects}
-    if len(names) > 1:
-        raise ValueError(f"{name} must hold runs of one environment, got {', '.join(sorted(map(repr, names)))}")
-
-
 def cell_font_size(ax: "Axes", raster: Raster) -> float:
     """Returns the size of letters, in points, with which a number fits into a cell."""
     figure: Any = ax.figure
     width = ax.get_position().width * figure.get_figwidth() * 72 / len(raster.x_edges)
     height = ax.get_position().height * figure.get_figheight() * 72 / len(raster.y_edges)
     return max(4.0, min(11.0, float(width) / 3.3, float(height) / 1.6))
+
+
+def _subjects_of(name: str, source: Any) -> list[Subject]:
+    """Returns the subjects of one run, of Runs or of an optimum, or of a sequence of them.
+
+    Raises:
+        TypeError: for anything else.
+        ValueError: for an empty sequence, and runs whose tables were not kept.
+    """
+    if not isinstance(source, list | tuple):
+        return [subject_of(name, source)]
+    if not source:
+        raise ValueError(f"{name} must hold at least one run, got an empty {type(source).__name__}")
+    return [subject_of(f"{name}[{index}]", one) for index, one in enumerate(source)]
+
+
+def _check_same_environment(name: str, subjects: Sequence[Subject]) -> None:
+    """Checks that panels with one scale of colors show one environment.
+
+    Raises:
+        ValueError: if they do not.
+    """
+    names = {gymnasium_id(subject.env) for subject in subjects}
+    if len(names) > 1:
+        raise ValueError(f"{name} must hold runs of one environment, got {', '.join(sorted(map(repr, names)))}")

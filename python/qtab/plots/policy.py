@@ -6,22 +6,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.plots.arrangements import Raster, arrange
+from qtab.plots.arrangements import Raster
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DIRECTIONS
-from qtab.plots.colors import COLORS
+from qtab.plots.colors import COLORS, brightness, is_dark
 from qtab.plots.labels import below_label
-from qtab.plots.panels import (
-    axes_for,
-    brightness,
-    cell_font_size,
-    check_same_environment,
-    draw_cells,
-    finish_panel,
-    is_dark,
-    shade_unknown,
-    subjects_of,
-)
+from qtab.plots.panels import arranged, axes_for, cell_font_size, draw_cells, finish_panel, shade_unknown
 from qtab.plots.subject import Drawable, Subject
 
 if TYPE_CHECKING:
@@ -60,12 +50,10 @@ def policy(
         TypeError: for an argument of the wrong type.
         ValueError: for one that does not fit the environment, or runs without tables.
     """
-    subjects = subjects_of("run", run)
-    check_same_environment(subjects, "run")
-    names = [checked_names(subject, action_names) for subject in subjects]
-    rasters = [arrange(subject, at, layout) for subject in subjects]
-    axes = axes_for(rasters, ax)
-    for subject, raster, panel, named in zip(subjects, rasters, axes, names, strict=True):
+    panels = arranged(run, at, layout, title)
+    names = [checked_names(subject, action_names) for subject, _ in panels]
+    axes = axes_for([raster for _, raster in panels], ax)
+    for (subject, raster), panel, named in zip(panels, axes, names, strict=True):
         greedy, handles = subject.greedy_actions(raster.rows), list[Any]()
         if raster.is_map and any(name in DIRECTIONS for name in named):
             _draw_map(panel, raster, greedy, named)

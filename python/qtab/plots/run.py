@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab.plots.axes import axes_or_new, check_axes, new_figure, save_figure
@@ -64,7 +65,6 @@ def plot(
         block = fitting_block(finished)
     else:
         block = checks.integer("block", block, least=1, most=max(finished, 1))
-    means = run.mean_returns(block)
     ax = axes_or_new(ax)
     [hue] = palette([run.config.algorithm], ax, None, color)
     episodes = np.arange(finished)
@@ -82,23 +82,20 @@ def plot(
         label="one episode",
         rasterized=True,
     )
-    if len(means):
-        marker: dict[str, Any] = {"marker": "o", "markersize": 5} if len(means) == 1 else {}
-        # Each mean is drawn at the end of its block, as in the article.
-        ax.plot(
-            block * (np.arange(len(means)) + 1),
-            means,
-            color=hue,
-            linewidth=2.2,
-            solid_capstyle="round",
-            label=f"mean of {counted_episodes(block)}",
-            **marker,
-        )
+    _draw_means(ax, run.mean_returns(block), block, hue)
     ax.set_xlim(0, max(finished, 1))
     mark_optimum(ax, optimum)
     mark_threshold(ax, threshold, run.config.env)
     episode_ticks(ax)
     return finish(ax, "Episode", "Return", run.config.env, note=_settings_note(run))
+
+
+def _draw_means(ax: "Axes", means: NDArray[np.float64], block: int, hue: Any) -> None:
+    """Draws the (blocks,) means, each at the end of its block, as in the article."""
+    if len(means):
+        marker: dict[str, Any] = {"marker": "o", "markersize": 5} if len(means) == 1 else {}
+        episodes, label = block * (np.arange(len(means)) + 1), f"mean of {counted_episodes(block)}"
+        ax.plot(episodes, means, color=hue, linewidth=2.2, solid_capstyle="round", label=label, **marker)
 
 
 def _settings_note(run: Run) -> str:

@@ -3,15 +3,15 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab.config.policies import Softmax
 from qtab.config.policies import policy as policy_of
-from qtab.config.schedules import ByVisits, Constant, Exponential, Schedule, learning_rate
+from qtab.config.schedules import ByVisits, learning_rate
+from qtab.config.schedules import rates as rates_in
 from qtab.plots.axes import axes_or_new
 from qtab.plots.colors import color
-from qtab.plots.labels import finish
+from qtab.plots.labels import check_title, finish
 from qtab.results.run import Run
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) ->
         TypeError: if ``run`` is not a Run.
     """
     checks.instance("run", run, Run)
+    check_title(title)
     ax = axes_or_new(ax)
     config = run.config
     episodes = np.unique(np.linspace(0, config.episodes - 1, MAX_POINTS).astype(np.int64))
@@ -49,14 +50,14 @@ def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) ->
             behaviour.temperature, color=color(0), linewidth=2, label=f"temperature τ = {behaviour.temperature:g}"
         )
     else:
-        rates = rate_at(behaviour.epsilon, episodes, config.episodes)
+        rates = rates_in(behaviour.epsilon, episodes, config.episodes)
         ax.plot(episodes + 1, rates, color=color(0), linewidth=2, label="exploration rate ε")
     rate = learning_rate(config)
     if isinstance(rate, ByVisits):
         label = f"learning rate α = {rate.value:g} / visits of the pair"
         ax.axhspan(rate.minimum, rate.value, color=color(1), alpha=0.25, linewidth=0, label=label)
     else:
-        rates = rate_at(rate, episodes, config.episodes)
+        rates = rates_in(rate, episodes, config.episodes)
         shared = run.discretizer.n_active
         label = "learning rate α" if shared == 1 else f"learning rate α, divided among {shared} tilings"
         ax.plot(episodes + 1, rates, color=color(1), linewidth=2, linestyle="--", label=label)
@@ -65,17 +66,3 @@ def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) ->
     ax.margins(y=0.08)
     ax.xaxis.set_major_formatter("{x:,.0f}")
     return finish(ax, "Episode", "Rate", config.env if title is None else title)
-
-
-def rate_at(rate: Schedule, episodes: NDArray[np.int64], total: int) -> NDArray[np.float64]:
-    """Returns the value of a schedule in episodes, numbered from 0, of a run of ``total`` episodes.
-
-    The learners subtract or multiply once after each episode, so their last digits can differ.
-    """
-    if isinstance(rate, Constant):
-        return np.full(len(episodes), rate.value)
-    elapsed = np.maximum(episodes - rate.warm_up, 0)
-    if isinstance(rate, Exponential):
-        return np.maximum(rate.value * rate.decay ** elapsed.astype(np.float64), rate.minimum)
-    reduction = (rate.value - rate.minimum) / max(total - rate.warm_up, 1)
-    return np.maximum(rate.value - elapsed * reduction, rate.minimum)

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.checks import load_hint
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.discretizers import Discretizer, Identity
 from qtab.discretizers.actions import Actions
@@ -53,15 +55,18 @@ class Subject:
             rows: (ny, nx, n_active): the active rows at each point of a picture, -1 where there is no state.
         """
         points = rows.reshape(-1, rows.shape[-1])
+        first, *others = np.ascontiguousarray(points.T)
         total = np.empty((len(self.tables), len(points), self.tables.shape[-1]))
+        part = np.empty(total.shape[1:])
         for seed, table in enumerate(self.tables):
-            np.take(table, points[:, 0], axis=0, out=total[seed], mode="wrap")
-            for active in points.T[1:]:
-                total[seed] += table[active]
+            np.take(table, first, axis=0, out=total[seed], mode="wrap")
+            for active in others:
+                # Into one array: a new one for each tiling would take several times as long.
+                total[seed] += np.take(table, active, axis=0, out=part, mode="wrap")
             if self.known is not None:
                 # The value of a point of which most tiles were never updated is mostly initial_q.
                 total[seed, 2 * np.count_nonzero(self.known[seed][points], axis=-1) < points.shape[-1]] = np.nan
-        total[:, points[:, 0] < 0] = np.nan
+        total[:, first < 0] = np.nan
         return total.reshape(len(total), *rows.shape[:2], -1)
 
     def state_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -102,7 +107,7 @@ def subject_of(name: str, source: Any) -> Subject:
         return _of_runs(source, source.config, source.tables, names, f"{len(source):,} seeds")
     if isinstance(source, Optimum):
         return _of_optimum(source)
-    raise TypeError(f"{name} must be a Run, Runs or an Optimum, got {source!r}")
+    raise TypeError(f"{name} must be a Run, Runs or an Optimum, got {shown(source)}{load_hint(source)}")
 
 
 def _of_runs(

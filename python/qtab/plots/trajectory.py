@@ -9,11 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
+from qtab.envs.stored import spec_of_run
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
+from qtab.plots.labels import check_title
 from qtab.plots.subject import subject_of
 from qtab.plots.values import values
+from qtab.results.action_values import mask_of_step
 from qtab.results.run import Run
 
 if TYPE_CHECKING:
@@ -59,6 +62,7 @@ def trajectory(
         raise TypeError(f"run must be a Run or an Optimum, got {run!r}")
     episodes = checks.integer("episodes", episodes, least=1)
     seed = checks.integer("seed", seed, least=0)
+    check_title(title)
     subject = subject_of("run", run)
     raster = arrange(subject, at, layout)
     played = _play(run, env, episodes, seed)
@@ -78,7 +82,7 @@ def _play(run: Run | Optimum, env: gym.Env | None, episodes: int, seed: int) -> 
         name, kwargs, limit = run.env, run.env_kwargs, run.max_episode_steps
     if env is None:
         try:
-            made: Any = gym.make(name, max_episode_steps=limit, **kwargs)
+            made: Any = gym.make(spec_of_run(name), max_episode_steps=limit, **kwargs)
         except gym.error.Error:
             raise ValueError(f"env must be given: {name!r}, the run's environment, is not a registered id") from None
     else:
@@ -86,11 +90,15 @@ def _play(run: Run | Optimum, env: gym.Env | None, episodes: int, seed: int) -> 
     played = []
     with made as playing:
         for index in range(episodes):
-            observation, _ = playing.reset(seed=seed if index == 0 else None)
+            observation, info = playing.reset(seed=seed if index == 0 else None)
             observations, over, terminated, state = [observation], False, False, None
             while not over:
-                action, state = run.predict(observation, state)
-                observation, _, terminated, truncated, _ = playing.step(action)
+                if isinstance(run, Run):
+                    mask = mask_of_step(run.config, playing, observation, info)
+                    action, state = run.predict(observation, state, action_masks=mask)
+                else:
+                    action, state = run.predict(observation, state)
+                observation, _, terminated, truncated, info = playing.step(action)
                 observations.append(observation)
                 over = bool(terminated or truncated)
             played.append((np.array(observations), bool(terminated)))

@@ -4,23 +4,17 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from qtab.plots.arrangements import arrange
+from qtab._utils import checks
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.panels import (
-    axes_for,
-    check_same_environment,
-    color_bar,
-    draw_cells,
-    finish_panel,
-    shade_unknown,
-    subjects_of,
-    write_numbers,
-)
+from qtab.plots.heat_maps import draw_heat_maps
+from qtab.plots.panels import arranged
 from qtab.plots.subject import Drawable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.colors import Normalize
 
 VALUE_LABEL = "value, max$_a$ Q(s, a)"
 
@@ -61,20 +55,21 @@ def values(
         TypeError: for an argument of the wrong type.
         ValueError: for one that does not fit the environment, or runs without tables.
     """
-    subjects = subjects_of("run", run)
-    check_same_environment(subjects, "run")
-    rasters = [arrange(subject, at, layout) for subject in subjects]
-    shown = [subject.state_values(raster.rows) for subject, raster in zip(subjects, rasters, strict=True)]
-    axes = axes_for(rasters, ax)
-    from matplotlib.colors import Normalize  # after the axes: the message without matplotlib is theirs
+    numbers = checks.boolean("numbers", numbers)
+    panels = arranged(run, at, layout, title)
+    grids = [subject.state_values(raster.rows) for subject, raster in panels]
+    text = value_text if numbers else None
+    return draw_heat_maps(panels, grids, ax, norm=common_norm, label=VALUE_LABEL, title=title, text=text)
 
-    finite = np.concatenate([np.zeros(0), *(grid[np.isfinite(grid)] for grid in shown)])
-    norm = Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0, 1)
-    for subject, raster, grid, panel in zip(subjects, rasters, shown, axes, strict=True):
-        shade_unknown(panel, raster, grid)
-        image = draw_cells(panel, raster, grid, "viridis", norm)
-        if numbers and raster.has_numbers:
-            write_numbers(panel, raster, grid, image, lambda value: f"{value:.3g}")
-        finish_panel(panel, raster, subject.name if title is None else title)
-    color_bar(axes, rasters[0], image, VALUE_LABEL)
-    return axes[0]
+
+def common_norm(grids: Sequence[NDArray[np.float64]]) -> "Normalize":
+    """Returns one scale of colors for the finite values of several pictures."""
+    from matplotlib.colors import Normalize
+
+    finite = np.concatenate([np.zeros(0), *(grid[np.isfinite(grid)] for grid in grids)])
+    return Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0, 1)
+
+
+def value_text(value: float) -> str:
+    """Returns a value as it is written into a cell."""
+    return f"{value:.3g}"

@@ -1,6 +1,7 @@
 """How the exploration rate and the learning rate change from episode to episode."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from qtab._utils.checks import required
 from qtab.config import Config
@@ -65,3 +66,11 @@ class LearningRate:
         if self.by_visits:
             return max(self.schedule.value / int(self.visits[row, action]), self.schedule.minimum) / self.n_active
         return self.schedule.value / self.n_active
+
+    def steps(self, rows: NDArray[np.int64], actions: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Returns the step sizes of several values, (n,)."""
+        if self.by_visits:
+            sizes = np.maximum(self.schedule.value / self.visits[rows, actions], self.schedule.minimum)
+        else:
+            sizes = np.full(len(rows), self.schedule.value)
+        return sizes / self.n_active

@@ -20,8 +20,8 @@ def mark(z: Table, state: Rows, action: int, kind: Traces) -> None:
 def apply_td_error(task: Task, Q: Table, z: Table, error: float) -> None:
     """W <- w + α δ z, for the weights whose trace is not zero."""
     task.observer.before_traces(Q, z, error, task.learning_rate)
-    for row, action in np.argwhere(z != 0.0).tolist():
-        Q[row, action] += task.learning_rate.step(row, action) * error * z[row, action]
+    traced = np.nonzero(z)
+    Q[traced] += task.learning_rate.steps(*traced) * error * z[traced]
 
 
 def decay(z: Table, factor: float, cutoff: float) -> None:

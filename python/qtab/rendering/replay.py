@@ -1,11 +1,12 @@
 """Replay of recorded episodes in Gymnasium's environment, from the same initial states and with the same actions."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
@@ -42,14 +43,32 @@ def make_render_env(config: Config, render_mode: str) -> gym.Env:
     Raises:
         ValueError: if the environment does not have this render mode.
     """
-    kwargs = {**config.env_kwargs, "render_mode": render_mode}
-    spec = spec_of_run(config.env)
-    with closing(gym.make(spec, **config.env_kwargs)) as env:
-        modes = env.metadata.get("render_modes", [])
+    return render_env(spec_of_run(config.env), config.env_kwargs, config.max_episode_steps, render_mode)
+
+
+def render_env(
+    spec: EnvSpec, env_kwargs: Mapping[str, Any], max_episode_steps: int | None, render_mode: str
+) -> gym.Env:
+    """Creates an environment with a render mode and a time limit.
+
+    Raises:
+        ValueError: if the environment does not have this render mode.
+    """
+    with closing(gym.make(spec, **env_kwargs)) as env:
+        check_render_mode(spec.id, env, render_mode)
+    return gym.make(spec, max_episode_steps=max_episode_steps, **{**env_kwargs, "render_mode": render_mode})
+
+
+def check_render_mode(name: str, env: gym.Env, render_mode: str) -> None:
+    """Checks that an environment has a render mode.
+
+    Raises:
+        ValueError: if it does not.
+    """
+    modes = env.metadata.get("render_modes", [])
     if render_mode not in modes:
         known = ", ".join(map(repr, modes)) or "none"
-        raise ValueError(f"{config.env} cannot be rendered as {render_mode!r}; its render modes are: {known}")
-    return gym.make(spec, max_episode_steps=config.max_episode_steps, **kwargs)
+        raise ValueError(f"{name} cannot be rendered as {render_mode!r}; its render modes are: {known}")
 
 
 def replay_episode(env: gym.Env, recording: Recording) -> float:

@@ -1,11 +1,13 @@
 """The action values of a run, with -inf for the actions that an observation does not have."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
+import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.config import Config
 from qtab.config.action_mask import FORGOTTEN, checked_mask
 
 if TYPE_CHECKING:
@@ -81,3 +83,26 @@ def _available(run: "Run", observation: Any, rows: NDArray[np.int64]) -> NDArray
         return None
     known: NDArray[np.bool_] = run.action_masks.reshape(-1, len(run.actions))
     return known[rows[..., 0]]
+
+
+def mask_of_step(config: Config, env: gym.Env, observation: Any, info: Mapping[str, Any]) -> NDArray[np.bool_] | None:
+    """Returns the mask of what an environment's ``reset`` or ``step`` has just returned; None without masks.
+
+    Raises:
+        TypeError: if it does not hold booleans or integers.
+        ValueError: if it does not fit, there is none, or the function that gives it is not known.
+    """
+    setting = config.action_mask
+    if setting is False:
+        return None
+    if isinstance(setting, str):
+        raise ValueError(FORGOTTEN)
+    if callable(setting):
+        name, given = "action_mask", setting(observation)
+    elif env.has_wrapper_attr("action_masks"):
+        name, given = "action_masks()", env.get_wrapper_attr("action_masks")()
+    elif "action_mask" in info:
+        name, given = "info['action_mask']", info["action_mask"]
+    else:
+        raise ValueError("info must have an 'action_mask', as in the run's training")
+    return checked_mask(name, given, np.size(given))

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from qtab.discretizers import Discretizer
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Axis:
     """A component of the observation, and how the discretizer divides it."""
 
@@ -33,6 +33,12 @@ class Axis:
     def label(self) -> str:
         """The name and the unit: ``"position (m)"``."""
         return Quantity(self.name, self.unit).label
+
+    def __repr__(self) -> str:
+        """One line: the edges are not shown."""
+        cells = len(self.edges) - 1
+        within = f"from {self.edges[0]:.6g} to {self.edges[-1]:.6g}" if cells else "of one value"
+        return f"<Axis {self.label}: {cells:,} cell{'' if cells == 1 else 's'} {within}>"
 
 
 def axes_of(env: str, discretizer: "Discretizer") -> tuple[Axis, ...]:

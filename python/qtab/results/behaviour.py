@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.config.policies import EpsilonGreedy, policy
-from qtab.config.schedules import Constant, Exponential, Schedule
 
 
 def action_probabilities(config: Config, episodes: int, values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -18,7 +17,7 @@ def action_probabilities(config: Config, episodes: int, values: NDArray[np.float
     """
     chosen = policy(config)
     if isinstance(chosen, EpsilonGreedy):
-        epsilon = rate_after(chosen.epsilon, episodes, config.episodes)
+        epsilon = chosen.epsilon.after(episodes, config.episodes)
         available = _available(config, values)
         greedy = _greedy(values, chosen.ties == "random")
         return epsilon * _uniform(available) + (1.0 - epsilon) * _uniform(greedy)
@@ -36,17 +35,6 @@ def sample(probabilities: NDArray[np.float64], generator: np.random.Generator) -
     drawn = np.minimum(generator.random(total.shape) * total, np.nextafter(total, 0.0))
     actions: NDArray[np.int64] = np.argmax(drawn < cumulative, axis=1)
     return actions
-
-
-def rate_after(schedule: Schedule, episodes: int, total: int) -> float:
-    """Returns the value of a schedule after some of a run's ``total`` episodes, up to rounding."""
-    if isinstance(schedule, Constant):
-        return schedule.value
-    falling = max(episodes - schedule.warm_up, 0)
-    if isinstance(schedule, Exponential):
-        return max(schedule.value * schedule.decay**falling, schedule.minimum)
-    fall = (schedule.value - schedule.minimum) / (total - schedule.warm_up)
-    return max(schedule.value - fall * falling, schedule.minimum)
 
 
 def _available(config: Config, values: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -11,9 +11,6 @@ from qtab.results.snapshots import Snapshots
 if TYPE_CHECKING:
     from qtab.results.run import Run
 
-OPTIONAL_ARRAYS = ("visits", "action_masks", "snapshot_episodes", "snapshot_tables")
-"""The names of the arrays in a file."""
-
 
 def optional_arrays(run: "Run") -> dict[str, NDArray[Any]]:
     """Returns the arrays to save."""
@@ -51,11 +48,7 @@ def restore_optional(
             raise ValueError(f"its visits are not counts of shape {shape}")
         fields["visits"] = visits
     if "action_masks" in stored:
-        masks = stored["action_masks"]
-        shape = (*cells, tables.shape[-1])
-        if masks.dtype != np.bool_ or masks.shape != shape or not masks.any(axis=-1).all():
-            raise ValueError(f"its action masks are not booleans of shape {shape} that leave each state an action")
-        fields["action_masks"] = masks
+        fields["action_masks"] = checked_masks(stored["action_masks"], (*cells, tables.shape[-1]))
     if "snapshot_episodes" in stored or "snapshot_tables" in stored:
         episodes, snapshots = stored["snapshot_episodes"], stored["snapshot_tables"]
         if episodes.dtype != np.int64 or episodes.ndim != 1 or (np.diff(episodes) <= 0).any():
@@ -66,3 +59,14 @@ def restore_optional(
             raise ValueError("its snapshots do not fit its tables")
         fields["snapshots"] = Snapshots(episodes, snapshots)
     return fields
+
+
+def checked_masks(masks: NDArray[Any], shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Returns the action masks in a file.
+
+    Raises:
+        ValueError: if they are not booleans of this shape, or leave a state no action.
+    """
+    if masks.dtype != np.bool_ or masks.shape != shape or not masks.any(axis=-1).all():
+        raise ValueError(f"its action masks are not booleans of shape {shape} that leave each state an action")
+    return masks

@@ -1,6 +1,5 @@
 """``qtab.Run``: the result of a training run."""
 
-import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,27 +11,27 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.fields import with_fields
 from qtab._utils.frames import episode_frame
 from qtab.config import Config
-from qtab.config.config import replace_checked
-from qtab.config.stored import stored_settings
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
-from qtab.results import action_values, behaviour, run_file
+from qtab.results import action_values, behaviour, run_file, saving
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
+from qtab.results.page import WithPage
 from qtab.results.run_state import RunState
 from qtab.results.snapshots import Snapshots
-from qtab.results.stored_actions import describe_parts
 from qtab.results.summary import FINAL_EPISODES, default_block
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
+@with_fields
 @dataclass(frozen=True, eq=False, repr=False)
-class Run:
+class Run(WithPage):
     """A finished or interrupted run: its config, its episodes, and what it learned."""
 
     config: Config
@@ -246,39 +245,17 @@ class Run:
             check_consistent(self)
         except ValueError as error:
             raise ValueError(f"this run cannot be saved: {error}") from None
-        arrays = (
-            {name: getattr(self, name) for name in run_file.ARRAYS} | self.discretizer.arrays() | optional_arrays(self)
-        )
-        if self.actions.values is not None:
-            arrays["actions"] = self.actions.values
-        config = stored_settings(self.config)
-        if isinstance(self.config.initial_q, np.ndarray):
-            arrays["initial_q"] = self.config.initial_q
-            config["initial_q"] = None
-        header: dict[str, Any] = {
-            "config": config,
-            "actions": len(self.actions),
-            "first_action": self.actions.first,
-            "completed": self.completed,
-            "seconds": self.seconds,
-            "versions": dict(self.versions),
-        }
-        if self.actions.composite is not None:
-            header["action_parts"] = describe_parts(self.actions)
+        arrays = {name: getattr(self, name) for name in run_file.ARRAYS} | optional_arrays(self)
+        header: dict[str, Any] = {}
         if self.state is not None:
             arrays["state"] = self.state.array()
             header["generator"] = self.state.generator
-        kwargs = self.config.env_kwargs
-        try:
-            text = run_file.encode(header)
-        except (TypeError, ValueError) as error:
-            raise type(error)(f"env_kwargs must hold what JSON can, got {kwargs!r}: {error}") from None
-        if replace_checked(self.config, env_kwargs=json.loads(text)["config"]["env_kwargs"]) != self.config:
-            raise TypeError(f"env_kwargs must hold what JSON can, got {kwargs!r}: keys must be texts")
-        run_file.write(Path(path), text, arrays)
+            if self.state.snapshots:
+                header["snapshots"] = self.state.snapshots
+        saving.write(Path(path), run_file.RUN, self, header, arrays)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Recording:
     """One episode that can be replayed."""
 
@@ -288,3 +265,6 @@ class Recording:
     """The state of the environment's bit generator before the episode's reset."""
     actions: tuple[Any, ...]
     """What ``env.step`` was given: integers, with the start of a Discrete space added, or arrays."""
+
+    def __repr__(self) -> str:
+        return f"<Recording of episode {self.episode}: {len(self.actions):,} actions>"

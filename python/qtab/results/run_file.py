@@ -1,4 +1,4 @@
-"""The format of a saved run: one uncompressed ``.npz`` file of arrays and a JSON header, never a pickle."""
+"""The format of saved runs: one uncompressed ``.npz`` file of arrays and a JSON header, never a pickle."""
 
 import json
 import math
@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 from qtab._utils.files import replacing
 from qtab.results.digest import ALGORITHM, digest
 
-FORMAT = "qtab run"
+RUN, RUNS = "qtab run", "qtab runs"
+"""The formats: of one run, and of many runs of one config."""
 FORMAT_VERSION = 1
+_ADVICE = {RUN: "it holds one run, which qtab.load reads", RUNS: "it holds many runs, which qtab.load_runs reads"}
 
 ARRAYS: Mapping[str, tuple["np.dtype[Any]", int]] = {
     "tables": (np.dtype(np.float64), 3),
@@ -25,7 +27,7 @@ ARRAYS: Mapping[str, tuple["np.dtype[Any]", int]] = {
     "episode_lengths": (np.dtype(np.int64), 1),
     "terminated": (np.dtype(np.bool_), 1),
 }
-"""The dtype and the number of axes of the arrays that every run has."""
+"""The dtype and the number of axes of the arrays that every run has; those of many runs have one axis more."""
 
 _HEADER, _DIGEST = "header", "digest"
 
@@ -40,14 +42,14 @@ class Content:
     """Whether the file had a digest, which is then the right one. Those of earlier versions have none."""
 
 
-def encode(header: Mapping[str, Any]) -> str:
+def encode(header: Mapping[str, Any], kind: str = RUN) -> str:
     """Returns a header as JSON, with the name and the version of the format, and that there is a digest.
 
     Raises:
         TypeError: if it holds what JSON cannot.
         ValueError: if it holds a number that JSON cannot.
     """
-    content = {"format": FORMAT, "version": FORMAT_VERSION, _DIGEST: ALGORITHM, **header}
+    content = {"format": kind, "version": FORMAT_VERSION, _DIGEST: ALGORITHM, **header}
     return json.dumps(content, allow_nan=False)
 
 
@@ -63,12 +65,12 @@ def write(path: Path, header: str, arrays: Mapping[str, NDArray[Any]]) -> None:
         np.savez(file, **members)
 
 
-def read(file: BinaryIO) -> Content:
+def read(file: BinaryIO, kind: str = RUN) -> Content:
     """Reads a file, and compares its digest if it has one.
 
     Raises:
-        ValueError: if it is not a run file, comes from another version of the format, or was changed after it was
-            saved. A damaged file can raise almost anything else.
+        ValueError: if it is not a file of this kind, comes from another version of the format, or was changed after it
+            was saved. A damaged file can raise almost anything else.
     """
     with zipfile.ZipFile(file) as archive:
         entries = archive.infolist()
@@ -81,7 +83,7 @@ def read(file: BinaryIO) -> Content:
         if len(set(names)) < len(names):
             raise ValueError("it has two arrays of the same name")
         arrays = {name: _read_array(archive, entry) for name, entry in zip(names, entries, strict=True)}
-    header = _header(arrays.pop(_HEADER))
+    header = _header(arrays.pop(_HEADER), kind)
     stored = arrays.pop(_DIGEST, None)
     if (stored is None) != (_DIGEST not in header):
         raise ValueError("its digest is missing")
@@ -90,13 +92,16 @@ def read(file: BinaryIO) -> Content:
     return Content(header, arrays, has_digest=stored is not None)
 
 
-def _header(stored: NDArray[Any]) -> dict[str, Any]:
-    header = json.loads(str(stored), object_pairs_hook=_without_duplicates)
-    if not isinstance(header, dict) or header.get("format") != FORMAT:
-        raise ValueError("its header is not one of qtab's")
+def _header(stored: NDArray[Any], kind: str) -> dict[str, Any]:
+    header: Any = json.loads(str(stored), object_pairs_hook=_without_duplicates)
+    found = header.get("format") if isinstance(header, dict) else None
+    if found != kind:
+        advice = _ADVICE.get(found) if isinstance(found, str) else None
+        raise ValueError(advice or "its header is not one of qtab's")
     if header["version"] != FORMAT_VERSION:
         raise ValueError(f"its format has version {header['version']!r}, this one reads {FORMAT_VERSION}")
-    return header
+    checked: dict[str, Any] = header
+    return checked
 
 
 def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -119,14 +124,14 @@ def _read_array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray[Any
         return read
 
 
-def array(arrays: Mapping[str, NDArray[Any]], name: str) -> NDArray[Any]:
-    """Returns one of ``ARRAYS``.
+def array(arrays: Mapping[str, NDArray[Any]], name: str, more_axes: int = 0) -> NDArray[Any]:
+    """Returns one of ``ARRAYS``, with so many more axes.
 
     Raises:
         KeyError: if it is missing.
         ValueError: if it has another dtype or number of axes.
     """
-    dtype, ndim = ARRAYS[name]
+    dtype, ndim = ARRAYS[name][0], ARRAYS[name][1] + more_axes
     found = arrays[name]
     if found.dtype != dtype or found.ndim != ndim:
         raise ValueError(f"its {name} has dtype {found.dtype} and {found.ndim} axes, not {dtype} and {ndim}")

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,13 +17,18 @@ class RunState:
     """What the extension wrote."""
     generator: Mapping[str, Any] | None
     """The state of the bit generator of an environment that is stepped in Python, as JSON can hold it."""
+    snapshots: tuple[int, ...] = ()
+    """The numbers of episodes at which snapshots are still to be taken, ascending."""
+
+    def __repr__(self) -> str:
+        return f"<RunState of {len(self.checkpoint):,} bytes>"
 
     def array(self) -> NDArray[np.uint8]:
         """Returns the checkpoint as a file holds it."""
         return np.frombuffer(self.checkpoint, np.uint8)
 
     @classmethod
-    def restore(cls, array: NDArray[Any], generator: Any) -> "RunState":
+    def restore(cls, array: NDArray[Any], generator: Any, snapshots: Any) -> "RunState":
         """Returns the state in a file, of which nothing is known.
 
         Raises:
@@ -32,7 +38,11 @@ class RunState:
             raise ValueError(f"its state has dtype {array.dtype} and {array.ndim} axes, not uint8 and 1")
         if not (generator is None or isinstance(generator, dict)):
             raise ValueError(f"its generator must be a JSON object or null, got {generator!r}")
-        return cls(array.tobytes(), generator)
+        if not isinstance(snapshots, list) or not all(type(number) is int and number >= 0 for number in snapshots):
+            raise ValueError(f"its snapshots to be taken must be a list of episodes, got {snapshots!r}")
+        if any(number >= following for number, following in pairwise(snapshots)):
+            raise ValueError("its snapshots to be taken are not at ascending episodes")
+        return cls(array.tobytes(), generator, tuple(snapshots))
 
 
 def generator_state(generator: np.random.Generator) -> dict[str, Any]:

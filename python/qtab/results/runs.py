@@ -1,20 +1,24 @@
 """``qtab.Runs``: the results of many runs of one config."""
 
 import operator
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.fields import with_fields
 from qtab._utils.frames import data_frame
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.results.run import Run
+from qtab.results.saving import save_runs
 from qtab.results.summary import FINAL_EPISODES, block_means, default_block, summarize
 
 if TYPE_CHECKING:
@@ -24,6 +28,7 @@ BAND = (10.0, 90.0)
 """The percentiles of the runs that a picture shows beside their mean."""
 
 
+@with_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Runs:
     """Many runs of one config, one per row.
@@ -179,6 +184,17 @@ class Runs:
         """Returns columns with one number per run: its seed, and those of :func:`qtab.results.summary.summarize`."""
         seeds = np.array(self.seeds)
         return {"seed": seeds, **summarize(self.episode_returns, self.episode_lengths, self.terminated)}
+
+    def save(self, path: "str | os.PathLike[str]") -> None:
+        """Writes all runs to one ``.npz`` file, as :meth:`qtab.Run.save` does. :func:`qtab.load_runs` reads it.
+
+        Raises:
+            OSError: if the file cannot be written, or something is there that is not a regular file. An older file
+                stays whole, even if the process is killed.
+            TypeError: if the environment's keyword arguments hold what JSON cannot.
+            ValueError: if they hold a number that JSON cannot, or the runs are not what training returns.
+        """
+        save_runs(self, Path(path))
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns the columns of :meth:`summaries` as a data frame with one row per run.

@@ -53,6 +53,32 @@ def snapshot_episodes(wanted: int | Sequence[int] | None, total: int) -> tuple[i
     return tuple(sorted(numbers))
 
 
+def resumed_snapshot_episodes(
+    wanted: int | Sequence[int] | None, total: int, finished: int, earlier: Snapshots | None, to_take: Sequence[int]
+) -> tuple[int, ...]:
+    """Returns the numbers of episodes of all snapshots of a run that is resumed, those of its earlier part first.
+
+    Args:
+        wanted: What the call that resumes it asks for, as for :func:`snapshot_episodes`. Of snapshots that are evenly
+            spaced, only those after the finished episodes can be taken.
+        total: How many episodes the whole run has.
+        finished: How many are finished.
+        earlier: The snapshots of the earlier part.
+        to_take: Those that it had still to take.
+
+    Raises:
+        TypeError: if ``wanted`` is neither an integer nor a sequence of integers.
+        ValueError: if a number is out of range, or names an episode that is over.
+    """
+    taken = () if earlier is None else tuple(earlier.episodes.tolist())
+    planned = {number for number in to_take if finished <= number <= total}
+    asked = set(snapshot_episodes(wanted, total)) - planned - set(taken)
+    over = sorted(number for number in asked if number <= finished)
+    if over and not isinstance(wanted, int | np.integer):
+        raise ValueError(f"snapshots must lie after the {finished:,} episodes that the run has finished, got {over[0]}")
+    return (*taken, *sorted(planned | (asked - set(over))))
+
+
 def _count(wanted: Any) -> int:
     try:
         return checks.count("snapshots", wanted, least=0)
@@ -65,15 +91,23 @@ class SnapshotCollector:
 
     Args:
         trainer: The trainer.
-        episodes: When to copy, as :func:`snapshot_episodes` returns it.
+        episodes: When to copy, as :func:`snapshot_episodes` returns it. Those of ``earlier`` come first.
         shape: The shape of the tables, (k, rows, actions).
+        earlier: The copies that an earlier part of the run made.
 
     Raises:
         ValueError: if the copies do not fit into memory.
     """
 
-    def __init__(self, trainer: "_core.Trainer", episodes: tuple[int, ...], shape: tuple[int, int, int]) -> None:
+    def __init__(
+        self,
+        trainer: "_core.Trainer",
+        episodes: tuple[int, ...],
+        shape: tuple[int, int, int],
+        earlier: Snapshots | None = None,
+    ) -> None:
         self._trainer, self._episodes, self._taken = trainer, episodes, 0
+        self._wanted = bool(episodes) or earlier is not None
         try:
             self._tables = np.empty((len(episodes), *shape))
         except (MemoryError, ValueError):
@@ -81,6 +115,9 @@ class SnapshotCollector:
                 f"snapshots must fit into memory, got {len(episodes)} of tables of shape {shape}, which need "
                 f"{len(episodes) * 8.0 * np.prod([float(size) for size in shape]):.3g} bytes"
             ) from None
+        if earlier is not None:
+            self._taken = len(earlier)
+            self._tables[: self._taken] = earlier.tables
 
     def stops(self, done: int, target: int) -> Iterator[int]:
         """Yields the episodes to train up to in turn, from ``done`` to ``target``, and copies the tables there."""
@@ -99,6 +136,11 @@ class SnapshotCollector:
 
     def snapshots(self) -> Snapshots | None:
         """Returns the snapshots so far; None if none were asked for."""
-        if not self._episodes:
+        if not self._wanted:
             return None
         return Snapshots(np.array(self._episodes[: self._taken], np.int64), self._tables[: self._taken])
+
+    @property
+    def to_take(self) -> tuple[int, ...]:
+        """The episodes at which the tables are still to be copied."""
+        return self._episodes[self._taken :]

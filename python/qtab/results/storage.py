@@ -2,10 +2,11 @@
 
 import logging
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from qtab import discretizers
 from qtab._utils.shown import shown
@@ -21,13 +22,19 @@ from qtab.results.run import Run
 from qtab.results.run_state import RunState
 from qtab.results.stored_actions import restore_actions
 
+if TYPE_CHECKING:
+    from qtab.results.runs import Runs
+
 _LOGGER = logging.getLogger("qtab")
+Result = TypeVar("Result", Run, "Runs")
 _MAX_REASON = 400
 """The characters of the reason in an error: it may show values from the file."""
 
 
 def load(path: "str | os.PathLike[str]", *, action_mask: Callable[[Any], Any] | None = None) -> Run:
     """Reads a run that :meth:`qtab.Run.save` wrote, after checking that not a byte of it was changed.
+
+    :func:`qtab.load_runs` reads the file of many runs, and :func:`qtab.load_sweep` the store of a sweep.
 
     Files of earlier versions have no digest to check it by. They are read all the same, with a message of the logger
     ``qtab`` that says so, and ``run.unchecked`` is True.
@@ -46,21 +53,22 @@ def load(path: "str | os.PathLike[str]", *, action_mask: Callable[[Any], Any] | 
             message says why.
     """
     path = Path(path)
-    with _open_regular(path) as file:
-        try:
-            run = _run(run_file.read(file))
-        except Exception as error:  # a damaged file can raise almost anything
-            reason = f"it has no {error.args[0]!r}" if isinstance(error, KeyError) else " ".join(str(error).split())
-            reason = reason[:_MAX_REASON]
-            raise ValueError(f"{str(path)!r} is not a run file that this version of qtab can read: {reason}") from None
+    with opened(path, "run file") as file:
+        run = _run(run_file.read(file))
     if run.unchecked:
         _LOGGER.warning(
             "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
         )
-    return run if action_mask is None else _with_function(run, action_mask)
+    return run if action_mask is None else with_action_mask(run, action_mask)
 
 
-def _with_function(run: Run, action_mask: Callable[[Any], Any]) -> Run:
+def with_action_mask(run: Result, action_mask: Callable[[Any], Any]) -> Result:
+    """Returns a run, or runs, from a file with the function that the file does not hold.
+
+    Raises:
+        TypeError: if it is not a function.
+        ValueError: if they were not trained with one.
+    """
     if not callable(action_mask):
         raise TypeError(f"action_mask must be a function of the observation, got {shown(action_mask)}")
     if run.config.action_mask != STORED:
@@ -68,39 +76,76 @@ def _with_function(run: Run, action_mask: Callable[[Any], Any]) -> Run:
     return replace(run, config=replace_checked(run.config, action_mask=action_mask))
 
 
-def _open_regular(path: Path) -> BinaryIO:
-    """Opens a file; a FIFO, which would be waited for until something is written to it, is refused."""
+@contextmanager
+def opened(path: Path, kind: str) -> Iterator[BinaryIO]:
+    """Opens a file; what cannot be read from it is a ValueError that names the file and the kind of it.
+
+    A FIFO, which would be waited for until something is written to it, is refused.
+
+    Raises:
+        OSError: if the file is missing or cannot be read.
+        ValueError: for any exception inside the context.
+    """
     if path.is_fifo():
         raise OSError(f"path must be a regular file, got the FIFO {str(path)!r}")
-    return path.open("rb")
+    with path.open("rb") as file:
+        try:
+            yield file
+        except Exception as error:  # a damaged file can raise almost anything
+            reason = f"it has no {error.args[0]!r}" if isinstance(error, KeyError) else " ".join(str(error).split())
+            reason = reason[:_MAX_REASON]
+            raise ValueError(f"{str(path)!r} is not a {kind} that this version of qtab can read: {reason}") from None
 
 
 def _run(content: run_file.Content) -> Run:
     header, stored = content.header, content.arrays
     arrays: dict[str, Any] = {name: run_file.array(stored, name) for name in run_file.ARRAYS}
-    config = _config(header, stored)
-    count, first = _integer(header, "actions"), _integer(header, "first_action")
-    actions = restore_actions(count, first, stored.get("actions"), header.get("action_parts"))
+    shared = shared_fields(content)
+    config = shared["config"]
+    discretizer = discretizers.restore(config, stored, arrays["tables"].shape[1])
+    arrays |= restore_optional(stored, arrays["tables"], discretizer.shape, len(arrays["episode_returns"]))
+    run = Run(
+        discretizer=discretizer,
+        unchecked=not content.has_digest,
+        state=_state(header, stored["state"]) if "state" in stored else None,
+        **shared,
+        **arrays,
+    )
+    check_consistent(run)
+    return run
+
+
+def shared_fields(content: run_file.Content) -> dict[str, Any]:
+    """Returns the fields that the files of one run and of many runs have in common.
+
+    Raises:
+        KeyError: if one is missing.
+        TypeError: if the config holds what is no setting.
+        ValueError: if one is impossible.
+    """
+    header, stored = content.header, content.arrays
     seconds, versions = header["seconds"], header["versions"]
     if isinstance(seconds, bool) or not isinstance(seconds, int | float):
         raise ValueError(f"its seconds must be a number, got {seconds!r}")
     if not isinstance(versions, dict) or not all(isinstance(version, str) for version in versions.values()):
         raise ValueError(f"its versions must map names to texts, got {versions!r}")
-    discretizer = discretizers.restore(config, stored, arrays["tables"].shape[1])
-    arrays |= restore_optional(stored, arrays["tables"], discretizer.shape, len(arrays["episode_returns"]))
-    run = Run(
-        config=config,
-        discretizer=discretizer,
-        actions=actions,
-        completed=header["completed"],
-        seconds=float(seconds),
-        versions=versions,
-        unchecked=not content.has_digest,
-        state=RunState.restore(stored["state"], header["generator"]) if "state" in stored else None,
-        **arrays,
-    )
-    check_consistent(run)
-    return run
+    return {
+        "config": _config(header, stored),
+        "actions": restore_actions(
+            integer(header, "actions"),
+            integer(header, "first_action"),
+            stored.get("actions"),
+            header.get("action_parts"),
+        ),
+        "completed": header["completed"],
+        "seconds": float(seconds),
+        "versions": versions,
+    }
+
+
+def _state(header: Mapping[str, Any], array: Any) -> RunState:
+    # Versions that did not continue snapshots wrote none.
+    return RunState.restore(array, header["generator"], header.get("snapshots", []))
 
 
 def _config(header: Mapping[str, Any], stored: Mapping[str, Any]) -> Config:
@@ -114,7 +159,13 @@ def _config(header: Mapping[str, Any], stored: Mapping[str, Any]) -> Config:
     return config
 
 
-def _integer(header: Mapping[str, Any], name: str) -> int:
+def integer(header: Mapping[str, Any], name: str) -> int:
+    """Returns an integer in a header.
+
+    Raises:
+        KeyError: if it is missing.
+        ValueError: if it is something else.
+    """
     value = header[name]
     if isinstance(value, bool) or not isinstance(value, int):
         raise ValueError(f"its number of {name} must be an integer, got {value!r}")

@@ -1,4 +1,4 @@
-"""Bootstrap intervals, in blocks of bounded memory between which Ctrl-C is heard."""
+"""Bootstrap intervals, computed in batches of bounded memory; Ctrl-C takes effect between two batches."""
 
 import warnings
 from collections.abc import Callable, Sequence
@@ -69,26 +69,7 @@ def bootstrap(
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """
-    confidence, resamples = as_confidence(confidence), as_resamples(resamples)
-    seed = checks.integer("seed", seed, least=0)
-    estimate = float(statistic(values))
-    if np.ptp(values) == 0:
-        return Interval(estimate, estimate, estimate, confidence, "constant")
-    for method in ("BCa", "percentile"):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # SciPy warns of bounds that are not finite, which are checked below
-            interval = stats.bootstrap(
-                (values,),
-                statistic,
-                n_resamples=resamples,
-                batch=max(1, BATCH_VALUES // len(values)),
-                confidence_level=confidence,
-                method=method,
-                rng=np.random.default_rng(seed),
-            ).confidence_interval
-        if np.isfinite([interval.low, interval.high]).all():
-            break
-    return Interval(estimate, float(interval.low), float(interval.high), confidence, method)
+    return _interval([values], statistic, ("BCa", "percentile"), confidence, resamples, seed)
 
 
 def stratified_bootstrap(
@@ -111,19 +92,38 @@ def stratified_bootstrap(
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """
+    return _interval(samples, statistic, ("stratified percentile",), confidence, resamples, seed, vectorized=False)
+
+
+def _interval(
+    samples: Sequence[NDArray[np.float64]],
+    statistic: Callable[..., Any],
+    methods: Sequence[str],
+    confidence: float,
+    resamples: int,
+    seed: int,
+    *,
+    vectorized: bool = True,
+) -> Interval:
+    """Returns the interval of the first method whose bounds are finite, else of the last one."""
     confidence, resamples = as_confidence(confidence), as_resamples(resamples)
     seed = checks.integer("seed", seed, least=0)
-    estimate = statistic(*samples)
+    estimate = float(statistic(*samples))
     if all(np.ptp(sample) == 0 for sample in samples):
         return Interval(estimate, estimate, estimate, confidence, "constant")
-    interval = stats.bootstrap(
-        samples,
-        statistic,
-        vectorized=False,
-        n_resamples=resamples,
-        batch=max(1, BATCH_VALUES // sum(map(len, samples))),
-        confidence_level=confidence,
-        method="percentile",
-        rng=np.random.default_rng(seed),
-    ).confidence_interval
-    return Interval(estimate, float(interval.low), float(interval.high), confidence, "stratified percentile")
+    for method in methods:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # SciPy warns of bounds that are not finite, which are checked below
+            interval = stats.bootstrap(
+                samples,
+                statistic,
+                vectorized=vectorized,
+                n_resamples=resamples,
+                batch=max(1, BATCH_VALUES // sum(map(len, samples))),
+                confidence_level=confidence,
+                method=method.removeprefix("stratified "),
+                rng=np.random.default_rng(seed),
+            ).confidence_interval
+        if np.isfinite([interval.low, interval.high]).all():
+            break
+    return Interval(estimate, float(interval.low), float(interval.high), confidence, method)

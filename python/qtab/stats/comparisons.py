@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
-from qtab._utils import checks
+from qtab._utils import checks, html
 from qtab.stats.bootstrap import BATCH_VALUES, as_resamples, as_sample
 from qtab.stats.interval import Interval
 from qtab.stats.intervals import CONFIDENCE, RESAMPLES, mean
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Comparison:
     """The result of a paired comparison; all differences are ``a`` minus ``b``."""
 
@@ -34,6 +34,22 @@ class Comparison:
     def smallest_p_value(self) -> float:
         """The smallest p-value that the test can give with so few pairs: all differences of one sign."""
         return 2.0 ** (1 - self.pairs)
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f"<Comparison: {self}>"
+
+    def _repr_html_(self) -> str:
+        """A table, for notebooks."""
+        effect = "none: all differences are equal" if self.effect_size is None else f"{self.effect_size:.3g}"
+        facts = {
+            "mean difference, a - b": f"{self.difference}",
+            "interval": f"{100 * self.difference.confidence:g} %, {self.difference.method}",
+            "effect size (Cohen's d)": effect,
+            "a is larger": f"in {self.better:.1%} of the pairs",
+            "p-value": f"{self.p_value:.3g}, at least {self.smallest_p_value:.3g} with so many pairs",
+        }
+        return html.summary(f"Comparison of {self.pairs} pairs", facts)
 
     def __str__(self) -> str:
         if self.effect_size is None:

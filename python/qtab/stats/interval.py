@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Interval:
     """An estimate and its interval."""
 
@@ -16,6 +16,10 @@ class Interval:
     """``"t"`` (Student's), ``"BCa"``, ``"percentile"`` (where BCa has no finite bounds), ``"stratified percentile"``,
     ``"constant"`` (all values equal: the width of zero only says that the sample shows no variation), ``"Wilson"`` or
     ``"order statistics"``."""
+
+    def __repr__(self) -> str:
+        """One line, with six digits."""
+        return f"<Interval {self}, {100 * self.confidence:g} %, {self.method}>"
 
     def __str__(self) -> str:
         return f"{self.estimate:.6g} [{self.low:.6g}, {self.high:.6g}]"

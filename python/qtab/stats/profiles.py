@@ -12,7 +12,7 @@ from qtab.stats.scores import Scores, as_samples
 
 MAX_THRESHOLDS = 10_000
 _BLOCK_OPERATIONS = 2**29
-"""The multiplications between two moments at which Ctrl-C is heard: about 0.1 s."""
+"""The number of multiplications after which Ctrl-C can take effect: about 0.1 s."""
 
 
 def performance_profile(scores: Scores, thresholds: ArrayLike) -> NDArray[np.float64]:
@@ -43,7 +43,7 @@ def profile(
     """Returns the performance profile with its stratified bootstrap interval at each threshold.
 
     The intervals hold for each threshold alone, not for the whole curve at once. Where all or none of the runs score
-    above a threshold, the bootstrap knows no other outcome, and the interval has a width of zero.
+    above a threshold, all resamples agree, and the interval has a width of zero.
 
     Args:
         scores: The scores of each environment by name, (runs,) each, or an array (runs, environments); at least two

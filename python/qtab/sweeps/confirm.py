@@ -1,13 +1,14 @@
 """The best settings of a sweep, trained again with other seeds."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
 
-from qtab._utils import checks
+from qtab._utils import checks, html
 from qtab.config import Config
 from qtab.config.layers import over
 from qtab.sweeps.study import Study
@@ -47,6 +48,29 @@ class Confirmation:
 
     def __repr__(self) -> str:
         return f"<Confirmation of {len(self.chosen)} of {len(self.swept.settings)} settings: {self.confirmed!r}>"
+
+    def _repr_html_(self) -> str:
+        """A table of the chosen settings, each with its mean over the other seeds, for notebooks."""
+        names = list(self.swept.settings[0]) if self.swept.settings else []
+        swept = self.swept.mean_final_returns()
+        rows = [
+            (
+                setting,
+                *(self.swept.settings[setting][name] for name in names),
+                f"{swept[setting]:.6g}",
+                self._mean(place),
+            )
+            for place, setting in enumerate(self.chosen)
+        ]
+        heading = f"Confirmation of {len(self.chosen)} of {len(self.swept.settings)} settings of {self.swept.env}"
+        return html.listing(heading, ("setting", *names, "mean in the sweep", "mean over the other seeds"), rows)
+
+    def _mean(self, place: int) -> str:
+        """The mean with its interval; without SciPy, or with a single run, no interval."""
+        values = self.confirmed.values("final_return", place)
+        with suppress(ModuleNotFoundError, ValueError):
+            return str(self.mean(place))
+        return f"{values.mean():.6g}" if len(values) else "no mean"
 
     def __str__(self) -> str:
         return "\n".join(self._line(place, setting) for place, setting in enumerate(self.chosen))

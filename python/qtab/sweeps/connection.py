@@ -215,7 +215,7 @@ def when_unlocked(connection: sqlite3.Connection, statement: str, path: Path | N
     Raises:
         sqlite3.Error: if the file is still locked after ``BUSY_TIMEOUT_SECONDS``.
     """
-    began, is_said = time.monotonic(), False
+    began, was_logged = time.monotonic(), False
     while True:
         try:
             connection.execute(statement)
@@ -224,7 +224,7 @@ def when_unlocked(connection: sqlite3.Connection, statement: str, path: Path | N
             waited = time.monotonic() - began
             if "locked" not in str(error) or waited > BUSY_TIMEOUT_SECONDS:
                 raise
-        if waited > LOCK_TIMEOUT_SECONDS and not is_said:
-            is_said = True
+        if waited > LOCK_TIMEOUT_SECONDS and not was_logged:
+            was_logged = True
             _LOGGER.warning("waiting for another process that is writing to %s", name_of(path))
         time.sleep(0.01)

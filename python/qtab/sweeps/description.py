@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from qtab.envs.stored import stored_id
 from qtab.results.summary import FINAL_EPISODES
 
 SUMMARY_COLUMNS = ("episodes", "steps", "mean_return", "final_return", "best_return", "terminated_rate")
@@ -18,7 +19,7 @@ class Description:
     """The study of a store. Run ``i`` has setting ``i // len(seeds)`` and seed ``seeds[i % len(seeds)]``."""
 
     configs: Sequence[Mapping[str, Any]]
-    """The config of each setting, without the seed, as JSON represents it."""
+    """The config of each setting, without the seed, as JSON represents it; a text chooses no module to import."""
     settings: Sequence[Mapping[str, Any]]
     """The values that the grid gives to each setting."""
     seeds: tuple[int, ...]
@@ -96,6 +97,7 @@ def read_description(text: str) -> Description:
         for name in ("episodes", "max_episode_steps"):
             if type(config.get(name)) is not int or config[name] < 1:
                 raise ValueError(f"a config of its study has bad {name}")
+    configs = [{**config, "env": stored_id(config["env"])} for config in configs]
     return Description(configs, settings, tuple(seeds), block)
 
 

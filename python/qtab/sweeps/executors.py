@@ -16,7 +16,7 @@ from qtab.sweeps.pace import Pace, claim_size
 from qtab.sweeps.store import Store
 from qtab.sweeps.study import Study
 from qtab.sweeps.waiting import POLL_SECONDS, Notice
-from qtab.sweeps.worker import train_chunk, train_parts
+from qtab.sweeps.worker import train_chunk, train_claim
 
 LATE_SECONDS = 10.0
 """A chunk that takes longer than this may be late."""
@@ -142,16 +142,11 @@ class ExecutorTraining:
         late = time.monotonic() - submitted.at
         if late < limit:
             return False
-        claim, study = submitted.claim, self._study
+        claim = submitted.claim
         _LOGGER.warning("training %d runs here, which the executor has not returned for %.0f s", len(claim), late)
         del self._pending[future]
         future.cancel()
-        parts = [
-            (setting, study.overrides[setting], study.resolved[setting], seeds) for setting, seeds in study.split(claim)
-        ]
-        began = time.perf_counter()
-        records = train_parts(study.env, parts, study.block, 1, self._pace)
-        self._store.commit(claim, records, time.perf_counter() - began)
+        train_claim(self._study, self._store, claim, 1, self._pace)
         self._report()
         self._poll_seconds = 0.0  # the next chunk may be late, too
         return True

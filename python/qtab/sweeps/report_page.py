@@ -1,19 +1,13 @@
 """The HTML page of a report."""
 
-import base64
-import html
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from qtab._utils.page import page as html_page
+from qtab._utils.page import paragraph, picture, section, table
 from qtab.sweeps.report_plots import MAX_SETTINGS, Picture
 from qtab.sweeps.results import Sweep
-
-_STYLE = (
-    "body{font:15px/1.5 system-ui,sans-serif;max-width:64rem;margin:2rem auto;padding:0 1rem;color:#222}"
-    "table{border-collapse:collapse}td,th{padding:.25rem .7rem;text-align:right;border-bottom:1px solid #ddd}"
-    "img{max-width:100%}code{white-space:pre-wrap}"
-)
 
 
 def page(
@@ -32,20 +26,14 @@ def page(
         pictures: The pictures by name.
         command: The command that writes the report, or None.
     """
-    env = html.escape(sweep.env)
-    images = "\n".join(
-        f"<h2>{html.escape(name.replace('_', ' ', 1).capitalize())}</h2>\n"
-        f'<img alt="{html.escape(picture.alternative)}" '
-        f'src="data:image/png;base64,{base64.b64encode(picture.png).decode()}">'
-        for name, picture in pictures.items()
-    )
-    notes = "\n".join(f"<p>{html.escape(note)}</p>" for note in _notes(sweep, len(rows)))
-    return (
-        f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{env}</title><style>{_STYLE}</style>\n'
-        f"<h1>{env}</h1>\n{notes}\n{_table(header, rows)}\n{images}\n"
-        f"<h2>Settings that all runs share</h2>\n{_table(('setting', 'value'), _shared(sweep))}\n"
-        f"<h2>How it was made</h2>\n{_table(('', ''), _origin(sweep, command))}\n</html>\n"
-    )
+    parts = [*map(paragraph, _notes(sweep, len(rows))), table(header, rows)]
+    parts += [
+        section(name.replace("_", " ", 1).capitalize(), picture(drawn.png, drawn.alternative))
+        for name, drawn in pictures.items()
+    ]
+    parts.append(section("Settings that all runs share", table(("setting", "value"), _shared(sweep))))
+    parts.append(section("How it was made", table((), _origin(sweep, command))))
+    return html_page(sweep.env, "\n".join(parts))
 
 
 def _notes(sweep: Sweep, ranked: int) -> list[str]:
@@ -100,15 +88,3 @@ def _seeds(seeds: Sequence[int]) -> str:
     if list(seeds) == list(range(seeds[0], seeds[0] + len(seeds))) and len(seeds) > 2:
         return f"{seeds[0]} to {seeds[-1]}"
     return ", ".join(map(str, seeds[:20])) + (", ..." if len(seeds) > 20 else "")
-
-
-def _table(header: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in header)
-    body = "\n".join("<tr>" + "".join(f"<td>{_cell(value)}</td>" for value in row) + "</tr>" for row in rows)
-    return f"<table><tr>{head}</tr>\n{body}</table>"
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return ""
-    return html.escape(f"{value:.6g}" if isinstance(value, float) else str(value))

@@ -166,6 +166,7 @@ class Sweep:
         threads: int | None = None,
         memory_limit: int | None = None,
         callback: Callback | None = None,
+        progress: bool | None = None,
     ) -> "Confirmation":
         """Trains the best settings again with seeds that the sweep did not use, which gives unbiased means.
 
@@ -181,6 +182,7 @@ class Sweep:
             threads: As for :func:`qtab.sweep`.
             memory_limit: As for :func:`qtab.sweep`.
             callback: As for :func:`qtab.sweep`.
+            progress: As for :func:`qtab.sweep`.
 
         Raises:
             RuntimeError: if the executor fails.
@@ -197,7 +199,7 @@ class Sweep:
         def build(contents: Contents) -> Sweep:
             return build_sweep(contents, study.settings, (study.env, study.overrides))
 
-        again = run_study(study, build, store, executor, threads, memory_limit, callback)
+        again = run_study(study, build, store, executor, threads, memory_limit, callback, progress)
         return Confirmation(tuple(chosen), self, again)
 
     def to_pandas(self) -> "pd.DataFrame":
@@ -257,7 +259,7 @@ def build_sweep(contents: Contents, settings: Sequence[Mapping[str, Any]], sourc
         columns[name] = np.array(values, dtype=np.float64)
     columns["error"] = np.array([run[-1] for run in runs], dtype=object)
     return Sweep(
-        env=str(description.configs[0]["env"]),
+        env=description.configs[0]["env"],
         settings=settings,
         seeds=description.seeds,
         columns=columns,

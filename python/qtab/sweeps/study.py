@@ -19,6 +19,7 @@ from qtab.config.unknown import check_names
 from qtab.sweeps import designs
 from qtab.sweeps.description import Description, read_description
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.run_memory import bytes_in_progress
 from qtab.training.train_many import resolve_template, seed_numbers
 
 BYTES_PER_RUN = 1000
@@ -56,9 +57,8 @@ class Study:
         """
         for resolved in self.resolved:
             episodes = resolved.config.episodes
-            # The trainer's lists, and the arrays to which they are copied.
-            values = resolved.discretizer.n_rows * len(resolved.actions)
-            needed = 2 * episodes * BYTES_PER_EPISODE + 8 * values
+            # The trainer's lists are copied to arrays.
+            needed = bytes_in_progress(resolved) + episodes * BYTES_PER_EPISODE
             check_memory(f"runs of {episodes} episodes", needed, limit)
 
     @cached_property

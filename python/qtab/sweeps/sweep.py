@@ -39,6 +39,7 @@ def sweep(
     memory_limit: int | None = None,
     block: int = BLOCK,
     callback: Callable[[SweepProgress], None] | None = None,
+    progress: bool | None = None,
     **settings: Unpack[SharedSettings],
 ) -> Sweep:
     """Trains every setting of a grid with the same seeds.
@@ -59,6 +60,8 @@ def sweep(
             of the machine's memory.
         block: The number of episodes that each point of a stored learning curve averages.
         callback: Called with a :class:`SweepProgress` about every second, after each chunk of runs that was stored.
+        progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the runs take more
+            than a second.
         **settings: The settings that all runs share, explained below.
 
     Returns:
@@ -89,7 +92,7 @@ def sweep(
         def build(contents: Contents) -> Sweep:
             return build_sweep(contents, study.settings, (study.env, study.overrides))
 
-        return run_study(study, build, store, executor, threads, memory_limit, callback)
+        return run_study(study, build, store, executor, threads, memory_limit, callback, progress)
     except KeyboardInterrupt as error:
         if not hasattr(error, "run"):  # it was interrupted before it trained
             error.run = _stored(store, env, block)  # type: ignore[attr-defined]

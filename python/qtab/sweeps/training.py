@@ -9,6 +9,7 @@ from functools import partial
 from typing import TypeVar
 
 from qtab._utils import memory
+from qtab._utils.progress import ProgressBar, check_progress
 from qtab.sweeps.database import Contents
 from qtab.sweeps.executors import ExecutorTraining
 from qtab.sweeps.pace import Pace, claim_size
@@ -17,7 +18,7 @@ from qtab.sweeps.store import Store
 from qtab.sweeps.stored import finished_contents, store_path
 from qtab.sweeps.study import Study
 from qtab.sweeps.waiting import POLL_SECONDS, Notice
-from qtab.sweeps.worker import train_parts
+from qtab.sweeps.worker import train_claim
 from qtab.training.process_pool import process_pool
 from qtab.training.train_many import thread_count
 
@@ -35,6 +36,7 @@ def run_study(
     threads: int | None,
     memory_limit: int | None,
     callback: Callback | None,
+    progress: bool | None,
 ) -> T:
     """Trains the runs of a study that its store does not have, and returns the table of all.
 
@@ -46,6 +48,7 @@ def run_study(
         threads: The number of threads or processes without an executor; None means one per core.
         memory_limit: The most memory that a single run may need, in bytes; None means half of the machine's memory.
         callback: Receives the progress.
+        progress: Whether to show a progress bar; None shows one on a terminal or in a notebook after a second.
 
     Raises:
         Exception: the errors of :func:`qtab.sweep`. Its attribute ``run`` is the table of the finished runs.
@@ -55,13 +58,14 @@ def run_study(
         raise TypeError(f"executor must have a method submit, as in concurrent.futures, got {executor!r}")
     if callback is not None and not callable(callback):
         raise TypeError(f"callback must be a function of the progress or None, got {callback!r}")
+    check_progress(progress)
     path = None if store is None else store_path(store)
     study.check_memory(memory.memory_limit(memory_limit))
     if path is not None and (finished := finished_contents(path, study.description)) is not None:
         return build(finished)
-    with closing(Store(path, study.description)) as opened:
+    with closing(Store(path, study.description)) as opened, ProgressBar(study.runs, "run", progress, "sweep") as bar:
         try:
-            report = ProgressReporter(study.runs, opened.finished, callback)
+            report = ProgressReporter(study.runs, opened.finished, callback, bar)
             if executor is not None:
                 ExecutorTraining(study, opened, executor, report).run(MAX_PENDING_CHUNKS)
             elif all(resolved.is_native for resolved in study.resolved):
@@ -84,11 +88,6 @@ def _train_in_threads(study: Study, store: Store, threads: int, report: Callable
             notice(store.claimed_by_others)
             time.sleep(POLL_SECONDS)
             continue
-        parts = [
-            (setting, study.overrides[setting], study.resolved[setting], seeds) for setting, seeds in study.split(claim)
-        ]
-        began = time.perf_counter()
-        records = train_parts(study.env, parts, study.block, threads, pace)
-        store.commit(claim, records, time.perf_counter() - began)
+        train_claim(study, store, claim, threads, pace)
         notice.reset()
         report()

@@ -1,4 +1,4 @@
-"""Words about long waits, in the log."""
+"""Messages in the log about long waits."""
 
 import logging
 import time

@@ -1,10 +1,10 @@
-"""Training of the chunks of a sweep, in this process or in a worker; the results are stored by the caller."""
+"""Training of the chunks of a sweep, in this process or in a worker, whose results the caller stores."""
 
 import math
 import pickle
 import time
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,10 @@ from qtab.training.process_pool import train_unless_stopped
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.train_many import allocate_results, resolve_template, train_in_threads
+
+if TYPE_CHECKING:
+    from qtab.sweeps.store import Store
+    from qtab.sweeps.study import Study
 
 Part = tuple[int, Mapping[str, Any], ResolvedRun | None, Sequence[int]]
 """The index of a setting, its overrides, its resolved config (None to resolve it here), and seeds."""
@@ -35,6 +39,16 @@ def train_chunk(task: bytes) -> tuple[list[RunRecord], float, Pace]:
     unresolved = [(setting, overrides, None, seeds) for setting, overrides, seeds in parts]
     records = train_parts(env, unresolved, block, threads=1, pace=pace)
     return records, time.perf_counter() - began, pace
+
+
+def train_claim(study: "Study", store: "Store", claim: range, threads: int, pace: Pace) -> None:
+    """Trains the first runs of a claim in this process, for about a second, and stores them."""
+    parts = [
+        (setting, study.overrides[setting], study.resolved[setting], seeds) for setting, seeds in study.split(claim)
+    ]
+    began = time.perf_counter()
+    records = train_parts(study.env, parts, study.block, threads, pace)
+    store.commit(claim, records, time.perf_counter() - began)
 
 
 def train_parts(env: Any, parts: Sequence[Part], block: int, threads: int, pace: Pace) -> list[RunRecord]:

@@ -56,7 +56,7 @@ class CallbackList:
         return proceed
 
 
-def as_tuple(callbacks: Any, argument: str = "callback") -> tuple[Any, ...]:
+def as_tuple(callbacks: Any) -> tuple[Any, ...]:
     """Returns the callbacks of a call: none, one, or those of a sequence.
 
     Raises:
@@ -65,8 +65,8 @@ def as_tuple(callbacks: Any, argument: str = "callback") -> tuple[Any, ...]:
     if callbacks is None:
         return ()
     if not callable(callbacks) and isinstance(callbacks, Sequence) and not isinstance(callbacks, str | bytes):
-        return tuple(_checked(f"{argument}[{index}]", callback) for index, callback in enumerate(callbacks))
-    return (_checked(argument, callbacks),)
+        return tuple(_checked(f"callback[{index}]", callback) for index, callback in enumerate(callbacks))
+    return (_checked("callback", callbacks),)
 
 
 def _checked(name: str, callback: Any) -> Any:

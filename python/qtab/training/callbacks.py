@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from qtab import _core
 from qtab._utils.fields import with_fields
 from qtab.config import Config
+from qtab.results.summary import FINAL_EPISODES
 from qtab.training.rates import Rates
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @with_fields
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Progress:
     """The progress of a run, as a callback receives it. Later calls receive longer arrays with the same beginning.
 
@@ -36,7 +37,13 @@ class Progress:
     """(episodes,): the return of each finished episode."""
     lengths: NDArray[np.int64]
     """(episodes,): the steps of each finished episode."""
-    _state: "ProgressSource | None" = field(default=None, repr=False, compare=False)
+    _source: "ProgressSource | None" = field(default=None, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        """One line: the returns are not shown."""
+        last = self.returns[-FINAL_EPISODES:]
+        mean = f", the last {len(last)} at {last.mean():.2f}" if len(last) else ""
+        return f"<Progress: {self.episodes:,} of {self.total:,} episodes{mean}>"
 
     @property
     def episode(self) -> int:
@@ -46,7 +53,7 @@ class Progress:
     @property
     def steps(self) -> int:
         """The number of steps of all finished episodes together."""
-        return int(self.lengths.sum()) if self._state is None else self._state.steps
+        return int(self.lengths.sum()) if self._source is None else self._source.steps
 
     @property
     def seconds(self) -> float:
@@ -110,9 +117,9 @@ class Progress:
 
     @property
     def _required(self) -> "ProgressSource":
-        if self._state is None:
+        if self._source is None:
             raise RuntimeError("this Progress was not made by qtab.train: it has only episodes, returns and lengths")
-        return self._state
+        return self._source
 
     def _current(self, name: str) -> "EpisodeReader":
         if not self._required.current:
@@ -152,7 +159,7 @@ class EpisodeReader:
         self._began = began
         self._episodes = self._steps = 0
         self._returns, self._lengths = np.empty(0, np.float64), np.empty(0, np.int64)
-        self._state: ProgressSource | None = None
+        self._source: ProgressSource | None = None
 
     def __enter__(self) -> "EpisodeReader":
         return self
@@ -173,16 +180,16 @@ class EpisodeReader:
         now = slice(before, self._episodes)
         self._returns[now], self._lengths[now] = returns, lengths
         self._steps += int(lengths.sum())
-        self._state = ProgressSource(self, self._steps, time.perf_counter() - self._began)
+        self._source = ProgressSource(self, self._steps, time.perf_counter() - self._began)
         return Progress(
-            self._episodes, total, self._returns[: self._episodes], self._lengths[: self._episodes], self._state
+            self._episodes, total, self._returns[: self._episodes], self._lengths[: self._episodes], self._source
         )
 
     def move_on(self) -> None:
         """Called before the trainer advances: the last Progress can no longer read its tables."""
-        if self._state is not None:
-            self._state.current = False
-            self._state = None
+        if self._source is not None:
+            self._source.current = False
+            self._source = None
 
     def read_tables(self) -> NDArray[np.float64]:
         """Returns a copy of the tables as they are now, (k, rows, actions)."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks, html, svg
 from qtab._utils.fields import with_fields
 from qtab._utils.frames import episode_frame
+from qtab._utils.progress import check_progress
 from qtab.config import Config
 from qtab.config.options import OPTIONS
 from qtab.config.unknown import suggesting
@@ -20,6 +21,7 @@ from qtab.envs.registry import spec_of
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
 from qtab.training.given_env import check_env, check_spaces
+from qtab.training.options import TrainingOptions
 from qtab.training.resolve import log_python_stepping, resolve
 from qtab.training.train import train_resolved
 
@@ -118,6 +120,7 @@ def evaluate(
     *,
     env_kwargs: Mapping[str, Any] | None = None,
     max_episode_steps: int | None = None,
+    progress: bool | None = None,
 ) -> Evaluation:
     """Plays episodes with a run's greedy policy, without exploration and without learning.
 
@@ -132,6 +135,8 @@ def evaluate(
         env_kwargs: Keyword arguments for the environment's constructor; None takes those of the run, or with ``env``
             none.
         max_episode_steps: The time limit of an episode, in steps; None takes that of the run.
+        progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the episodes take
+            more than a second.
 
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
@@ -139,6 +144,7 @@ def evaluate(
         ValueError: for an argument out of range, or an environment with other spaces than the run's.
     """
     checks.instance("run", run, Run)
+    check_progress(progress)
     check_env(env)
     config = run.config
     if env is None:
@@ -158,7 +164,7 @@ def evaluate(
         "learning_rate": 0.0,
         "epsilon": 0.0,
         "terminal_update": "target",
-        "initial_q": _greedy_table(run),
+        "initial_q": greedy_table(run),
         **{name: getattr(config, name) for name in TABLE_SETTINGS},
         **_env_kwargs(config, env, env_kwargs),
         "max_episode_steps": config.max_episode_steps if max_episode_steps is None else max_episode_steps,
@@ -168,7 +174,7 @@ def evaluate(
     if env is not None:
         log_python_stepping(resolved)
     try:
-        played = train_resolved(resolved)
+        played = train_resolved(resolved, TrainingOptions(progress=progress))
     finally:
         resolved.close()
     return Evaluation(
@@ -186,7 +192,7 @@ def _env_kwargs(config: Config, env: Any, env_kwargs: Mapping[str, Any] | None) 
     return {"env_kwargs": config.env_kwargs} if env is None else {}
 
 
-def _greedy_table(run: Run) -> NDArray[np.float64]:
-    """The table that the greedy policy reads: of two the sum, with tile coding as well, whose values are sums, too."""
+def greedy_table(run: Run) -> NDArray[np.float64]:
+    """Returns (1, rows, actions): the table that the greedy policy reads; of two the sum, also with tile coding."""
     table: NDArray[np.float64] = run.tables[0] if len(run.tables) == 1 else run.tables[0] + run.tables[1]
     return table[np.newaxis]

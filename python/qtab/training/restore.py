@@ -48,13 +48,19 @@ def _with_arrays(state: Any) -> Any:
     return np.array(state, np.uint64) if isinstance(state, list) else state
 
 
-def state_of(trainer: _core.Trainer, resolved: ResolvedRun) -> RunState | None:
-    """Returns what :func:`restore` will need; None if there is no memory for it."""
+def state_of(trainer: _core.Trainer, resolved: ResolvedRun, snapshots: tuple[int, ...]) -> RunState | None:
+    """Returns what :func:`restore` will need; None if there is no memory for it.
+
+    Args:
+        trainer: The trainer.
+        resolved: Its run.
+        snapshots: The episodes at which snapshots are still to be taken.
+    """
     environment = resolved.environment
     generator = None
     if isinstance(environment, PythonEnvironment):
         generator = generator_state(environment.env.unwrapped.np_random)
     try:
-        return RunState(trainer.checkpoint(), generator)
+        return RunState(trainer.checkpoint(), generator, snapshots)
     except MemoryError:
         return None  # what was learned is worth more

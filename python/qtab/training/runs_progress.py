@@ -14,6 +14,7 @@ from qtab._spec import Results
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab.callbacks.base import BaseCallback
+from qtab.results.runs import Runs
 from qtab.training.callback_list import as_tuple
 from qtab.training.resolved_run import ResolvedRun
 
@@ -36,6 +37,7 @@ class RunsProgress:
     _seeds: Sequence[int] = field(repr=False)
     _results: Results = field(repr=False)
     _finished: NDArray[np.bool_] = field(repr=False)
+    _make_runs: "MakeRuns" = field(repr=False)
 
     @property
     def seeds(self) -> tuple[int, ...]:
@@ -52,7 +54,14 @@ class RunsProgress:
         """(runs, episodes): the steps of each episode of the finished runs, copied when they are first read."""
         return self._results["lengths"][self._finished]
 
+    @cached_property
+    def finished(self) -> Runs:
+        """The finished runs, copied when they are first read, to be plotted or saved."""
+        return self._make_runs(self._finished)
 
+
+MakeRuns: TypeAlias = Callable[[NDArray[np.bool_]], Runs]
+"""Returns the runs that a mask selects."""
 RunsCallback: TypeAlias = Callable[[RunsProgress], bool | None]
 
 
@@ -83,9 +92,10 @@ class RunsReporter:
         self._called_at = 0
         self.stopped = False
 
-    def start(self, seeds: Sequence[int], results: Results) -> ProgressBar:
+    def start(self, seeds: Sequence[int], results: Results, make_runs: MakeRuns) -> ProgressBar:
         """Returns the progress bar, which is a context manager, for runs that begin now."""
         self._seeds, self._results, self._began = seeds, results, time.perf_counter()
+        self._make_runs = make_runs
         self._bar = ProgressBar(len(seeds), "run", self._progress)
         return self._bar
 
@@ -104,7 +114,7 @@ class RunsReporter:
             return True
         self._called_at = count
         seconds = time.perf_counter() - self._began
-        progress = RunsProgress(count, total, seconds, self._seeds, self._results, finished)
+        progress = RunsProgress(count, total, seconds, self._seeds, self._results, finished, self._make_runs)
         answers = [callback(progress) for callback in self._callbacks]
         self.stopped = not all(answer is None or bool(answer) for answer in answers)
         return not self.stopped

@@ -1,8 +1,10 @@
 """``qtab.train``: trains one agent."""
 
+import os
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import gymnasium as gym
@@ -20,9 +22,10 @@ from qtab.config.settings import Settings
 from qtab.config.signature import with_settings
 from qtab.rendering.replay import generator_states
 from qtab.results.run import Recording, Run
-from qtab.results.snapshots import SnapshotCollector, Snapshots, snapshot_episodes
+from qtab.results.snapshots import SnapshotCollector
 from qtab.training.callback_list import Callbacks
 from qtab.training.callbacks import EpisodeReader
+from qtab.training.earlier_run import check_agrees, counts_visits, earlier_run, resolve_again, snapshots_of
 from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun, masks_of
@@ -35,6 +38,7 @@ def train(
     env: str | EnvSpec | gym.Env | None = None,
     *,
     config: Config | Mapping[str, Any] | None = None,
+    resume: "Run | str | os.PathLike[str] | None" = None,
     callback: Callbacks | None = None,
     callback_every: int = CALLBACK_EVERY,
     record: int = 0,
@@ -57,6 +61,9 @@ def train(
         config: The settings to start from: the config of a run, ``qtab.train(config=run.config)``, repeats the run
             exactly. Of a Config, the settings that do not apply beside the keywords are ignored, and with another
             environment its ``env_kwargs`` and ``preset`` as well. A mapping gives only some settings, as keywords do.
+        resume: A run that was stopped early, or the path of its file, to be continued exactly where it stopped; see
+            :func:`qtab.resume`. It brings its settings along: those given here must be the same, except for
+            ``episodes``. Visits and snapshots are continued if the run has them.
         callback: A callable, or a sequence of them, called with a :class:`qtab.Progress` after every
             ``callback_every`` episodes and after the last one. Any of them stops the run by returning False. Those of
             :mod:`qtab.callbacks` save, log, evaluate and draw.
@@ -78,19 +85,28 @@ def train(
         MemoryError: before the first episode, if the run would take more than ``memory_limit``; during the run, if its
             recordings do, or if there is not that much memory.
         TypeError: for an argument of the wrong type, or an unknown one.
-        ValueError: for an argument out of range, or spaces that do not fit.
+        ValueError: for an argument out of range, spaces that do not fit, or a run that cannot be resumed.
         OverflowError: if the values diverge; it names the episode and the likely cause.
         KeyboardInterrupt: on Ctrl-C. Like any exception raised by the environment or the callback, it carries the run
             so far as ``.run``.
     """
     options = TrainingOptions(callback, callback_every, record, visits, snapshots, progress, memory_limit)
     env, base = collect(train, env, config, settings)
-    resolved = resolve(env, over(base, settings))
+    earlier = None
+    if resume is None:
+        resolved = resolve(env, over(base, settings))
+    else:
+        asked = over(base, settings)
+        earlier = earlier_run("resume", resume, asked.get("action_mask"))
+        options = replace(options, visits=counts_visits(earlier, visits))
+        check_agrees(earlier, env, asked)
+        made = env if isinstance(env, gym.Env) else None
+        resolved = resolve_again("resume", earlier, asked.get("episodes"), made)
     log_default_limit(resolved)
     if progress is not False:
         log_python_stepping(resolved)
     try:
-        return train_resolved(resolved, options)
+        return train_resolved(resolved, options, earlier)
     finally:
         resolved.close()
 
@@ -99,21 +115,20 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
     """Trains a run that is already resolved, or continues an earlier one; see :func:`train` and :func:`qtab.resume`."""
     options = TrainingOptions() if options is None else options
     total, record = resolved.config.episodes, int(options.record)
-    copied_at = snapshot_episodes(options.snapshots, total)
+    copied_at = snapshots_of(options, total, earlier)
     room = check_run(resolved, options, len(copied_at))
     began = time.perf_counter()
     trainer = _core.Trainer(
         resolved.spec(), resolved.seed, record, min(room, checks.LARGEST_COUNT), bool(options.visits)
     )
-    collector = SnapshotCollector(trainer, copied_at, tables_shape(resolved, 1)[1:])
+    taken = None if earlier is None else earlier.snapshots
+    collector = SnapshotCollector(trainer, copied_at, tables_shape(resolved, 1)[1:], taken)
     callbacks = options.callbacks()
     done = 0
     if earlier is not None:
         restore(trainer, resolved, earlier)
         done, began = len(earlier.episode_returns), began - earlier.seconds
-    reader = EpisodeReader(
-        trainer, resolved, began, lambda: _run(resolved, trainer, began, collector.snapshots(), over=False)
-    )
+    reader = EpisodeReader(trainer, resolved, began, lambda: _run(resolved, trainer, began, collector, over=False))
     try:
         with (
             resolved.environment.exclusively(),
@@ -121,6 +136,7 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
             callbacks.start(resolved),
             ProgressBar(total, "episode", options.progress) as bar,
         ):
+            bar.move_to(done)
             while done < total:
                 target = callbacks.next_call(done, total)
                 reader.move_on()
@@ -132,9 +148,9 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
                     break
     except BaseException as error:
         with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
-            _attach(error, _run(resolved, trainer, began, collector.snapshots()))
+            _attach(error, _run(resolved, trainer, began, collector))
         raise
-    run = _run(resolved, trainer, began, collector.snapshots() or (None if earlier is None else earlier.snapshots))
+    run = _run(resolved, trainer, began, collector)
     overflow = _overflow(run)
     if overflow is not None:
         _attach(overflow, run)
@@ -164,7 +180,7 @@ def _run(
     resolved: ResolvedRun,
     trainer: _core.Trainer,
     began: float,
-    snapshots: Snapshots | None = None,
+    collector: SnapshotCollector,
     *,
     over: bool = True,
 ) -> Run:
@@ -192,7 +208,7 @@ def _run(
         versions=versions(),
         recordings=recordings,
         visits=None if visits is None else visits.reshape(*resolved.discretizer.shape, len(resolved.actions)),
-        snapshots=snapshots,
+        snapshots=collector.snapshots(),
         action_masks=masks_of(trainer, resolved),
-        state=state_of(trainer, resolved),
+        state=state_of(trainer, resolved, collector.to_take),
     )

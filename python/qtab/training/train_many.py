@@ -92,9 +92,13 @@ def train_many(
     log_default_limit(resolved)
     log_python_stepping(resolved)
     began = time.perf_counter()
+
+    def make_runs(finished: NDArray[np.bool_]) -> Runs:
+        return _runs(resolved, numbers, results, finished, tables, began)
+
     results = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
     try:
-        with reporter.start(numbers, results):
+        with reporter.start(numbers, results, make_runs):
             if not resolved.is_native:
                 from qtab.training.process_pool import train_in_processes
 
@@ -108,9 +112,9 @@ def train_many(
                 error.add_note(f"in the run with seed {numbers[index]}")
             raise error
     except BaseException as error:
-        error.run = error.runs = _runs(resolved, numbers, results, tables, began)  # type: ignore[attr-defined]
+        error.run = error.runs = make_runs(results["finished"])  # type: ignore[attr-defined]
         raise
-    return _runs(resolved, numbers, results, tables, began)
+    return make_runs(results["finished"])
 
 
 def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
@@ -233,8 +237,14 @@ def train_in_threads(
     return _core.train_many(resolved.spec(), seeds, results, threads, keep_going)
 
 
-def _runs(resolved: ResolvedRun, seeds: Sequence[int], results: Results, keep_tables: bool, began: float) -> Runs:
-    finished = results["finished"]
+def _runs(
+    resolved: ResolvedRun,
+    seeds: Sequence[int],
+    results: Results,
+    finished: NDArray[np.bool_],
+    keep_tables: bool,
+    began: float,
+) -> Runs:
     completed = bool(finished.all())
     rows = slice(None) if completed else finished  # a slice copies nothing
     tables = results["tables"][rows]

@@ -11,7 +11,7 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._utils import checks
+from qtab._utils import checks, html
 from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
 from qtab._utils.versions import versions
@@ -26,7 +26,7 @@ from qtab.training.resolve import resolve
 
 
 @with_fields
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Verification:
     """The result of a comparison with Gymnasium and NumPy."""
 
@@ -48,23 +48,38 @@ class Verification:
         """Whether returns, lengths and the Q table are equal byte for byte."""
         return self.returns_equal and self.lengths_equal and self.table_equal
 
+    def __repr__(self) -> str:
+        """One line: ``print`` shows the whole report."""
+        episodes = "1 episode" if self.episodes == 1 else f"{self.episodes:,} episodes"
+        found = "equal" if self.equal else "DIFFERENT" + ("" if self.episode is None else f" from {self._place} on")
+        return f"<Verification of {self.env}: seed {self.seed}, {episodes}, {found}>"
+
     def __str__(self) -> str:
         """A report of several lines."""
-
-        def word(equal: bool) -> str:
-            return "equal" if equal else "DIFFERENT"
-
-        lines = [
-            f"{self.env}, seed {self.seed}, {self.episodes} episodes against Gymnasium and NumPy, byte for byte",
-            f"  returns  {word(self.returns_equal)}",
-            f"  lengths  {word(self.lengths_equal)}",
-            f"  Q table  {word(self.table_equal)}",
-        ]
+        lines = [self._heading, *(f"  {name:7}  {word}" for name, word in self._words().items())]
         if self.episode is not None:
-            where = "" if self.step is None else f", step {self.step}"
-            lines.append(f"  they differ from episode {self.episode}{where} on (counted from 0)")
+            lines.append(f"  they differ from {self._place} on (counted from 0)")
         lines.append("  " + ", ".join(f"{name} {value}" for name, value in self.versions.items()))
         return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        """The report as a table, for notebooks."""
+        facts = {"compared": f"{self.episodes:,} episodes, byte for byte", **self._words()}
+        if self.episode is not None:
+            facts["they differ from"] = f"{self._place} on (counted from 0)"
+        return html.summary(f"Verification of {self.env}, seed {self.seed}", {**facts, **self.versions})
+
+    @property
+    def _heading(self) -> str:
+        return f"{self.env}, seed {self.seed}, {self.episodes} episodes against Gymnasium and NumPy, byte for byte"
+
+    @property
+    def _place(self) -> str:
+        return f"episode {self.episode}" + ("" if self.step is None else f", step {self.step}")
+
+    def _words(self) -> dict[str, str]:
+        compared = {"returns": self.returns_equal, "lengths": self.lengths_equal, "Q table": self.table_equal}
+        return {name: "equal" if equal else "DIFFERENT" for name, equal in compared.items()}
 
 
 @suggesting

@@ -52,7 +52,7 @@ def draw_cost_to_go(result: Result, ax: "Axes | None") -> "Axes":
     return draw_surfaces(result.experiment.heading, _POSITIONS, _VELOCITIES, result.surfaces)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class CostToGo(Experiment):
     """The cost-to-go of one run at five times."""
 

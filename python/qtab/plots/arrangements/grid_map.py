@@ -9,6 +9,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.envs.stored import spec_of_run
 from qtab.plots.arrangements.raster import Raster, outline
 from qtab.plots.subject import Subject
 
@@ -53,7 +54,7 @@ def known_layout(subject: Subject) -> tuple[str, ...]:
     side = math.isqrt(states)
     if kwargs.get("map_name", "") is None and kwargs.get("desc") is None:
         return ("." * side,) * side  # a random map, which a new environment would draw again
-    with closing(gym.make(subject.env, **{**kwargs, "render_mode": None})) as made:
+    with closing(gym.make(spec_of_run(subject.env), **{**kwargs, "render_mode": None})) as made:
         env: Any = made.unwrapped
         if hasattr(env, "desc"):
             return tuple(b"".join(row).decode() for row in env.desc)

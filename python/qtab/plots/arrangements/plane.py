@@ -1,7 +1,7 @@
 """Two components of the observation along the axes of the picture, and the others held fixed."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from qtab.envs.descriptions import describe
 from qtab.plots.arrangements.coordinates import Coordinate, coordinates
 from qtab.plots.arrangements.raster import Raster, outline
 from qtab.plots.subject import Subject
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 RESOLUTION = 200
 """The points along each axis, where cells cannot be drawn as they are."""
@@ -50,24 +53,6 @@ def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = Fals
         columns = [one.read(points) for one in chosen]
         return np.stack(columns if len(columns) == 2 else [*columns, np.full(len(points), 0.5)], axis=-1)
 
-    def decorate(ax: Any, ink: str) -> None:
-        for mark in describe(subject.env).marks:
-            for line, one in zip((ax.axvline, ax.axhline), chosen, strict=False):
-                if one.name == mark.name:
-                    line(mark.value, color=ink, linewidth=1, linestyle=(0, (4, 3)), zorder=3)
-                    # Inside the axes, at the left of the line.
-                    style = {"color": ink, "fontsize": "small", "path_effects": outline(ink), "zorder": 6}
-                    ends: Any = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
-                    ax.annotate(mark.text, (mark.value, 0.02), (-3, 0), ha="right", va="bottom", **ends, **style)
-        for axis, one in zip((ax.xaxis, ax.yaxis), chosen, strict=False):
-            values = next((known_axis.values for known_axis in subject.axes if known_axis.name == one.name), ())
-            if values and len(values) <= round(one.high - one.low):
-                axis.set_ticks(one.low + 0.5 + np.arange(len(values)), values)
-            if one.edges is None:
-                axis.set_ticks([-np.pi, -np.pi / 2, 0, np.pi / 2, np.pi], ["-π", "-π/2", "0", "π/2", "π"])
-        if len(chosen) == 1:
-            ax.set_yticks([])
-
     return Raster(
         x_edges=edges[0],
         y_edges=edges[1],
@@ -75,11 +60,31 @@ def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = Fals
         locate=locate,
         labels=(chosen[0].label, chosen[1].label if len(chosen) > 1 else ""),
         note=note,
-        decorate=decorate,
+        decorate=lambda ax, ink: _decorate(ax, ink, subject, chosen),
         has_numbers=len(chosen) == 1 and shape[1] <= 20,
         observations=observations,
         size=(6.4, 4.5) if len(chosen) > 1 else (8.0, 2.0),
     )
+
+
+def _decorate(ax: "Axes", ink: str, subject: Subject, chosen: list[Coordinate]) -> None:
+    """Draws the marks of the environment, such as a goal, and the ticks of named values and of angles."""
+    for mark in describe(subject.env).marks:
+        for line, one in zip((ax.axvline, ax.axhline), chosen, strict=False):
+            if one.name == mark.name:
+                line(mark.value, color=ink, linewidth=1, linestyle=(0, (4, 3)), zorder=3)
+                # Inside the axes, at the left of the line.
+                style: dict[str, Any] = {"color": ink, "fontsize": "small", "path_effects": outline(ink), "zorder": 6}
+                ends: Any = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
+                ax.annotate(mark.text, (mark.value, 0.02), (-3, 0), ha="right", va="bottom", **ends, **style)
+    for axis, one in zip((ax.xaxis, ax.yaxis), chosen, strict=False):
+        values = next((known.values for known in subject.axes if known.name == one.name), ())
+        if values and len(values) <= round(one.high - one.low):
+            axis.set_ticks(one.low + 0.5 + np.arange(len(values)), values)
+        if one.edges is None:
+            axis.set_ticks([-np.pi, -np.pi / 2, 0, np.pi / 2, np.pi], ["-π", "-π/2", "0", "π/2", "π"])
+    if len(chosen) == 1:
+        ax.set_yticks([])
 
 
 def _choose(

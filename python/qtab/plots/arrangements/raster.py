@@ -36,10 +36,6 @@ def _nothing(ax: "Axes", ink: str) -> None:
     """Draws nothing."""
 
 
-def _no_size() -> tuple[float, float]:
-    return (8.0, 4.5)
-
-
 @dataclass(frozen=True, eq=False)
 class Raster:
     """The points of a picture, in rows and columns, and the states that they show."""
@@ -70,7 +66,7 @@ class Raster:
     """Whether it has several parts with gaps between them, which a line must not cross."""
     observations: NDArray[Any] | None = None
     """(ny * nx, d): the observation at each point; None where the rows were counted directly."""
-    size: tuple[float, float] = field(default_factory=_no_size)
+    size: tuple[float, float] = (8.0, 4.5)
     """The width and the height of a figure that suits the picture, in inches."""
 
     @property

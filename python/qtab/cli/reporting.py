@@ -1,0 +1,118 @@
+"""What a command prints: text for people, one JSON object for programs, or nothing."""
+
+import dataclasses
+import json
+import logging
+import math
+import sys
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Annotated, Any
+
+import numpy as np
+import tyro
+
+from qtab._utils.progress import print_above
+from qtab.cli.usage import UsageError, one_line
+
+_Flag = Annotated[bool, tyro.conf.FlagCreatePairsOff]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputFlags:
+    """The flags of every command that reports something."""
+
+    quiet: _Flag = False
+    """Print nothing but errors."""
+    json: _Flag = False
+    """Print one JSON object instead of text; progress is shown on standard error only."""
+
+
+class Report:
+    """The output of a command. A context manager, at whose end the JSON object is printed, if that was asked for.
+
+    After an exception it is printed as well, with what was added until then.
+
+    Args:
+        command: The command's name, such as ``qtab train``.
+        flags: What was asked for.
+
+    Raises:
+        UsageError: if both flags are given.
+    """
+
+    def __init__(self, command: str, flags: OutputFlags) -> None:
+        if flags.json and flags.quiet:
+            raise UsageError("--json must be given without --quiet, which prints nothing")
+        self._command, self._flags = command, flags
+        self._facts: dict[str, Any] = {}
+        self._on_exit = ExitStack()
+        self.progress: bool | None = False if flags.quiet else None
+        """Whether to show progress bars, as the argument ``progress`` of the API."""
+
+    def __enter__(self) -> "Report":
+        if self._flags.quiet:
+            self._on_exit.enter_context(_without_messages())
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._on_exit.close()
+        if self._flags.json and self._facts:
+            print_above(json_text({"command": self._command, **self._facts}))
+
+    def text(self, lines: str) -> None:
+        """Prints text for people."""
+        if not (self._flags.quiet or self._flags.json):
+            print_above(lines)
+
+    def problem(self, error: Exception) -> None:
+        """Reports an error after which the command continues: as text, or on standard error."""
+        if self._flags.quiet or self._flags.json:
+            sys.stderr.write(f"{self._command}: error: {one_line(error)}\n")
+        else:
+            print_above(str(error))
+
+    def add(self, **facts: Any) -> None:
+        """Adds keys to the JSON object."""
+        self._facts |= facts
+
+
+@contextmanager
+def _without_messages() -> Iterator[None]:
+    """Keeps warnings and the messages of the logger ``qtab`` away from standard error."""
+    logger = logging.getLogger("qtab")
+    level = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logger.setLevel(level)
+
+
+def json_text(value: Any) -> str:
+    """Returns a value as JSON in one line, without what JSON does not have: NaN and infinities become null."""
+    return json.dumps(_to_json(value), allow_nan=False)
+
+
+def _to_json(value: Any) -> Any:
+    if dataclasses.is_dataclass(value):
+        value = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {str(name): _to_json(item) for name, item in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [_to_json(item) for item in value]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    return str(value) if isinstance(value, Path) else repr(value)

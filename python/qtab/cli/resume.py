@@ -1,0 +1,80 @@
+"""``qtab resume``."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from qtab.cli.constructors import OPTIONAL_INT
+from qtab.cli.outputs import Outputs
+from qtab.cli.parsing import parse
+from qtab.cli.reporting import OutputFlags, Report
+from qtab.cli.training_report import Training, backend_words, optimum_of
+from qtab.cli.usage import reading, usage_errors
+from qtab.results.run import Run
+from qtab.results.storage import load
+from qtab.training.earlier_run import check_agrees, counts_visits, resolve_again, snapshots_of
+from qtab.training.options import TrainingOptions
+from qtab.training.resolved_run import ResolvedRun
+
+COMMAND = "qtab resume"
+
+
+@dataclass(frozen=True)
+class Arguments(OutputFlags):
+    """Continue a saved run exactly where it stopped, or train a finished one for more episodes."""
+
+    run: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")]
+    """A file written by qtab train --save."""
+    episodes: Annotated[int | None, OPTIONAL_INT] = None
+    """The number of episodes of the whole run, those that are finished included; by default that of the run."""
+    save: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    """Save the run to this file; by default to RUN, which is replaced. Ctrl-C saves what was learned so far."""
+    plot: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    """Draw the learning curve of the whole run to this file. Its ending gives the format."""
+    snapshots: Annotated[int | None, OPTIONAL_INT] = None
+    """Keep so many copies of the tables, evenly spaced over the whole run, besides those of RUN."""
+    env: Annotated[str | None, tyro.conf.arg(metavar="ENV")] = None
+    """The environment's id, for one that a package registers (package:Name-v0): a file imports nothing."""
+    optimum: tyro.conf.FlagCreatePairsOff[bool] = False
+    """Report how far the run is from the optimum, and draw it. Always done for small tables."""
+
+
+FLAGS = ("episodes", "snapshots", "save", "plot", "env", "optimum")
+
+
+def run(arguments: list[str]) -> int:
+    """Runs the command and returns its exit code."""
+    asked = parse(Arguments, COMMAND, arguments)
+    with Report(COMMAND, asked) as report:
+        with usage_errors(FLAGS, "run"):
+            with reading("RUN", asked.run):
+                earlier = load(asked.run)
+            check_agrees(earlier, asked.env, {})
+            resolved = resolve_again("run", earlier, asked.episodes, None)
+        try:
+            with usage_errors(FLAGS):
+                save = asked.run if asked.save is None else asked.save
+                outputs = Outputs(resolved.config, save, asked.plot, None, None, report.text)
+                visits = counts_visits(earlier, False)
+                options = TrainingOptions(visits=visits, snapshots=asked.snapshots)
+                snapshots = snapshots_of(options, resolved.config.episodes, earlier)
+                best = optimum_of(resolved, asked.optimum, report.progress)
+            with outputs:
+                report.text(_header(earlier, resolved))
+                wanted = tuple(number for number in snapshots if number > len(earlier.episode_returns))
+                Training(resolved, report, outputs, best, visits, wanted, earlier).run()
+        finally:
+            resolved.close()
+    return 0
+
+
+def _header(earlier: Run, resolved: ResolvedRun) -> str:
+    config = resolved.config
+    parts = (
+        backend_words(config),
+        f"resumed after {len(earlier.episode_returns):,} of {config.episodes:,} episodes",
+        f"seed {config.seed}",
+    )
+    return ", ".join(parts)

@@ -1,0 +1,200 @@
+"""The training of ``qtab train`` and ``qtab resume``, and what they report of the run."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from qtab.cli.outputs import Outputs, last_episodes
+from qtab.cli.reporting import Report
+from qtab.config import Config
+from qtab.config.presets import presets
+from qtab.diagnosis.facts import BEST_KNOWN_MOUNTAIN_CAR, MAX_QUICK_UPDATES, Facts
+from qtab.planning import Gap, Optimum, optimum
+from qtab.results.run import Run
+from qtab.results.summary import FINAL_EPISODES, SOLVED_EPISODES, best_mean_returns, default_block, summarize
+from qtab.training.callbacks import Progress
+from qtab.training.options import TrainingOptions
+from qtab.training.resolved_run import NativeEnvironment, ResolvedRun
+from qtab.training.train import train_resolved
+
+
+def backend_words(config: Config) -> str:
+    """Returns the environment and where it is stepped."""
+    return f"{config.env} {'in Rust' if config.backend == 'rust' else 'stepped by Gymnasium in Python'}"
+
+
+def optimum_of(resolved: ResolvedRun, always: bool, progress: bool | None) -> Optimum | None:
+    """Returns the optimum of a run's environment; None if it takes more than a second, unless ``always`` is set."""
+    if not (always or _has_quick_optimum(resolved)):
+        return None
+    config = resolved.config
+    return optimum(
+        config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps, progress=progress
+    )
+
+
+def _has_quick_optimum(resolved: ResolvedRun) -> bool:
+    environment = resolved.environment
+    if not isinstance(environment, NativeEnvironment) or not environment.entry.has_table:
+        return False
+    return resolved.discretizer.n_rows * len(resolved.actions) * resolved.max_episode_steps <= MAX_QUICK_UPDATES
+
+
+@dataclass(frozen=True)
+class Training:
+    """A run to be trained, and where it goes."""
+
+    resolved: ResolvedRun
+    report: Report
+    outputs: Outputs
+    best: Optimum | None
+    """The optimum of the environment, if it is known."""
+    visits: bool = False
+    snapshots: tuple[int, ...] = ()
+    earlier: Run | None = None
+    """The run that is resumed."""
+
+    def run(self) -> None:
+        """Trains and reports. An interrupted run is reported, saved and plotted as well.
+
+        Raises:
+            Exception: what the training raises.
+        """
+        block = default_block(self.resolved.config.episodes)
+        done = 0 if self.earlier is None else len(self.earlier.episode_returns)
+        averages = _averages(self.report, block, done // block * block)
+        options = TrainingOptions(
+            callback=averages,
+            callback_every=block,
+            record=self.outputs.shown,
+            visits=self.visits,
+            snapshots=self.snapshots or None,
+            progress=self.report.progress,
+        )
+        try:
+            finished = train_resolved(self.resolved, options, self.earlier)
+        except BaseException as error:
+            partial = getattr(error, "run", None)
+            if isinstance(partial, Run):
+                done, total = len(partial.episode_returns), partial.config.episodes
+                averages(Progress(done, total, partial.episode_returns, partial.episode_lengths))
+                self.report.text(f"Stopped after {done:,} of {total:,} episodes; what was learned so far:")
+                try:
+                    self._report(partial)
+                except ValueError as problem:  # values that overflowed are not saved
+                    self.report.problem(problem)
+            raise
+        self._report(finished)
+        self.outputs.show(finished)
+        self.report.add(files=self.outputs.files)
+
+    def _report(self, run: Run) -> None:
+        facts, gap = Facts(run), None if self.best is None else self.best.gap(run)
+        self.report.add(**_summary(run, facts, gap))
+        self.report.text(_summary_text(run))
+        for line in (_verdict(run, facts.threshold), _gap_text(facts, gap)):
+            if line is not None:
+                self.report.text(line)
+        try:
+            self.outputs.keep(run, self.best)
+        finally:
+            self.report.add(files=self.outputs.files)
+
+
+def _averages(report: Report, block: int, printed: int) -> Callable[[Progress], None]:
+    """Returns a callback that prints the average return of each block of episodes, as the article does."""
+
+    def callback(progress: Progress) -> None:
+        nonlocal printed
+        while printed + block <= progress.episodes:
+            average = float(progress.returns[printed : printed + block].mean())
+            report.text(f"Episode {printed + block} Average Reward: {round(average, 4)}")
+            printed += block  # last, so that a line cut off by Ctrl-C is printed again
+
+    return callback
+
+
+def _summary_text(run: Run) -> str:
+    returns, steps = run.episode_returns[-FINAL_EPISODES:], int(run.episode_lengths.sum())
+    if len(returns) == 0:
+        return f"No episode was finished in {run.seconds:.3g} s"
+    speed = f" ({steps / run.seconds:,.0f} steps/s)" if run.seconds > 0 else ""
+    took = f"{steps:,} steps in {run.seconds:.3g} s{speed}"
+    return f"Mean return over {last_episodes(len(returns))}: {returns.mean():.2f}; {took}"
+
+
+def _best_mean(run: Run) -> float | None:
+    """The best mean return over 100 consecutive episodes; None if there are fewer."""
+    if len(run.episode_returns) < SOLVED_EPISODES:
+        return None
+    return float(best_mean_returns(run.episode_returns[np.newaxis])[0])
+
+
+def _last_mean(run: Run) -> float:
+    return float(run.episode_returns[-SOLVED_EPISODES:].mean())
+
+
+def _verdict(run: Run, threshold: float | None) -> str | None:
+    """Returns whether the run solved its task, and which preset does; None if nothing defines that."""
+    best = _best_mean(run)
+    if threshold is None or best is None:
+        return None
+    found = f"the best mean return over {SOLVED_EPISODES} consecutive episodes is {best:.2f}"
+    if _last_mean(run) >= threshold:
+        return f"Solved: the last {SOLVED_EPISODES} episodes reach the threshold of {threshold:g}"
+    if best >= threshold:
+        return f"Solved earlier, not at the end: {found}, the threshold {threshold:g}"
+    solving = "solved" in presets(run.config.env) and run.config.preset != "solved"
+    return f"Not solved: {found}, the threshold {threshold:g}" + ("; --preset solved reaches it" if solving else "")
+
+
+def _gap_text(facts: Facts, gap: Gap[float] | None) -> str | None:
+    """Returns the gap to the optimum; None where it is not known, or not without a search."""
+    if gap is not None:
+        text = str(gap)
+        return text[0].upper() + text[1:]
+    if not facts.is_usual_mountain_car or not len(facts.run.episode_returns):
+        return None
+    last = last_episodes(min(len(facts.run.episode_returns), FINAL_EPISODES))
+    short = BEST_KNOWN_MOUNTAIN_CAR - facts.final_return
+    return f"Best known {BEST_KNOWN_MOUNTAIN_CAR:.4g}, gap {short:.4g} over {last}"
+
+
+def _summary(run: Run, facts: Facts, gap: Gap[float] | None) -> dict[str, Any]:
+    """Returns what the JSON object says of a run; the page on the command line lists the keys."""
+    finished, best, threshold = len(run.episode_returns), _best_mean(run), facts.threshold
+    columns = summarize(run.episode_returns[None], run.episode_lengths[None], run.terminated[None]) if finished else {}
+    numbers = {name: column.item() for name, column in columns.items()}
+    return {
+        "env": run.config.env,
+        "seed": run.config.seed,
+        "settings": {
+            name: {"shape": value.shape} if isinstance(value, np.ndarray) else value
+            for name, value in vars(run.config).items()
+        },
+        "completed": run.completed,
+        "episodes": finished,
+        "steps": int(run.episode_lengths.sum()),
+        "seconds": run.seconds,
+        **{name: numbers.get(name) for name in ("mean_return", "final_return", "best_return", "terminated_rate")},
+        "best_mean_return": best,
+        "threshold": threshold,
+        "solved": None if threshold is None or best is None else _last_mean(run) >= threshold,
+        "gap": _gap_facts(facts, gap),
+        "versions": run.versions,
+    }
+
+
+def _gap_facts(facts: Facts, gap: Gap[float] | None) -> dict[str, Any] | None:
+    if gap is None and not facts.is_usual_mountain_car:
+        return None
+    return {
+        "label": "best known" if gap is None else gap.label,
+        "optimum": BEST_KNOWN_MOUNTAIN_CAR if gap is None else gap.optimum,
+        "final": BEST_KNOWN_MOUNTAIN_CAR - facts.final_return if gap is None else gap.final,
+        "greedy": None if gap is None else gap.greedy,
+        "greedy_return": None if gap is None else gap.greedy_return,
+        "standard_error": None if gap is None else gap.standard_error,
+    }

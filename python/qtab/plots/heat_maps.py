@@ -1,0 +1,67 @@
+"""Pictures of numbers as colors."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.plots.arrangements import Raster
+from qtab.plots.colors import SEQUENTIAL
+from qtab.plots.panels import axes_for, color_bar, draw_cells, finish_panel, shade_unknown, write_numbers
+from qtab.plots.subject import Subject
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colors import Normalize
+
+Text = Callable[[float], str]
+"""Returns how a number is written into its cell."""
+
+
+def draw_heat_maps(
+    panels: Sequence[tuple[Subject, Raster]],
+    grids: Sequence[NDArray[np.float64]],
+    ax: "Axes | None",
+    *,
+    norm: "Callable[[Sequence[NDArray[np.float64]]], Normalize]",
+    label: str,
+    title: str | None,
+    text: Text | None,
+) -> "Axes":
+    """Draws a panel for each subject, with one scale of colors and one color bar.
+
+    Args:
+        panels: What to draw, and where each panel shows which state.
+        grids: (ny, nx) for each panel: the numbers; NaN where a state has none.
+        ax: The axes to draw on; None creates a new figure.
+        norm: Returns the scale of the colors for the grids.
+        label: The label of the color bar.
+        title: The title of each panel; None names its subject.
+        text: Writes the numbers into their cells, where there is room; None writes none.
+
+    Returns:
+        The axes, of several panels the first.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        ValueError: if one axes is given for several panels.
+    """
+    axes = axes_for([raster for _, raster in panels], ax)  # without matplotlib, this names the extra
+    scale = norm(grids)
+    for (subject, raster), grid, panel in zip(panels, grids, axes, strict=True):
+        image = draw_heat_map(panel, raster, grid, scale, subject.name if title is None else title, text)
+    color_bar(axes, panels[0][1], image, label)
+    return axes[0]
+
+
+def draw_heat_map(
+    ax: "Axes", raster: Raster, grid: NDArray[np.float64], norm: "Normalize", title: str, text: Text | None
+) -> Any:
+    """Draws (ny, nx) numbers, the grey of states that have none, and the title; returns what a color bar takes."""
+    shade_unknown(ax, raster, grid)
+    image = draw_cells(ax, raster, grid, SEQUENTIAL, norm)
+    if text is not None and raster.has_numbers:
+        write_numbers(ax, raster, grid, image, text)
+    finish_panel(ax, raster, title)
+    return image

@@ -1,0 +1,71 @@
+"""Episodes of an agent, as they are rendered."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.rendering.agent import Agent
+from qtab.results.action_values import mask_of_step
+from qtab.results.run import Run
+
+
+@dataclass(frozen=True)
+class Episodes:
+    """What happened in them."""
+
+    returns: NDArray[np.float64]
+    """(episodes,)"""
+    lengths: NDArray[np.int64]
+    """(episodes,)"""
+    terminated: NDArray[np.bool_]
+    """(episodes,)"""
+
+
+def play_episodes(
+    agent: Agent, env: gym.Env, episodes: int, seed: int, see: Callable[[int, int], bool] = lambda *_: True
+) -> Episodes:
+    """Plays episodes.
+
+    Args:
+        agent: What acts.
+        env: The environment, with a time limit.
+        episodes: The number of episodes.
+        seed: Seeds the first reset, as :func:`qtab.evaluate` does.
+        see: Called after each reset and each step with the numbers of the episode and of the step; it stops the
+            playing by returning False.
+
+    Returns:
+        The finished episodes.
+    """
+    returns, lengths, ends = list[float](), list[int](), list[bool]()
+    for episode in range(episodes):
+        observation, info = env.reset(seed=seed if episode == 0 else None)
+        episode_return, length, over, terminated, state = 0.0, 0, False, False, None
+        goes_on = see(episode, 0)
+        while goes_on and not over:
+            mask = None
+            if isinstance(agent.source, Run):
+                mask = mask_of_step(agent.source.config, env, observation, info)
+            action, state = agent.act(observation, state, mask)
+            observation, reward, terminated, truncated, info = env.step(action)
+            episode_return += float(reward)
+            length += 1
+            over = bool(terminated or truncated)
+            goes_on = see(episode, length)
+        if over:
+            returns.append(episode_return)
+            lengths.append(length)
+            ends.append(bool(terminated))
+        if not goes_on:
+            break
+    return Episodes(np.array(returns, np.float64), np.array(lengths, np.int64), np.array(ends, np.bool_))
+
+
+def frames_per_second(env: gym.Env, given: float | None) -> float:
+    """Returns the given speed, or that of the environment."""
+    rate: Any = env.unwrapped.metadata.get("render_fps") if given is None else given
+    return float(rate or 30)

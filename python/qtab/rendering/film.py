@@ -1,0 +1,120 @@
+"""An agent's episodes as pictures or in a window: played when they are wanted, always the same."""
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+
+from qtab._utils.progress import ProgressBar
+from qtab.rendering.agent import Agent, environment_of
+from qtab.rendering.episodes import Episodes, frames_per_second, play_episodes
+from qtab.rendering.frames import Frames
+from qtab.rendering.window import is_headless
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Who plays where, from which seed, and how fast it is shown."""
+
+    agent: Agent
+    env: Any
+    """None, an id, an EnvSpec or an environment, as for :func:`qtab.play`."""
+    env_kwargs: Mapping[str, Any] | None
+    max_episode_steps: int
+    episodes: int
+    seed: int
+    fps: float | None
+    """None takes that of the environment."""
+    max_frames: int | None = None
+    """Stops after so many pictures."""
+
+    def show(self) -> Episodes:
+        """Plays in a window; returns the episodes that were finished before it was closed."""
+        with self._environment("human") as env, _with_speed(env.unwrapped, self.fps):
+            return play_episodes(self.agent, env, self.episodes, self.seed, lambda *_: not _is_window_closed())
+
+    def record(self) -> tuple[Episodes, Frames]:
+        """Plays without a window; returns the episodes, and a picture of each state."""
+        with _without_display(), self._environment("rgb_array") as env:
+            frames = Frames(frames_per_second(env, self.fps))
+            with ProgressBar(self.episodes, "episode", None, "render") as bar:
+
+                def see(episode: int, step: int) -> bool:
+                    bar.move_to(episode)
+                    frames.append(env.render(), f"episode {episode + 1}, step {step}")
+                    return self.max_frames is None or len(frames) < self.max_frames
+
+                return play_episodes(self.agent, env, self.episodes, self.seed, see), frames
+
+    @contextmanager
+    def _environment(self, render_mode: str) -> Iterator[gym.Env]:
+        env = environment_of(self.agent, self.env, self.env_kwargs, self.max_episode_steps, render_mode)
+        try:
+            yield env
+        finally:
+            if not isinstance(self.env, gym.Env):
+                env.close()
+
+
+class Film:
+    """The pictures of a scene, rendered once, when they are first needed."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._frames: Frames | None = None
+        self._player: str | None = None
+
+    def record(self) -> Episodes:
+        """Plays the scene and keeps its pictures."""
+        played, self._frames = self._scene.record()
+        return played
+
+    def frames(self) -> Frames:
+        """Returns the pictures."""
+        if self._frames is None:
+            self.record()
+        if self._frames is None:
+            raise AssertionError("record keeps the pictures")
+        return self._frames
+
+    def player(self, make: Callable[[Frames], str]) -> str:
+        """Returns the player of the pictures, which is made once."""
+        if self._player is None:
+            self._player = make(self.frames())
+        return self._player
+
+
+@contextmanager
+def _with_speed(env: gym.Env, fps: float | None) -> Iterator[None]:
+    """Gives an environment another speed in its window, not its class."""
+    before = env.metadata
+    if fps is not None:
+        env.metadata = {**before, "render_fps": fps}
+    try:
+        yield
+    finally:
+        if fps is not None:
+            env.metadata = before
+
+
+@contextmanager
+def _without_display() -> Iterator[None]:
+    """Keeps SDL, where there is no display, from searching for one and printing errors."""
+    if not is_headless():
+        yield
+        return
+    os.environ["SDL_VIDEODRIVER"] = "dummy"
+    try:
+        yield
+    finally:
+        os.environ.pop("SDL_VIDEODRIVER", None)
+
+
+def _is_window_closed() -> bool:
+    """Returns whether the user has closed the window of pygame, which Gymnasium does not look at."""
+    pygame: Any = sys.modules.get("pygame")
+    return pygame is not None and pygame.display.get_init() and bool(pygame.event.peek(pygame.QUIT))

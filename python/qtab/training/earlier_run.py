@@ -1,0 +1,192 @@
+"""The run that a call resumes: where it is found, whether it can be resumed, and what must agree with it."""
+
+import logging
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+from gymnasium.envs.registration import EnvSpec
+
+from qtab._utils import checks
+from qtab._utils.shown import shown
+from qtab._utils.versions import versions
+from qtab.config import Config
+from qtab.config.action_mask import STORED
+from qtab.config.config import replace_checked
+from qtab.config.layers import over
+from qtab.config.options import is_set
+from qtab.envs.registry import versioned
+from qtab.envs.stored import spec_of_run
+from qtab.results.run import Run
+from qtab.results.snapshots import resumed_snapshot_episodes, snapshot_episodes
+from qtab.results.storage import load, with_action_mask
+from qtab.training.options import TrainingOptions
+from qtab.training.resolve import resolve
+from qtab.training.resolved_run import ResolvedRun
+
+_LOGGER = logging.getLogger("qtab")
+_SCHEDULES = {"epsilon_schedule": "epsilon", "learning_rate_schedule": "learning_rate"}
+
+
+def earlier_run(name: str, run: Any, action_mask: Any = None) -> Run:
+    """Returns a run that is given itself or by the path of its file.
+
+    Args:
+        name: The argument that gives it, for messages.
+        run: Its value.
+        action_mask: The function of its action masks, which a file does not hold; anything else changes nothing.
+
+    Raises:
+        OSError: if the file cannot be read.
+        TypeError: if it is neither a run nor a path.
+        ValueError: for a file that is not a run.
+    """
+    if not isinstance(run, Run):
+        if not isinstance(run, str | os.PathLike):
+            raise TypeError(f"{name} must be a Run or the path of a saved run, got {shown(run)}")
+        run = load(Path(run))
+    found: Run = run
+    if callable(action_mask) and found.config.action_mask == STORED:
+        return with_action_mask(found, action_mask)
+    return found
+
+
+def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> ResolvedRun:
+    """Resolves the whole run of which an earlier part is given, and logs where its numbers may differ.
+
+    Args:
+        name: The argument that gives the earlier part, for messages.
+        run: The earlier part.
+        episodes: How many episodes the whole run has; None takes that of ``run``.
+        env: The environment; None makes that of ``run``.
+
+    Raises:
+        gymnasium.error.Error: if the environment is not registered.
+        TypeError: for an argument of the wrong type.
+        ValueError: if the run cannot be resumed, or has finished as many episodes already.
+    """
+    config = _config(name, run, episodes)
+    if env is None:
+        spec_of_run(config.env)  # the name of a class without an id is not taken for one
+    resolved = resolve(config.env if env is None else env, over(_without_kwargs(config, env), {}))
+    _log_what_differs(run, config)
+    return resolved
+
+
+def check_agrees(run: Run, env: str | EnvSpec | gym.Env | None, settings: Mapping[str, Any]) -> None:
+    """Checks that the settings given beside ``resume`` are those of the run. The number of episodes may differ.
+
+    Args:
+        run: The run that is resumed.
+        env: The environment given, or None.
+        settings: The settings given; those that are None count as not given.
+
+    Raises:
+        TypeError: for a value of the wrong type.
+        ValueError: for a setting with another value; the message names the first of them.
+    """
+    given = {name: value for name, value in settings.items() if is_set(value) and name != "episodes"}
+    if env is None and not given:
+        return
+    if env is not None and (id_given := _id(env)) is not None and _bare(id_given) != _bare(run.config.env):
+        raise _differs("env", run.config.env, id_given)
+    if env is None:
+        spec_of_run(run.config.env)
+    resolved = resolve(run.config.env if env is None else env, over(_without_kwargs(run.config, env), given))
+    resolved.close()
+    for name in ("env_kwargs", *given):
+        wanted = getattr(resolved.config, name)
+        if replace_checked(run.config, **{name: wanted}) != run.config:
+            raise _differs(name, getattr(run.config, name), wanted)
+
+
+def _differs(name: str, expected: Any, got: Any) -> ValueError:
+    return ValueError(
+        f"{name} must be that of the run to resume, {shown(expected)}, got {shown(got)}: of the settings, only "
+        "episodes may change"
+    )
+
+
+def _id(env: Any) -> str | None:
+    """The id of an environment, or the name of its class; None for what is none."""
+    if isinstance(env, str):
+        return versioned(env)
+    if isinstance(env, gym.Env):
+        return type(env.unwrapped).__name__ if env.spec is None else env.spec.id
+    return env.id if isinstance(env, EnvSpec) else None
+
+
+def _bare(env: str) -> str:
+    """An id without the package that it names."""
+    return env.rpartition(":")[2]
+
+
+def _without_kwargs(config: Config, env: Any) -> Config:
+    """The config to resolve again: an environment or a spec that is given brings its own keyword arguments along."""
+    return config if env is None or isinstance(env, str) else replace_checked(config, env_kwargs={})
+
+
+def snapshots_of(options: TrainingOptions, total: int, earlier: Run | None) -> tuple[int, ...]:
+    """Returns the episodes of all snapshots of a run of ``total`` episodes, those of its earlier part first.
+
+    Raises:
+        TypeError: if ``options.snapshots`` is neither an integer nor a sequence of integers.
+        ValueError: if a number in it is out of range, or names an episode that is over.
+    """
+    if earlier is None:
+        return snapshot_episodes(options.snapshots, total)
+    to_take = () if earlier.state is None else earlier.state.snapshots
+    finished = len(earlier.episode_returns)
+    return resumed_snapshot_episodes(options.snapshots, total, finished, earlier.snapshots, to_take)
+
+
+def counts_visits(run: Run, visits: Any) -> bool:
+    """Returns whether the visits of a run that is resumed are counted on.
+
+    Args:
+        run: The earlier part.
+        visits: What the call asks for.
+
+    Raises:
+        TypeError: if it is not a boolean.
+        ValueError: if it asks for visits, and the earlier part did not count them.
+    """
+    if checks.boolean("visits", visits) and run.visits is None:
+        raise ValueError("visits must be False: the run to resume did not count the visits of its first episodes")
+    return run.visits is not None
+
+
+def _config(name: str, run: Run, episodes: Any) -> Config:
+    """The config of the whole run."""
+    finished = len(run.episode_returns)
+    if run.state is None:
+        raise ValueError(
+            f"{name} must have the state of its training, which runs of train_many and files of earlier versions do "
+            "not have; qtab.train(..., initial_q=run.q_table) learns on from its table"
+        )
+    if episodes is None and finished >= run.config.episodes:
+        raise ValueError(f"episodes must be given for a run that has finished: more than its {finished:,}")
+    count = run.config.episodes if episodes is None else checks.count("episodes", episodes, least=1)
+    if count <= finished:
+        raise ValueError(f"episodes must be more than the {finished:,} that the run has finished, got {episodes!r}")
+    return run.config if count == run.config.episodes else run.config.replace(episodes=count)
+
+
+def _log_what_differs(run: Run, config: Config) -> None:
+    """Says where the result is not that of an uninterrupted run, or may not be."""
+    if config.episodes != run.config.episodes:
+        falling = [rate for schedule, rate in _SCHEDULES.items() if getattr(config, schedule) == "linear"]
+        if falling:
+            _LOGGER.warning(
+                "%s now %s linearly over %s episodes instead of %s",
+                " and ".join(falling),
+                "fall" if len(falling) > 1 else "falls",
+                f"{config.episodes:,}",
+                f"{run.config.episodes:,}",
+            )
+    here = versions()
+    others = [f"{name} {run.versions.get(name)}" for name in here if run.versions.get(name) != here[name]]
+    if others:
+        _LOGGER.warning("the run was made with %s: its bits may differ from here on", ", ".join(others))

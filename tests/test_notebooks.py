@@ -1,0 +1,210 @@
+"""The notebooks in examples/: how they are stored, and that they run, show pictures and print the right numbers."""
+
+import re
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import qtab
+from qtab.diagnosis.facts import BEST_KNOWN_MOUNTAIN_CAR
+from support.repository import ROOT, tracked_files
+
+nbformat = pytest.importorskip("nbformat")
+
+NOTEBOOKS = [path for path in tracked_files(".ipynb") if path.parent == ROOT / "examples"]
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+PNG, HTML, TEXT = "image/png", "text/html", "text/plain"
+
+PICTURES = {
+    "mountain_car": "curve values policy visits trajectory solved solved-trajectory policies",
+    "chapter_6": "windy-policy cliff cliff-policies bias",
+    "your_environment": "curve policy values visits difference many",
+    "study": "sensitivity profile curves",
+}
+"""The cells that show one picture each."""
+TABLES = {
+    "mountain_car": "train diagnosis what-if advice gap same-numbers",
+    "chapter_6": "windy compare experiment",
+    "your_environment": "train verify optimum",
+    "study": "search confirm improvement reload",
+}
+"""The cells that show a table."""
+PLAYERS = {"mountain_car": "play-article play-solved animation"}
+"""The cells that show pictures in motion."""
+
+
+@cache
+def stored(name: str) -> Any:
+    return nbformat.read(ROOT / "examples" / f"{name}.ipynb", 4)
+
+
+def source(name: str, cell: str) -> str:
+    [text] = [one.source for one in stored(name).cells if one.id == cell]
+    return str(text)
+
+
+def test_there_are_four_and_the_readme_links_them() -> None:
+    assert sorted(path.stem for path in NOTEBOOKS) == sorted(PICTURES)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert [path.name for path in NOTEBOOKS if f"(examples/{path.name})" not in readme] == []
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_a_notebook_is_stored_without_what_running_it_leaves(name: str) -> None:
+    notebook = stored(name)
+    nbformat.validate(notebook)
+    assert notebook.metadata == {
+        "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+        "language_info": {"name": "python"},
+    }
+    assert {str(cell.metadata) for cell in notebook.cells} == {"{}"}
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert [cell.id for cell in code if cell.outputs or cell.execution_count is not None] == []
+    # Words as ids: an editor that makes new ones would be seen in the difference.
+    assert [cell.id for cell in notebook.cells if not re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", cell.id)] == []
+    text = (ROOT / "examples" / f"{name}.ipynb").read_text(encoding="utf-8")
+    assert not re.search(r"/(home|Users|work|tmp)/|[A-Z]:\\\\", text)
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_the_links_of_a_notebook_lead_to_files(name: str) -> None:
+    texts = [cell.source for cell in stored(name).cells if cell.cell_type == "markdown"]
+    assert texts[0].startswith("# ")
+    targets = [target for text in texts for target in LINK.findall(text) if not target.startswith("https://")]
+    assert [target for target in targets if not (ROOT / "examples" / target).exists()] == []
+
+
+class Executed:
+    """The outputs of a notebook that ran."""
+
+    def __init__(self, notebook: Any) -> None:
+        self._cells = {cell.id: cell.outputs for cell in notebook.cells if cell.cell_type == "code"}
+
+    def shown(self, cell: str, kind: str) -> list[str]:
+        """What a cell shows of a MIME type; the text that it prints counts as plain."""
+        printed = [output.text for output in self._cells[cell] if "text" in output and kind == TEXT]
+        return printed + [output.data[kind] for output in self._cells[cell] if kind in output.get("data", {})]
+
+    def text(self, cell: str) -> str:
+        return "\n".join(self.shown(cell, TEXT))
+
+    @property
+    def errors(self) -> list[str]:
+        """What was printed on standard error, which a reader would see in red."""
+        return [str(output.text) for outputs in self._cells.values() for output in outputs if _is_red(output)]
+
+
+def _is_red(output: Any) -> bool:
+    return bool(output.output_type == "error" or output.get("name") == "stderr")
+
+
+def check_mountain_car(executed: Executed) -> None:
+    assert executed.text("train") == repr(qtab.train("MountainCar-v0", seed=0))
+    assert str(qtab.stats.mean(qtab.train_many("MountainCar-v0", 20).final_returns())) in executed.text("seeds")
+    assert "0 of 20" in executed.text("seeds")
+    advice: dict[str, Any] = {
+        "epsilon": 0.0,
+        "initial_q": 0.0,
+        "discretizer": "tiles",
+        "tiles": 16,
+        "terminal_update": "target",
+        "discount": 1.0,
+    }
+    solved = qtab.train("MountainCar-v0", seed=0, **advice)
+    assert solved.mean_returns(100)[-1] > -110
+    assert repr(solved) in executed.text("advice")
+    greedy = qtab.evaluate(solved, episodes=1000, seed=1).mean_return
+    assert f"greedy policy {greedy:.2f}, best known {BEST_KNOWN_MOUNTAIN_CAR:.2f}" in executed.text("gap")
+    assert "return -200 in 200 steps" in executed.text("play-article")
+    assert executed.text("same-numbers").endswith("equal>")
+
+
+def check_chapter_6(executed: Executed) -> None:
+    assert executed.text("windy-gap").startswith("optimum: -15.0\ngreedy policy: -15.0")
+    assert executed.text("step").count("target = R + γ Q(S', A')") == 2
+    settings: dict[str, Any] = {}
+    exec(source("chapter_6", "windy").partition("windy =")[0], settings)  # noqa: S102 - our own notebook
+    for algorithm in ("sarsa", "q_learning"):
+        runs = qtab.train_many("CliffWalking-v1", 200, algorithm=algorithm, episodes=500, **settings["settings"])
+        assert str(qtab.stats.mean(runs.final_returns())) in executed.text("cliff-returns")
+    assert "optimum: -13.0" in executed.text("cliff-greedy")
+    assert "Q-learning      200 of 200" in executed.text("cliff-greedy")
+    assert "Sarsa           0 of 200" in executed.text("cliff-greedy")
+    assert str(qtab.book.run("figure-6.5", runs=1000)).splitlines()[-2] in executed.text("bias-table")
+
+
+def check_your_environment(executed: Executed) -> None:
+    world: dict[str, Any] = {}
+    exec(source("your_environment", "environment").partition("class Warehouse")[0], world)  # noqa: S102
+    reached = {world["START"]}
+    steps = 0
+    while world["GOAL"] not in reached:
+        reached |= {world["move"](state, action) for state in reached for action in range(4)}
+        steps += 1
+    assert f"optimum: -{steps}.0" in executed.text("optimum")
+    assert executed.text("verify") == "<Verification of Warehouse-v0: seed 0, 300 episodes, equal>"
+    assert executed.text("table").startswith("the same Q table, bit for bit: True\n")
+    assert executed.text("many").startswith("200 of 200 greedy policies are optimal\n")
+
+
+def check_study(executed: Executed) -> None:
+    space: dict[str, Any] = {}
+    exec(source("study", "design").replace("FOLDER.mkdir", "dict"), space)  # noqa: S102
+    printed = executed.text("confirm").splitlines()
+    final = {}
+    for name, algorithm in space["ALGORITHMS"].items():
+        [line] = [line for line in printed if line.startswith(f"{name}: setting")]
+        setting: dict[str, Any] = {
+            found: float(value) for found, value in re.findall(r"(learning_rate|trace_decay) ([\d.]+)", line)
+        }
+        assert setting in space["design"]
+        runs = qtab.train_many("MountainCar-v0", range(10, 40), algorithm=algorithm, **setting, **space["SHARED"])
+        final[name] = runs.final_returns()
+        mean, iqm = qtab.stats.mean(final[name]), qtab.stats.iqm(final[name])
+        assert f"{mean} over 30 other seeds" in line
+        assert re.search(
+            rf"{re.escape(name)} +mean {re.escape(str(mean))}   IQM {re.escape(str(iqm))}", executed.text("statistics")
+        )
+        assert f"solved: {qtab.stats.rate(int(np.sum(final[name] >= -110)), 30)}" in executed.text("solved")
+    online, offline = final["true online Sarsa(λ)"], final["Sarsa(λ)"]
+    improvement = qtab.stats.probability_of_improvement(online, offline)
+    assert improvement.low < 0.5 < improvement.high  # as the conclusion says
+    assert f"probability of improvement: {improvement}" in executed.text("improvement")
+    assert repr(qtab.stats.compare(online, offline)) in executed.text("improvement")
+    assert {"report.html", "learning_curves.pdf", "sarsa_lambda.db"} < set(executed.text("report").split())
+    assert executed.text("reload").startswith("the same means: True\n")
+
+
+CHECKS: dict[str, Callable[[Executed], None]] = {
+    "mountain_car": check_mountain_car,
+    "chapter_6": check_chapter_6,
+    "your_environment": check_your_environment,
+    "study": check_study,
+}
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of Jupyter's libraries
+@pytest.mark.parametrize("name", PICTURES)
+def test_a_notebook_runs_and_shows_what_it_says(name: str, tmp_path: Path) -> None:
+    nbclient = pytest.importorskip("nbclient")
+    pytest.importorskip("ipykernel")
+    notebook = nbformat.from_dict(stored(name))
+    # The kernel chooses its own backend, as it does for a reader.
+    with pytest.MonkeyPatch.context() as environment:
+        environment.delenv("MPLBACKEND", raising=False)
+        environment.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
+        nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3").execute(cwd=str(tmp_path))
+    executed = Executed(notebook)
+    assert executed.errors == []
+    assert {cell: len(executed.shown(cell, PNG)) for cell in PICTURES[name].split()} == dict.fromkeys(
+        PICTURES[name].split(), 1
+    )
+    assert [cell for cell in TABLES[name].split() if "<table" not in "".join(executed.shown(cell, HTML))] == []
+    for cell in PLAYERS.get(name, "").split():
+        assert re.search(r"<(video|img)[^>]* src=|data:(video|image)/", "".join(executed.shown(cell, HTML))), cell
+    CHECKS[name](executed)
