@@ -107,9 +107,11 @@ mod tests {
         let mut learner = learner(&[1.0, 0.0, 2.0, 3.0]);
         // z = 1; δ = -1 + 0.5 · 3 - 1; 1 + 0.5 (δ + 1 - 0) - 0.5 (1 - 0)
         learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng());
+        Learner::<[u32; 1]>::complete_tables(&mut learner);
         assert_eq!(learner.agent.table.values(), [0.75, 0.0, 2.0, 3.0]);
         // z = 1/4 and 1, Q = Q_old = 3; δ = -1 - 3
         learner.learn([1], 1, -1.0, Next::Terminal, &mut rng());
+        Learner::<[u32; 1]>::complete_tables(&mut learner);
         assert_eq!(learner.agent.table.values(), [0.25, 0.0, 2.0, 1.0]);
     }
 

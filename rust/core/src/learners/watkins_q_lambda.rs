@@ -108,6 +108,7 @@ mod tests {
         assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);
         // δ = -1 - 3, and the first pair's trace is 1/4
         learner.learn([1], 1, -1.0, Next::Terminal, &mut rng());
+        Learner::<[u32; 1]>::complete_tables(&mut learner);
         assert_eq!(learner.agent.table.values(), [0.25, 0.0, 2.0, 1.0]);
     }
 

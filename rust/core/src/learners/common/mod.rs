@@ -11,6 +11,8 @@ mod td_learner;
 pub(super) mod test_support;
 mod trace_passes;
 mod traces;
+#[cfg(test)]
+mod traces_tests;
 mod truncation_handling;
 mod update_rule;
 
