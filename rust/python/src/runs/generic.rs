@@ -34,31 +34,46 @@ where
         return Err(invalid("discretizer", format!("one for observations of {M} components"), dimensions));
     }
     match &spec.discretizer {
-        // Compiled for the usual numbers of tilings, which halves the time of a step.
-        DiscretizerSpec::Tiles(tiles) => match tiles.tilings {
-            8 => fixed_tilings::<E, M, 8>(env, tiles, spec, record),
-            16 => fixed_tilings::<E, M, 16>(env, tiles, spec, record),
-            32 => fixed_tilings::<E, M, 32>(env, tiles, spec, record),
+        // Compiled for the usual numbers of tilings, but not once more for what is rarely asked for besides.
+        DiscretizerSpec::Tiles(tiles) if record == 0 && !spec.count_visits => match tiles.tilings {
+            8 => fixed_tilings::<E, M, 8>(env, tiles, spec),
+            16 => fixed_tilings::<E, M, 16>(env, tiles, spec),
+            32 => fixed_tilings::<E, M, 32>(env, tiles, spec),
             _ => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec, record),
         },
+        DiscretizerSpec::Tiles(tiles) => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec, record),
         grid => generic(env, grid.grid(|bound| bound as f32)?, spec, record),
     }
 }
 
-/// Runs with exactly `N` tilings.
+/// Runs with exactly `N` tilings, without recordings and visit counts.
 fn fixed_tilings<E, const M: usize, const N: usize>(
     env: E,
     tiles: &TilesSpec,
     spec: &Arc<RunSpec>,
-    record: usize,
 ) -> PyResult<Box<dyn RunFactory>>
 where
     E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
 {
-    match FixedTileCoding::<f32, M, N>::new(&tiles.tile_coding()) {
-        Some(tiles) => generic(env, tiles, spec, record),
-        None => Err(invalid("discretizer", format!("{N} tilings of {M} components"), "others")),
+    let Some(features) = FixedTileCoding::<f32, M, N>::new(&tiles.tile_coding()) else {
+        return Err(invalid("discretizer", format!("{N} tilings of {M} components"), "others"));
+    };
+    check_actions(&env, spec)?;
+    let (spec, shape) = (Arc::clone(spec), (features.len(), N));
+    let build = move |seed: &Seed, stop: &StopFlag<'_>| {
+        let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
+        let rng = spec.bit_generator.agent_rng(seed)?;
+        Ok((build_learner(BoxedTask::new(task), shape, rng, &spec, stop)?, AnyRecordings::None))
+    };
+    Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
+}
+
+/// Refuses a spec for another number of actions.
+fn check_actions(env: &impl Env, spec: &RunSpec) -> PyResult<()> {
+    if spec.num_actions == env.num_actions() {
+        return Ok(());
     }
+    Err(invalid("num_actions", format!("{}, the environment's", env.num_actions()), spec.num_actions))
 }
 
 /// Runs in an environment with any features.
@@ -67,9 +82,7 @@ where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active: Send> + Clone + Send + Sync + 'static,
 {
-    if spec.num_actions != env.num_actions() {
-        return Err(invalid("num_actions", format!("{}, the environment's", env.num_actions()), spec.num_actions));
-    }
+    check_actions(&env, spec)?;
     let (spec, shape) = (Arc::clone(spec), (features.len(), spec.discretizer.n_active()));
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));

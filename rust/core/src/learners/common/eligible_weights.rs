@@ -2,7 +2,7 @@
 
 use std::hint::select_unpredictable;
 
-use super::trace_passes::{Apply, ApplyAndDecay, BLOCK, Decay};
+use super::trace_passes::{Apply, ApplyAndDecay, BLOCK, Decay, InstructionSet};
 use crate::StopFlag;
 use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
 use crate::q_table::QTable;
@@ -27,18 +27,7 @@ pub(super) struct EligibleWeights {
     slots: Vec<u32>,
     /// Whether the values of the eligible weights are at their places.
     moved: bool,
-    arch: Arch,
-}
-
-/// The instruction set that the passes are compiled for.
-#[derive(Clone, Copy, Debug)]
-struct Arch(pulp::Arch);
-
-/// The results do not depend on it.
-impl PartialEq for Arch {
-    fn eq(&self, _other: &Self) -> bool {
-        true
-    }
+    instructions: InstructionSet,
 }
 
 impl EligibleWeights {
@@ -61,7 +50,7 @@ impl EligibleWeights {
             fallen: with_capacity(places / BLOCK)?,
             slots,
             moved: false,
-            arch: Arch(pulp::Arch::new()),
+            instructions: InstructionSet::detect(),
         })
     }
 
@@ -245,7 +234,7 @@ impl EligibleWeights {
     pub(super) fn apply<const N: usize>(&mut self, table: &mut QTable<N>, step: f64) {
         let len = self.count.next_multiple_of(BLOCK);
         let values = &mut table.storage_mut()[self.slots.len()..][..len];
-        self.arch.0.dispatch(Apply { values, traces: &self.traces[..len], step });
+        self.instructions.run(Apply { values, traces: &self.traces[..len], step });
     }
 
     /// Adds to each eligible weight a function of its index and its trace.
@@ -262,7 +251,7 @@ impl EligibleWeights {
     pub(super) fn decay<const N: usize>(&mut self, table: &mut QTable<N>, factor: f64, cutoff: f64) {
         let blocks = self.count.div_ceil(BLOCK);
         let (traces, fallen) = (&mut self.traces[..blocks * BLOCK], &mut self.fallen[..blocks]);
-        if self.arch.0.dispatch(Decay { traces, fallen, factor, cutoff }) {
+        if self.instructions.run(Decay { traces, fallen, factor, cutoff }) {
             self.remove_fallen(table.storage_mut(), cutoff);
         }
     }
@@ -279,7 +268,7 @@ impl EligibleWeights {
         let blocks = self.count.div_ceil(BLOCK);
         let values = &mut table.storage_mut()[self.slots.len()..][..blocks * BLOCK];
         let (traces, fallen) = (&mut self.traces[..blocks * BLOCK], &mut self.fallen[..blocks]);
-        if self.arch.0.dispatch(ApplyAndDecay { values, step, decay: Decay { traces, fallen, factor, cutoff } }) {
+        if self.instructions.run(ApplyAndDecay { values, step, decay: Decay { traces, fallen, factor, cutoff } }) {
             self.remove_fallen(table.storage_mut(), cutoff);
         }
     }

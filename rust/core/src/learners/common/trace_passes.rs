@@ -24,8 +24,8 @@ impl Decay<'_> {
     /// Decays some traces. Bits of `fallen` are set in the lanes where one has fallen to the cutoff.
     #[inline(always)]
     fn decay(traces: &mut Vector, factor: f64, cutoff: f64, fallen: &mut [u64; LANES]) {
-        for (trace, fallen) in traces.iter_mut().zip(fallen) {
-            *trace *= factor;
+        *traces = traces.map(|trace| trace * factor);
+        for (trace, fallen) in traces.iter().zip(fallen) {
             *fallen |= if trace.abs() <= cutoff { u64::MAX } else { 0 };
         }
     }
@@ -77,11 +77,12 @@ impl pulp::NullaryFnOnce for ApplyAndDecay<'_> {
     }
 }
 
+/// Reads all lanes before it writes one: the compiler does not know that the values and the traces are apart, and would
+/// compute lane by lane.
 #[inline(always)]
 fn apply(values: &mut Vector, traces: &Vector, step: f64) {
-    for (value, trace) in values.iter_mut().zip(traces) {
-        *value += step * trace;
-    }
+    let old = *values;
+    *values = std::array::from_fn(|lane| old[lane] + step * traces[lane]);
 }
 
 /// w ← w + `step` z.
@@ -98,5 +99,29 @@ impl pulp::NullaryFnOnce for Apply<'_> {
     fn call(self) {
         let vectors = self.values.as_chunks_mut::<LANES>().0.iter_mut().zip(self.traces.as_chunks().0);
         vectors.for_each(|(values, traces)| apply(values, traces, self.step));
+    }
+}
+
+/// The instruction set that the passes run on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InstructionSet(pulp::Arch);
+
+impl InstructionSet {
+    /// The widest one that this machine has.
+    pub(super) fn detect() -> Self {
+        Self(pulp::Arch::new())
+    }
+
+    /// Runs a pass.
+    #[inline]
+    pub(super) fn run<P: pulp::NullaryFnOnce>(self, pass: P) -> P::Output {
+        self.0.dispatch(pass)
+    }
+}
+
+/// All of them have the same results.
+impl PartialEq for InstructionSet {
+    fn eq(&self, _other: &Self) -> bool {
+        true
     }
 }
