@@ -49,11 +49,11 @@ def one_search_for_each_mountain_car() -> Iterator[None]:
     found: dict[tuple[Any, ...], Any] = {}
     search = solve._search_mountain_car
 
-    def once(env: Any, discount: float, max_episode_steps: int) -> Any:
+    def once(env: Any, discount: float, max_episode_steps: int, bar: Any) -> Any:
         constants = tuple(repr(getattr(env, name)) for name in _core.parameter_names("MountainCar"))
         task = (constants, discount, max_episode_steps)
         if task not in found:
-            found[task] = search(env, discount, max_episode_steps)
+            found[task] = search(env, discount, max_episode_steps, bar)
         return found[task]
 
     with pytest.MonkeyPatch.context() as patch:

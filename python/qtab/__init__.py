@@ -29,6 +29,7 @@ _MODULES = {
     "Run": "qtab.results.run",
     "Runs": "qtab.results.runs",
     "RunsProgress": "qtab.training.runs_progress",
+    "RustVectorEnv": "qtab.envs.vector",
     "Snapshots": "qtab.results.snapshots",
     "StoreError": "qtab.sweeps.connection",
     "Sweep": "qtab.sweeps.results",
@@ -51,6 +52,7 @@ _MODULES = {
     "plots": "qtab.plots",
     "presets": "qtab.config.presets",
     "resume": "qtab.training.resume",
+    "sb3": "qtab.sb3",
     "stats": "qtab.stats",
     "sweep": "qtab.sweeps.sweep",
     "train": "qtab.training.train",
@@ -64,12 +66,14 @@ if TYPE_CHECKING:
     from qtab import book as book
     from qtab import callbacks as callbacks
     from qtab import plots as plots
+    from qtab import sb3 as sb3
     from qtab import stats as stats
     from qtab.config import Config as Config
     from qtab.config.presets import presets as presets
     from qtab.diagnosis.diagnose import diagnose as diagnose
     from qtab.diagnosis.diagnosis import Diagnosis as Diagnosis
     from qtab.envs.tabular import TabularEnv as TabularEnv
+    from qtab.envs.vector import RustVectorEnv as RustVectorEnv
     from qtab.explanation.explain import explain as explain
     from qtab.explanation.explanation import Explanation as Explanation
     from qtab.planning.gap import Gap as Gap

@@ -5,9 +5,10 @@ from importlib.util import find_spec
 from typing import Any
 
 import gymnasium as gym
+import numpy as np
 import pytest
 
-import qtab  # noqa: F401 - registers them
+import qtab
 
 pytestmark = [
     pytest.mark.sb3,
@@ -59,3 +60,47 @@ def test_stable_baselines3_learns_to_balance_the_pole() -> None:
     model = PPO("MlpPolicy", "qtab/CartPole-v1", seed=0, device="cpu", n_steps=256).learn(4_000)
     mean, _ = evaluate_policy(model, gym.make("qtab/CartPole-v1"), n_eval_episodes=5)
     assert mean > 100  # a random policy gets about 22
+
+
+@pytest.mark.parametrize("name", [name.removeprefix("qtab/") for name in REGISTERED if "Bias" not in name])
+def test_the_native_vec_env_equals_dummy_vec_env(name: str) -> None:
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # CartPole-v0 is out of date
+        ours = qtab.sb3.VecEnv(name, 5, max_episode_steps=9)
+        theirs = DummyVecEnv([lambda: gym.make(name, max_episode_steps=9)] * 5)
+    ours.seed(3)
+    theirs.seed(3)
+    assert str(ours.reset()) == str(theirs.reset())
+    ours.action_space.seed(0)
+    for _ in range(60):
+        actions = np.stack([ours.action_space.sample() for _ in range(5)])
+        (one, *mine, _), (other, *expected, _) = steps = ours.step(actions), theirs.step(actions)
+        assert [array.tobytes() for array in mine] == [array.tobytes() for array in expected]
+        assert np.array(one).tobytes() == np.array(other).tobytes()
+        assert [info.keys() for info in steps[0][3]] == [info.keys() for info in steps[1][3]]
+        assert [info.keys() for info in ours.reset_infos] == [info.keys() for info in theirs.reset_infos]
+    assert ours.venv.is_native
+
+
+def test_ppo_learns_the_same_on_the_native_vec_env() -> None:
+    from stable_baselines3 import PPO
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    envs = qtab.sb3.VecEnv("CartPole-v1", 4), DummyVecEnv([lambda: gym.make("CartPole-v1")] * 4)
+    ours, theirs = (PPO("MlpPolicy", env, seed=0, device="cpu", n_steps=128).learn(2_000) for env in envs)
+    assert weights(ours) == weights(theirs)
+
+
+def test_stable_baselines3_evaluates_a_run() -> None:
+    from stable_baselines3.common.evaluation import evaluate_policy
+    from stable_baselines3.common.vec_env import DummyVecEnv, VecMonitor
+
+    run = qtab.train("CartPole-v1", seed=0, episodes=500)
+    envs = VecMonitor(qtab.sb3.VecEnv("CartPole-v1", 4)), VecMonitor(DummyVecEnv([lambda: gym.make("CartPole-v1")] * 4))
+    results = []
+    for env in envs:
+        env.seed(1)
+        results.append(evaluate_policy(run, env, n_eval_episodes=8, return_episode_rewards=True))
+    assert results[0] == results[1]

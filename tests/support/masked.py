@@ -6,6 +6,10 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+MASKS = np.array([[1, 0, 1, 0], [0, 0, 0, 1], [1, 1, 1, 1]], np.int8)
+TILES: dict[str, Any] = {"discretizer": "tiles", "tilings": 3, "tiles": (3, 2)}
+SHORT: dict[str, Any] = {"episodes": 12, "max_episode_steps": 15}
+
 
 class MaskedGraph(gym.Env[Any, Any]):
     """Random transitions between a few states, each with its own actions; it refuses the others.

@@ -8,6 +8,7 @@ import numpy as np
 from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
+import qtab
 from support import classic_control, toy_text
 from support.machine import MACHINE
 
@@ -16,6 +17,9 @@ MODES = list(AutoresetMode)
 
 
 def ours(name: str, num_envs: int, **kwargs: Any) -> Any:
+    """Returns SyncVectorEnv's equal. Of CartPole, ``make_vec`` makes the equal of Gymnasium's CartPoleVectorEnv."""
+    if name.startswith("CartPole"):
+        return qtab.RustVectorEnv(name, num_envs, **kwargs)
     return gym.make_vec(f"qtab/{name}", num_envs=num_envs, **kwargs)
 
 

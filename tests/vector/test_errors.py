@@ -212,8 +212,6 @@ def test_bad_options_raise_gymnasiums_error(name, options, error):
         ({"num_envs": 2, "threads": "many"}, TypeError, "threads must"),
         ({"num_envs": 2, "threads": 10**25}, ValueError, "threads must be an integer from 1 to 1024, got 1000"),
         ({"num_envs": 2, "goal": 1}, TypeError, "goal"),
-        ({"num_envs": 2, "vector_kwargs": {"copy": False}}, gym.error.Error, "vector_kwargs"),
-        ({"num_envs": 2, "wrappers": [gym.wrappers.TimeAwareObservation]}, gym.error.Error, "wrappers"),
     ],
 )
 def test_bad_arguments_are_refused_by_name(arguments, error, match):

@@ -127,11 +127,16 @@ true = np.sin
 np.sin = lambda x, *rest: np.nextafter(true(x, *rest), 2.0) if np.ndim(x) else np.nextafter(true(x), x.dtype.type(2.0))
 import gymnasium as gym, qtab
 warnings.simplefilter("ignore")
-ours = gym.make_vec("qtab/CartPole-v1", num_envs=3)
+ours = qtab.RustVectorEnv("CartPole-v1", num_envs=3)
 theirs = gym.vector.SyncVectorEnv([lambda: gym.make("CartPole-v1")] * 3)
 ours.reset(seed=0), theirs.reset(seed=0)
 for _ in range(30):
     one, other = ours.step(np.ones(3, int)), theirs.step(np.ones(3, int))
     assert all(mine.tobytes() == gymnasiums.tobytes() for mine, gymnasiums in zip(one[:4], other[:4]))
+one, other = gym.make_vec("qtab/CartPole-v1", num_envs=3), gym.make_vec("CartPole-v1", num_envs=3)
+one.reset(seed=0), other.reset(seed=0)
+for _ in range(30):
+    steps = one.step(np.ones(3, int)), other.step(np.ones(3, int))
+    assert all(mine.tobytes() == gymnasiums.tobytes() for mine, gymnasiums in zip(steps[0][:4], steps[1][:4]))
 print(gym.make_vec("qtab/MountainCar-v0", num_envs=3).is_native, ours.is_native, "equal")
 """

@@ -9,6 +9,7 @@ from gymnasium.vector import SyncVectorEnv
 
 from qtab.bench.mountain_car import QTAB_MAKE
 from qtab.bench.timing import Benchmark, Timings
+from qtab.envs.vector import RustVectorEnv
 
 NUM_ENVS = 4096
 CAR, POLE = "MountainCar-v0", "CartPole-v1"
@@ -16,6 +17,7 @@ CAR, POLE = "MountainCar-v0", "CartPole-v1"
 SYNC, QTAB_CARS = "Gymnasium's SyncVectorEnv, 4,096 MountainCars", "qtab's make_vec, 4,096 MountainCars"
 ENVPOOL = "EnvPool, 4,096 MountainCars, two threads"
 NUMPY_POLES, QTAB_POLES = "Gymnasium's CartPoleVectorEnv, 4,096", "qtab's make_vec, 4,096 CartPoles"
+RUST_POLES = "qtab.RustVectorEnv, 4,096 CartPoles"
 QTAB_ONE = "qtab's make_vec, 1 MountainCar"
 
 BASES = [("× Gymnasium", (SYNC, NUMPY_POLES)), ("× EnvPool", (ENVPOOL,)), ("× gym.make", (QTAB_MAKE,))]
@@ -26,6 +28,7 @@ COMPARED = {
     QTAB_CARS: (SYNC, ENVPOOL),
     NUMPY_POLES: (NUMPY_POLES,),
     QTAB_POLES: (NUMPY_POLES,),
+    RUST_POLES: (NUMPY_POLES,),
     QTAB_ONE: (QTAB_MAKE,),
 }
 """The benchmarks that each one is compared with."""
@@ -40,6 +43,7 @@ def stepping() -> dict[str, Benchmark]:
         QTAB_CARS: _steps(gym.make_vec(f"qtab/{CAR}", NUM_ENVS), 3, 200),
         NUMPY_POLES: _steps(poles, 2, 60),
         QTAB_POLES: _steps(gym.make_vec(f"qtab/{POLE}", NUM_ENVS), 2, 200),
+        RUST_POLES: _steps(RustVectorEnv(POLE, NUM_ENVS), 2, 200),
         QTAB_ONE: _steps(gym.make_vec(f"qtab/{CAR}", 1), 3, 10_000),
     }
 

@@ -3,13 +3,15 @@
 import gymnasium as gym
 
 from qtab.envs.registry import ENTRIES, EXTRA, PREFIX
+from qtab.envs.spec_kwargs import SpecKwargs
 
 
 def register() -> None:
     """Registers every environment of this package with Gymnasium.
 
     Each id of :data:`~qtab.envs.registry.ENTRIES` gets a twin with the prefix ``qtab/`` and the same time limit, reward
-    threshold and keyword arguments. Ids that the installed Gymnasium does not have are skipped.
+    threshold and keyword arguments. Ids that the installed Gymnasium does not have are skipped. The vector environment
+    of a twin equals ``SyncVectorEnv``, or else the one that Gymnasium has for its id: CartPole's.
     """
     for name, entry in ENTRIES.items():
         spec = gym.registry.get(name)
@@ -18,11 +20,11 @@ def register() -> None:
         gym.register(
             id=PREFIX + name,
             entry_point=entry.entry_point,
-            vector_entry_point=f"qtab.envs.vector:{name}",
+            vector_entry_point=entry.vector_entry_point or f"qtab.envs.make_vector:{name}",
             max_episode_steps=spec.max_episode_steps,
             reward_threshold=spec.reward_threshold,
             nondeterministic=spec.nondeterministic,
-            kwargs=dict(spec.kwargs),
+            kwargs=dict(spec.kwargs) if entry.vector_entry_point else SpecKwargs(spec.kwargs),
         )
     for name, entry in EXTRA.items():
         gym.register(id=name, entry_point=entry.entry_point)

@@ -29,14 +29,17 @@ class EnvEntry:
     """Constructor arguments that set constants Rust computes with. With any other argument Python steps."""
     has_table: bool = False
     """Whether Rust reads a transition table or the rules from the environment object, whatever its arguments were."""
+    vector_entry_point: str = ""
+    """This package's twin of the vector environment that Gymnasium has for the id; empty where Gymnasium has none."""
 
 
-def _classic_control(name: str, gymnasium_class: str, *supported_kwargs: str) -> EnvEntry:
+def _classic_control(name: str, gymnasium_class: str, *supported_kwargs: str, vector_entry_point: str = "") -> EnvEntry:
     return EnvEntry(
         name=name,
         gymnasium_entry_point=f"gymnasium.envs.classic_control.{gymnasium_class}",
         entry_point=f"qtab.envs.classic_control:{name}Env",
         supported_kwargs=frozenset(supported_kwargs),
+        vector_entry_point=vector_entry_point,
     )
 
 
@@ -49,13 +52,20 @@ def _toy_text(class_name: str, gymnasium_class: str, name: str = _TABLE) -> EnvE
     )
 
 
+_CART_POLE = _classic_control(
+    "CartPole",
+    "cartpole:CartPoleEnv",
+    "sutton_barto_reward",
+    vector_entry_point="qtab.envs.cart_pole_vector:CartPoleVectorEnv",
+)
+
 ENTRIES: Mapping[str, EnvEntry] = {
     "MountainCar-v0": _classic_control("MountainCar", "mountain_car:MountainCarEnv", "goal_velocity"),
     "MountainCarContinuous-v0": _classic_control(
         "ContinuousMountainCar", "continuous_mountain_car:Continuous_MountainCarEnv", "goal_velocity"
     ),
-    "CartPole-v0": _classic_control("CartPole", "cartpole:CartPoleEnv", "sutton_barto_reward"),
-    "CartPole-v1": _classic_control("CartPole", "cartpole:CartPoleEnv", "sutton_barto_reward"),
+    "CartPole-v0": _CART_POLE,
+    "CartPole-v1": _CART_POLE,
     "Acrobot-v1": _classic_control("Acrobot", "acrobot:AcrobotEnv"),
     "Pendulum-v1": _classic_control("Pendulum", "pendulum:PendulumEnv", "g"),
     "FrozenLake-v1": _toy_text("FrozenLakeEnv", "frozen_lake:FrozenLakeEnv"),

@@ -15,7 +15,7 @@ from qtab import _core
 from qtab._utils import checks
 from qtab.envs.native import native_env
 from qtab.envs.python_vector import PythonVectorEnv, restore
-from qtab.envs.registry import ENTRIES, PREFIX
+from qtab.envs.registry import ENTRIES, PREFIX, gymnasium_id
 from qtab.envs.vector_arguments import check_reset_mask, seeds_of
 
 _MAX_RESET_BOUND = 1e6
@@ -37,7 +37,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
     - for CartPole, Acrobot and Pendulum on machines where NumPy does not take sine and cosine from the C library.
 
     Args:
-        name: Gymnasium's id of the environment.
+        name: The id of the environment, Gymnasium's or the one with the prefix ``qtab/``.
         num_envs: The number of sub-environments.
         max_episode_steps: A time limit other than the spec's, as in ``gymnasium.make`` (-1: no limit).
         copy: Whether each step returns new arrays of observations. If False, it returns the same arrays each time.
@@ -45,9 +45,11 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         threads: The number of threads; None chooses automatically. It does not change the results.
         kwargs: Further arguments of ``gymnasium.make``.
 
+    It deep-copies and pickles: the copy continues the episodes with the same numbers.
+
     Raises:
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range.
+        ValueError: for an argument out of range, or an environment that Rust does not implement.
     """
 
     def __init__(
@@ -60,6 +62,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         threads: int | None = None,
         **kwargs: Any,
     ) -> None:
+        name = checks.choice("name", gymnasium_id(name) if isinstance(name, str) else name, ENTRIES)
         self.num_envs = checks.integer("num_envs", num_envs, least=1)
         self._autoreset_mode = AutoresetMode(autoreset_mode)
         self.copy = checks.boolean("copy", copy)
@@ -67,22 +70,23 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         spec = gym.spec(PREFIX + name)
         self._entry_name = ENTRIES[name].name
         self._make = partial(gym.make, spec, max_episode_steps=max_episode_steps, **kwargs)
-        self._example = self._make()
-        self.metadata = {**self._example.metadata, "autoreset_mode": self.autoreset_mode}
-        self.render_mode = self._example.render_mode
-        self.single_observation_space = self._example.observation_space
-        self.single_action_space = self._example.action_space
+        self.example = self._make()
+        """An environment like the sub-environments, which is never stepped."""
+        self.metadata = {**self.example.metadata, "autoreset_mode": self.autoreset_mode}
+        self.render_mode = self.example.render_mode
+        self.single_observation_space = self.example.observation_space
+        self.single_action_space = self.example.action_space
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._render_envs: list[gym.Env[Any, Any]] = []
         self._python: PythonVectorEnv | None = None
-        threads = None if threads is None else checks.threads(threads)
-        if not self._start_in_rust(threads):
+        self._threads = None if threads is None else checks.threads(threads)
+        if not self._start_in_rust():
             self._fall_back_to_python()
 
-    def _start_in_rust(self, threads: int | None) -> bool:
+    def _start_in_rust(self) -> bool:
         """Creates the sub-environments in Rust; returns False if Rust does not support them."""
-        env = self._example.unwrapped
+        env = self.example.unwrapped
         # A frame of Taxi depends on the frames before it.
         can_render = self.render_mode in ("rgb_array", "ansi") and not isinstance(env, TaxiEnv)
         if self.render_mode is not None and not can_render:
@@ -91,8 +95,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
             native = native_env(self._entry_name, env)
         except (TypeError, ValueError):  # parameters or a table that Gymnasium accepts and Rust does not
             return False
-        limited = self._example.has_wrapper_attr("_max_episode_steps")
-        limit = self._example.get_wrapper_attr("_max_episode_steps") if limited else None
+        limited = self.example.has_wrapper_attr("_max_episode_steps")
+        limit = self.example.get_wrapper_attr("_max_episode_steps") if limited else None
         return self.start(
             native,
             self.num_envs,
@@ -100,7 +104,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
             None if limit is None else min(limit, checks.LARGEST_COUNT),
             self.autoreset_mode.value,
             self.copy,
-            threads,
+            self._threads,
         )
 
     def reset(
@@ -126,8 +130,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         options = None if options is None else dict(options)
         mask = None
         if options is not None and "reset_mask" in options:
-            not_reset = self.not_reset() if self._python is None else self._python.not_reset()
-            mask = check_reset_mask(options.pop("reset_mask"), self.num_envs, not_reset)
+            mask = check_reset_mask(options.pop("reset_mask"), self.num_envs, self.not_reset())
         bounds = self._reset_bounds(options) if self.is_native else None
         if self._python is not None:
             masked = options if mask is None else {**(options or {}), "reset_mask": mask}
@@ -135,12 +138,16 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         indices = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
         return self.native_reset(list(indices), [seeds[index] for index in indices], bounds)
 
+    def not_reset(self) -> list[int]:
+        """Returns the indices of the sub-environments that were never reset."""
+        return super().not_reset() if self._python is None else self._python.not_reset()
+
     def _reset_bounds(self, options: dict[str, Any] | None) -> tuple[float, float] | None:
         """Returns the bounds of the first states that the options set; None for the default ones."""
         names = self.reset_bounds()
         if names is None or not options:
             return None
-        self._example.reset(options=options)  # raises Gymnasium's errors before anything changes
+        self.example.reset(options=options)  # raises Gymnasium's errors before anything changes
         low, high = (float(options.get(name, default)) for name, default in names)
         if max(abs(low), abs(high)) > _MAX_RESET_BOUND:
             self._fall_back_to_python()
@@ -246,18 +253,32 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
 
     def close_extras(self, **kwargs: Any) -> None:
         """Closes every environment that was created."""
-        self._example.close()
+        self.example.close()
         for env in self._render_envs:
             env.close()
         if self._python is not None:
             self._python.close(**kwargs)
 
-    def __reduce__(self) -> Any:
-        raise TypeError("a vector environment in Rust can neither be copied nor pickled; create another one")
+    def __getstate__(self) -> dict[str, Any]:
+        """Returns the Python attributes, and the episodes and generators that Rust has."""
+        # The environments that draw frames hold surfaces, which cannot be copied, and nothing else that lasts.
+        attributes = {**self.__dict__, "_render_envs": []}
+        if not self.is_native:
+            return {"attributes": attributes}
+        sources = [self.rng(index) for index in range(self.num_envs)]
+        return {
+            "attributes": attributes,
+            "checkpoint": self.checkpoint(),
+            "seeds": [self.seed_of(index) for index in range(self.num_envs)],
+            "generators": {index: source for index, source in enumerate(sources) if not isinstance(source, tuple)},
+        }
 
-
-def __getattr__(name: str) -> Any:
-    """Returns the entry point of an id: ``qtab.envs.vector:CartPole-v1``."""
-    if gym.registry.get(PREFIX + name) is None:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return partial(RustVectorEnv, name)
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state["attributes"])
+        if "checkpoint" not in state:
+            return
+        if not self._start_in_rust():
+            raise ValueError(f"Rust cannot continue the episodes of {self._entry_name} on this machine")
+        self.restore(state["checkpoint"], state["seeds"])
+        for index, generator in state["generators"].items():
+            self.set_rng(index, generator)

@@ -16,7 +16,7 @@ from qtab._utils.frames import episode_frame
 from qtab.config import Config
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
-from qtab.results import action_values, behaviour, run_file, saving
+from qtab.results import action_values, behaviour, plain_data, run_file, saving
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
@@ -227,6 +227,13 @@ class Run(WithPage):
             ModuleNotFoundError: without pandas; the message names the ``pip install``.
         """
         return episode_frame(self.episode_returns, self.episode_lengths, self.terminated)
+
+    def to_json(self, path: "str | os.PathLike[str]") -> None:
+        """Writes the greedy policy as plain data: tables, discretizer, actions. ``docs/policies.md`` has its keys.
+
+        It raises what :meth:`save` does.
+        """
+        plain_data.write(self, Path(path))
 
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes the run to one ``.npz`` file: arrays and a JSON header, never a pickle. :func:`qtab.load` reads it.

@@ -1,8 +1,8 @@
 """``qtab.verify``: compares a run with Gymnasium's environment and the reference learners in NumPy, byte for byte."""
 
 from collections.abc import Callable
-from contextlib import closing
-from dataclasses import dataclass
+from contextlib import AbstractContextManager, closing, nullcontext
+from dataclasses import dataclass, replace
 from typing import Any
 
 import gymnasium as gym
@@ -22,6 +22,7 @@ from qtab.envs.stored import spec_of_run
 from qtab.reference import LEARNERS
 from qtab.results.run import Run
 from qtab.training.given_env import check_env, check_spaces
+from qtab.training.repetition import repeats_itself, wrapper_with_statistics
 from qtab.training.resolve import resolve
 
 
@@ -42,6 +43,10 @@ class Verification:
     step: int | None
     """The first step (from 0) of that episode at which their actions differ; None where none does."""
     versions: dict[str, str]
+    repeats: bool | None = None
+    """Whether the environment gave the same twice for the same seed and actions; None where nothing differs."""
+    wrapper: str | None = None
+    """The class name of a wrapper of ``env`` with statistics of its own; None where nothing differs, or without one."""
 
     @property
     def equal(self) -> bool:
@@ -59,6 +64,7 @@ class Verification:
         lines = [self._heading, *(f"  {name:7}  {word}" for name, word in self._words().items())]
         if self.episode is not None:
             lines.append(f"  they differ from {self._place} on (counted from 0)")
+        lines += [f"  {sentence}" for sentence in self._about_the_environment()]
         lines.append("  " + ", ".join(f"{name} {value}" for name, value in self.versions.items()))
         return "\n".join(lines)
 
@@ -67,7 +73,22 @@ class Verification:
         facts = {"compared": f"{self.episodes:,} episodes, byte for byte", **self._words()}
         if self.episode is not None:
             facts["they differ from"] = f"{self._place} on (counted from 0)"
+        if self.repeats is not None:
+            facts["environment"] = " ".join(self._about_the_environment())
         return html.summary(f"Verification of {self.env}, seed {self.seed}", {**facts, **self.versions})
+
+    def _about_the_environment(self) -> list[str]:
+        """What the environment has to do with a difference, in lines of a report."""
+        lines = []
+        if self.repeats is False:
+            lines.append("the environment does not repeat itself: the same seed and actions gave something else the")
+            lines.append("second time, so that the difference says nothing about qtab")
+        elif self.repeats:
+            lines.append("the environment repeats itself: the same seed and actions gave the same twice")
+        if self.wrapper is not None:
+            lines.append(f"its wrapper {self.wrapper} keeps statistics, which start where the last call left them:")
+            lines.append("train and verify need a new environment each, and verify no episodes=")
+        return lines
 
     @property
     def _heading(self) -> str:
@@ -90,6 +111,8 @@ def verify(
     progress: Callable[[int, int], None] | None = None,
 ) -> Verification:
     """Trains a run's config again with Gymnasium's environment and the reference learner in plain NumPy, and compares.
+
+    Where the two differ, the reference's actions are taken twice more, to tell whether the environment repeats itself.
 
     Args:
         run: What to verify.
@@ -133,7 +156,7 @@ def verify(
 
     ours = run.tables if episodes is None else _again(config, env, count)[0]
     episode = _first_difference((returns, run.episode_returns[:count]), (lengths, run.episode_lengths[:count]))
-    return Verification(
+    verification = Verification(
         env=config.env,
         seed=checks.required("seed", config.seed),
         episodes=count,
@@ -143,6 +166,19 @@ def verify(
         episode=episode,
         step=None if episode is None else _first_step(config, env, run, recorder, episode),
         versions=versions(),
+    )
+    if verification.equal:
+        return verification
+
+    def make() -> AbstractContextManager[gym.Env]:
+        again = _environment(config, env)
+        return closing(again) if env is None else nullcontext(again)
+
+    actions = recorder.actions if episode is None else recorder.actions[: episode + 1]
+    return replace(
+        verification,
+        repeats=repeats_itself(make, verification.seed, actions),
+        wrapper=None if env is None else wrapper_with_statistics(env),
     )
 
 

@@ -5,6 +5,7 @@ use std::fmt::Display;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError, PyOverflowError, PyValueError};
 use qtab_core::TrainingError;
+use qtab_core::checkpoint::CheckpointError;
 use qtab_core::features::OutOfBounds;
 use qtab_core::memory::AllocationError;
 
@@ -79,6 +80,14 @@ pub(crate) fn out_of_memory(bytes: usize) -> PyErr {
 /// A failed allocation as a Python exception.
 pub(crate) fn allocation(error: AllocationError) -> PyErr {
     RunError::from(error).into()
+}
+
+/// A checkpoint that cannot be written, or read: `owner` is what it belongs to.
+pub(crate) fn unusable_checkpoint(error: CheckpointError, owner: &str) -> PyErr {
+    match error {
+        CheckpointError::OutOfMemory => PyMemoryError::new_err(format!("the checkpoint cannot be made: {error}")),
+        _ => PyValueError::new_err(format!("the checkpoint does not fit the {owner}: {error}")),
+    }
 }
 
 /// A `ValueError` that names the argument, what would fit, and what was given.

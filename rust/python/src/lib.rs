@@ -28,7 +28,7 @@ mod _core {
     #[pymodule_export]
     use super::envs::{
         PyBlackjack, PyClassicControl, PyNativeEnv, PyTaxi, PyToyText, PyTransitionTable, PyVectorEnv, matches_numpy,
-        numpy_uses_libm, parameter_names,
+        numpy_uses_libm, parameter_names, step_cart_poles,
     };
     #[pymodule_export]
     use super::planning::{PyMdpSolver, PyMountainCarSearch};

@@ -3,6 +3,7 @@
 use super::vector_config::VectorConfig;
 use super::{Autoreset, StepBuffers};
 use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::Env;
 use crate::memory::{AllocationError, filled, with_capacity};
 use crate::random::Rng;
@@ -54,6 +55,20 @@ impl<S: Copy> Shard<S> {
 
     pub(super) fn final_states(&self) -> &[(usize, S)] {
         &self.final_states
+    }
+
+    /// Saves or restores the episodes. Which of them ended in the last step is not part of it.
+    pub(super) fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>
+    where
+        S: Persist,
+    {
+        if checkpoint.is_restoring() {
+            self.final_states.clear();
+        }
+        for ((state, elapsed), done) in self.states.iter_mut().zip(&mut self.elapsed).zip(&mut self.done) {
+            (state, elapsed, done).persist(checkpoint)?;
+        }
+        Ok(())
     }
 
     /// Begins an episode in this state.

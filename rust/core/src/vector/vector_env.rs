@@ -6,6 +6,7 @@ use std::thread;
 use super::shard::Shard;
 use super::vector_config::VectorConfig;
 use super::{Autoreset, StepBuffers};
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::envs::Env;
 use crate::memory::AllocationError;
 use crate::random::{NoRng, Rng};
@@ -94,6 +95,15 @@ impl<E: Env> VectorEnv<E> {
             None => self.env.reset(rng),
         };
         self.shards[index / self.shard_len].begin(index % self.shard_len, state);
+    }
+
+    /// Saves the episodes of all sub-environments, or restores them in a vector environment of the same environment and
+    /// size. The number of threads can be another, and [`final_states`](Self::final_states) are left out.
+    ///
+    /// # Errors
+    /// The bytes are damaged, or belong to another vector environment. This one is then useless.
+    pub fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.shards.iter_mut().try_for_each(|shard| shard.persist(checkpoint))
     }
 
     /// Writes the current observations.
@@ -238,6 +248,41 @@ mod tests {
             check(&CartPole::default(), size, threads, limit, autoreset, seed);
             check(&Acrobot { torque_noise_max: 1.0, ..Acrobot::default() }, size, threads, limit, autoreset, seed);
         }
+    }
+
+    #[test]
+    fn a_restored_vector_environment_continues_with_other_threads() {
+        let new =
+            |threads| VectorEnv::new(CartPole::default(), 7, Some(9), Autoreset::NextStep, threads).expect("it fits");
+        let step = |vector: &mut VectorEnv<CartPole>, rngs: &mut [Pcg64]| {
+            let (mut observations, mut rewards) = ([[0.0; 4]; 7], [0.0; 7]);
+            let (mut terminated, mut truncated) = ([false; 7], [false; 7]);
+            let buffers = StepBuffers {
+                observations: &mut observations,
+                rewards: &mut rewards,
+                terminated: &mut terminated,
+                truncated: &mut truncated,
+            };
+            vector.step(&[1; 7], rngs, buffers);
+            (observations, rewards, terminated, truncated)
+        };
+        let (mut saved, mut rngs) = (new(3), generators(7));
+        (0..7).for_each(|index| saved.reset(index, None, &mut rngs[index]));
+        for _ in 0..9 {
+            step(&mut saved, &mut rngs);
+        }
+
+        let mut bytes = Vec::new();
+        saved.persist(&mut Checkpoint::save(&mut bytes)).expect("memory suffices");
+        let (mut restored, mut same_rngs) = (new(1), rngs.clone());
+        let mut checkpoint = Checkpoint::restore(&bytes);
+        restored.persist(&mut checkpoint).expect("the bytes are complete");
+        checkpoint.finish().expect("all bytes were read");
+        for _ in 0..30 {
+            assert_eq!(step(&mut saved, &mut rngs), step(&mut restored, &mut same_rngs));
+        }
+        let mut cut = Checkpoint::restore(&bytes[..bytes.len() - 1]);
+        assert_eq!(restored.persist(&mut cut), Err(CheckpointError::Truncated));
     }
 
     #[test]

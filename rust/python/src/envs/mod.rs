@@ -13,7 +13,7 @@ mod py_vector_env;
 mod registry;
 mod toy_text;
 
-pub(crate) use classic_control::numpy_uses_libm;
+pub(crate) use classic_control::{numpy_uses_libm, step_cart_poles};
 pub(crate) use native_env::NativeEnv;
 pub(crate) use py_classic_control::{PyClassicControl, matches_numpy, parameter_names};
 pub(crate) use py_native_env::PyNativeEnv;

@@ -5,16 +5,19 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
 use qtab_core::StopFlag;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::memory::{collect, filled};
 use qtab_core::vector::Autoreset;
 
 use super::PyNativeEnv;
 use super::gymnasium::reset_needed;
 use crate::convert::Seed;
-use crate::error::{allocation, invalid};
+use crate::error::{allocation, invalid, unusable_checkpoint};
 use crate::vector::{DynVectorEnv, SubEnvRng, VectorOptions};
 
 const ENTROPY_BYTES: usize = 16;
+/// What a checkpoint belongs to, in messages.
+const OWNER: &str = "vector environment";
 
 const AUTORESET_MODES: [(&str, Autoreset); 3] =
     [("NextStep", Autoreset::NextStep), ("SameStep", Autoreset::SameStep), ("Disabled", Autoreset::Disabled)];
@@ -158,9 +161,52 @@ impl PyVectorEnv {
         PyList::new(py, snapshots.collect::<PyResult<Vec<_>>>()?)
     }
 
+    /// The episodes, the positions of the generators in Rust, and which sub-environments were never reset: what `restore`
+    /// needs beside the seeds, and beside the generators that Python has.
+    fn checkpoint<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
+        let mut bytes = Vec::new();
+        borrow_mut(slf)?
+            .persist(&mut Checkpoint::save(&mut bytes))
+            .map_err(|error| unusable_checkpoint(error, OWNER))?;
+        Ok(PyBytes::new(slf.py(), &bytes))
+    }
+
+    /// Continues what `checkpoint` saved, in new sub-environments of the same kind and number.
+    fn restore(slf: &Bound<'_, Self>, checkpoint: &[u8], seeds: Vec<Seed>) -> PyResult<()> {
+        let mut this = borrow_mut(slf)?;
+        if seeds.len() != this.rngs.len() {
+            return Err(invalid("seeds", format!("{} of them", this.rngs.len()), seeds.len()));
+        }
+        this.rngs = collect(seeds.iter().map(SubEnvRng::new)).map_err(allocation)?;
+        this.seeds = seeds;
+        let mut checkpoint = Checkpoint::restore(checkpoint);
+        this.persist(&mut checkpoint)
+            .and_then(|()| checkpoint.finish())
+            .map_err(|error| unusable_checkpoint(error, OWNER))
+    }
+
     /// Drops the sub-environments in Rust.
     fn release(slf: &Bound<'_, Self>) -> PyResult<()> {
         borrow_mut(slf)?.envs = None;
+        Ok(())
+    }
+}
+
+impl PyVectorEnv {
+    /// Saves or restores the episodes, the generators in Rust, and which sub-environments were never reset.
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        let Some(envs) = &mut self.envs else { return Ok(()) };
+        envs.persist(checkpoint)?;
+        for (index, rng) in self.rngs.iter_mut().enumerate() {
+            let mut not_reset = self.not_reset.get(index).is_some_and(|&not_reset| not_reset);
+            (rng, &mut not_reset).persist(checkpoint)?;
+            if let Some(ours) = self.not_reset.get_mut(index) {
+                *ours = not_reset;
+            }
+        }
+        if !self.not_reset.contains(&true) {
+            self.not_reset.clear();
+        }
         Ok(())
     }
 }

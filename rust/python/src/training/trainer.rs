@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
@@ -16,7 +16,7 @@ use qtab_core::{Budget, EpisodeLog};
 use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
 use crate::convert::{Seed, array_of};
-use crate::error::{RunError, allocation, invalid};
+use crate::error::{RunError, allocation, invalid, unusable_checkpoint};
 use crate::interrupt::{run_interruptible, run_polling};
 use crate::runs::{AnyRecordings, BuiltRun, python_run};
 use crate::spec::{Fields, RunSpec};
@@ -192,10 +192,7 @@ impl PyTrainer {
 }
 
 fn unusable(error: CheckpointError) -> PyErr {
-    match error {
-        CheckpointError::OutOfMemory => PyMemoryError::new_err(format!("the checkpoint cannot be made: {error}")),
-        _ => PyValueError::new_err(format!("the checkpoint does not fit the run: {error}")),
-    }
+    unusable_checkpoint(error, "run")
 }
 
 fn take<S>(recordings: &Recordings<S>) -> VecDeque<Recording<S>> {

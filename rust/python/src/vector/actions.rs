@@ -4,6 +4,7 @@ use numpy::{PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedAr
 use pyo3::exceptions::{PyAssertionError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::numeric::Scalar;
 
 use crate::convert::{LARGEST_FORCE, discrete_action, double, first_item, numpy_scalar};
@@ -27,6 +28,9 @@ pub(crate) trait BatchAction: Copy + Send + Sync + 'static {
 
     /// The action as Gymnasium's environments store it.
     fn to_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>>;
+
+    /// Saves the action, or replaces it by the one that was saved.
+    fn persist(&mut self, num_actions: usize, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
 
 /// Checks the length of a sequence that is no array.
@@ -78,6 +82,10 @@ impl BatchAction for usize {
 
     fn to_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         PyArray1::from_slice(py, &[self.cast_signed() as i64]).get_item(0)
+    }
+
+    fn persist(&mut self, num_actions: usize, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        checkpoint.index(self, num_actions, "action")
     }
 }
 
@@ -150,6 +158,10 @@ impl BatchAction for Scalar {
 
     fn to_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         numpy_scalar(py, self)
+    }
+
+    fn persist(&mut self, _num_actions: usize, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        Persist::persist(self, checkpoint)
     }
 }
 

@@ -4,6 +4,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyAssertionError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::memory::{filled, with_capacity};
 use qtab_core::vector::{Autoreset, StepBuffers};
 use qtab_core::{Env, StopFlag, VectorEnv};
@@ -46,6 +47,9 @@ pub(crate) trait DynVectorEnv: Send + Sync {
     fn reset_bounds(&self) -> Option<[(&'static str, f64); 2]>;
 
     fn snapshot<'py>(&self, py: Python<'py>, index: usize) -> PyResult<EnvSnapshot<'py>>;
+
+    /// Saves the episodes, or restores those that were saved.
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
 
 /// Sub-environments that are copies of `env`.
@@ -184,5 +188,16 @@ where
             self.info.terminal_counter.map_or(Ok(()), |name| attributes.set_item(name, 0))?;
         }
         Ok((attributes, elapsed, done, self.observations[index].single(py)?))
+    }
+
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.envs.persist(checkpoint)?;
+        let num_actions = self.envs.env().num_actions();
+        self.actions[0].iter_mut().try_for_each(|action| action.persist(num_actions, checkpoint))?;
+        self.terminated.as_mut_slice().persist(checkpoint)?;
+        if checkpoint.is_restoring() {
+            self.envs.observe(&mut self.observations);
+        }
+        Ok(())
     }
 }

@@ -2,6 +2,7 @@
 
 use pyo3::intern;
 use pyo3::prelude::*;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::random::{Pcg64, Rng};
 
 use crate::convert::Seed;
@@ -52,6 +53,19 @@ impl Rng for SubEnvRng {
             Self::Python(generator) => Python::attach(|py| {
                 returned(py, generator.bind(py).call_method1(intern!(py, "integers"), (0, below.max(1))))
             }),
+        }
+    }
+}
+
+/// The position of a generator in Rust, into which one of the same seed is restored. Of a generator of Python's only that it
+/// is one: Python copies and pickles it.
+impl Persist for SubEnvRng {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        let mut native = matches!(self, Self::Native(_));
+        native.persist(checkpoint)?;
+        match self {
+            Self::Native(rng) if native => rng.persist(checkpoint),
+            _ => Ok(()),
         }
     }
 }

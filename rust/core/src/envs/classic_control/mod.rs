@@ -2,6 +2,7 @@
 
 mod acrobot;
 mod cart_pole;
+mod cart_pole_arrays;
 mod continuous_mountain_car;
 mod mountain_car;
 mod mountain_car_simd;

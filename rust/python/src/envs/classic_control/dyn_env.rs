@@ -63,7 +63,10 @@ impl<E: ClassicEnv> DynClassicEnv for E {
 
 /// Reads the numbers and flags from Gymnasium's environment; returns the name of the first one that Rust cannot take
 /// over, such as a number of another width.
-fn read_parameters<P: Parameters>(parameters: &mut P, env: &Bound<'_, PyAny>) -> PyResult<Option<&'static str>> {
+pub(super) fn read_parameters<P: Parameters>(
+    parameters: &mut P,
+    env: &Bound<'_, PyAny>,
+) -> PyResult<Option<&'static str>> {
     for &name in P::NAMES {
         let value = env.getattr_opt(name)?;
         let (Some(parameter), Some(number)) = (parameters.parameter(name), value.and_then(|value| constant(&value)))

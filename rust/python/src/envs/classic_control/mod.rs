@@ -2,6 +2,7 @@
 
 mod acrobot;
 mod cart_pole;
+mod cart_pole_batch;
 mod continuous_mountain_car;
 mod dyn_env;
 mod env_layout;
@@ -20,6 +21,7 @@ use pyo3::types::PyDict;
 use qtab_core::Env;
 use qtab_core::envs::Parameters;
 
+pub(crate) use cart_pole_batch::step_cart_poles;
 pub(super) use env_layout::EnvLayout;
 pub(super) use reset::ResetResult;
 pub(super) use step::{StepResult, StoredState};

@@ -1,0 +1,74 @@
+"""A run's policy as JSON that any language can read; ``docs/policies.md`` describes it and uses it."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils.files import replacing
+from qtab.results.consistency import check_consistent
+
+if TYPE_CHECKING:
+    from qtab.results.run import Run
+
+FORMAT = "qtab policy"
+FORMAT_VERSION = 1
+
+
+def plain_data(run: "Run") -> dict[str, Any]:
+    """Returns what it takes to follow a run's greedy policy: numbers, texts, lists and dicts alone."""
+    discretizer, actions = run.discretizer, run.actions
+    return {
+        "format": FORMAT,
+        "version": FORMAT_VERSION,
+        "env": str(run.config.env),
+        "env_kwargs": dict(run.config.env_kwargs),
+        "max_episode_steps": run.config.max_episode_steps,
+        "algorithm": run.config.algorithm,
+        "seed": run.config.seed,
+        "episodes": len(run.episode_returns),
+        "discretizer": dict(discretizer.spec()),
+        "shape": list(discretizer.shape),
+        "actions": [_plain(actions[column]) for column in range(len(actions))],
+        "q_tables": [_rows(table) for table in run.tables],
+        "versions": dict(run.versions),
+    }
+
+
+def write(run: "Run", path: Path) -> None:
+    """Writes the policy of a run to a JSON file, whole or not at all.
+
+    Raises:
+        OSError: if the file cannot be written.
+        TypeError: if the environment's keyword arguments hold what JSON cannot.
+        ValueError: if they hold a number that JSON cannot, or the run is not one that training returns.
+    """
+    try:
+        check_consistent(run)
+    except ValueError as error:
+        raise ValueError(f"this run cannot be written: {error}") from None
+    try:
+        text = json.dumps(plain_data(run), allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"env_kwargs must hold what JSON can, got {run.config.env_kwargs!r}: {error}") from None
+    with replacing(path) as temporary:
+        temporary.write_text(text + "\n", encoding="utf-8")
+
+
+def _plain(action: Any) -> Any:
+    """Returns an action as numbers, lists and dicts."""
+    if isinstance(action, dict):
+        return {name: _plain(part) for name, part in action.items()}
+    if isinstance(action, tuple):
+        return [_plain(part) for part in action]
+    return action.tolist() if isinstance(action, np.ndarray | np.generic) else action
+
+
+def _rows(table: NDArray[np.float64]) -> list[list[float | None]]:
+    """Returns a list for each row, with None for the -inf of an action that a state does not have."""
+    rows: list[list[float | None]] = table.tolist()
+    if np.isneginf(table).any():
+        rows = [[None if value == -np.inf else value for value in row] for row in rows]
+    return rows
