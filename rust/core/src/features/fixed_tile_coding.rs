@@ -86,7 +86,7 @@ impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
         Some(Self { axes: fixed, first_rows, hashed: tiles.is_hashed().then(|| Box::new(tiles.clone())), len })
     }
 
-    #[cold]
+    #[inline(never)]
     fn hashed_rows(tiles: &TileCoding<T, N>, observation: &[T; D]) -> Result<FixedTiles<N>, OutOfBounds> {
         tiles.active_rows(observation).map(|active| FixedTiles(active.rows()))
     }

@@ -41,8 +41,8 @@ impl<const N: usize> QTable<N> {
 
     /// The value of one action with these active rows.
     #[inline]
-    pub fn value(&self, rows: &[u32], action: usize) -> f64 {
-        let mut values = rows.iter().map(|&row| self.values[self.weight_index(row, action)]);
+    pub fn value<R: AsRef<[u32]> + ?Sized>(&self, rows: &R, action: usize) -> f64 {
+        let mut values = rows.as_ref().iter().map(|&row| self.values[self.weight_index(row, action)]);
         let first = values.next().unwrap_or(0.0);
         values.fold(first, |sum, value| sum + value)
     }
@@ -61,8 +61,15 @@ impl<const N: usize> QTable<N> {
 
     /// Q ← Q + α (target - Q). The step size is the share of each row.
     #[inline]
-    pub fn update(&mut self, rows: &[u32], action: usize, target: f64, step_size: &mut impl StepSize) {
+    pub fn update<R: AsRef<[u32]> + ?Sized>(
+        &mut self,
+        rows: &R,
+        action: usize,
+        target: f64,
+        step_size: &mut impl StepSize,
+    ) {
         let error = target - self.value(rows, action);
+        let rows = rows.as_ref();
         if rows.len() != 1 {
             self.check_finite(error);
         }

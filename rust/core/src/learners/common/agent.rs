@@ -107,7 +107,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     /// Q(S, A).
     #[inline]
     pub fn value(&self, rows: impl AsRef<[u32]>, action: usize) -> f64 {
-        self.table.value(rows.as_ref(), action)
+        self.table.value(&rows, action)
     }
 
     /// Counts a visit of a state-action pair.
@@ -124,7 +124,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     /// Q(S, A) ← Q(S, A) + α [target - Q(S, A)].
     #[inline]
     pub fn update(&mut self, rows: impl AsRef<[u32]>, action: usize, target: f64) {
-        self.table.update(rows.as_ref(), action, target, &mut self.learning_rate);
+        self.table.update(&rows, action, target, &mut self.learning_rate);
     }
 
     /// The update when S′ is terminal, as `terminal_update` says.
