@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._discretizer_spec import DiscretizerSpec as DiscretizerSpec
 from qtab.config.choices import BitGenerator, OnTruncation, TerminalUpdate, Ties, Traces
 
 if TYPE_CHECKING:
@@ -53,62 +54,6 @@ class FunctionMaskSource(TypedDict):
 
 MaskSourceSpec: TypeAlias = ConventionalMaskSource | FunctionMaskSource
 EnvironmentSpec: TypeAlias = NativeEnvSpec | PythonEnvSpec
-
-# Discretizers
-
-FloatType: TypeAlias = Literal["float32", "float64"]
-
-
-class RoundSpec(TypedDict):
-    """A grid: each component rounded to the nearest multiple of 1 / ``scale``."""
-
-    type: Literal["round"]
-    dtype: FloatType
-    """Of the observations, and of the arithmetic."""
-    low: Sequence[float]
-    """The bounds of the observation space."""
-    high: Sequence[float]
-    scale: Sequence[float]
-    """Cells per unit of each component."""
-
-
-class BinsSpec(TypedDict):
-    """A grid of bins between edges, as ``numpy.digitize`` numbers them; ``bins`` and ``edges`` of the config."""
-
-    type: Literal["bins"]
-    dtype: FloatType
-    edges: Sequence[Sequence[float]]
-    """For each component the inner edges, ascending."""
-
-
-class TilesSpec(TypedDict):
-    """Tile coding."""
-
-    type: Literal["tiles"]
-    dtype: FloatType
-    low: Sequence[float]
-    """What the tilings span."""
-    high: Sequence[float]
-    tiles: Sequence[int]
-    """Along each component."""
-    tilings: int
-    hashed_rows: int | None
-    """The rows that all tilings share; None gives each tile its own."""
-
-
-class IdentitySpec(TypedDict):
-    """Integers, each combination a row in C order."""
-
-    type: Literal["identity"]
-    first: Sequence[int]
-    """The first integer of each component."""
-    counts: Sequence[int]
-    """How many integers each component takes."""
-    scalar: bool
-    """Whether an observation is one integer (a Discrete space), not a sequence of them."""
-
-
-DiscretizerSpec: TypeAlias = RoundSpec | BinsSpec | TilesSpec | IdentitySpec
 
 # The agent
 

@@ -1,9 +1,11 @@
 """Bad usage is answered in one line that names the flag as it is typed; nothing prints a traceback."""
 
+import sys
 from pathlib import Path
 
 import pytest
 
+from qtab.cli import main
 from qtab.cli.usage import as_flags
 from support.command import qtab, qtab_here, refused
 
@@ -132,3 +134,12 @@ def test_train_says_whether_the_task_is_solved(tmp_path: Path, arguments: list[s
     assert all(line.startswith(str(verdict)) for line in found)
     if verdict and verdict.startswith("Not"):
         assert found[0].endswith("the threshold -110; --preset solved reaches it")
+
+
+@pytest.mark.parametrize("arguments", [["completion", "bash"], ["trian"]])
+def test_closed_streams_count_as_empty(arguments: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdout", None)
+    monkeypatch.setattr(sys, "stderr", None)
+    assert main(arguments) == (2 if arguments == ["trian"] else 0)
+    sys.stdout.close()
+    sys.stderr.close()

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab.cli.command import SUBCOMMANDS
 from qtab.cli.reporting import json_text
 from support.command import qtab_here, refused
 from support.repository import ROOT
@@ -191,3 +192,13 @@ def test_the_page_on_the_command_line_lists_every_key(folder: Path) -> None:
         name, *arguments = line.split()
         keys = set(re.findall(r"`(\w+)`", lines[name]))
         assert set(printed(name, *arguments, cwd=folder)) - {"command"} <= keys
+
+
+def test_the_page_on_the_command_line_lists_every_command_and_those_without_the_flags(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "command_line.md").read_text(encoding="utf-8")
+    table = page.split("\n\n")[1]
+    assert sorted(re.findall(r"`qtab (\w+)", table)) == sorted(SUBCOMMANDS)
+    sentence = re.search(r"All commands except for (.*?) have both flags", page, re.DOTALL)
+    assert sentence is not None
+    without = [name for name in SUBCOMMANDS if "--json" not in qtab_here(name, "--help", cwd=tmp_path).stdout]
+    assert sorted(re.findall(r"`(\w+)`", sentence[1])) == sorted(without)

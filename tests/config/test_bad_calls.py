@@ -34,8 +34,8 @@ COUNTS: tuple[str, ...] = (
     "learning_rate_warm_up",
     "epsilon_warm_up",
 )
-COUNTS += ("tilings", "hashed_rows")
-LISTS = ("scale", "tiles", "bins", "low", "high", "edges", "actions", "initial_q")
+COUNTS += ("tilings", "hashed_rows", "max_rows")
+LISTS = ("shape", "scale", "tiles", "bins", "low", "high", "edges", "actions", "initial_q")
 NOT_REAL: list[Any] = ["x", b"1", NAN, -0.5, 1j, [0.5], {}, True, np.True_, HUGE, -HUGE]
 NOT_COUNTS: list[Any] = ["3", 1.5, -1, True, np.True_, [3], NAN, HUGE, np.array([3])]
 NOT_CHOICES: list[Any] = ["nope", "", 3, b"auto", ["auto"]]
@@ -169,12 +169,12 @@ def test_a_misspelled_id_has_no_presets_but_a_suggestion() -> None:
 
 
 SPACES: list[tuple[gym.Space[Any], str]] = [
-    (gym.spaces.Dict({"a": gym.spaces.Discrete(2)}), "FlattenObservation makes a Box of it, and .*FilterObservation"),
-    (gym.spaces.Box(0, 1, (2, 2)), "FlattenObservation, or gymnasium.wrappers.TransformObservation"),
-    (gym.spaces.Box(0, 9, (2,), np.int64), r"DtypeObservation\(env, numpy.float32\) converts it"),
-    (gym.spaces.MultiBinary(3), "FlattenObservation, or gymnasium.wrappers.TransformObservation"),
-    (gym.spaces.Text(3), "TransformObservation makes a Box of it with a function"),
-    (gym.spaces.Discrete(3), "discretizer must be left out for it"),
+    (gym.spaces.Dict({"a": gym.spaces.Discrete(2)}), "discretizer must be left out for"),
+    (gym.spaces.MultiBinary(3), "discretizer must be left out for"),
+    (gym.spaces.Discrete(3), "observation space must be a Box .*discretizer must be left out for it"),
+    (gym.spaces.Text(3), "TransformObservation makes numbers of it with a function, or give a function as"),
+    (gym.spaces.Dict({"a": gym.spaces.Discrete(2), "b": gym.spaces.Text(3)}), r"FilterObservation\(env, \['a'\]\)"),
+    (gym.spaces.Box(0, 1, (2,), np.longdouble), r"DtypeObservation\(env, numpy.float64\) converts it"),
 ]
 
 
@@ -182,9 +182,7 @@ SPACES: list[tuple[gym.Space[Any], str]] = [
 def test_a_space_that_does_not_fit_is_refused_with_the_wrapper_that_helps(space: Any, remedy: str) -> None:
     env = Walk()
     env.observation_space = space
-    with pytest.raises(
-        ValueError, match=rf"^the observation space must be a Box of one axis of .*, got .*; .*{remedy}"
-    ):
+    with pytest.raises(ValueError, match=remedy):
         qtab.train(env, discretizer="bins", episodes=1)
 
 

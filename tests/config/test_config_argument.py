@@ -61,8 +61,8 @@ def test_no_preset_has_an_option_that_a_run_may_leave_none() -> None:
     values = [values for env in gym.registry for values in qtab.presets(env).values()]
     assert values
     without_default = {name for name, option in OPTIONS.items() if option.default is None}
-    assert without_default == {"scale", "hashed_rows", "edges", "low", "high"}
-    assert not any("hashed_rows" in preset for preset in values)
+    assert without_default == {"scale", "hashed_rows", "edges", "low", "high", "shape", "max_rows"}
+    assert not any({"hashed_rows", "shape", "max_rows"} & preset.keys() for preset in values)
 
 
 def test_keywords_override_the_config_and_the_config_overrides_the_preset() -> None:

@@ -11,6 +11,7 @@ import pytest
 import qtab
 from qtab import _core
 from qtab.config import DEFAULTS, choices, validation
+from qtab.config.discretizer import FUNCTION, MAPPING
 from qtab.config.explanations import explanations, groups
 from qtab.config.options import OPTIONS
 from qtab.config.settings import ConfigSettings, Settings, SharedSettings
@@ -50,13 +51,13 @@ def test_the_options_are_the_settings_that_are_not_given_by_default() -> None:
     not_given = {name for name, default in DEFAULTS.items() if default is None or default == ()}
     assert OPTIONS.keys() == not_given - {"max_episode_steps", "seed", "preset", "actions"}
     for option in OPTIONS.values():
-        assert set(option.values) <= set(choices.CHOICES[option.choice])
+        assert set(option.values) <= {*choices.CHOICES[option.choice], FUNCTION, MAPPING}
 
 
 def test_rust_knows_the_same_algorithms_discretizers_and_schedules() -> None:
     assert set(_core.ALGORITHMS) == set(get_args(choices.Algorithm))
-    # Rust takes the edges themselves for "edges" as for "bins".
-    assert {*_core.DISCRETIZERS, "edges"} == set(get_args(choices.DiscretizerName))
+    # Rust takes the edges themselves for "edges" as for "bins", and several discretizers together as "product".
+    assert {*_core.DISCRETIZERS, "edges"} - {"product"} == set(get_args(choices.DiscretizerName))
     assert set(_core.SCHEDULES) == set(get_args(choices.LearningRateSchedule))
     assert {*get_args(choices.EpsilonSchedule), "visits"} == set(_core.SCHEDULES)
 

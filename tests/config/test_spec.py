@@ -35,9 +35,9 @@ def test_the_options_of_an_algorithm_are_those_of_its_spec(algorithm: choices.Al
     assert spec["type"] == algorithm
 
 
-def test_the_discretizers_are_the_same_but_for_edges_which_are_sent_as_bins() -> None:
+def test_the_discretizers_are_the_same_but_for_edges_sent_as_bins_and_several_sent_as_a_product() -> None:
     assert set(_core.DISCRETIZERS) == words(_spec.DiscretizerSpec)
-    assert set(DISCRETIZERS) == set(get_args(choices.DiscretizerName)) == {*_core.DISCRETIZERS, "edges"}
+    assert set(DISCRETIZERS) == set(get_args(choices.DiscretizerName)) == {*_core.DISCRETIZERS, "edges"} - {"product"}
 
 
 def test_the_schedules_are_the_same_and_epsilon_has_none_by_visits() -> None:

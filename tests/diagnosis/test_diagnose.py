@@ -116,6 +116,14 @@ def test_visits_tell_untried_actions_from_values_that_stayed_the_same() -> None:
     assert guessed["coverage"].title.endswith("or their values never changed.")
 
 
+def test_more_seeds_than_fit_into_memory_are_refused_before_there_is_a_list_of_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("qtab.diagnosis.facts.memory_limit", lambda _: 1000)
+    with pytest.raises(MemoryError, match=r"^101 runs need "):
+        qtab.diagnose(qtab.train(LAKE, seed=0, episodes=10), seeds=100)
+
+
 def test_other_seeds_give_the_rank() -> None:
     run = qtab.train(LAKE, preset="solved", episodes=500, seed=13)
     evidence = qtab.diagnose(run, seeds=40)["unlucky seed"].evidence

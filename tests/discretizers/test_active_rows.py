@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from qtab import _core
-from qtab._spec import DiscretizerSpec
-from qtab.reference.discretizers import discretizer as numpy_discretizer
+from qtab._discretizer_spec import DiscretizerSpec
+from qtab.reference.observations import discretizer as numpy_discretizer
 from qtab.training.resolve import resolve
 
 TILES = {"discretizer": "tiles", "tilings": 8, "tiles": (8, 8)}

@@ -164,6 +164,12 @@ def test_sentences_are_escaped_and_not_cut():
     assert ElementTree.fromstring(shown).findtext(".//caption") == NAME  # noqa: S314
 
 
+def test_a_heading_is_as_wide_as_its_text_and_not_as_a_narrow_table():
+    caption = ElementTree.fromstring(html.report(NAME, ["a"], [["b"]], [])).find(".//caption")  # noqa: S314
+    assert caption is not None
+    assert "width:max-content;max-width:90vw" in caption.get("style", "")
+
+
 def test_a_callback_of_your_own_shows_what_it_was_given():
     class Mine(callbacks.BaseCallback):
         def __init__(self, target: float, every: int | None = None, *rest: Any, **more: Any) -> None:

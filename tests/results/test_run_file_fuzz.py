@@ -14,15 +14,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+from gymnasium.spaces import Box, Dict, Discrete
 from hypothesis import event, given
 from hypothesis import strategies as st
 
 import qtab
+from support.environments import Sampled
 from support.run_files import members_of, with_header, with_right_digest, without_digest
 
 REFUSED = "is not a run file that this version of qtab can read: "
 
 Draw = Callable[[st.SearchStrategy[Any]], Any]
+
+
+MIXED = Dict({"room": Discrete(3), "speed": Box(-1.0, 1.0, (2,))})
+SHORT: dict[str, Any] = {"seed": 4, "episodes": 2, "max_episode_steps": 10}
 
 
 def saved_runs() -> dict[str, qtab.Run]:
@@ -33,6 +39,8 @@ def saved_runs() -> dict[str, qtab.Run]:
         "missing actions": qtab.train("FrozenLake-v1", seed=1, episodes=3, initial_q=initial_q, algorithm="sarsa"),
         "a Box of actions": qtab.train("Pendulum-v1", seed=2, episodes=2, max_episode_steps=5, preset=None),
         "tiles": qtab.train("MountainCar-v0", seed=3, episodes=2, preset="solved", tiles=2, tilings=2),
+        "a mapping": qtab.train(Sampled(MIXED), discretizer={"speed": "bins"}, **SHORT),
+        "rows that were met": qtab.train(Sampled(MIXED), scale=(2, 3), max_rows=50, **SHORT),
     }
 
 
@@ -71,7 +79,12 @@ def assert_equal(loaded: qtab.Run, run: qtab.Run) -> None:
     pairs = [(getattr(loaded, name), getattr(run, name)) for name in arrays]
     pairs += [(loaded.actions.values, run.actions.values)] if run.actions.values is not None else []
     assert type(loaded.discretizer) is type(run.discretizer)
-    for field in dataclasses.fields(run.discretizer):
+    if run.discretizer.reads_space:
+        assert loaded.discretizer.spec() == run.discretizer.spec()
+        stored, expected = loaded.discretizer.arrays(), run.discretizer.arrays()
+        assert stored.keys() == expected.keys()
+        pairs += [(stored[name], array) for name, array in expected.items()]
+    for field in () if run.discretizer.reads_space else dataclasses.fields(run.discretizer):
         one, other = (getattr(each.discretizer, field.name) for each in (loaded, run))
         pairs += zip(one, other, strict=True) if isinstance(one, tuple) else [(one, other)]
     for one, other in pairs:

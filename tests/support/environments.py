@@ -108,3 +108,20 @@ def make_brittle() -> Brittle:
 
 def make_walk(**kwargs: Any) -> Walk:
     return Walk(**kwargs)
+
+
+class Sampled(gym.Env):
+    """Shows random observations of a space; rewards depend on the action."""
+
+    def __init__(self, space: gym.Space[Any]) -> None:
+        self.observation_space, self.action_space = space, gym.spaces.Discrete(3, start=2)
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, dict[str, Any]]:
+        super().reset(seed=seed)
+        if seed is not None:
+            self.observation_space.seed(seed)
+        return self.observation_space.sample(), {}
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        assert self.action_space.contains(action)
+        return self.observation_space.sample(), float(action) / 7.0, bool(self.np_random.random() < 0.1), False, {}

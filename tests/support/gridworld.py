@@ -68,3 +68,36 @@ class Room(gym.Env[Any, Any]):
         rows = [list(line) for line in MAP]
         rows[self.place[0]][self.place[1]] = ">v<^"[self.direction]
         return "\n".join(map("".join, rows))
+
+
+class Tutorial(gym.Env):
+    """The grid world of Gymnasium's page "Create a custom environment", written from its description.
+
+    An agent and a target are at different cells of a square; the observation is a Dict of their two positions. Actions
+    0 to 3 move right, up, left and down. Reaching the target gives a reward of 1 and ends the episode.
+    """
+
+    MOVES = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
+
+    def __init__(self, size: int = 5) -> None:
+        self.size = size
+        integer: Any = int
+        cell = gym.spaces.Box(0, size - 1, shape=(2,), dtype=integer)
+        self.observation_space = gym.spaces.Dict({"agent": cell, "target": cell})
+        self.action_space = gym.spaces.Discrete(4)
+        self.agent = self.target = np.array([-1, -1])
+
+    def _observation(self) -> dict[str, Any]:
+        return {"agent": self.agent, "target": self.target}
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        super().reset(seed=seed)
+        self.agent = self.target = self.np_random.integers(0, self.size, size=2)
+        while np.array_equal(self.agent, self.target):
+            self.target = self.np_random.integers(0, self.size, size=2)
+        return self._observation(), {"distance": int(np.abs(self.agent - self.target).sum())}
+
+    def step(self, action: int) -> Any:
+        self.agent = np.clip(self.agent + self.MOVES[action], 0, self.size - 1)
+        arrived = np.array_equal(self.agent, self.target)
+        return self._observation(), float(arrived), arrived, False, {}

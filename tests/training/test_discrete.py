@@ -201,10 +201,10 @@ def test_a_run_refuses_invalid_observations():
     [
         ("FrozenLake-v1", {"scale": (1.0,)}, "scale applies to discretizer 'round', not to 'identity'"),
         ("FrozenLake-v1", {"discretizer": "tiles"}, "the observation space must be a Box"),
-        ("MountainCar-v0", {"discretizer": "identity"}, "the observation space must be Discrete"),
+        ("MountainCar-v0", {"discretizer": "identity"}, "the observation space must be discrete"),
         (Steps(Discrete(2**33)), {}, r"the observation space must give a table of fewer than 2\*\*32 values"),
-        (Steps(Box(0, 1, (2, 2))), {}, "must be a Box of one axis of float32 or float64"),
-        (Steps(Tuple((Discrete(2), Box(0, 1, (1,))))), {}, "must be a Box of one axis of float32 or float64"),
+        (Steps(Box(0, 1, (2, 2))), {}, "scale must be given and hold 4 numbers .* or discretizer='bins' or 'tiles'"),
+        (Steps(Tuple((Discrete(2), Box(0, 1, (1,))))), {}, "scale must be given and hold 1 number for"),
     ],
     ids=str,
 )

@@ -3,11 +3,13 @@
 from typing import Any
 
 import numpy as np
+from gymnasium.spaces import Box, Dict, Discrete
 from hypothesis import given
 from hypothesis import strategies as st
 
 from qtab import _core
 from qtab.training.resolve import resolve
+from support.environments import Sampled
 from support.wild import NUMBERS, SCALARS, VALUES, limited_memory, paths_of, replaced
 
 DOCUMENTED = (TypeError, ValueError, OverflowError, MemoryError)
@@ -24,6 +26,12 @@ SPECS: list[Any] = [
         ("Taxi-v4", {"exploration": "softmax", "temperature": 1.0}),
         ("Blackjack-v1", {"learning_rate_schedule": "visits", "learning_rate": 1.0}),
     ]
+] + [
+    resolve(
+        Sampled(Dict(room=Discrete(3), speed=Box(-1.0, 1.0, (2,)), heat=Box(-1.0, 1.0, ()))),
+        {"episodes": 3, "max_episode_steps": 30, **settings},
+    ).spec()
+    for settings in ({"scale": (3, 4, 2)}, {"learning_rate": 0.1, "discretizer": {"speed": "tiles", "heat": "bins"}})
 ]
 MOST_STEPS = 1000
 """Longer episodes, and longer planning, are only prepared."""

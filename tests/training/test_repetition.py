@@ -47,7 +47,7 @@ def test_an_environment_that_does_not_repeat_itself_is_told_from_a_difference_of
     assert report.repeats is False
     assert report.wrapper is None
     assert "the environment does not repeat itself" in str(report)
-    assert "says nothing about qtab" in str(report)
+    assert "does not show a fault of qtab" in str(report)
 
 
 def test_a_difference_in_an_environment_that_repeats_itself_is_told():
@@ -57,7 +57,7 @@ def test_a_difference_in_an_environment_that_repeats_itself_is_told():
     tampered = dataclasses.replace(run, episode_lengths=lengths)
     report = qtab.verify(tampered, env=Walk(start=5))
     assert (report.equal, report.repeats, report.episode) == (False, True, 2)
-    assert "the environment repeats itself: the same seed and actions gave the same twice" in str(report)
+    assert "the environment repeats itself: the same seed and actions gave the same results twice" in str(report)
 
 
 def test_a_table_alone_that_differs_is_told_too():

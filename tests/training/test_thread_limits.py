@@ -17,7 +17,7 @@ def work():
     run = qtab.train("MountainCar-v0", episodes=50, seed=0)
     runs = qtab.train_many("MountainCar-v0", 10, threads=4, episodes=20)
     best = qtab.optimum("CliffWalking-v1")
-    env = gym.make_vec("qtab/CartPole-v1", 64, threads=4)
+    env = gym.make_vec("qtab/Acrobot-v1", 64, threads=4)
     env.reset(seed=0)
     steps = [env.step(np.arange(64) % 2)[0] for _ in range(50)]
     return [digest(run.tables, run.episode_returns), digest(runs.episode_returns), digest(best.values), digest(*steps)]

@@ -13,7 +13,7 @@ from qtab.cli.usage import UsageError
 from qtab.config.choices import Algorithm
 from qtab.reference import LEARNERS
 from qtab.reference.actions import actions
-from qtab.reference.discretizers import discretizer
+from qtab.reference.observations import discretizer
 from support.learner_settings import CAR, TRAINED, run_settings
 from support.run_files import members_of, with_right_digest, write_members
 

@@ -86,3 +86,8 @@ def is_table(values: Any) -> bool:
         return np.ndim(values) == 2
     except ValueError:  # nested lists of different lengths
         return False
+
+
+def same_bytes(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
+    """Returns whether two arrays hold the same numbers in the same order, bit for bit, whatever their shapes."""
+    return np.array_equal(one.ravel().view(np.uint64), other.ravel().view(np.uint64))

@@ -87,7 +87,7 @@ def _row(tag: str, values: Sequence[object], color: str) -> str:
 
 
 def _box(heading: str, rows: str, picture: str) -> str:
-    style = "caption-side:top;text-align:left;color:inherit;font-weight:bold"
+    style = "caption-side:top;text-align:left;color:inherit;font-weight:bold;width:max-content;max-width:90vw"
     table = f'<caption style="{style}">{_text(heading)}</caption>{rows}'
     return f'<div style="{_BOX}"><table style="{_TABLE}">{table}</table>{picture}</div>'
 

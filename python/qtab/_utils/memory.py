@@ -2,6 +2,9 @@
 
 import math
 import os
+import sys
+from contextlib import suppress
+from pathlib import Path
 
 from qtab._utils import checks
 
@@ -11,6 +14,13 @@ BYTES_PER_EPISODE = 8 + 8 + 1
 """The size of an episode's return, length and termination flag."""
 BYTES_PER_RUN = 256
 """About the size of what is kept of a run beside its episodes and tables, such as its seed in Python and in Rust."""
+ALWAYS_FREE = 2**26
+"""Fewer bytes are taken without a look at the memory that is free, which takes a third of a millisecond."""
+_CONTROL_GROUPS = (
+    ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
+    ("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
+)
+"""The limit of a container's memory and its usage, in the second and in the first version of control groups."""
 
 
 def memory_limit(value: int | None) -> int:
@@ -28,8 +38,26 @@ def memory_limit(value: int | None) -> int:
         return DEFAULT_LIMIT
 
 
+def free_memory() -> int:
+    """Returns how many bytes this process can still take: of the machine's memory, and of its control group's.
+
+    Linux gives out memory that it does not have, and kills the process that writes to it. Where what is free is not
+    known, this is a number that no table reaches.
+    """
+    free = [sys.maxsize]
+    with suppress(OSError, ValueError, StopIteration):
+        lines = Path("/proc/meminfo").read_text().splitlines()
+        available = next(line for line in lines if line.startswith("MemAvailable:"))
+        free.append(1024 * int(available.split()[1]))
+    for limit, usage in _CONTROL_GROUPS:
+        # "max" stands for no limit.
+        with suppress(OSError, ValueError):
+            free.append(int(Path(limit).read_text()) - int(Path(usage).read_text()))
+    return max(min(free), 0)
+
+
 def check_memory(what: str, needed: int, limit: int) -> None:
-    """Checks that something fits into the memory limit.
+    """Checks that something fits into the memory limit, and where that is the default, into what is free.
 
     Args:
         what: What needs the memory, for the message.
@@ -41,11 +69,16 @@ def check_memory(what: str, needed: int, limit: int) -> None:
     """
     if needed > limit:
         raise MemoryError(
-            f"{what} need {_readable(needed)}, more than memory_limit={limit} ({_readable(limit)}); "
+            f"{what} need {readable(needed)}, more than memory_limit={limit} ({readable(limit)}); "
             "request less, or increase memory_limit"
+        )
+    if needed > ALWAYS_FREE and limit == memory_limit(None) and needed > (free := free_memory()):
+        raise MemoryError(
+            f"{what} need {readable(needed)}, more than the {readable(free)} of memory that are free; request less"
         )
 
 
-def _readable(count: int) -> str:
+def readable(count: int) -> str:
+    """Returns a number of bytes in the unit that suits it."""
     power = min(int(math.log2(max(count, 1))) // 10, 4)
     return f"{count / 2 ** (10 * power):.3g} {('bytes', 'KiB', 'MiB', 'GiB', 'TiB')[power]}"

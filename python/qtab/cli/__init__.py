@@ -1,7 +1,9 @@
 """The ``qtab`` command."""
 
+import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -10,6 +12,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: The arguments after the command's name; None means those of the process.
     """
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # closed by the shell (>&-), or a program without a console on Windows
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115 - until the process ends
     try:
         import tyro  # noqa: F401 - all subcommands need it
 

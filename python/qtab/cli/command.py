@@ -14,7 +14,7 @@ SUBCOMMANDS = {
     "resume": "continue a saved run exactly where it stopped, or for more episodes",
     "verify": "repeat a saved run with Gymnasium and NumPy, and compare the results byte for byte",
     "explain": "show steps of an episode of a saved run: each choice, and each update with its numbers",
-    "diagnose": "say why a saved run did not solve its environment, and what to change",
+    "diagnose": "report why a saved run did not solve its environment, and what to change",
     "watch": "show the greedy policy of a saved run in a window",
     "record": "write a video of the greedy policy of a saved run: MP4, GIF or HTML",
     "optimum": "compute the best policy of an environment: exact from a table, or the best known",

@@ -139,9 +139,16 @@ class Config:
 
     # The discretizer
 
-    discretizer: DiscretizerName = "round"
+    discretizer: DiscretizerName | Callable[[Any], Any] | Mapping[str, Any] = "round"
     """How observations index the Q table: rounded to a grid (round), by bins of equal width (bins) or between given
-    edges (edges), by tile coding (tiles), or as they are (identity), which is the default for discrete spaces."""
+    edges (edges), by tile coding (tiles), or as they are (identity), which is the default for discrete spaces. Or a
+    function from an observation to its indices within shape; or a mapping from the keys of a Dict or Tuple space to a
+    discretizer each, as a name or with its options: {"position": {"discretizer": "bins", "bins": 20}}."""
+    shape: tuple[int, ...] | None = None
+    """The shape of the table without its actions, in which the indices lie that a function returns."""
+    max_rows: int | None = None
+    """The number of rows of a table whose rows are given out as observations are met, for spaces of more cells than a
+    table can have. One row more stands for what was not met."""
     scale: tuple[float, ...] = ()
     """Cells per unit of each component of the observation: (10, 100) rounds to multiples of 0.1 and 0.01."""
     tilings: int | None = None
@@ -179,8 +186,9 @@ class Config:
         return all(_comparable(value) == _comparable(getattr(other, name)) for name, value in vars(self).items())
 
     def __hash__(self) -> int:
-        """The hash of all settings but ``env_kwargs`` and ``initial_q``, whose values may not have one."""
-        return hash(tuple(value for name, value in vars(self).items() if name not in ("env_kwargs", "initial_q")))
+        """The hash of the settings, without those whose values may not have one."""
+        unhashable = ("env_kwargs", "initial_q", "discretizer")
+        return hash(tuple(value for name, value in vars(self).items() if name not in unhashable))
 
     def _repr_html_(self) -> str:
         """The settings that apply as a table, for notebooks."""

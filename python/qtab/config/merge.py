@@ -1,11 +1,12 @@
 """From the layers of what a user asked for to one checked config: the preset below, then files, then keywords."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, Config
-from qtab.config.options import applicable
+from qtab.config.options import applicable, is_set
 from qtab.config.presets import preset
 from qtab.config.unknown import check_names
 
@@ -37,7 +38,26 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
         raise TypeError(f"preset must be a name, got {shown(name)}")
     name, start = preset(env, name)
     start = applicable(start, {**DEFAULTS, **start, **asked})
-    return Config(**{**start, **asked, "env": env, "preset": name})
+    with naming_preset(name, start, asked):
+        return Config(**{**start, **asked, "env": env, "preset": name})
+
+
+@contextmanager
+def naming_preset(name: str | None, settings: Mapping[str, Any], asked: Mapping[str, Any]) -> Iterator[None]:
+    """Adds to an error about a value of a preset that it is the preset's, which nobody typed.
+
+    Args:
+        name: The name of the preset.
+        settings: What is used of it.
+        asked: The settings that were asked for.
+    """
+    try:
+        yield
+    except ValueError as error:
+        setting = str(error).split(" ", 1)[0]
+        if name is None or setting not in settings or is_set(asked.get(setting)):
+            raise
+        raise ValueError(f"{error}; this is the {setting} of preset {name!r}, give another one") from None
 
 
 def merge(env: str, *layers: Mapping[str, Any]) -> Config:

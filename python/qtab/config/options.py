@@ -6,6 +6,7 @@ from typing import Any
 
 from qtab._utils.shown import shown
 from qtab.config.choices import CHOICES
+from qtab.config.discretizer import FUNCTION, MAPPING, kind, uses_tiles
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,8 @@ OPTIONS: Mapping[str, Option] = {
     "epsilon_decay": Option("epsilon_schedule", ("exponential",), 0.999),
     "epsilon_warm_up": Option("epsilon_schedule", _FALLING, 0),
     "temperature": Option("exploration", ("softmax",), 1.0),
+    "shape": Option("discretizer", (FUNCTION,), None),
+    "max_rows": Option("discretizer", ("round", "bins", "edges", "identity", FUNCTION, MAPPING), None),
     "scale": Option("discretizer", ("round",), None),
     "tilings": Option("discretizer", ("tiles",), 8),
     "tiles": Option("discretizer", ("tiles",), (8,)),
@@ -87,7 +90,7 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
         if chosen not in option.values:
             return f"{name} applies to {option.choice} {listed(option.values)}, not to {chosen!r}, got {shown(value)}"
     algorithm = fields["algorithm"]
-    with_tiles = fields["discretizer"] == "tiles"
+    with_tiles = uses_tiles(fields["discretizer"])
     if (name, value) == ("terminal_update", "assign"):
         if algorithm not in ONE_STEP:
             return f"terminal_update must be 'target' for algorithm {algorithm!r}, got 'assign'"
@@ -136,7 +139,7 @@ def is_set(value: Any) -> bool:
 
 def _effective(choice: str, fields: Mapping[str, Any]) -> Any:
     """The value of a choice, or its default if it is itself an option that applies and is not given."""
-    value = fields[choice]
+    value = kind(fields[choice]) if choice == "discretizer" else fields[choice]
     if value is None and choice in OPTIONS:
         option = OPTIONS[choice]
         return option.default if _effective(option.choice, fields) in option.values else None

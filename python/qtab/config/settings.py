@@ -75,7 +75,9 @@ class SharedSettings(EnvironmentSettings, total=False):
     ties: Ties | None
     temperature: Real | None
     action_mask: bool | Callable[[Any], Any]
-    discretizer: DiscretizerName
+    discretizer: DiscretizerName | Callable[[Any], Any] | Mapping[str, Any]
+    shape: Integer | Integers | None
+    max_rows: Integer | None
     scale: Reals
     tilings: Integer | None
     tiles: Integer | Integers | None

@@ -12,6 +12,8 @@ from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config.action_mask import mask_setting
 from qtab.config.choices import CHOICES
+from qtab.config.discretizer import uses_tiles
+from qtab.config.keyed_discretizers import check_limits, checked_discretizer
 from qtab.config.options import OPTIONS, check_options, other_choice
 
 LARGEST_MT19937_SEED = 2**32 - 1
@@ -19,6 +21,7 @@ MAX_TILINGS = 32
 MAX_TILES = 2**32 - 1
 MAX_BINS = 1_000_000
 MAX_ACTIONS = 2**16
+MAX_ROWS = 2**32 - 2
 
 
 def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
@@ -37,20 +40,16 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
         checked["seed"] = checks.integer("seed", checked["seed"], least=0, most=most)
     check_options(checked)
     missing = isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any()
-    if missing and checked["discretizer"] == "tiles":
+    if missing and uses_tiles(checked["discretizer"]):
         raise ValueError(other_choice("discretizer", "tiles", ("tiles",), "for an initial_q that contains -inf"))
-    most_rate = 2 if checked["discretizer"] == "tiles" else 1
+    most_rate = 2 if uses_tiles(checked["discretizer"]) else 1
     checks.real("learning_rate", checked["learning_rate"], 0, most_rate)
     _at_most(checked, "min_epsilon", "epsilon", OPTIONS["epsilon"].default)
     _at_most(checked, "min_learning_rate", "learning_rate", None)
     for name in ("epsilon_warm_up", "learning_rate_warm_up"):
         if checked[name] is not None and checked[name] >= checked["episodes"]:
             raise ValueError(f"{name} must be less than episodes = {checked['episodes']}, got {shown(checked[name])}")
-    if checked["low"] is not None and checked["high"] is not None:
-        if len(checked["low"]) != len(checked["high"]):
-            raise ValueError(f"high must hold as many numbers as low, got {shown(checked['high'])}")
-        if not all(low < high for low, high in zip(checked["low"], checked["high"], strict=True)):
-            raise ValueError(f"high must lie above low = {checked['low']!r}, got {shown(checked['high'])}")
+    check_limits(checked["low"], checked["high"])
     return checked
 
 
@@ -191,6 +190,9 @@ def _holds_numbers(array: NDArray[Any]) -> bool:
 
 _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(CHOICES, _choice),
+    "discretizer": lambda name, value: checked_discretizer(name, value, _CHECKS),
+    "shape": _counts(1, None),
+    "max_rows": _integer(1, MAX_ROWS),
     "env": _text,
     "env_kwargs": _keywords,
     "episodes": _count,

@@ -28,6 +28,7 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
         The findings; they print as text. Its ``what_if()`` tries the changes that they advise.
 
     Raises:
+        MemoryError: if the runs of so many ``seeds`` would take more than half of the machine's memory.
         TypeError: for an argument of the wrong type.
         ValueError: for a run without a finished episode, or the optimum of another environment.
     """

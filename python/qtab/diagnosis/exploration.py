@@ -33,7 +33,7 @@ def exploration(facts: Facts) -> Finding | None:
     }
     if first is not None:
         evidence["first episode that reaches it"] = first
-    when = "No episode reaches the goal" if first is None else f"The first episode that reaches the goal is {first:,}"
+    when = "No episode reaches the goal" if first is None else f"Episode {first:,} is the first to reach the goal"
     if by_chance > LEAST_REACHED / 2 and facts.config.exploration == "epsilon_greedy":
         change: Mapping[str, Any] = {"epsilon": 1.0, "epsilon_schedule": "linear", "min_epsilon": 0.0}
         advice = "explore more at first: epsilon=1.0, falling linearly"

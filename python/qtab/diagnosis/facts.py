@@ -8,6 +8,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.memory import memory_limit
 from qtab.config import Config
 from qtab.diagnosis.sample import Sample, sample_steps
 from qtab.envs.registry import entry_for_id, gymnasium_id, spec_of
@@ -19,7 +20,7 @@ from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES
 from qtab.training.evaluate import Evaluation, evaluate
 from qtab.training.train import train
-from qtab.training.train_many import train_many
+from qtab.training.train_many import seed_sequence, train_many
 
 EVALUATION_EPISODES = 100
 RANDOM_EPISODES = 500
@@ -234,7 +235,8 @@ class Facts:
         count = self._other_seeds()
         if not self.can_repeat or count == 0 or not self.run.completed:
             return None
-        seeds = [seed for seed in range(count + 1) if seed != self.config.seed][:count]
+        numbers = seed_sequence(count + 1, memory_limit(None))  # refuses too many before there is a list of them
+        seeds = [seed for seed in numbers if seed != self.config.seed][:count]
         runs = train_many(config=self.config, seeds=seeds, tables=self.greedy_is_exact)
         if self.optimum is not None and self.greedy_is_exact:
             return self.optimum.gap(runs).greedy_return

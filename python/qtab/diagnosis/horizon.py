@@ -24,7 +24,7 @@ def horizon(facts: Facts) -> Finding | None:
     route = f"at least {shortest} steps"
     if facts.is_usual_mountain_car:
         evidence["longest shortest route"] = LONGEST_MOUNTAIN_CAR
-        route = f"{shortest} to {LONGEST_MOUNTAIN_CAR} steps at best"
+        route = f"at best {shortest} to {LONGEST_MOUNTAIN_CAR} steps"
     run = facts.run
     meaning = (
         f"The agent looks about {ahead:.3g} steps ahead, 1 / (1 - discount), and the goal is {route} away: "

@@ -3,15 +3,21 @@
 from collections.abc import Mapping
 from typing import Any
 
+from gymnasium import spaces
 from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.config.choices import DiscretizerName
+from qtab.config.discretizer import FUNCTION, MAPPING, kind
+from qtab.discretizers.actions import FLOATS
 from qtab.discretizers.base import Discretizer
 from qtab.discretizers.bins import Bins
+from qtab.discretizers.composite import Composite
 from qtab.discretizers.edges import Edges
-from qtab.discretizers.identity import Identity
+from qtab.discretizers.function import Function
+from qtab.discretizers.identity import Identity, integer_bounds
 from qtab.discretizers.rounding import Rounding
+from qtab.discretizers.sparse import Sparse
 from qtab.discretizers.tile_coding import TileCoding
 
 DISCRETIZERS: Mapping[DiscretizerName, type[Discretizer]] = {
@@ -21,17 +27,49 @@ DISCRETIZERS: Mapping[DiscretizerName, type[Discretizer]] = {
     "tiles": TileCoding,
     "identity": Identity,
 }
-"""The class of each value of the setting ``discretizer``."""
+"""The class of each value of the setting ``discretizer``, for the spaces that the extension reads by itself."""
 
 
 def build(space: Any, config: Config, n_actions: int) -> Discretizer:
     """Returns the discretizer of a config over an observation space; see :meth:`Discretizer.build`."""
-    return DISCRETIZERS[config.discretizer].build(space, config, n_actions)
+    return _class_of(config, plain=is_plain(space)).build(space, config, n_actions)
 
 
 def restore(config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> Discretizer:
     """Returns the discretizer of a saved run; see :meth:`Discretizer.restore`."""
-    return DISCRETIZERS[config.discretizer].restore(config, arrays, n_rows)
+    return _class_of(config, plain="layout" not in arrays).restore(config, arrays, n_rows)
 
 
-__all__ = ["DISCRETIZERS", "Bins", "Discretizer", "Edges", "Identity", "Rounding", "TileCoding", "build", "restore"]
+def is_plain(space: Any) -> bool:
+    """Returns whether the extension reads the observations of a space by itself."""
+    is_box = isinstance(space, spaces.Box) and len(space.shape) == 1 and space.dtype in FLOATS
+    return is_box or integer_bounds(space) is not None
+
+
+def _class_of(config: Config, *, plain: bool) -> type[Discretizer]:
+    chosen = kind(config.discretizer)
+    if config.max_rows is not None:
+        return Sparse
+    if chosen == FUNCTION:
+        return Function
+    if chosen == MAPPING or not plain:
+        return Composite
+    name: Any = config.discretizer
+    return DISCRETIZERS[name]
+
+
+__all__ = [
+    "DISCRETIZERS",
+    "Bins",
+    "Composite",
+    "Discretizer",
+    "Edges",
+    "Function",
+    "Identity",
+    "Rounding",
+    "Sparse",
+    "TileCoding",
+    "build",
+    "is_plain",
+    "restore",
+]

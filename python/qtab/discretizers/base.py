@@ -2,17 +2,18 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._spec import DiscretizerSpec
+from qtab._discretizer_spec import DiscretizerSpec
 from qtab._utils import html
+from qtab._utils.memory import ALWAYS_FREE, free_memory, readable
 from qtab._utils.shown import shown
 from qtab.config import Config
 
@@ -32,6 +33,8 @@ class Discretizer(ABC):
     high: NDArray[Any]
     """(d,) or (): the upper bounds."""
 
+    reads_space: ClassVar[bool] = False
+    """Whether :meth:`observe` has to read the observations of the environment before the extension does."""
     has_cells: ClassVar[bool] = True
     """Whether exactly one row is active, the cell of an observation, so that the table has an axis per component."""
 
@@ -55,7 +58,13 @@ class Discretizer(ABC):
     @classmethod
     @abstractmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Discretizer":
-        """Returns the discretizer of an observation space; ``config`` has the defaults of its options filled in.
+        """Returns the discretizer of an observation space.
+
+        Args:
+            space: The space.
+            config: The config, with the defaults of its options filled in.
+            n_actions: How many values a row of the table has; 0 where the discretizer only finds the cells of a table
+                with other rows.
 
         Raises:
             ValueError: if the space or an option does not fit, or the table would be too large.
@@ -107,7 +116,28 @@ class Discretizer(ABC):
         """Returns the arrays to save, from which :meth:`restore` rebuilds the discretizer."""
         return {"low": self.low, "high": self.high}
 
-    def active_rows(self, observation: ArrayLike) -> NDArray[np.int64]:
+    @property
+    def component_names(self) -> tuple[str, ...]:
+        """A name for each component of the observation; none where the environment's own names are used."""
+        return ()
+
+    def observe(self, observation: Any) -> Any:
+        """Returns an observation of the environment as the extension reads it."""
+        return observation
+
+    def with_function(self, function: Callable[[Any], Any]) -> "Discretizer":  # noqa: ARG002
+        """Returns the discretizer with another function, where it has one."""
+        return self
+
+    def as_learned(self) -> "Discretizer":
+        """Returns the discretizer as it is now, for a run that is made before the training is over."""
+        return self
+
+    def same_space(self, other: "Discretizer") -> bool:
+        """Whether another discretizer has the same rows for observations of the same shape."""
+        return self.shape == other.shape and self.low.shape == other.low.shape
+
+    def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (n_active,) rows of an observation, or the (n, n_active) rows of n observations.
 
         With hashing a row can appear several times.
@@ -118,7 +148,7 @@ class Discretizer(ABC):
         """
         return self._compiled.active_rows(observation)
 
-    def row(self, observation: ArrayLike) -> int:
+    def row(self, observation: Any) -> int:
         """Returns the row of the cell of one observation.
 
         Raises:
@@ -134,7 +164,7 @@ class Discretizer(ABC):
             raise ValueError(f"observation must have shape {self.low.shape}, got {np.shape(observation)}")
         return int(rows[0])
 
-    def cell(self, observation: ArrayLike) -> tuple[int, ...]:
+    def cell(self, observation: Any) -> tuple[int, ...]:
         """Returns the index of one observation in ``run.q_table`` and ``run.policy``; see :meth:`row`."""
         return tuple(int(index) for index in np.unravel_index(self.row(observation), self.shape))
 
@@ -152,22 +182,30 @@ def check_table_size(name: str, given: Any, values: float, instead: str = "") ->
 
     Args:
         name: The setting that decides the size.
-        given: Its value.
+        given: Its value, or a text that describes it.
         values: How many values the table would have.
         instead: Which other setting would help, to be added to the message.
 
     Raises:
         ValueError: if rows could not be numbered, or the table does not fit into memory.
     """
+    text = given if isinstance(given, str) else shown(given)
     if not values < MAX_TABLE_SIZE:
+        many = f"{values:.3g}" if math.isfinite(values) else "more than 1e308"
         raise ValueError(
-            f"{name} must give a table of fewer than 2**32 values{instead}, got {shown(given)}, "
-            f"which needs {values:.3g}"
+            f"{name} must give a table of fewer than 2**32 values{instead}, got {text}, which needs {many}"
         )
+    needed = 8 * int(values)
+    if needed < ALWAYS_FREE:
+        return
+    free = free_memory()
     try:
-        np.empty(int(values))
+        # Some systems refuse at once; Linux gives out what it does not have, and kills the process that uses it.
+        np.empty(needed, np.uint8)
     except MemoryError:
+        free = min(free, needed - 1)
+    if needed > free:
         raise ValueError(
-            f"{name} must give a table that fits into memory{instead}, got {shown(given)}, "
-            f"which needs {values:.3g} values"
-        ) from None
+            f"{name} must give a table that fits into memory{instead}, got {text}, which needs {values:.3g} "
+            f"values or {readable(needed)}, more than is free"
+        )

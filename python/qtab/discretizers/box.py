@@ -11,11 +11,6 @@ from qtab._utils.shown import shown
 from qtab.discretizers.actions import FLOATS
 from qtab.discretizers.base import Discretizer
 
-SUPPORTED = (
-    "the observation space must be a Box of one axis of float32 or float64, Discrete, MultiDiscrete of one axis or a "
-    "Tuple of Discrete spaces"
-)
-
 Span = tuple[NDArray[np.float64], NDArray[np.float64]]
 """The lower and the upper limit of each component, two arrays of (d,)."""
 
@@ -33,30 +28,14 @@ def box_of(space: Any) -> spaces.Box:
     """Returns the observation space, a Box with one axis of floats.
 
     Raises:
-        ValueError: if it is another space; the message names the wrapper that would make one of it.
+        ValueError: if it is discrete, so that its observations index the table.
     """
     if not isinstance(space, spaces.Box) or len(space.shape) != 1 or space.dtype not in FLOATS:
-        raise ValueError(f"{SUPPORTED}, got {space}; {_remedy(space)}")
+        raise ValueError(
+            f"the observation space must be a Box for the discretizers of Boxes, got {space}; discretizer must be left "
+            "out for it"
+        )
     return space
-
-
-def _remedy(space: Any) -> str:
-    """Returns what makes a supported space of another one."""
-    if isinstance(space, spaces.Discrete | spaces.MultiDiscrete) and len(space.shape or ()) <= 1:
-        return "discretizer must be left out for it"
-    if isinstance(space, spaces.Dict):
-        return (
-            "gymnasium.wrappers.FlattenObservation makes a Box of it, and gymnasium.wrappers.FilterObservation chooses "
-            "its parts"
-        )
-    if isinstance(space, spaces.Box) and len(space.shape) == 1:
-        return "gymnasium.wrappers.DtypeObservation(env, numpy.float32) converts it"
-    if isinstance(space, spaces.Box | spaces.MultiDiscrete | spaces.MultiBinary | spaces.Tuple):
-        return (
-            "gymnasium.wrappers.FlattenObservation, or gymnasium.wrappers.TransformObservation with a function, makes "
-            "a Box of it"
-        )
-    return "gymnasium.wrappers.TransformObservation makes a Box of it with a function"
 
 
 def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] | None) -> Span:
@@ -73,7 +52,7 @@ def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] |
         if not np.isfinite(limit).all():
             raise ValueError(
                 f"{name} must be given, a number for each component, where the observation space has no finite bounds: "
-                f"{space}"
+                f"{' '.join(str(space).split())}"
             )
         limits.append(limit)
     if not (limits[0] < limits[1]).all():

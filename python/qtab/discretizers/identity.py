@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab._spec import IdentitySpec
+from qtab._discretizer_spec import IdentitySpec
 from qtab.config import Config
 from qtab.discretizers.base import Discretizer, check_table_size
 
@@ -32,8 +32,8 @@ class Identity(Discretizer):
         bounds = integer_bounds(space)
         if bounds is None:
             raise ValueError(
-                "the observation space must be Discrete, MultiDiscrete or a Tuple of Discrete spaces for discretizer "
-                f"'identity', got {space}"
+                f"the observation space must be discrete for discretizer 'identity', got {space}; discretizer 'bins' "
+                "or 'tiles' divides it"
             )
         low, high = bounds
         if not low.size:

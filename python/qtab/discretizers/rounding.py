@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._spec import RoundSpec
+from qtab._discretizer_spec import RoundSpec
 from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.discretizers.base import check_table_size
@@ -37,9 +37,12 @@ class Rounding(BoxDiscretizer):
         if not (box.low <= box.high).all():
             raise ValueError(f"the observation space must have low <= high, got {box}")
         if len(scale) != len(box.low):
+            numbers = "1 number" if len(box.low) == 1 else f"{len(box.low)} numbers"
+            held = f"hold {numbers} for this observation space, the cells per unit of each component"
+            if not scale:
+                raise ValueError(f"scale must be given and {held}, or discretizer='bins' or 'tiles' without it")
             raise ValueError(
-                f"scale must hold {len(box.low)} numbers for this observation space, the cells per unit of each "
-                f"component, got {shown(scale)}. Without them choose discretizer 'bins' or 'tiles'"
+                f"scale must {held}, got {shown(scale)}. Without them choose discretizer 'bins' or 'tiles'"
             )
         grid = cls(box.low, box.high, np.array(scale, dtype=np.float64))
         with np.errstate(over="ignore"):

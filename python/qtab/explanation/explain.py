@@ -21,6 +21,7 @@ from qtab.reference import LEARNERS
 from qtab.reference.observer import observed_by
 from qtab.reference.schedules import LearningRate
 from qtab.results.run import Run
+from qtab.training.extensions import repeatable
 from qtab.training.run_env import make_run_env
 
 
@@ -52,13 +53,20 @@ def explain(
     Raises:
         RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range.
+        ValueError: for an argument out of range. Of a run that was resumed with more episodes while a rate fell, only
+            the episodes before can be explained.
     """
     checks.instance("run", run, Run)
     finished = len(run.episode_returns)
     if finished == 0:
         raise ValueError("run must have a finished episode, got one that was stopped during its first")
     episode = checks.integer("episode", episode, least=0, most=finished - 1)
+    run, most = repeatable(run)
+    if episode >= most:
+        raise ValueError(
+            f"episode must be at most {most - 1:,} for a run that was extended after {most:,} episodes, since its "
+            f"rates then fell over more of them, got {episode}"
+        )
     start = checks.integer("start", start, least=0, most=int(run.episode_lengths[episode]) - 1)
     steps = checks.integer("steps", steps, least=1)
     if env is not None and not isinstance(env, gym.Env):

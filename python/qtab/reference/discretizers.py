@@ -96,36 +96,14 @@ class TileCoding:
 
 
 class Identity:
-    """A row for each observation of a discrete space; those of several integers are numbered in C order."""
+    """A row for each integer of a Discrete space."""
 
     n_active = 1
 
-    def __init__(self, space: gym.Space[Any]) -> None:
-        parts: Any = space if isinstance(space, gym.spaces.Tuple) else [space]
-        if isinstance(space, gym.spaces.MultiDiscrete):
-            self.first, counts = space.start.tolist(), space.nvec.tolist()
-        else:
-            self.first, counts = [int(part.start) for part in parts], [int(part.n) for part in parts]
-        self.shape: tuple[int, ...] = tuple(counts)
+    def __init__(self, space: gym.spaces.Discrete) -> None:
+        self.first = int(space.start)
+        self.shape: tuple[int, ...] = (int(space.n),)
 
-    def rows(self, observation: ArrayLike) -> list[int]:
+    def rows(self, observation: Any) -> list[int]:
         """Returns one row."""
-        numbers = np.atleast_1d(np.asarray(observation)) - np.array(self.first)
-        return [int(np.ravel_multi_index(tuple(numbers), self.shape))]
-
-
-def discretizer(env: gym.Env, config: Config) -> Discretizer:
-    """Returns the discretizer of a complete config.
-
-    Raises:
-        TypeError: for an observation space that is neither discrete nor a Box.
-    """
-    if config.discretizer == "identity":
-        return Identity(env.observation_space)
-    if not isinstance(env.observation_space, gym.spaces.Box):
-        raise TypeError(f"the observation space must be discrete or a Box, got {env.observation_space}")
-    if config.discretizer == "tiles":
-        return TileCoding(env.observation_space, config)
-    if config.discretizer in ("bins", "edges"):
-        return Bins(env.observation_space, config)
-    return Rounding(env.observation_space, config)
+        return [int(observation) - self.first]

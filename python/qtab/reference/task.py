@@ -12,7 +12,7 @@ from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.reference.action_masks import ActionMasks
 from qtab.reference.actions import actions
-from qtab.reference.discretizers import discretizer
+from qtab.reference.observations import discretizer
 from qtab.reference.observer import current_observer
 from qtab.reference.policies import policy, valid_actions
 from qtab.reference.schedules import LearningRate

@@ -44,7 +44,8 @@ class Axis:
 def axes_of(env: str, discretizer: "Discretizer") -> tuple[Axis, ...]:
     """Returns an axis for each component of the observations of an environment."""
     edges = discretizer.cell_edges()
-    quantities = observation_quantities(env, len(edges))
+    named = tuple(map(Quantity, discretizer.component_names))
+    quantities = named or observation_quantities(env, len(edges))
     return tuple(
         Axis(known.name, known.unit, found, known.values) for known, found in zip(quantities, edges, strict=True)
     )

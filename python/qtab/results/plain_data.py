@@ -43,12 +43,18 @@ def write(run: "Run", path: Path) -> None:
     Raises:
         OSError: if the file cannot be written.
         TypeError: if the environment's keyword arguments hold what JSON cannot.
-        ValueError: if they hold a number that JSON cannot, or the run is not one that training returns.
+        ValueError: if they hold a number that JSON cannot, the run is not one that training returns, or its
+            observations are nested, given to a function or given rows as they are met.
     """
     try:
         check_consistent(run)
     except ValueError as error:
         raise ValueError(f"this run cannot be written: {error}") from None
+    if run.discretizer.reads_space:
+        raise ValueError(
+            "this run cannot be written: plain data describes discretizers of integers and of a Box of one axis of "
+            f"floats, not {run.discretizer!r}"
+        )
     try:
         text = json.dumps(plain_data(run), allow_nan=False)
     except (TypeError, ValueError) as error:

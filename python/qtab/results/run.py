@@ -143,7 +143,7 @@ class Run(WithPage):
                 f"run.{method}(observation) works"
             )
 
-    def q_values(self, observation: ArrayLike) -> NDArray[np.float64]:
+    def q_values(self, observation: Any) -> NDArray[np.float64]:
         """Returns the (actions,) values of an observation, or the (n, actions) values of n observations.
 
         Raises:
@@ -152,7 +152,7 @@ class Run(WithPage):
         """
         return action_values.of_observations(self, observation)
 
-    def values(self, observation: ArrayLike) -> Any:
+    def values(self, observation: Any) -> Any:
         """Returns the value of an observation under the greedy policy, or the (n,) values of n observations.
 
         It is the largest action value, as a float. Of Double Q-learning, whose :attr:`q_table` is the sum of two
@@ -167,7 +167,7 @@ class Run(WithPage):
 
     def predict(
         self,
-        observation: ArrayLike,
+        observation: Any,
         state: Any = None,  # noqa: ARG002 - Stable-Baselines3's signature
         episode_start: Any = None,  # noqa: ARG002
         deterministic: bool = True,
@@ -259,6 +259,8 @@ class Run(WithPage):
             header["generator"] = self.state.generator
             if self.state.snapshots:
                 header["snapshots"] = self.state.snapshots
+            if self.state.extensions:
+                header["extensions"] = self.state.extensions
         saving.write(Path(path), run_file.RUN, self, header, arrays)
 
 

@@ -19,6 +19,9 @@ class RunState:
     """The state of the bit generator of an environment that is stepped in Python, as JSON can hold it."""
     snapshots: tuple[int, ...] = ()
     """The numbers of episodes at which snapshots are still to be taken, ascending."""
+    extensions: tuple[tuple[int, int], ...] = ()
+    """(finished, episodes) for each time that the run was extended while a rate fell over its episodes: how many were
+    finished then, and over how many the rate had fallen until then."""
 
     def __repr__(self) -> str:
         return f"<RunState of {len(self.checkpoint):,} bytes>"
@@ -28,7 +31,7 @@ class RunState:
         return np.frombuffer(self.checkpoint, np.uint8)
 
     @classmethod
-    def restore(cls, array: NDArray[Any], generator: Any, snapshots: Any) -> "RunState":
+    def restore(cls, array: NDArray[Any], generator: Any, snapshots: Any, extensions: Any) -> "RunState":
         """Returns the state in a file, of which nothing is known.
 
         Raises:
@@ -42,7 +45,13 @@ class RunState:
             raise ValueError(f"its snapshots to be taken must be a list of episodes, got {snapshots!r}")
         if any(number >= following for number, following in pairwise(snapshots)):
             raise ValueError("its snapshots to be taken are not at ascending episodes")
-        return cls(array.tobytes(), generator, tuple(snapshots))
+        if not isinstance(extensions, list) or not all(map(_is_extension, extensions)):
+            raise ValueError(f"its extensions must be a list of pairs of numbers of episodes, got {extensions!r}")
+        return cls(array.tobytes(), generator, tuple(snapshots), tuple((first, total) for first, total in extensions))
+
+
+def _is_extension(pair: Any) -> bool:
+    return isinstance(pair, list) and [type(number) for number in pair] == [int, int] and 1 <= pair[0] <= pair[1]
 
 
 def generator_state(generator: np.random.Generator) -> dict[str, Any]:

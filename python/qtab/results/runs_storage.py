@@ -11,31 +11,38 @@ from qtab.results import run_file
 from qtab.results.consistency import check_consistent_runs
 from qtab.results.optional_arrays import checked_masks
 from qtab.results.runs import Runs
-from qtab.results.storage import integer, opened, shared_fields, with_action_mask
+from qtab.results.storage import check_function, integer, opened, shared_fields, with_action_mask
 
 
-def load_runs(path: "str | os.PathLike[str]", *, action_mask: Callable[[Any], Any] | None = None) -> Runs:
+def load_runs(
+    path: "str | os.PathLike[str]",
+    *,
+    discretizer: Callable[[Any], Any] | None = None,
+    action_mask: Callable[[Any], Any] | None = None,
+) -> Runs:
     """Reads runs that :meth:`qtab.Runs.save` wrote, after checking that not a byte of them was changed.
 
     As for :func:`qtab.load`, no module is imported because a file names it.
 
     Args:
         path: The file.
+        discretizer: As for :func:`qtab.load`.
         action_mask: As for :func:`qtab.load`.
 
     Raises:
         OSError: if the file is missing or cannot be read.
-        TypeError: if ``path`` is not a path.
+        TypeError: if ``path`` is not a path, or ``discretizer`` is given and is not a function, or the runs had none.
         ValueError: if it is not a file of runs, is damaged, or comes from another version of the format; the message
             says why.
     """
     path = Path(path)
     with opened(path, "file of runs") as file:
-        runs = _runs(run_file.read(file, run_file.RUNS))
+        runs = _runs(run_file.read(file, run_file.RUNS), discretizer)
+    check_function(discretizer, runs.config)
     return runs if action_mask is None else with_action_mask(runs, action_mask)
 
 
-def _runs(content: run_file.Content) -> Runs:
+def _runs(content: run_file.Content, function: Callable[[Any], Any] | None) -> Runs:
     if not content.has_digest:
         raise ValueError("its digest is missing")
     header, stored = content.header, content.arrays
@@ -44,7 +51,7 @@ def _runs(content: run_file.Content) -> Runs:
         for name in run_file.ARRAYS
         if name != "tables" or "tables" in stored
     }
-    shared = shared_fields(content)
+    shared = shared_fields(content, function)
     seeds = header["seeds"]
     if not isinstance(seeds, list):
         raise ValueError(f"its seeds must be a list, got {seeds!r}")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config.config import replace_checked
+from qtab.config.discretizer import stored_function
 from qtab.config.stored import stored_settings
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent_runs
@@ -44,6 +45,7 @@ def write(
         stored["initial_q"] = result.config.initial_q
         config["initial_q"] = None
     content = {
+        **stored_function(config),
         "config": config,
         "actions": len(result.actions),
         "first_action": result.actions.first,

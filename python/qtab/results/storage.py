@@ -13,6 +13,7 @@ from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.action_mask import STORED
 from qtab.config.config import replace_checked
+from qtab.config.discretizer import MissingFunction
 from qtab.config.options import defaults
 from qtab.envs.stored import stored_id
 from qtab.results import run_file
@@ -31,7 +32,12 @@ _MAX_REASON = 400
 """The characters of the reason in an error: it may show values from the file."""
 
 
-def load(path: "str | os.PathLike[str]", *, action_mask: Callable[[Any], Any] | None = None) -> Run:
+def load(
+    path: "str | os.PathLike[str]",
+    *,
+    discretizer: Callable[[Any], Any] | None = None,
+    action_mask: Callable[[Any], Any] | None = None,
+) -> Run:
     """Reads a run that :meth:`qtab.Run.save` wrote, after checking that not a byte of it was changed.
 
     :func:`qtab.load_runs` reads the file of many runs, and :func:`qtab.load_sweep` the store of a sweep.
@@ -44,17 +50,21 @@ def load(path: "str | os.PathLike[str]", *, action_mask: Callable[[Any], Any] | 
 
     Args:
         path: The file.
+        discretizer: The function that was the run's discretizer, of which a file holds only the name. Without it the
+            run is loaded as well, but cannot read an observation.
         action_mask: The function that gave the action masks of a run that was trained with one, which its file does
             not hold. Without it the run can be looked at, and predicts for the cells that it has seen.
 
     Raises:
         OSError: if the file is missing or cannot be read.
+        TypeError: if ``discretizer`` is given and is not a function, or the run had none.
         ValueError: if it is not a run file, is damaged, or comes from another version of the format; the
             message says why.
     """
     path = Path(path)
     with opened(path, "run file") as file:
-        run = _run(run_file.read(file))
+        run = _run(run_file.read(file), discretizer)
+    check_function(discretizer, run.config)
     if run.unchecked:
         _LOGGER.warning(
             "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
@@ -97,10 +107,21 @@ def opened(path: Path, kind: str) -> Iterator[BinaryIO]:
             raise ValueError(f"{str(path)!r} is not a {kind} that this version of qtab can read: {reason}") from None
 
 
-def _run(content: run_file.Content) -> Run:
+def check_function(function: Any, config: Config) -> None:
+    """Checks that a function is given only for what was trained with one.
+
+    Raises:
+        TypeError: if it is none, or the discretizer was none.
+    """
+    if function is not None and (isinstance(config.discretizer, str | dict) or not callable(function)):
+        had = f"{config.discretizer!r}, no function" if isinstance(config.discretizer, str | dict) else "a function"
+        raise TypeError(f"discretizer must be that of the file, which is {had}, got {shown(function)}")
+
+
+def _run(content: run_file.Content, function: Callable[[Any], Any] | None) -> Run:
     header, stored = content.header, content.arrays
     arrays: dict[str, Any] = {name: run_file.array(stored, name) for name in run_file.ARRAYS}
-    shared = shared_fields(content)
+    shared = shared_fields(content, function)
     config = shared["config"]
     discretizer = discretizers.restore(config, stored, arrays["tables"].shape[1])
     arrays |= restore_optional(stored, arrays["tables"], discretizer.shape, len(arrays["episode_returns"]))
@@ -115,8 +136,12 @@ def _run(content: run_file.Content) -> Run:
     return run
 
 
-def shared_fields(content: run_file.Content) -> dict[str, Any]:
+def shared_fields(content: run_file.Content, function: Callable[[Any], Any] | None) -> dict[str, Any]:
     """Returns the fields that the files of one run and of many runs have in common.
+
+    Args:
+        content: What the file holds.
+        function: The function that was the discretizer, if it is given.
 
     Raises:
         KeyError: if one is missing.
@@ -130,7 +155,7 @@ def shared_fields(content: run_file.Content) -> dict[str, Any]:
     if not isinstance(versions, dict) or not all(isinstance(version, str) for version in versions.values()):
         raise ValueError(f"its versions must map names to texts, got {versions!r}")
     return {
-        "config": _config(header, stored),
+        "config": _config(header, stored, function),
         "actions": restore_actions(
             integer(header, "actions"),
             integer(header, "first_action"),
@@ -144,12 +169,15 @@ def shared_fields(content: run_file.Content) -> dict[str, Any]:
 
 
 def _state(header: Mapping[str, Any], array: Any) -> RunState:
-    # Versions that did not continue snapshots wrote none.
-    return RunState.restore(array, header["generator"], header.get("snapshots", []))
+    # Versions that did not continue snapshots or note extensions wrote none.
+    return RunState.restore(array, header["generator"], header.get("snapshots", []), header.get("extensions", []))
 
 
-def _config(header: Mapping[str, Any], stored: Mapping[str, Any]) -> Config:
+def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Callable[[Any], Any] | None) -> Config:
     fields = dict(header["config"])
+    name = header.get("discretizer_function")
+    if fields["discretizer"] is None and isinstance(name, str):
+        fields["discretizer"] = function if callable(function) else MissingFunction(name)
     if fields["initial_q"] is None:
         fields["initial_q"] = stored["initial_q"]
     fields["env"] = stored_id(fields["env"])

@@ -13,6 +13,7 @@ import numpy as np
 from qtab._utils import checks
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
 from qtab.config import DEFAULTS
+from qtab.config.discretizer import function_name
 from qtab.config.layers import Base, over
 from qtab.config.stored import stored_settings
 from qtab.config.unknown import check_names
@@ -156,7 +157,7 @@ def _jsonable(value: Any) -> Any:
         return value.item()
     if isinstance(value, Mapping):
         return dict(value)
-    return repr(value)
+    return {"function": function_name(value)} if callable(value) else repr(value)
 
 
 def to_cell(value: Any) -> Any:

@@ -3,6 +3,7 @@
 import logging
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.action_mask import STORED
 from qtab.config.config import replace_checked
+from qtab.config.discretizer import MissingFunction
 from qtab.config.layers import over
 from qtab.config.options import is_set
 from qtab.envs.registry import versioned
@@ -22,12 +24,13 @@ from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
 from qtab.results.snapshots import resumed_snapshot_episodes, snapshot_episodes
 from qtab.results.storage import load, with_action_mask
+from qtab.training.extensions import extensions, falling_rates
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.rows_met import continued
 
 _LOGGER = logging.getLogger("qtab")
-_SCHEDULES = {"epsilon_schedule": "epsilon", "learning_rate_schedule": "learning_rate"}
 
 
 def earlier_run(name: str, run: Any, action_mask: Any = None) -> Run:
@@ -70,9 +73,17 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
     config = _config(name, run, episodes)
     if env is None:
         spec_of_run(config.env)  # the name of a class without an id is not taken for one
-    resolved = resolve(config.env if env is None else env, over(_without_kwargs(config, env), {}))
+    resolved = continued(resolve(config.env if env is None else env, over(_without_kwargs(config, env), {})), run)
     _log_what_differs(run, config)
-    return resolved
+    return replace(resolved, extensions=extensions(run, config))
+
+
+def with_function(run: Run, function: Any) -> Run:
+    """Returns a run from a file with the function that was its discretizer, where one is given."""
+    if not isinstance(run.config.discretizer, MissingFunction) or not callable(function):
+        return run
+    config = replace_checked(run.config, discretizer=function)
+    return replace(run, config=config, discretizer=run.discretizer.with_function(function))
 
 
 def check_agrees(run: Run, env: str | EnvSpec | gym.Env | None, settings: Mapping[str, Any]) -> None:
@@ -176,16 +187,15 @@ def _config(name: str, run: Run, episodes: Any) -> Config:
 
 def _log_what_differs(run: Run, config: Config) -> None:
     """Says where the result is not that of an uninterrupted run, or may not be."""
-    if config.episodes != run.config.episodes:
-        falling = [rate for schedule, rate in _SCHEDULES.items() if getattr(config, schedule) == "linear"]
-        if falling:
-            _LOGGER.warning(
-                "%s now %s linearly over %s episodes instead of %s",
-                " and ".join(falling),
-                "fall" if len(falling) > 1 else "falls",
-                f"{config.episodes:,}",
-                f"{run.config.episodes:,}",
-            )
+    falling = falling_rates(config)
+    if config.episodes != run.config.episodes and falling:
+        _LOGGER.warning(
+            "%s now %s linearly over %s episodes instead of %s",
+            " and ".join(falling),
+            "fall" if len(falling) > 1 else "falls",
+            f"{config.episodes:,}",
+            f"{run.config.episodes:,}",
+        )
     here = versions()
     others = [f"{name} {run.versions.get(name)}" for name in here if run.versions.get(name) != here[name]]
     if others:

@@ -17,12 +17,14 @@ from qtab._utils.progress import check_progress
 from qtab.config import Config
 from qtab.config.options import OPTIONS
 from qtab.config.unknown import suggesting
+from qtab.discretizers import Sparse
 from qtab.envs.registry import spec_of
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
 from qtab.training.given_env import check_env, check_spaces
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import log_python_stepping, resolve
+from qtab.training.rows_met import greedy_table, with_rows_met
 from qtab.training.train import train_resolved
 
 if TYPE_CHECKING:
@@ -164,13 +166,13 @@ def evaluate(
         "learning_rate": 0.0,
         "epsilon": 0.0,
         "terminal_update": "target",
-        "initial_q": greedy_table(run),
+        "initial_q": 0.0 if isinstance(run.discretizer, Sparse) else greedy_table(run),
         **{name: getattr(config, name) for name in TABLE_SETTINGS},
         **_env_kwargs(config, env, env_kwargs),
         "max_episode_steps": config.max_episode_steps if max_episode_steps is None else max_episode_steps,
         "backend": config.backend if env is None and env_kwargs is None else "auto",
     }
-    resolved = resolve(config.env if env is None else env, settings)
+    resolved = with_rows_met(resolve(config.env if env is None else env, settings), run)
     if env is not None:
         log_python_stepping(resolved)
     try:
@@ -190,9 +192,3 @@ def _env_kwargs(config: Config, env: Any, env_kwargs: Mapping[str, Any] | None) 
     if env_kwargs is not None:
         return {"env_kwargs": env_kwargs}
     return {"env_kwargs": config.env_kwargs} if env is None else {}
-
-
-def greedy_table(run: Run) -> NDArray[np.float64]:
-    """Returns (1, rows, actions): the table that the greedy policy reads; of two the sum, also with tile coding."""
-    table: NDArray[np.float64] = run.tables[0] if len(run.tables) == 1 else run.tables[0] + run.tables[1]
-    return table[np.newaxis]

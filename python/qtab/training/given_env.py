@@ -23,7 +23,7 @@ def check_spaces(run: Run, env: gym.Env) -> None:
     except ValueError as error:
         raise ValueError(f"env must have the spaces of the run's {run.config.env}, got {_name(env)}: {error}") from None
     theirs = run.discretizer
-    if cells.shape != theirs.shape or cells.low.shape != theirs.low.shape or len(actions) != len(run.actions):
+    if not cells.same_space(theirs) or len(actions) != len(run.actions):
         raise ValueError(
             f"env must have the spaces of the run's {run.config.env}, got {_name(env)} with observations "
             f"{env.observation_space} and actions {env.action_space}"

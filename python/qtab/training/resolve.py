@@ -12,25 +12,28 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import discretizers
 from qtab._utils.shown import shown
-from qtab.config import Config
+from qtab.config import DEFAULTS, Config
 from qtab.config.algorithms import algorithm_settings
 from qtab.config.config import replace_checked
-from qtab.config.merge import config_of, merge_layers
-from qtab.config.options import defaults, mismatch, n_tables
+from qtab.config.merge import config_of, merge_layers, naming_preset
+from qtab.config.options import defaults, n_tables
 from qtab.config.policies import policy
+from qtab.config.presets import preset
 from qtab.config.schedules import learning_rate
-from qtab.discretizers import Discretizer
+from qtab.discretizers import Discretizer, Sparse
 from qtab.discretizers.actions import Actions, choose_actions
-from qtab.discretizers.identity import integer_bounds
 from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import native_env
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
 from qtab.training.action_masks import known_masks, observed_masks
+from qtab.training.preset_fit import infer_discretizer, set_aside
 from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun
 
 _LOGGER = logging.getLogger("qtab")
 _logged: set[str] = set()
 """The environments whose default time limit was logged in this process, and the messages that were."""
+READ_IN_PYTHON = "a function as the discretizer, or max_rows, reads each observation in Python"
+MASKS_BY_STEP = "its action masks are known only from step to step"
 UNLIMITED_MAX_EPISODE_STEPS = 10_000
 """The time limit in training for environments that have none."""
 
@@ -136,16 +139,21 @@ def _check_not_shown(env: gym.Env) -> None:
 
 def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     env = request.env
-    config = _infer_discretizer(env, request.config, request.asked)
+    config = set_aside(env, request.config, request.asked)
+    config = infer_discretizer(env.observation_space, config, request.asked)
     config = replace_checked(config, **defaults(vars(config)))
     actions = choose_actions(env.action_space, config.actions)
     environment, python_reason = _environment(request, actions, owns_env)
-    discretizer = discretizers.build(env.observation_space, config, len(actions))
+    of_preset = preset(config.env, config.preset)[1] if config.preset else {}
+    of_preset = {name: value for name, value in of_preset.items() if getattr(config, name) is not DEFAULTS[name]}
+    with naming_preset(config.preset, of_preset, request.asked):
+        discretizer = discretizers.build(env.observation_space, config, len(actions))
     masks = None
     if isinstance(environment, NativeEnvironment):
-        masks = known_masks(config.action_mask, env, discretizer, len(actions))
+        if not discretizer.reads_space:
+            masks = known_masks(config.action_mask, env, discretizer, len(actions))
         if masks is None:
-            python_reason = "its action masks are known only from step to step"
+            python_reason = READ_IN_PYTHON if discretizer.reads_space else MASKS_BY_STEP
             if config.backend == "rust":
                 raise rust_unavailable(python_reason)
     if masks is None:
@@ -178,19 +186,6 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     )
 
 
-def _infer_discretizer(env: gym.Env, config: Config, asked: Mapping[str, Any]) -> Config:
-    """A discrete observation space needs no discretizer: without one asked for, its observations index the table.
-
-    A wrapper may have made a Box discrete: the preset's scale then has no meaning, while one asked for is refused.
-    """
-    if config.discretizer != "round" or integer_bounds(env.observation_space) is None:
-        return config
-    identity = replace_checked(config, discretizer="identity")
-    if "scale" in asked and config.scale and (reason := mismatch("scale", config.scale, vars(identity))):
-        raise ValueError(reason)
-    return replace_checked(identity, scale=())
-
-
 def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[Environment, str | None]:
     """The environment as Rust steps it, where Rust can and the backend allows it; else itself, and why."""
     entry, backend, reason = request.entry, request.config.backend, request.python_reason
@@ -209,6 +204,10 @@ def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> 
     initial_q, count = config.initial_q, n_tables(config.algorithm)
     if not isinstance(initial_q, np.ndarray):
         return initial_q
+    if isinstance(discretizer, Sparse):
+        raise ValueError(
+            "initial_q must be a number or a range with max_rows, which gives out the rows anew, got a table"
+        )
     one = (*discretizer.shape, n_actions)
     shape = one if count == 1 else (count, *one)
     if initial_q.shape == one and count > 1:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._spec import NativeEnvSpec, PythonEnvSpec, RunSpec
+from qtab._spec import EnvironmentSpec, NativeEnvSpec, PythonEnvSpec, RunSpec
 from qtab.config import Config
 from qtab.config.algorithms import AlgorithmSettings
 from qtab.config.config import replace_checked
@@ -21,6 +21,7 @@ from qtab.discretizers.actions import Actions
 from qtab.envs.registry import EnvEntry
 from qtab.training.action_masks import NO_MASKS, ActionMasks
 from qtab.training.exclusive import exclusively
+from qtab.training.observed_env import ObservedEnv
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,8 @@ class ResolvedRun:
     """Whether the environment has no time limit, so that ``max_episode_steps`` is qtab's default."""
     python_reason: str | None
     """Why the environment is stepped in Python, where that was not asked for, and what would help; None otherwise."""
+    extensions: tuple[tuple[int, int], ...] = ()
+    """Those of :class:`qtab.results.run_state.RunState`."""
 
     @property
     def is_native(self) -> bool:
@@ -108,11 +111,20 @@ class ResolvedRun:
         """Returns the same run with another seed, which must be valid for the bit generator."""
         return replace(self, seed=seed, config=replace_checked(self.config, seed=seed))
 
+    def _env_spec(self) -> EnvironmentSpec:
+        spec = self.environment.spec()
+        if spec["type"] == "python" and self.discretizer.reads_space:
+            env, masks = ObservedEnv(spec["env"], self.discretizer), spec["action_mask"]
+            if masks["type"] == "function":
+                masks = {"type": "function", "function": env.of_observation(masks["function"])}
+            return {**spec, "env": env, "action_mask": masks}
+        return spec
+
     def spec(self) -> RunSpec:
         """Returns the run, except for its seed, as the extension takes it."""
         config = self.config
         return {
-            "env": self.environment.spec(),
+            "env": self._env_spec(),
             "discretizer": self.discretizer.spec(),
             "num_actions": len(self.actions),
             "max_episode_steps": self.max_episode_steps,

@@ -61,6 +61,6 @@ def state_of(trainer: _core.Trainer, resolved: ResolvedRun, snapshots: tuple[int
     if isinstance(environment, PythonEnvironment):
         generator = generator_state(environment.env.unwrapped.np_random)
     try:
-        return RunState(trainer.checkpoint(), generator, snapshots)
+        return RunState(trainer.checkpoint(), generator, snapshots, resolved.extensions)
     except MemoryError:
         return None  # what was learned is worth more

@@ -30,6 +30,8 @@ def resume(
     was stopped in the middle of an episode; its visits and snapshots, too. With more episodes, what changes over the
     course of a run, such as a falling ε, is spread over all of them, as if the run had had so many from the start: ε
     continues from another value than the one at which it stopped. A message of the logger ``qtab`` then says so.
+    Training the config of such a run again gives other numbers, and :func:`qtab.verify` and :func:`qtab.explain` can
+    repeat only the episodes before.
 
     An environment that is stepped in Python is resumed with its next episode, since the state within an episode is the
     environment's own. The result is that of the uninterrupted run if it was stopped between two episodes and the

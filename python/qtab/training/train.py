@@ -25,7 +25,14 @@ from qtab.results.run import Recording, Run
 from qtab.results.snapshots import SnapshotCollector
 from qtab.training.callback_list import Callbacks
 from qtab.training.callbacks import EpisodeReader
-from qtab.training.earlier_run import check_agrees, counts_visits, earlier_run, resolve_again, snapshots_of
+from qtab.training.earlier_run import (
+    check_agrees,
+    counts_visits,
+    earlier_run,
+    resolve_again,
+    snapshots_of,
+    with_function,
+)
 from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun, masks_of
@@ -74,7 +81,8 @@ def train(
             last one included; or after how many episodes to copy them, such as ``(0, 10, 100)``, 0 being before all.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the run takes more
             than a second.
-        memory_limit: The number of bytes that the run may take; None means half of the machine's memory.
+        memory_limit: The number of bytes that the run may take; None means half of the machine's memory, but no
+            more than is free.
         **settings: The settings of the run, explained below.
 
     Returns:
@@ -97,7 +105,7 @@ def train(
         resolved = resolve(env, over(base, settings))
     else:
         asked = over(base, settings)
-        earlier = earlier_run("resume", resume, asked.get("action_mask"))
+        earlier = with_function(earlier_run("resume", resume, asked.get("action_mask")), asked.get("discretizer"))
         options = replace(options, visits=counts_visits(earlier, visits))
         check_agrees(earlier, env, asked)
         made = env if isinstance(env, gym.Env) else None
@@ -201,7 +209,7 @@ def _run(
         episode_returns=returns,
         episode_lengths=lengths,
         terminated=terminated,
-        discretizer=resolved.discretizer,
+        discretizer=resolved.discretizer.as_learned(),
         actions=resolved.actions,
         completed=len(returns) == resolved.config.episodes,
         seconds=time.perf_counter() - began,

@@ -24,6 +24,7 @@ from qtab.config import Config
 from qtab.config.layers import collect, over
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
+from qtab.discretizers import Sparse
 from qtab.envs.matching import equal_environments
 from qtab.results.runs import Runs
 from qtab.training.action_masks import mask_bytes
@@ -61,7 +62,8 @@ def train_many(
         config: The settings to start from, as for :func:`qtab.train`, without the seed.
         threads: The number of threads or processes; None means one per core.
         tables: Whether to keep the Q tables.
-        memory_limit: The number of bytes that the runs may take; None means half of the machine's memory.
+        memory_limit: The number of bytes that the runs may take; None means half of the machine's memory, but no
+            more than is free.
         callback: A callable, or a sequence of them, called with a :class:`qtab.RunsProgress` whenever some more runs
             are finished, and after the last one. Any of them stops the training by returning False.
         callback_every: The number of runs between two calls; None takes as many as need about a second.
@@ -91,6 +93,8 @@ def train_many(
     resolved = resolve_template(env, {**overrides, "seed": largest}).with_seed(numbers[0])
     log_default_limit(resolved)
     log_python_stepping(resolved)
+    if tables and isinstance(resolved.discretizer, Sparse):
+        raise ValueError("tables must be left out with max_rows: each run gives out the rows of its table by itself")
     began = time.perf_counter()
 
     def make_runs(finished: NDArray[np.bool_]) -> Runs:

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks, html
+from qtab._utils.arrays import same_bytes
 from qtab._utils.fields import with_fields
+from qtab._utils.memory import check_memory, memory_limit
 from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
@@ -21,6 +23,7 @@ from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.envs.stored import spec_of_run
 from qtab.reference import LEARNERS
 from qtab.results.run import Run
+from qtab.training.extensions import repeatable
 from qtab.training.given_env import check_env, check_spaces
 from qtab.training.repetition import repeats_itself, wrapper_with_statistics
 from qtab.training.resolve import resolve
@@ -44,7 +47,7 @@ class Verification:
     """The first step (from 0) of that episode at which their actions differ; None where none does."""
     versions: dict[str, str]
     repeats: bool | None = None
-    """Whether the environment gave the same twice for the same seed and actions; None where nothing differs."""
+    """Whether the environment gave the same results twice for the same seed and actions; None where nothing differs."""
     wrapper: str | None = None
     """The class name of a wrapper of ``env`` with statistics of its own; None where nothing differs, or without one."""
 
@@ -81,10 +84,10 @@ class Verification:
         """What the environment has to do with a difference, in lines of a report."""
         lines = []
         if self.repeats is False:
-            lines.append("the environment does not repeat itself: the same seed and actions gave something else the")
-            lines.append("second time, so that the difference says nothing about qtab")
+            lines.append("the environment does not repeat itself: the same seed and actions gave different results the")
+            lines.append("second time, so the difference does not show a fault of qtab")
         elif self.repeats:
-            lines.append("the environment repeats itself: the same seed and actions gave the same twice")
+            lines.append("the environment repeats itself: the same seed and actions gave the same results twice")
         if self.wrapper is not None:
             lines.append(f"its wrapper {self.wrapper} keeps statistics, which start where the last call left them:")
             lines.append("train and verify need a new environment each, and verify no episodes=")
@@ -125,17 +128,25 @@ def verify(
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
         TypeError: for an argument of the wrong type.
+        MemoryError: if the tables of the reference do not fit into what is free.
         ValueError: for an argument out of range, an environment with other spaces than the run's, or an interrupted run
-            without ``episodes``.
+            without ``episodes``. Of a run that was resumed with more episodes while a rate fell, only the episodes
+            before can be compared.
     """
     checks.instance("run", run, Run)
     check_env(env)
     if progress is not None and not callable(progress):
         raise TypeError(f"progress must be callable, got {shown(progress)}")
     finished = len(run.episode_returns)
+    run, most = repeatable(run)
     if episodes is None and not run.completed:
-        raise ValueError(f"episodes must be given for a run that was stopped early, at most {finished}")
+        raise ValueError(f"episodes must be given for a run that was stopped early, at most {most}")
     count = checks.integer("episodes", finished if episodes is None else episodes, least=1, most=finished)
+    if count > most:
+        raise ValueError(
+            f"episodes must be at most {most:,} for a run that was extended after so many, since its rates then fell "
+            f"over more of them, got {episodes!r}"
+        )
     config = run.config
     if env is None:
         spec_of_run(config.env)
@@ -145,6 +156,7 @@ def verify(
         with closing(gym.make(env)) as made:
             check_spaces(run, made)
             return verify(run, episodes, made, progress)
+    check_memory("the tables of the reference", 2 * run.tables.nbytes, memory_limit(None))
     recorder = _Recorder(_environment(config, env), count, progress)
     try:
         table, returns, lengths = LEARNERS[config.algorithm](recorder, config, stop_after=count)
@@ -162,7 +174,7 @@ def verify(
         episodes=count,
         returns_equal=returns.tobytes() == run.episode_returns[:count].tobytes(),
         lengths_equal=lengths.tobytes() == run.episode_lengths[:count].tobytes(),
-        table_equal=table.tobytes() == ours.tobytes(),
+        table_equal=same_bytes(table, ours),
         episode=episode,
         step=None if episode is None else _first_step(config, env, run, recorder, episode),
         versions=versions(),

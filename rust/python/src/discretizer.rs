@@ -38,7 +38,10 @@ impl PyDiscretizer {
         let (dtype, dimensions) = spec.box_space()?;
         let features = match dtype {
             FloatType::F32 => AnyFeatures::F32(dyn_features(&spec, |bound| bound as f32)?),
-            FloatType::F64 => AnyFeatures::F64(dyn_features(&spec, |bound| bound)?),
+            FloatType::F64 => match spec {
+                DiscretizerSpec::Product(product) => AnyFeatures::F64(Box::new(product.features)),
+                spec => AnyFeatures::F64(dyn_features(&spec, |bound| bound)?),
+            },
         };
         Ok(Self { features, dimensions: Some(dimensions), n_active })
     }

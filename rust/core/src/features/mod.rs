@@ -10,6 +10,7 @@ mod hashing;
 mod identity;
 mod multi_discrete_index;
 mod out_of_bounds;
+mod product;
 mod rounding;
 mod tile_coding;
 
@@ -21,5 +22,6 @@ pub use fixed_tile_coding::{FixedTileCoding, FixedTiles};
 pub use identity::Identity;
 pub use multi_discrete_index::MultiDiscreteIndex;
 pub use out_of_bounds::OutOfBounds;
+pub use product::{Factor, FactorFeatures, Product};
 pub use rounding::{Axis, Rounding};
 pub use tile_coding::{ActiveTiles, MAX_TILINGS, TileCoding};

@@ -32,6 +32,10 @@ pub(crate) fn python_run(
     if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
         return task.run(reader.clone(), reader.n_rows());
     }
+    if let DiscretizerSpec::Product(product) = &spec.discretizer {
+        let reader = BoxReader::<f64, _>::new(product.features.clone(), product.dimensions);
+        return task.run(reader, product.n_rows());
+    }
     match spec.discretizer.box_space()? {
         (FloatType::F32, dimensions) => task.box_run(|bound| bound as f32, dimensions),
         (FloatType::F64, dimensions) => task.box_run(|bound| bound, dimensions),

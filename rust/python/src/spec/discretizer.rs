@@ -5,6 +5,7 @@ use qtab_core::features::{AnyGrid, Axis, Bins, Edges, MAX_TILINGS, Rounding, Til
 use qtab_core::numeric::Float;
 
 use super::fields::{Fields, Variant};
+use super::product::ProductSpec;
 use crate::convert::DiscreteReader;
 use crate::error::invalid;
 
@@ -14,6 +15,7 @@ pub(crate) enum DiscretizerSpec {
     Bins(BinsSpec),
     Tiles(TilesSpec),
     Identity(DiscreteReader),
+    Product(ProductSpec),
 }
 
 /// The dtype of a Box.
@@ -56,6 +58,7 @@ pub(crate) const DISCRETIZERS: &[Variant<DiscretizerSpec>] = &[
     ("bins", |fields| BinsSpec::parse(fields).map(DiscretizerSpec::Bins)),
     ("tiles", |fields| TilesSpec::parse(fields).map(DiscretizerSpec::Tiles)),
     ("identity", identity),
+    ("product", |fields| ProductSpec::parse(fields).map(DiscretizerSpec::Product)),
 ];
 
 impl DiscretizerSpec {
@@ -81,6 +84,7 @@ impl DiscretizerSpec {
                 [u64::from(tiles.tilings)].into_iter().chain(tiles_of_axes).collect()
             }
             Self::Identity(reader) => reader.counts().map(u64::from).collect(),
+            Self::Product(product) => vec![product.n_rows() as u64],
         }
     }
 
@@ -90,6 +94,7 @@ impl DiscretizerSpec {
             Self::Round(round) => Ok((round.dtype, round.scale.len())),
             Self::Bins(bins) => Ok((bins.dtype, bins.edges.len())),
             Self::Tiles(tiles) => Ok((tiles.dtype, tiles.tiles.len())),
+            Self::Product(product) => Ok((FloatType::F64, product.dimensions)),
             Self::Identity(_) => Err(invalid("discretizer", "one for a Box of observations", "'identity'")),
         }
     }
@@ -105,7 +110,20 @@ impl DiscretizerSpec {
 
     /// How many rows are active at a time.
     pub(crate) fn n_active(&self) -> usize {
-        if let Self::Tiles(tiles) = self { tiles.tilings as usize } else { 1 }
+        match self {
+            Self::Tiles(tiles) => tiles.tilings as usize,
+            Self::Product(product) => product.tilings as usize,
+            _ => 1,
+        }
+    }
+
+    /// Whether the rows are those of tilings, in which a state has none of its own.
+    pub(crate) fn is_tile_coding(&self) -> bool {
+        match self {
+            Self::Tiles(_) => true,
+            Self::Product(product) => product.has_tiles,
+            _ => false,
+        }
     }
 
     /// The grid, with arithmetic in `T`. It is an error for discretizers that are no grid of a Box.
@@ -115,6 +133,7 @@ impl DiscretizerSpec {
             Self::Bins(bins) => Ok(AnyGrid::Bins(Bins::new(bins.edges.clone()))),
             Self::Tiles(_) => Err(invalid("discretizer", "'round' or 'bins'", "'tiles'")),
             Self::Identity(_) => Err(invalid("discretizer", "'round' or 'bins'", "'identity'")),
+            Self::Product(_) => Err(invalid("discretizer", "'round' or 'bins'", "'product'")),
         }
     }
 }

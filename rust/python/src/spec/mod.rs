@@ -7,6 +7,7 @@ mod discretizer;
 mod fields;
 mod initial_q;
 mod policy;
+mod product;
 mod schedule;
 
 use pyo3::prelude::*;
@@ -76,7 +77,7 @@ impl RunSpec {
 
     /// Refuses what needs a table with a row for each state.
     fn check_tile_coding(&self) -> PyResult<()> {
-        if !matches!(self.discretizer, DiscretizerSpec::Tiles(_)) {
+        if !self.discretizer.is_tile_coding() {
             return Ok(());
         }
         if self.terminal_update == TerminalUpdate::Assign {

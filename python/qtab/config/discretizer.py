@@ -1,0 +1,56 @@
+"""The setting ``discretizer``: a name, a function, or a name and its options for each key of the observation."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+FUNCTION = "function"
+MAPPING = "mapping"
+
+
+def kind(discretizer: Any) -> str:
+    """Returns the name of a discretizer; ``"function"`` or ``"mapping"`` for one that is given as such."""
+    if isinstance(discretizer, Mapping):
+        return MAPPING
+    return FUNCTION if callable(discretizer) else str(discretizer)
+
+
+def uses_tiles(discretizer: Any) -> bool:
+    """Whether a discretizer is, or contains, tile coding: no state has a row of its own then."""
+    if isinstance(discretizer, Mapping):
+        return any(of_key["discretizer"] == "tiles" for of_key in discretizer.values())
+    return bool(discretizer == "tiles")
+
+
+@dataclass(frozen=True)
+class MissingFunction:
+    """Stands for the function that was the discretizer of a saved run: files hold its name alone."""
+
+    name: str
+
+    def __call__(self, observation: Any) -> Any:  # noqa: ARG002
+        """Says how to load the run with its function.
+
+        Raises:
+            ValueError: always.
+        """
+        raise ValueError(
+            f"the run's discretizer is the function {self.name!r}, which a file cannot hold: "
+            "qtab.load(path, discretizer=...) takes it"
+        )
+
+
+def function_name(function: Callable[[Any], Any]) -> str:
+    """Returns the name by which a saved run remembers its function."""
+    if isinstance(function, MissingFunction):
+        return function.name
+    return str(getattr(function, "__qualname__", type(function).__qualname__))
+
+
+def stored_function(config: dict[str, Any]) -> dict[str, str]:
+    """Takes a function out of the fields of a config; returns what a file holds of it, nothing where there is none."""
+    function = config["discretizer"]
+    if kind(function) != FUNCTION:
+        return {}
+    config["discretizer"] = None
+    return {"discretizer_function": function_name(function)}

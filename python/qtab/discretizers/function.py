@@ -1,0 +1,150 @@
+"""A function as the discretizer: from an observation to the indices of its cell."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._discretizer_spec import IdentitySpec
+from qtab._utils.shown import shown
+from qtab.config import Config
+from qtab.config.discretizer import function_name
+from qtab.discretizers.base import Discretizer, check_table_size
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Function(Discretizer):
+    """The user's function: every observation is given to it, whatever its space."""
+
+    reads_space = True
+
+    function: Callable[[Any], Any]
+    """From an observation to its indices within the shape, or to one integer, the number of its row."""
+    cell_shape: tuple[int, ...] | None
+    """The shape of the table without its actions; None where rows are given out for any integers."""
+    observation_shape: tuple[int, ...] | None
+    """The shape of an observation, by which a batch of them is recognized; None where the space has none."""
+
+    @classmethod
+    def build(cls, space: Any, config: Config, n_actions: int) -> "Function":
+        """Returns the function of a config, over any observation space.
+
+        Raises:
+            ValueError: if the setting ``shape`` is missing, or the table would be too large.
+        """
+        if config.shape is None and config.max_rows is None:
+            raise ValueError(
+                "shape must be given for a function as the discretizer, the shape of the table that its indices lie "
+                "in, such as (19, 15); or max_rows="
+            )
+        if config.shape is not None and n_actions:
+            check_table_size("shape", config.shape, float(np.prod(np.array(config.shape, np.float64))) * n_actions)
+        return cls._of(config, space.shape)
+
+    @classmethod
+    def _of(cls, config: Config, observation_shape: tuple[int, ...] | None) -> "Function":
+        shape: Any = config.shape
+        low = np.zeros(len(shape or ()), np.int64)
+        high = low if shape is None else np.array(shape, np.int64) - 1
+        function: Any = config.discretizer
+        return cls(low, high, function, shape, observation_shape)
+
+    @classmethod
+    def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Function":
+        """Returns the function that was given to ``qtab.load``; see :meth:`Discretizer.restore`."""
+        if config.max_rows is None and (config.shape is None or math.prod(config.shape) != n_rows):
+            raise ValueError("its table has another number of rows than its shape")
+        stored = arrays.get("observation_shape")
+        if stored is not None and (stored.dtype != np.int64 or stored.ndim != 1 or (stored < 0).any()):
+            raise ValueError("its observations do not have a shape")
+        return cls._of(config, None if stored is None else tuple(stored.tolist()))
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Returns the arrays to save."""
+        if self.observation_shape is None:
+            return {}
+        return {"observation_shape": np.array(self.observation_shape, np.int64)}
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the table without its actions."""
+        return self.cell_shape or ()
+
+    @property
+    def component_names(self) -> tuple[str, ...]:
+        """A name for each index."""
+        name = function_name(self.function)
+        return tuple(f"{name}[{index}]" for index in range(len(self.shape)))
+
+    def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
+        """Returns the numbers halfway between the indices."""
+        return tuple(np.arange(count + 1.0) - 0.5 for count in self.shape)
+
+    def spec(self) -> IdentitySpec:
+        """Returns the discretizer as the extension takes it: of the number of a row."""
+        return {"type": "identity", "first": [0], "counts": [self.n_rows], "scalar": True}
+
+    def cells(self, observation: Any) -> tuple[int, ...]:
+        """Returns what the function gives for one observation, checked: its indices within the shape.
+
+        Raises:
+            TypeError: if the function does not return integers.
+            ValueError: if they do not lie within the shape.
+        """
+        returned = self.function(observation)
+        indices = np.asarray(returned)
+        if indices.dtype.kind not in "iub" or indices.ndim > 1:
+            raise TypeError(f"discretizer must return integers, {self._wanted}, got {shown(returned)}")
+        cell = tuple(int(index) for index in np.atleast_1d(indices))
+        if self.cell_shape is None:
+            return cell
+        if not indices.ndim and len(self.cell_shape) > 1 and 0 <= cell[0] < self.n_rows:
+            return tuple(int(index) for index in np.unravel_index(cell[0], self.cell_shape))
+        within = len(cell) == len(self.cell_shape) and all(
+            0 <= index < count for index, count in zip(cell, self.cell_shape, strict=True)
+        )
+        if not within:
+            raise ValueError(f"discretizer must return {self._wanted}, got {shown(returned)}")
+        return cell
+
+    @property
+    def _wanted(self) -> str:
+        if self.cell_shape is None:
+            return "one or several"
+        if len(self.cell_shape) == 1:
+            return f"one from 0 to {self.cell_shape[0] - 1}"
+        return f"{len(self.cell_shape)} indices within the shape {self.cell_shape}, or the number of a row"
+
+    def with_function(self, function: Callable[[Any], Any]) -> "Function":
+        """Returns the discretizer with another function."""
+        return replace(self, function=function)
+
+    def observe(self, observation: Any) -> int:
+        """Returns the row of an observation, as the extension reads it."""
+        row = 0
+        for index, count in zip(self.cells(observation), self.shape, strict=True):
+            row = row * count + index
+        return row
+
+    def active_rows(self, observation: Any) -> NDArray[np.int64]:
+        """Returns the (1,) row of an observation, or the (n, 1) rows of n observations of a space that has a shape.
+
+        Raises:
+            TypeError: if the function does not return integers.
+            ValueError: if they do not lie within the shape.
+        """
+        return rows_of(self.observe, observation, self.observation_shape)
+
+
+def rows_of(
+    row: Callable[[Any], int], observation: Any, observation_shape: tuple[int, ...] | None
+) -> NDArray[np.int64]:
+    """Returns the (1,) row of an observation, or the (n, 1) rows of n observations of this shape."""
+    if observation_shape is not None:
+        shape = np.shape(observation)
+        if shape != observation_shape and shape[1:] == observation_shape and len(shape) == len(observation_shape) + 1:
+            return np.array([[row(one)] for one in observation], np.int64).reshape(-1, 1)
+    return np.array([row(observation)], np.int64)

@@ -1,0 +1,43 @@
+"""What to do with an observation space that a table cannot serve."""
+
+from typing import Any
+
+from gymnasium import spaces
+
+from qtab._utils.shown import shown
+
+FUNCTION = "a function as discretizer= with shape= or max_rows="
+
+
+def refusal(space: Any, whole: Any, path: tuple[str | int, ...]) -> str:
+    """Returns why a table cannot serve a space, and what would help.
+
+    Args:
+        space: The space.
+        whole: The observation space of which it is a part, or itself.
+        path: The keys under which it is found there.
+    """
+    where = f"under {path[0]!r}" if path else "as it is"
+    text = (
+        f"the observation space must consist of numbers for a table, got {type(space).__name__} {where}: {shown(whole)}"
+    )
+    others = [key for key in whole.spaces if key != path[0]] if isinstance(whole, spaces.Dict) and path else []
+    if others:
+        return f"{text}; gymnasium.wrappers.FilterObservation(env, {others!r}) leaves it out, or give {FUNCTION}"
+    if isinstance(space, spaces.Box):
+        return f"{text}; gymnasium.wrappers.DtypeObservation(env, numpy.float64) converts it"
+    return f"{text}; gymnasium.wrappers.TransformObservation makes numbers of it with a function, or give {FUNCTION}"
+
+
+def too_large(parts: Any) -> str:
+    """Returns what would help with discrete observations that are too many for a table, to be added to a message."""
+    image = any(part.kind == "integer" and len(part.shape) in (2, 3) and part.size >= 64 for part in parts)
+    if image:
+        return (
+            " (it holds an image: max_rows= gives rows only to the images that are met; "
+            "gymnasium.wrappers.TransformObservation or a function as discretizer= with shape= makes less of it)"
+        )
+    return (
+        " (max_rows= gives rows only to the observations that are met; "
+        "a function as discretizer= with shape= makes fewer of them)"
+    )

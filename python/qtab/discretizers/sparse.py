@@ -1,0 +1,157 @@
+"""Rows that are given out as observations are met, for spaces of more cells than a table can have."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._discretizer_spec import IdentitySpec
+from qtab._utils.checks import required
+from qtab.config import Config
+from qtab.discretizers.base import Discretizer, check_table_size
+from qtab.discretizers.composite import Composite
+from qtab.discretizers.function import Function, rows_of
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sparse(Discretizer):
+    """A table of ``max_rows`` rows, which the cells get in the order in which they are met during training.
+
+    One row more is never given out: it keeps the initial values, and stands for every cell that was not met.
+    """
+
+    reads_space = True
+
+    cells: Composite | Function
+    """Finds the cell of an observation."""
+    max_rows: int
+    met: dict[bytes, int] = field(repr=False)
+    """The row of each cell that was met, by the bytes of its int64 indices. Training adds to it; :meth:`as_learned`
+    returns a copy."""
+    gives_out: bool = True
+    """Whether :meth:`observe` gives a row to a cell that was not met."""
+
+    @classmethod
+    def build(cls, space: Any, config: Config, n_actions: int) -> "Sparse":
+        """Returns a table in which nothing was met.
+
+        Raises:
+            ValueError: if the space or an option does not fit, or the table would be too large.
+        """
+        max_rows = required("max_rows", config.max_rows)
+        if n_actions:
+            check_table_size("max_rows", max_rows, (max_rows + 1.0) * n_actions)
+        cells = (Function if callable(config.discretizer) else Composite).build(space, config, 0)
+        return cls._of(cells, max_rows, {})
+
+    @classmethod
+    def _of(cls, cells: Any, max_rows: int, met: dict[bytes, int]) -> "Sparse":
+        if isinstance(cells, Composite) and not cells.has_cells:
+            raise ValueError("max_rows does not apply to discretizer 'tiles', which has no cells; hashed_rows= does")
+        return cls(np.array(0), np.array(max_rows), cells, max_rows, met)
+
+    @classmethod
+    def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Sparse":
+        """Returns the table of a saved run; see :meth:`Discretizer.restore`."""
+        max_rows = required("max_rows", config.max_rows)
+        met = arrays["met"]
+        cells = (Function if callable(config.discretizer) else Composite).restore(config, arrays, n_rows)
+        if n_rows != max_rows + 1 or met.dtype != np.int64 or met.ndim != 2 or len(met) > max_rows:
+            raise ValueError("its table has another number of rows than max_rows")
+        rows = {cell.tobytes(): row for row, cell in enumerate(met)}
+        if len(rows) != len(met) or (isinstance(cells, Composite) and met.size and met.shape[1] != cells.layout.size):
+            raise ValueError("its rows are not those of different cells")
+        return cls._of(cells, max_rows, rows)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Returns the arrays to save."""
+        met = np.frombuffer(b"".join(self.met), np.int64).reshape(len(self.met), -1 if self.met else 0)
+        return {**self.cells.arrays(), "met": met}
+
+    def settings(self) -> dict[str, Any]:
+        """Returns the settings that followed from the space, for the config of the run."""
+        return self.cells.settings()
+
+    def as_learned(self) -> "Sparse":
+        """Returns the table with what was met until now."""
+        return replace(self, met=dict(self.met), gives_out=True)
+
+    def with_function(self, function: Callable[[Any], Any]) -> "Sparse":
+        """Returns the table with another function, if it has one."""
+        cells = self.cells
+        return replace(self, cells=cells.with_function(function) if isinstance(cells, Function) else cells)
+
+    def as_played(self) -> "Sparse":
+        """Returns the table for a policy that only plays: what was not met shares the last row."""
+        return replace(self, gives_out=False)
+
+    @property
+    def n_met(self) -> int:
+        """How many rows were given out."""
+        return len(self.met)
+
+    @property
+    def shape(self) -> tuple[int]:
+        """The number of rows, and one more for what was not met."""
+        return (self.max_rows + 1,)
+
+    @property
+    def component_names(self) -> tuple[str, ...]:
+        """The name of its only axis."""
+        return ("row",)
+
+    def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
+        """Returns the numbers halfway between the rows."""
+        return (np.arange(self.n_rows + 1.0) - 0.5,)
+
+    def spec(self) -> IdentitySpec:
+        """Returns the discretizer as the extension takes it: of the number of a row."""
+        return {"type": "identity", "first": [0], "counts": [self.n_rows], "scalar": True}
+
+    def observe(self, observation: Any) -> int:
+        """Returns the row of an observation, a new one if its cell was not met before.
+
+        Raises:
+            TypeError: if it does not hold numbers (integers for what is discrete).
+            ValueError: if it lies outside the space, or all rows are given out.
+        """
+        cell = _key(self.cells.cells(observation))
+        row = self.met.get(cell)
+        if row is None and not self.gives_out:
+            return self.max_rows
+        if row is None:
+            row = len(self.met)
+            if row == self.max_rows:
+                raise ValueError(
+                    f"max_rows must be more than {row}: all rows are given out, and yet another observation was met"
+                )
+            if len(cell) != len(next(iter(self.met), cell)):
+                raise ValueError(f"discretizer must return as many integers each time, got {len(cell) // 8}")
+            self.met[cell] = row
+        return row
+
+    def active_rows(self, observation: Any) -> NDArray[np.int64]:
+        """Returns the (1,) row of an observation, or the (n, 1) rows of n observations; the last for what was not met.
+
+        Raises:
+            TypeError: if the observation does not hold numbers (integers for what is discrete).
+            ValueError: if it has another shape than the space, or lies outside the space.
+        """
+        if isinstance(self.cells, Function):
+            return rows_of(self._known_row, observation, self.cells.observation_shape)
+        flat = self.cells.flat(observation)
+        rows = [self.met.get(_key(self.cells.cells_of(numbers)), self.max_rows) for numbers in np.atleast_2d(flat)]
+        return np.array(rows, np.int64).reshape(*flat.shape[:-1], 1)
+
+    def _known_row(self, observation: Any) -> int:
+        return self.met.get(_key(self.cells.cells(observation)), self.max_rows)
+
+    def same_space(self, other: Discretizer) -> bool:
+        """Whether another discretizer has as many rows, for observations with the same components."""
+        return isinstance(other, Sparse) and self.shape == other.shape and self.cells.same_space(other.cells)
+
+
+def _key(cell: Any) -> bytes:
+    return np.asarray(cell, np.int64).tobytes()

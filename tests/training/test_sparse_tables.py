@@ -1,0 +1,136 @@
+"""Tables whose rows are given out as observations are met: `max_rows`."""
+
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.spaces import Box, Dict, Discrete
+
+import qtab
+from support.environments import Sampled
+from support.gridworld import Tutorial
+from support.parity import assert_same_run
+
+SETTINGS: dict[str, Any] = {"episodes": 30, "seed": 5, "max_episode_steps": 40, "initial_q": 0.0}
+
+
+def test_a_sparse_table_learns_what_a_full_one_does() -> None:
+    full = qtab.train(Tutorial(3), **SETTINGS)
+    sparse = qtab.train(Tutorial(3), max_rows=81, **SETTINGS)
+    assert sparse.tables.shape == (1, 82, 4)
+    assert full.episode_returns.tobytes() == sparse.episode_returns.tobytes()
+    met = sparse.discretizer.n_met  # type: ignore[attr-defined]
+    assert met == np.unique(full.tables[0].nonzero()[0]).size + np.count_nonzero(~sparse.tables[0][:met].any(axis=1))
+    for agent in np.ndindex(3, 3):
+        observation = {"agent": np.array(agent), "target": np.array([2, 1])}
+        assert np.array_equal(sparse.q_values(observation), full.q_values(observation))
+    assert qtab.verify(sparse, env=Tutorial(3)).equal
+    assert [axis.name for axis in sparse.axes] == ["row"]
+
+
+def test_what_was_not_met_has_the_initial_values_of_the_last_row() -> None:
+    env = Sampled(Box(0, 10**9, (3,), np.int64))
+    run = qtab.train(env, max_rows=100, **{**SETTINGS, "initial_q": (-1.0, 1.0), "episodes": 2})
+    observation = np.array([1, 2, 3])
+    assert run.discretizer.row(observation) == 100
+    assert np.array_equal(run.q_values(observation), run.tables[0][100])
+    assert run.predict(np.stack([observation] * 3))[0].tolist() == [run.predict(observation)[0]] * 3
+    assert qtab.evaluate(run, episodes=20, seed=9, env=env).lengths.sum() > 100  # most of which was not met
+
+
+def test_a_full_table_is_refused_with_what_was_learned() -> None:
+    with pytest.raises(
+        ValueError, match=r"^max_rows must be more than 7: all rows are given out, and yet another"
+    ) as caught:
+        qtab.train(Sampled(Box(0, 255, (5,), np.uint8)), max_rows=7, **SETTINGS)
+    run = caught.value.run  # type: ignore[attr-defined]
+    assert run.discretizer.n_met == 7
+    assert run.predict(np.zeros(5, np.uint8))
+
+
+def test_a_saved_run_keeps_its_rows_and_is_resumed_with_them(tmp_path: Path) -> None:
+    def make() -> Tutorial:
+        return Tutorial(5)
+
+    settings: dict[str, Any] = {**SETTINGS, "max_rows": 500, "initial_q": (-1.0, 1.0)}
+    whole = qtab.train(make(), **settings)
+
+    def stop(progress: Any) -> bool:
+        return bool(progress.episode < 12)
+
+    part = qtab.train(make(), callback=stop, callback_every=4, **settings)
+    assert 0 < len(part.episode_returns) < 30
+    assert part.discretizer.n_met < whole.discretizer.n_met  # type: ignore[attr-defined]
+    part.save(tmp_path / "part.npz")
+    loaded = qtab.load(tmp_path / "part.npz")
+    space = make().observation_space
+    for _ in range(10):
+        observation = space.sample()
+        assert loaded.predict(observation) == part.predict(observation)
+    resumed = qtab.resume(loaded, env=make())
+    assert_same_run(resumed, whole)
+    assert resumed.discretizer.arrays()["met"].tolist() == whole.discretizer.arrays()["met"].tolist()
+    assert part.discretizer.n_met < whole.discretizer.n_met  # type: ignore[attr-defined]
+
+
+def test_a_function_without_a_shape_names_cells_by_any_integers() -> None:
+    def place(observation: Any) -> tuple[int, ...]:
+        return (*observation["agent"].tolist(), -(10**12))
+
+    run = qtab.train(Tutorial(3), discretizer=place, max_rows=9, **SETTINGS)
+    assert run.discretizer.n_met == 9  # type: ignore[attr-defined]
+    assert qtab.verify(run, env=Tutorial(3)).equal
+    with pytest.raises(ValueError, match="discretizer must return as many integers each time, got"):
+        qtab.train(Tutorial(3), discretizer=lambda o: [0] * (1 + o["agent"][0]), max_rows=9, **SETTINGS)
+
+
+@pytest.mark.parametrize(
+    ("settings", "text"),
+    [
+        ({"discretizer": "tiles"}, "max_rows applies to discretizer 'round', .* not to 'tiles'"),
+        ({"initial_q": np.zeros((10, 4))}, "initial_q must be a number or a range with max_rows"),
+        ({"max_rows": 2**31}, r"max_rows must give a table of fewer than 2\*\*32 values"),
+    ],
+    ids=str,
+)
+def test_what_does_not_go_with_max_rows(settings: dict[str, Any], text: str) -> None:
+    with pytest.raises(ValueError, match=text):
+        qtab.train(Tutorial(3), **{"max_rows": 9, **SETTINGS, **settings})
+
+
+def test_tiles_by_key_do_not_go_with_max_rows() -> None:
+    env = Sampled(Dict(room=Discrete(5), speed=Box(-1.0, 1.0, (2,))))
+    with pytest.raises(ValueError, match="max_rows does not apply to discretizer 'tiles'"):
+        qtab.train(env, discretizer={"speed": "tiles"}, max_rows=9, **SETTINGS)
+
+
+@pytest.mark.slow
+def test_the_tables_of_many_runs_have_different_rows_and_are_not_kept() -> None:
+    def make() -> gym.Env:
+        return Tutorial(3)
+
+    settings = {name: value for name, value in SETTINGS.items() if name != "seed"} | {"episodes": 3}
+    with pytest.raises(ValueError, match=r"^tables must be left out with max_rows"):
+        qtab.train_many(make, seeds=2, tables=True, max_rows=81, **settings)
+    runs = qtab.train_many(make, seeds=2, threads=1, max_rows=81, **settings)
+    single = qtab.train(make(), seed=1, max_rows=81, **settings)
+    assert runs.episode_returns[1].tobytes() == single.episode_returns.tobytes()
+    assert runs.episode_lengths[1].tolist() == single.episode_lengths.tolist()
+
+
+def test_a_verified_run_leaves_its_rows_as_they_are() -> None:
+    run = qtab.train(Tutorial(3), max_rows=81, **SETTINGS)
+    met = run.discretizer.n_met  # type: ignore[attr-defined]
+    assert qtab.verify(run, 3, env=Tutorial(3)).equal
+    assert run.discretizer.n_met == met  # type: ignore[attr-defined]
+    assert_same_run(run, qtab.train(Tutorial(3), config=run.config))
+
+
+def test_plain_data_does_not_leave_out_how_observations_are_read(tmp_path: Path) -> None:
+    for max_rows in (81, None):
+        run = qtab.train(Tutorial(3), max_rows=max_rows, **SETTINGS)
+        with pytest.raises(ValueError, match=r"^this run cannot be written: plain data describes"):
+            run.to_json(tmp_path / "policy.json")
+        assert not (tmp_path / "policy.json").exists()
