@@ -2,7 +2,7 @@
 
 use std::hint::select_unpredictable;
 
-use super::trace_passes::{Apply, ApplyAndDecay, BLOCK, Decay, InstructionSet};
+use super::trace_passes::{ApplyAndDecayTraces, ApplyTraces, BLOCK, DecayTraces, InstructionSet};
 use crate::StopFlag;
 use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
 use crate::q_table::QTable;
@@ -216,11 +216,11 @@ impl EligibleWeights {
     /// Sets all traces to 0.
     pub(super) fn clear<const N: usize>(&mut self, table: &mut QTable<N>) {
         self.move_back(table);
-        self.forget();
+        self.discard();
     }
 
     /// Sets all traces to 0, while the values are in the table.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn discard(&mut self) {
         for &weight in &self.weights[..self.count] {
             self.slots[weight as usize] = weight;
         }
@@ -234,7 +234,7 @@ impl EligibleWeights {
     pub(super) fn apply<const N: usize>(&mut self, table: &mut QTable<N>, step: f64) {
         let len = self.count.next_multiple_of(BLOCK);
         let values = &mut table.storage_mut()[self.slots.len()..][..len];
-        self.instructions.run(Apply { values, traces: &self.traces[..len], step });
+        self.instructions.run(ApplyTraces { values, traces: &self.traces[..len], step });
     }
 
     /// Adds to each eligible weight a function of its index and its trace.
@@ -251,7 +251,7 @@ impl EligibleWeights {
     pub(super) fn decay<const N: usize>(&mut self, table: &mut QTable<N>, factor: f64, cutoff: f64) {
         let blocks = self.count.div_ceil(BLOCK);
         let (traces, fallen) = (&mut self.traces[..blocks * BLOCK], &mut self.fallen[..blocks]);
-        if self.instructions.run(Decay { traces, fallen, factor, cutoff }) {
+        if self.instructions.run(DecayTraces { traces, fallen, factor, cutoff }) {
             self.remove_fallen(table.storage_mut(), cutoff);
         }
     }
@@ -268,7 +268,11 @@ impl EligibleWeights {
         let blocks = self.count.div_ceil(BLOCK);
         let values = &mut table.storage_mut()[self.slots.len()..][..blocks * BLOCK];
         let (traces, fallen) = (&mut self.traces[..blocks * BLOCK], &mut self.fallen[..blocks]);
-        if self.instructions.run(ApplyAndDecay { values, step, decay: Decay { traces, fallen, factor, cutoff } }) {
+        if self.instructions.run(ApplyAndDecayTraces {
+            values,
+            step,
+            decay: DecayTraces { traces, fallen, factor, cutoff },
+        }) {
             self.remove_fallen(table.storage_mut(), cutoff);
         }
     }

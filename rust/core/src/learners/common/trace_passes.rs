@@ -13,14 +13,14 @@ type Vector = [f64; LANES];
 
 /// z ← γλ z, where `factor` is γλ. Returns whether a trace has fallen to the cutoff, and writes to `fallen` in which
 /// blocks.
-pub(super) struct Decay<'a> {
+pub(super) struct DecayTraces<'a> {
     pub(super) traces: &'a mut [f64],
     pub(super) fallen: &'a mut [bool],
     pub(super) factor: f64,
     pub(super) cutoff: f64,
 }
 
-impl Decay<'_> {
+impl DecayTraces<'_> {
     /// Decays some traces. Bits of `fallen` are set in the lanes where one has fallen to the cutoff.
     #[inline(always)]
     fn decay(traces: &mut Vector, factor: f64, cutoff: f64, fallen: &mut [u64; LANES]) {
@@ -31,7 +31,7 @@ impl Decay<'_> {
     }
 }
 
-impl pulp::NullaryFnOnce for Decay<'_> {
+impl pulp::NullaryFnOnce for DecayTraces<'_> {
     type Output = bool;
 
     #[inline(always)]
@@ -49,26 +49,26 @@ impl pulp::NullaryFnOnce for Decay<'_> {
     }
 }
 
-/// w ← w + `step` z, then [`Decay`].
-pub(super) struct ApplyAndDecay<'a> {
+/// w ← w + `step` z, then [`DecayTraces`].
+pub(super) struct ApplyAndDecayTraces<'a> {
     pub(super) values: &'a mut [f64],
     pub(super) step: f64,
-    pub(super) decay: Decay<'a>,
+    pub(super) decay: DecayTraces<'a>,
 }
 
-impl pulp::NullaryFnOnce for ApplyAndDecay<'_> {
+impl pulp::NullaryFnOnce for ApplyAndDecayTraces<'_> {
     type Output = bool;
 
     #[inline(always)]
     fn call(self) -> bool {
-        let Self { values, step, decay: Decay { traces, fallen, factor, cutoff } } = self;
+        let Self { values, step, decay: DecayTraces { traces, fallen, factor, cutoff } } = self;
         let mut any = false;
         let blocks = values.as_chunks_mut::<BLOCK>().0.iter_mut().zip(traces.as_chunks_mut::<BLOCK>().0);
         for ((values, traces), fallen) in blocks.zip(fallen) {
             let mut lanes = [0; LANES];
             for (values, traces) in values.as_chunks_mut::<LANES>().0.iter_mut().zip(traces.as_chunks_mut().0) {
                 apply(values, traces, step);
-                Decay::decay(traces, factor, cutoff, &mut lanes);
+                DecayTraces::decay(traces, factor, cutoff, &mut lanes);
             }
             *fallen = lanes != [0; LANES];
             any |= *fallen;
@@ -86,13 +86,13 @@ fn apply(values: &mut Vector, traces: &Vector, step: f64) {
 }
 
 /// w ← w + `step` z.
-pub(super) struct Apply<'a> {
+pub(super) struct ApplyTraces<'a> {
     pub(super) values: &'a mut [f64],
     pub(super) traces: &'a [f64],
     pub(super) step: f64,
 }
 
-impl pulp::NullaryFnOnce for Apply<'_> {
+impl pulp::NullaryFnOnce for ApplyTraces<'_> {
     type Output = ();
 
     #[inline(always)]

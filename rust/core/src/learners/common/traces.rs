@@ -196,7 +196,7 @@ impl Persist for Traces {
         let mut count = self.len();
         checkpoint.index(&mut count, weights + 1, "number of traces")?;
         if checkpoint.is_restoring() {
-            self.eligible.forget();
+            self.eligible.discard();
         }
         for place in 0..count {
             let (mut weight_index, mut trace) = self.eligible.at(place).unwrap_or_default();
