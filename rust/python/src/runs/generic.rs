@@ -149,7 +149,12 @@ where
     let weights = agent.table.values().len();
     let new_model = || Model::new(n_rows, spec.num_actions, stop).map_err(allocation);
     let new_traces = |cutoff: f64| Traces::new(weights, cutoff, stop).map_err(allocation);
+    // Known when this is compiled, so that Dyna is left out of the code for several rows.
+    let single_row = size_of::<R>() == size_of::<u32>();
     Ok(match spec.algorithm {
+        AlgorithmSpec::DynaQ { .. } | AlgorithmSpec::DynaQPlus { .. } if !single_row => {
+            return Err(invalid("discretizer", "one with one active row, for Dyna", "'tiles'"));
+        }
         AlgorithmSpec::QLearning => with_rule(task, agent, QLearning, rng, spec),
         AlgorithmSpec::Sarsa => with_rule(task, agent, Sarsa, rng, spec),
         AlgorithmSpec::ExpectedSarsa => with_rule(task, agent, ExpectedSarsa, rng, spec),
