@@ -10,9 +10,9 @@ from qtab.training.options import TrainingOptions
 from qtab.training.resolved_run import ResolvedRun
 
 BYTES_PER_VALUE = {
-    "sarsa_lambda": 20,
-    "true_online_sarsa_lambda": 20,
-    "watkins_q_lambda": 20,
+    "sarsa_lambda": 24,
+    "true_online_sarsa_lambda": 24,
+    "watkins_q_lambda": 24,
     "dyna_q": 36,
     "dyna_q_plus": 44,
 }

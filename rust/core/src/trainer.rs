@@ -106,6 +106,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         let mut rng = self.rng.clone();
         let result = self.advance_with(&mut rng, budget);
         self.rng = rng;
+        self.learner.complete_tables();
         result.map_err(TrainingError::Task)
     }
 

@@ -5,6 +5,7 @@ mod batch_features;
 mod bins;
 #[expect(clippy::module_inception, reason = "each trait is in the file named for it")]
 mod features;
+mod fixed_tile_coding;
 mod hashing;
 mod identity;
 mod multi_discrete_index;
@@ -17,6 +18,7 @@ pub use any_grid::AnyGrid;
 pub use batch_features::BatchFeatures;
 pub use bins::{Bins, Edges};
 pub use features::{ActiveRows, Features};
+pub use fixed_tile_coding::{FixedTileCoding, FixedTiles};
 pub use identity::Identity;
 pub use multi_discrete_index::MultiDiscreteIndex;
 pub use out_of_bounds::OutOfBounds;

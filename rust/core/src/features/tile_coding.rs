@@ -17,6 +17,14 @@ pub struct ActiveTiles<const M: usize = MAX_TILINGS> {
     tilings: usize,
 }
 
+impl<const M: usize> ActiveTiles<M> {
+    /// The active tiles where all `M` tilings are in use.
+    #[inline]
+    pub(super) fn rows(self) -> [u32; M] {
+        self.rows
+    }
+}
+
 impl<const M: usize> AsRef<[u32]> for ActiveTiles<M> {
     #[inline]
     fn as_ref(&self) -> &[u32] {
@@ -37,12 +45,12 @@ impl<const M: usize> TryFrom<&[u32]> for ActiveTiles<M> {
 
 /// The tiles along one component.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct TiledAxis<const M: usize> {
-    low: f64,
-    high: f64,
-    tiles_per_unit: f64,
+pub(super) struct TiledAxis<const M: usize> {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) tiles_per_unit: f64,
     /// The tiles of a tiling: one more than requested, because its offset moves the first tile across the lower bound.
-    tiles: u32,
+    pub(super) tiles: u32,
     /// The offset of each tiling, in units of a tile divided by the number of tilings.
     offsets: [u32; M],
 }
@@ -90,6 +98,21 @@ impl<T: Float, const M: usize> TileCoding<T, M> {
     pub fn hashed(self, rows: u32) -> Self {
         assert!(rows > 0, "hashed_rows must be at least 1");
         Self { hash_table: Some(HashTable { rows }), ..self }
+    }
+
+    /// The number of tilings.
+    pub(super) fn tilings(&self) -> usize {
+        self.tilings as usize
+    }
+
+    /// The tiles along each component.
+    pub(super) fn axes(&self) -> &[TiledAxis<M>] {
+        &self.axes
+    }
+
+    /// Whether the tiles have the rows of their hashes.
+    pub(super) fn is_hashed(&self) -> bool {
+        self.hash_table.is_some()
     }
 
     /// The active rows with hashing. The hash of a tile mixes its tiling and its coordinates.

@@ -76,7 +76,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
         self.model.check_planning(&self.progress)
     }
 
-    fn abandon_episode(&mut self) {
+    fn abandon_episode(&mut self, _agent: &mut Agent) {
         self.progress.abandon();
     }
 }

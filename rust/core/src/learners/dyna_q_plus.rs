@@ -99,7 +99,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
         Ok(())
     }
 
-    fn abandon_episode(&mut self) {
+    fn abandon_episode(&mut self, _agent: &mut Agent) {
         self.progress.abandon();
     }
 }

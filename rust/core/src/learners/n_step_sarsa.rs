@@ -107,12 +107,12 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for NStepSarsa<R> {
         self.update_work(agent) + self.finishing_work
     }
 
-    fn end_episode(&mut self) {
+    fn end_episode(&mut self, _agent: &mut Agent) {
         self.finishing_work = 0;
     }
 
     /// An episode has as many pairs as steps, and at most n of them wait.
-    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
+    fn reserve(&mut self, _agent: &mut Agent, work: u64) -> Result<(), AllocationError> {
         let count = ((self.n - self.visits.len()) as u64).min(work) as usize;
         self.visits.try_reserve(count).map_err(out_of_memory::<Visit<R>>(count))
     }
@@ -162,7 +162,7 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for NStepSarsa<R> {
     }
 
     /// The pairs that await their updates are forgotten.
-    fn abandon_episode(&mut self) {
+    fn abandon_episode(&mut self, _agent: &mut Agent) {
         self.finishing = false;
         self.visits.clear();
     }

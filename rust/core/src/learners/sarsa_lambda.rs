@@ -2,6 +2,7 @@
 
 use super::common::{Agent, TraceKind, Traces, UpdateRule, VALUES_PER_WORK};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::memory::AllocationError;
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -32,12 +33,10 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for SarsaLambda {
         rng: &mut impl Rng,
     ) -> usize {
         agent.visit(state, action);
-        self.traces.visit(self.kind, &agent.table, state.as_ref(), action);
-        let value = agent.value(state, action);
-        let (next_action, target) = match agent.sample_next(next, rng) {
-            Some((next_state, next_action)) => {
-                (next_action, reward + agent.discount * agent.value(next_state, next_action))
-            }
+        self.traces.begin_step(&mut agent.table);
+        let value = self.traces.visit(self.kind, &mut agent.table, state, action);
+        let (next_action, target) = match self.traces.sample_next(agent, next, rng) {
+            Some((next_action, next_value)) => (next_action, reward + agent.discount * next_value),
             None => (0, reward),
         };
         let error = target - value;
@@ -52,8 +51,16 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for SarsaLambda {
         agent.work() + self.traces.len() as u64 / VALUES_PER_WORK
     }
 
-    fn end_episode(&mut self) {
-        self.traces.clear();
+    fn end_episode(&mut self, agent: &mut Agent) {
+        self.traces.clear(&mut agent.table);
+    }
+
+    fn complete_tables(&mut self, agent: &mut Agent) {
+        self.traces.complete_table(&mut agent.table);
+    }
+
+    fn reserve(&mut self, agent: &mut Agent, _work: u64) -> Result<(), AllocationError> {
+        self.traces.reserve(&mut agent.table)
     }
 
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
@@ -78,9 +85,11 @@ mod tests {
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         // δ = -1 + 0.5 · 3 - 1
         assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);
+        Learner::<[u32; 1]>::complete_tables(&mut learner);
         assert_eq!(learner.agent.table.values(), [0.75, 0.0, 2.0, 3.0]);
         // δ = -1 - 3, and the first pair's trace is 1/4
         learner.learn([1], 1, -1.0, Next::Terminal, &mut rng());
+        Learner::<[u32; 1]>::complete_tables(&mut learner);
         assert_eq!(learner.agent.table.values(), [0.25, 0.0, 2.0, 1.0]);
     }
 }

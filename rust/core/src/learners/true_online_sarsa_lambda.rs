@@ -2,6 +2,7 @@
 
 use super::common::{Agent, Traces, UpdateRule, VALUES_PER_WORK};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::memory::AllocationError;
 use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
@@ -41,28 +42,21 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
         rng: &mut impl Rng,
     ) -> usize {
         let (traces, rows) = (&mut self.traces, state.as_ref());
-        let (next_action, next_value) = match agent.sample_next(next, rng) {
-            Some((next_state, next_action)) => (next_action, agent.value(next_state, next_action)),
-            None => (0, 0.0),
-        };
-        let value = agent.value(state, action);
+        traces.begin_step(&mut agent.table);
+        let (next_action, next_value) = traces.sample_next(agent, next, rng).unwrap_or((0, 0.0));
+        let value = traces.action_values(&mut agent.table, state)[action];
         let error = reward + agent.discount * next_value - value;
         let change = value - self.q_old;
         // The algorithm needs one step size for all weights, so visit counts are not supported.
         let step_size = agent.learning_rate.at(0);
         let decay = agent.discount * self.trace_decay;
 
-        let trace_sum = rows.iter().fold(0.0, |sum, &row| sum + traces.get(agent.table.weight_index(row, action)));
-        let increment = 1.0 - step_size * decay * trace_sum;
-        traces.decay(decay);
-        for &row in rows {
-            traces.update(agent.table.weight_index(row, action), |trace| trace + increment);
-        }
+        let increment = 1.0 - step_size * decay * traces.sum(&agent.table, rows, action);
+        traces.decay(&mut agent.table, decay);
+        traces.update(&mut agent.table, state, action, |trace| trace + increment);
         agent.table.check_finite(error);
         traces.apply_td_error(&mut agent.table, &agent.learning_rate, error + change);
-        for &row in rows {
-            *agent.table.value_mut(row, action) -= step_size * change;
-        }
+        traces.subtract(&mut agent.table, rows, action, step_size * change);
         self.q_old = next_value;
         next_action
     }
@@ -72,9 +66,17 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
         agent.work() + self.traces.len() as u64 / VALUES_PER_WORK
     }
 
-    fn end_episode(&mut self) {
+    fn end_episode(&mut self, agent: &mut Agent) {
         self.q_old = 0.0;
-        self.traces.clear();
+        self.traces.clear(&mut agent.table);
+    }
+
+    fn complete_tables(&mut self, agent: &mut Agent) {
+        self.traces.complete_table(&mut agent.table);
+    }
+
+    fn reserve(&mut self, agent: &mut Agent, _work: u64) -> Result<(), AllocationError> {
+        self.traces.reserve(&mut agent.table)
     }
 
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
@@ -105,9 +107,11 @@ mod tests {
         let mut learner = learner(&[1.0, 0.0, 2.0, 3.0]);
         // z = 1; δ = -1 + 0.5 · 3 - 1; 1 + 0.5 (δ + 1 - 0) - 0.5 (1 - 0)
         learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng());
+        Learner::<[u32; 1]>::complete_tables(&mut learner);
         assert_eq!(learner.agent.table.values(), [0.75, 0.0, 2.0, 3.0]);
         // z = 1/4 and 1, Q = Q_old = 3; δ = -1 - 3
         learner.learn([1], 1, -1.0, Next::Terminal, &mut rng());
+        Learner::<[u32; 1]>::complete_tables(&mut learner);
         assert_eq!(learner.agent.table.values(), [0.25, 0.0, 2.0, 1.0]);
     }
 

@@ -1,8 +1,10 @@
 //! Watkins's Q(λ) (C. Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
 
-use super::common::{Agent, TraceKind, Traces, UpdateRule, VALUES_PER_WORK};
+use super::common::{Agent, TraceKind, Traces, UpdateRule, VALUES_PER_WORK, available};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::memory::AllocationError;
 use crate::numeric::maximum;
+use crate::policies::Policy;
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -33,25 +35,27 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
         rng: &mut impl Rng,
     ) -> usize {
         agent.visit(state, action);
-        self.traces.visit(self.kind, &agent.table, state.as_ref(), action);
-        let value = agent.value(state, action);
-        let (next_action, target, greedy) = match agent.sample_next(next, rng) {
-            Some((next_state, next_action)) => {
-                let values = agent.action_values(next_state);
+        self.traces.begin_step(&mut agent.table);
+        let value = self.traces.visit(self.kind, &mut agent.table, state, action);
+        let (next_action, target, greedy) = match next {
+            Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
+                let values = self.traces.action_values(&mut agent.table, next_state);
+                let values = available::<0>(&mut agent.masks, next_state.as_ref(), values);
+                let next_action = agent.policy.choose(values, rng);
                 let largest = maximum(values);
                 // An action that ties for the maximum is greedy, even if it was chosen by exploring.
-                let greedy = values[next_action] == largest;
-                (next_action, reward + agent.discount * largest, greedy)
+                (next_action, reward + agent.discount * largest, values[next_action] == largest)
             }
-            None => (0, reward, false),
+            Next::Terminal => (0, reward, false),
         };
         let error = target - value;
         agent.table.check_finite(error);
-        self.traces.apply_td_error(&mut agent.table, &agent.learning_rate, error);
         if greedy {
-            self.traces.decay(agent.discount * self.trace_decay);
+            let decay = agent.discount * self.trace_decay;
+            self.traces.apply_td_error_and_decay(&mut agent.table, &agent.learning_rate, error, decay);
         } else {
-            self.traces.clear();
+            self.traces.apply_td_error(&mut agent.table, &agent.learning_rate, error);
+            self.traces.clear(&mut agent.table);
         }
         next_action
     }
@@ -61,8 +65,16 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
         agent.work() + self.traces.len() as u64 / VALUES_PER_WORK
     }
 
-    fn end_episode(&mut self) {
-        self.traces.clear();
+    fn end_episode(&mut self, agent: &mut Agent) {
+        self.traces.clear(&mut agent.table);
+    }
+
+    fn complete_tables(&mut self, agent: &mut Agent) {
+        self.traces.complete_table(&mut agent.table);
+    }
+
+    fn reserve(&mut self, agent: &mut Agent, _work: u64) -> Result<(), AllocationError> {
+        self.traces.reserve(&mut agent.table)
     }
 
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
@@ -96,6 +108,7 @@ mod tests {
         assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);
         // δ = -1 - 3, and the first pair's trace is 1/4
         learner.learn([1], 1, -1.0, Next::Terminal, &mut rng());
+        Learner::<[u32; 1]>::complete_tables(&mut learner);
         assert_eq!(learner.agent.table.values(), [0.25, 0.0, 2.0, 1.0]);
     }
 

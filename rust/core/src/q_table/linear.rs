@@ -7,7 +7,8 @@ use crate::schedules::StepSize;
 impl<const N: usize> QTable<N> {
     /// The action values of an observation with these active rows.
     #[inline]
-    pub fn action_values(&mut self, rows: &[u32]) -> &[f64] {
+    pub fn action_values<R: AsRef<[u32]> + ?Sized>(&mut self, rows: &R) -> &[f64] {
+        let rows = rows.as_ref();
         if let &[row] = rows {
             return self.row(row);
         }
@@ -27,8 +28,9 @@ impl<const N: usize> QTable<N> {
     /// Sums the rows of `A` values, all actions at once, in registers.
     #[inline]
     fn sum_rows<const A: usize>(&mut self, rows: &[u32]) {
-        let mut values = rows.iter().filter_map(|&row| self.values[row as usize * A..].first_chunk::<A>());
-        let mut sums = values.next().copied().unwrap_or([0.0; A]);
+        let table = self.values.as_chunks::<A>().0;
+        let mut values = rows.iter().map(|&row| table[row as usize]);
+        let mut sums = values.next().unwrap_or([0.0; A]);
         for values in values {
             for (sum, value) in sums.iter_mut().zip(values) {
                 *sum += value;
@@ -39,8 +41,8 @@ impl<const N: usize> QTable<N> {
 
     /// The value of one action with these active rows.
     #[inline]
-    pub fn value(&self, rows: &[u32], action: usize) -> f64 {
-        let mut values = rows.iter().map(|&row| self.row(row)[action]);
+    pub fn value<R: AsRef<[u32]> + ?Sized>(&self, rows: &R, action: usize) -> f64 {
+        let mut values = rows.as_ref().iter().map(|&row| self.values[self.weight_index(row, action)]);
         let first = values.next().unwrap_or(0.0);
         values.fold(first, |sum, value| sum + value)
     }
@@ -59,10 +61,23 @@ impl<const N: usize> QTable<N> {
 
     /// Q ← Q + α (target - Q). The step size is the share of each row.
     #[inline]
-    pub fn update(&mut self, rows: &[u32], action: usize, target: f64, step_size: &mut impl StepSize) {
+    pub fn update<R: AsRef<[u32]> + ?Sized>(
+        &mut self,
+        rows: &R,
+        action: usize,
+        target: f64,
+        step_size: &mut impl StepSize,
+    ) {
         let error = target - self.value(rows, action);
+        let rows = rows.as_ref();
         if rows.len() != 1 {
             self.check_finite(error);
+        }
+        if let Some(step) = step_size.uniform() {
+            for &row in rows {
+                *self.value_mut(row, action) += step * error;
+            }
+            return;
         }
         for &row in rows {
             let weight_index = self.weight_index(row, action);

@@ -6,7 +6,10 @@ use crate::random::Rng;
 /// known number the compiler unrolls the loops over a row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QTable<const N: usize = 0> {
+    /// The rows. Behind them a learner may keep some of their values while it learns.
     pub(super) values: Vec<f64>,
+    /// The number of values in the rows.
+    len: usize,
     num_actions: usize,
     /// A buffer for the sums over several active rows.
     pub(super) sums: Vec<f64>,
@@ -23,7 +26,7 @@ impl<const N: usize> QTable<N> {
         assert!(N == 0 || N == num_actions, "num_actions must be {N}, got {num_actions}");
         let len = values.len();
         assert!(len.is_multiple_of(num_actions), "the table must have rows of {num_actions} values, got {len} values");
-        Self { values, num_actions, sums: vec![0.0; num_actions], divergence: 0.0 }
+        Self { values, len, num_actions, sums: vec![0.0; num_actions], divergence: 0.0 }
     }
 
     /// A table of random values: `rng.uniform(low, high, (rows, num_actions))`.
@@ -33,11 +36,11 @@ impl<const N: usize> QTable<N> {
 
     /// All values, row by row.
     pub fn values(&self) -> &[f64] {
-        &self.values
+        &self.values[..self.len]
     }
 
     pub(crate) fn values_mut(&mut self) -> &mut [f64] {
-        &mut self.values
+        &mut self.values[..self.len]
     }
 
     /// The number of values per row.
@@ -48,7 +51,7 @@ impl<const N: usize> QTable<N> {
 
     /// The number of rows and of actions.
     pub(crate) fn shape(&self) -> (usize, usize) {
-        (self.values.len() / self.num_actions, self.num_actions)
+        (self.len / self.num_actions, self.num_actions)
     }
 
     /// The action values of a row.
@@ -67,8 +70,8 @@ impl<const N: usize> QTable<N> {
         if N > 0 {
             return &mut self.values.as_chunks_mut::<N>().0[row as usize][action];
         }
-        let actions = self.num_actions();
-        &mut self.values[row as usize * actions..][..actions][action]
+        let weight_index = self.weight_index(row, action);
+        &mut self.values[weight_index]
     }
 }
 

@@ -39,12 +39,6 @@ impl LearningRate {
         let visits = filled(&0, weights, stop)?;
         Ok(Self { visits, min, ..Self::scheduled(Schedule::constant(initial), n_active) })
     }
-
-    /// The step size, if it is the same for every weight.
-    #[inline]
-    pub fn uniform(&self) -> Option<f64> {
-        self.visits.is_empty().then_some(self.step_size)
-    }
 }
 
 impl StepSize for LearningRate {
@@ -53,6 +47,11 @@ impl StepSize for LearningRate {
         if let Some(visits) = self.visits.get_mut(weight_index) {
             *visits = visits.saturating_add(1);
         }
+    }
+
+    #[inline]
+    fn uniform(&self) -> Option<f64> {
+        self.visits.is_empty().then_some(self.step_size)
     }
 
     #[inline]

@@ -9,6 +9,9 @@ pub trait StepSize {
     /// Counts a visit of a weight, before its update.
     fn visit(&mut self, weight_index: usize);
 
+    /// The step size, if it is the same for every weight and visits are not counted.
+    fn uniform(&self) -> Option<f64>;
+
     /// The step size of a weight.
     fn at(&self, weight_index: usize) -> f64;
 
@@ -30,6 +33,11 @@ impl StepSize for f64 {
     fn visit(&mut self, _weight: usize) {}
 
     #[inline]
+    fn uniform(&self) -> Option<f64> {
+        Some(*self)
+    }
+
+    #[inline]
     fn at(&self, _weight: usize) -> f64 {
         *self
     }
@@ -41,6 +49,11 @@ impl StepSize for f64 {
 impl StepSize for Schedule {
     #[inline]
     fn visit(&mut self, _weight: usize) {}
+
+    #[inline]
+    fn uniform(&self) -> Option<f64> {
+        Some(self.value())
+    }
 
     #[inline]
     fn at(&self, _weight: usize) -> f64 {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::features::{ActiveRows, MAX_TILINGS};
+use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
     TdLearner, Traces, TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
@@ -18,7 +18,7 @@ use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
 use crate::rng::environment_rng;
-use crate::spec::{AlgorithmSpec, DiscretizerSpec, RunSpec, TraceSpec};
+use crate::spec::{AlgorithmSpec, DiscretizerSpec, RunSpec, TilesSpec, TraceSpec};
 
 /// Runs in an environment whose observations are `M` float32 numbers, with any discretizer of a Box.
 pub(crate) fn generic_box<E, const M: usize>(
@@ -34,13 +34,46 @@ where
         return Err(invalid("discretizer", format!("one for observations of {M} components"), dimensions));
     }
     match &spec.discretizer {
-        // Eight tilings are the usual number; room for more costs time at every step.
-        DiscretizerSpec::Tiles(tiles) if tiles.tilings <= 8 => {
-            generic(env, tiles.tile_coding::<f32, 8>(), spec, record)
-        }
+        // Compiled for the usual numbers of tilings, but not once more for what is rarely asked for besides.
+        DiscretizerSpec::Tiles(tiles) if record == 0 && !spec.count_visits => match tiles.tilings {
+            8 => fixed_tilings::<E, M, 8>(env, tiles, spec),
+            16 => fixed_tilings::<E, M, 16>(env, tiles, spec),
+            32 => fixed_tilings::<E, M, 32>(env, tiles, spec),
+            _ => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec, record),
+        },
         DiscretizerSpec::Tiles(tiles) => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec, record),
         grid => generic(env, grid.grid(|bound| bound as f32)?, spec, record),
     }
+}
+
+/// Runs with exactly `N` tilings, without recordings and visit counts.
+fn fixed_tilings<E, const M: usize, const N: usize>(
+    env: E,
+    tiles: &TilesSpec,
+    spec: &Arc<RunSpec>,
+) -> PyResult<Box<dyn RunFactory>>
+where
+    E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
+{
+    let Some(features) = FixedTileCoding::<f32, M, N>::new(&tiles.tile_coding()) else {
+        return Err(invalid("discretizer", format!("{N} tilings of {M} components"), "others"));
+    };
+    check_actions(&env, spec)?;
+    let (spec, shape) = (Arc::clone(spec), (features.len(), N));
+    let build = move |seed: &Seed, stop: &StopFlag<'_>| {
+        let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
+        let rng = spec.bit_generator.agent_rng(seed)?;
+        Ok((build_learner(BoxedTask::new(task), shape, rng, &spec, stop)?, AnyRecordings::None))
+    };
+    Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
+}
+
+/// Refuses a spec for another number of actions.
+fn check_actions(env: &impl Env, spec: &RunSpec) -> PyResult<()> {
+    if spec.num_actions == env.num_actions() {
+        return Ok(());
+    }
+    Err(invalid("num_actions", format!("{}, the environment's", env.num_actions()), spec.num_actions))
 }
 
 /// Runs in an environment with any features.
@@ -49,9 +82,7 @@ where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active: Send> + Clone + Send + Sync + 'static,
 {
-    if spec.num_actions != env.num_actions() {
-        return Err(invalid("num_actions", format!("{}, the environment's", env.num_actions()), spec.num_actions));
-    }
+    check_actions(&env, spec)?;
     let (spec, shape) = (Arc::clone(spec), (features.len(), spec.discretizer.n_active()));
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
@@ -118,7 +149,12 @@ where
     let weights = agent.table.values().len();
     let new_model = || Model::new(n_rows, spec.num_actions, stop).map_err(allocation);
     let new_traces = |cutoff: f64| Traces::new(weights, cutoff, stop).map_err(allocation);
+    // Known when this is compiled, so that Dyna is left out of the code for several rows.
+    let single_row = size_of::<R>() == size_of::<u32>();
     Ok(match spec.algorithm {
+        AlgorithmSpec::DynaQ { .. } | AlgorithmSpec::DynaQPlus { .. } if !single_row => {
+            return Err(invalid("discretizer", "one with one active row, for Dyna", "'tiles'"));
+        }
         AlgorithmSpec::QLearning => with_rule(task, agent, QLearning, rng, spec),
         AlgorithmSpec::Sarsa => with_rule(task, agent, Sarsa, rng, spec),
         AlgorithmSpec::ExpectedSarsa => with_rule(task, agent, ExpectedSarsa, rng, spec),

@@ -15,7 +15,7 @@ use qtab_core::q_table::TerminalUpdate;
 
 pub(crate) use action_masks::ActionMasksSpec;
 pub(crate) use algorithm::{ALGORITHMS, AlgorithmSpec, TraceSpec};
-pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType};
+pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType, TilesSpec};
 pub(crate) use fields::{Fields, Variant};
 pub(crate) use initial_q::InitialQSpec;
 pub(crate) use policy::PolicySpec;

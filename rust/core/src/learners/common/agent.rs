@@ -42,7 +42,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn choose(&mut self, rows: impl AsRef<[u32]>, rng: &mut impl Rng) -> usize {
-        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(rows.as_ref()));
+        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.choose(values, rng)
     }
 
@@ -50,14 +50,14 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn action_values(&mut self, rows: impl AsRef<[u32]>) -> &[f64] {
-        available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(rows.as_ref()))
+        available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows))
     }
 
     /// The expected value Σₐ π(a) Q(a) of the state with these active rows.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn expected_value(&mut self, rows: impl AsRef<[u32]>) -> f64 {
-        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(rows.as_ref()));
+        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.expected_value(values)
     }
 
@@ -107,12 +107,15 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     /// Q(S, A).
     #[inline]
     pub fn value(&self, rows: impl AsRef<[u32]>, action: usize) -> f64 {
-        self.table.value(rows.as_ref(), action)
+        self.table.value(&rows, action)
     }
 
     /// Counts a visit of a state-action pair.
     #[inline]
     pub fn visit(&mut self, rows: impl AsRef<[u32]>, action: usize) {
+        if self.learning_rate.uniform().is_some() {
+            return;
+        }
         for &row in rows.as_ref() {
             self.learning_rate.visit(self.table.weight_index(row, action));
         }
@@ -121,7 +124,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     /// Q(S, A) ← Q(S, A) + α [target - Q(S, A)].
     #[inline]
     pub fn update(&mut self, rows: impl AsRef<[u32]>, action: usize, target: f64) {
-        self.table.update(rows.as_ref(), action, target, &mut self.learning_rate);
+        self.table.update(&rows, action, target, &mut self.learning_rate);
     }
 
     /// The update when S′ is terminal, as `terminal_update` says.

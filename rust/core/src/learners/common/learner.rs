@@ -56,6 +56,9 @@ pub trait Learner<R> {
     /// Called after the last step of every episode.
     fn end_episode(&mut self);
 
+    /// Writes into the tables what it keeps elsewhere while it learns. The trainer calls it after the last step of a call.
+    fn complete_tables(&mut self) {}
+
     /// The values of its tables, row by row. The greedy policy is over their sum.
     fn tables(&self) -> Vec<&[f64]>;
 

@@ -2,13 +2,17 @@
 
 mod action_masks;
 mod agent;
+mod eligible_weights;
 mod learner;
 mod model;
 mod planning_progress;
 mod td_learner;
 #[cfg(test)]
 pub(super) mod test_support;
+mod trace_passes;
 mod traces;
+#[cfg(test)]
+mod traces_tests;
 mod truncation_handling;
 mod update_rule;
 

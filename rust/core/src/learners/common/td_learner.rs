@@ -50,7 +50,7 @@ where
     }
 
     fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
-        self.rule.reserve(work)
+        self.rule.reserve(&mut self.agent, work)
     }
 
     #[inline]
@@ -63,8 +63,12 @@ where
     }
 
     fn end_episode(&mut self) {
-        self.rule.end_episode();
+        self.rule.end_episode(&mut self.agent);
         self.agent.end_episode();
+    }
+
+    fn complete_tables(&mut self) {
+        self.rule.complete_tables(&mut self.agent);
     }
 
     fn tables(&self) -> Vec<&[f64]> {
@@ -84,7 +88,7 @@ where
     }
 
     fn abandon_episode(&mut self) {
-        self.rule.abandon_episode();
+        self.rule.abandon_episode(&mut self.agent);
     }
 
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {

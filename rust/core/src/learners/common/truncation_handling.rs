@@ -71,6 +71,10 @@ impl<R, L: Learner<R>> Learner<R> for TruncationHandling<L> {
         self.learner.end_episode();
     }
 
+    fn complete_tables(&mut self) {
+        self.learner.complete_tables();
+    }
+
     fn tables(&self) -> Vec<&[f64]> {
         self.learner.tables()
     }

@@ -25,8 +25,8 @@ pub trait UpdateRule<R, G> {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
-        let _ = work;
+    fn reserve(&mut self, agent: &mut G, work: u64) -> Result<(), AllocationError> {
+        let (_, _) = (agent, work);
         Ok(())
     }
 
@@ -43,11 +43,18 @@ pub trait UpdateRule<R, G> {
     }
 
     /// Called after the last step of every episode.
-    fn end_episode(&mut self) {}
+    fn end_episode(&mut self, agent: &mut G) {
+        let _ = agent;
+    }
 
     /// Called where an episode is given up without its last step.
-    fn abandon_episode(&mut self) {
-        self.end_episode();
+    fn abandon_episode(&mut self, agent: &mut G) {
+        self.end_episode(agent);
+    }
+
+    /// As [`Learner::complete_tables`](super::Learner::complete_tables).
+    fn complete_tables(&mut self, agent: &mut G) {
+        let _ = agent;
     }
 
     /// Saves or restores what it stores between steps; `shape` is the number of rows and of actions of the table.

@@ -1,0 +1,73 @@
+//! Action values while a learner keeps some of the values behind the rows.
+
+use super::QTable;
+
+impl<const N: usize> QTable<N> {
+    /// The values of the rows, and those that a learner keeps behind them.
+    #[inline]
+    pub(crate) fn storage_mut(&mut self) -> &mut Vec<f64> {
+        &mut self.values
+    }
+
+    /// [`action_values`](Self::action_values), where `slots` says for each weight at which index of the storage its value
+    /// is.
+    #[inline]
+    pub(crate) fn values_at<R: AsRef<[u32]>>(&mut self, slots: &[u32], rows: &R) -> &[f64] {
+        match self.num_actions() {
+            2 => self.sum_slots::<2>(slots, rows.as_ref()),
+            3 => self.sum_slots::<3>(slots, rows.as_ref()),
+            4 => self.sum_slots::<4>(slots, rows.as_ref()),
+            num_actions => {
+                for action in 0..num_actions {
+                    let mut weights = rows.as_ref().iter().map(|&row| row as usize * num_actions + action);
+                    let first = weights.next().map_or(0.0, |weight| self.values[slots[weight] as usize]);
+                    self.sums[action] = weights.fold(first, |sum, weight| sum + self.values[slots[weight] as usize]);
+                }
+            }
+        }
+        &self.sums
+    }
+
+    /// The sums of `A` values a row, all actions at once, in registers.
+    #[inline]
+    fn sum_slots<const A: usize>(&mut self, slots: &[u32], rows: &[u32]) {
+        let slots = slots.as_chunks::<A>().0;
+        let mut values = rows.iter().map(|&row| slots[row as usize].map(|slot| self.values[slot as usize]));
+        let mut sums = values.next().unwrap_or([0.0; A]);
+        for values in values {
+            for (sum, value) in sums.iter_mut().zip(values) {
+                *sum += value;
+            }
+        }
+        self.sums.copy_from_slice(&sums);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check<const A: usize>(rows: &[u32]) {
+        let values = (0..4 * A).map(|weight| 0.1 * weight as f64).collect::<Vec<_>>();
+        let (mut table, mut moved) = (QTable::<0>::new(values.clone(), A), QTable::<0>::new(values.clone(), A));
+        // Every other value is behind the rows, in reverse, and its old place holds nonsense.
+        let mut slots: Vec<u32> = (0..).take(4 * A).collect();
+        for weight in (0..4 * A).step_by(2) {
+            slots[weight] = moved.values.len() as u32;
+            moved.values.push(values[weight]);
+            moved.values[weight] = f64::NAN;
+        }
+        assert_eq!(moved.values_at(&slots, &rows), table.action_values(rows));
+    }
+
+    #[test]
+    fn values_are_found_where_they_have_moved() {
+        for rows in [&[2][..], &[0, 3, 1], &[1, 1]] {
+            check::<1>(rows);
+            check::<2>(rows);
+            check::<3>(rows);
+            check::<4>(rows);
+            check::<5>(rows);
+        }
+    }
+}
