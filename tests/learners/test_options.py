@@ -35,6 +35,8 @@ VALUES: dict[str, Any] = {
     "edges": ((-0.5,), (0.0,)),
     "low": (-1.2, -0.07),
     "high": (0.6, 0.07),
+    "shape": (19, 15),
+    "max_rows": 100,
 }
 
 

@@ -42,7 +42,7 @@ def test_a_discrete_space_of_a_billion_states_is_refused(free: int) -> None:
         ("FrozenLake-v1", {"max_rows": 10**7}, "max_rows"),
         (Sampled(Box(0, 999, (3,), int)), {}, "the observation space"),
     ],
-    ids=str,
+    ids=["cells", "bins", "tiles", "hashed rows", "function", "rows", "integers"],
 )
 def test_a_table_that_does_not_fit_is_refused_by_the_setting_that_decides(
     free: int, env: Any, settings: dict[str, Any], name: str
