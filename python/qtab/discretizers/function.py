@@ -129,6 +129,10 @@ class Function(Discretizer):
             row = row * count + index
         return row
 
+    def along_axes(self, observation: Any) -> NDArray[Any]:
+        """Returns (d,): the indices that the function gives."""
+        return np.array(self.cells(observation))
+
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (1,) row of an observation, or the (n, 1) rows of n observations of a space that has a shape.
 

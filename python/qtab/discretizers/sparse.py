@@ -132,6 +132,10 @@ class Sparse(Discretizer):
             self.met[cell] = row
         return row
 
+    def along_axes(self, observation: Any) -> NDArray[Any]:
+        """Returns (1,): the row of an observation; the last for what was not met."""
+        return self.active_rows(observation)
+
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (1,) row of an observation, or the (n, 1) rows of n observations; the last for what was not met.
 
