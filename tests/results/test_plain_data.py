@@ -102,6 +102,7 @@ def test_an_action_that_a_state_does_not_have_is_null(tmp_path):
 
 def test_an_action_that_a_mask_excludes_is_null(tmp_path):
     run = qtab.train("Taxi-v4", action_mask=True, episodes=5, seed=0)
+    assert run.action_masks is not None
     assert not run.action_masks.all()
     run.to_json(tmp_path / "run.json")
     (table,) = strict(tmp_path / "run.json")["q_tables"]
