@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import Any, get_args
 
+import gymnasium as gym
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -254,3 +255,24 @@ def test_bad_arguments_are_named() -> None:
     nothing = replace(run, episode_returns=np.empty(0), completed=False)
     with pytest.raises(ValueError, match="run must have a finished episode"):
         qtab.explain(nothing)
+
+
+@pytest.mark.parametrize(
+    ("wrapper", "words"),
+    [
+        (lambda env: gym.wrappers.TimeAwareObservation(env, flatten=False), "{obs: 314, time: (0)}"),
+        (lambda env: gym.wrappers.FrameStackObservation(env, 2), "(314, 314)"),
+        (
+            lambda env: gym.wrappers.TransformObservation(
+                env,
+                lambda state: (state, np.array([1, 0])),
+                gym.spaces.Tuple([env.observation_space, gym.spaces.MultiBinary(2)]),
+            ),
+            "(314, (1, 0))",
+        ),
+    ],
+)
+def test_observations_of_several_parts_are_listed(wrapper: Any, words: str) -> None:
+    run = qtab.train(wrapper(gym.make("Taxi-v4")), episodes=1, seed=0, max_episode_steps=5)
+    first = qtab.explain(run, steps=1, env=wrapper(gym.make("Taxi-v4"))).steps[0]
+    assert first.state == words

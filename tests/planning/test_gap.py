@@ -80,3 +80,13 @@ def test_default_keyword_arguments_equal_those_left_out():
     assert qtab.optimum("FrozenLake-v1", env_kwargs={"is_slippery": True}).gap(run).optimum > 0.7
     dry = qtab.train("FrozenLake-v1", episodes=2, seed=0, env_kwargs={"is_slippery": False})
     assert qtab.optimum(dry).gap(dry).optimum == 1.0
+
+
+@pytest.mark.parametrize("options", [{"discretizer": lambda state: 15 - state, "shape": 16}, {"max_rows": 15}])
+def test_rows_that_are_not_the_states_are_refused(options: dict[str, Any]) -> None:
+    """A table of as many rows as there are states is not one of the states: their policy would be another."""
+    run = qtab.train("FrozenLake-v1", episodes=5, seed=0, **options)
+    best = qtab.optimum("FrozenLake-v1")
+    for compare in (best.gap, lambda one: qtab.plots.difference(one, best)):
+        with pytest.raises(ValueError, match="run must have a table of the components of its observations, not of"):
+            compare(run)

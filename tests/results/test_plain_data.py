@@ -26,6 +26,7 @@ RUNS: dict[str, tuple[str, dict[str, Any]]] = {
     "discrete": ("FrozenLake-v1", {"env_kwargs": {"is_slippery": False}, "episodes": 2000}),
     "several integers": ("Blackjack-v1", {"episodes": 2000}),
     "missing actions": ("qtab/MaximizationBias-v0", {}),
+    "action masks": ("Taxi-v4", {"action_mask": True, "episodes": 30}),
 }
 
 
@@ -97,6 +98,22 @@ def test_an_action_that_a_state_does_not_have_is_null(tmp_path):
     run.to_json(tmp_path / "run.json")
     (table,) = strict(tmp_path / "run.json")["q_tables"]
     assert [[value is None for value in row] for row in table] == np.isneginf(run.tables[0]).tolist()
+
+
+def test_an_action_that_a_mask_excludes_is_null(tmp_path):
+    run = qtab.train("Taxi-v4", action_mask=True, episodes=5, seed=0)
+    assert run.action_masks is not None
+    assert not run.action_masks.all()
+    run.to_json(tmp_path / "run.json")
+    (table,) = strict(tmp_path / "run.json")["q_tables"]
+    assert [[value is not None for value in row] for row in table] == run.action_masks.tolist()
+
+
+def test_action_masks_with_tile_coding_are_refused(tmp_path):
+    tiles: dict[str, Any] = {"discretizer": "tiles", "tiles": 4, "tilings": 2, "episodes": 2, "seed": 0}
+    run = qtab.train("MountainCar-v0", action_mask=lambda _: [True, False, True], **tiles)
+    with pytest.raises(ValueError, match="plain data holds the action masks of cells, not of tile coding"):
+        run.to_json(tmp_path / "run.json")
 
 
 def test_the_first_block_of_the_page_writes_the_file(tmp_path, monkeypatch):

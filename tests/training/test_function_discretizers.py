@@ -61,6 +61,7 @@ def test_one_integer_is_the_number_of_a_row() -> None:
         (1.0, TypeError, r"discretizer must return integers, 2 indices .*, got 1.0$"),
         ("left", TypeError, "got 'left'$"),
         (None, TypeError, "got None$"),
+        ([1, [2]], TypeError, r"discretizer must return integers, 2 indices .*, got \[1, \[2\]\]$"),
         ([[0, 0]], TypeError, r"got \[\[0, 0\]\]$"),
         (2**70, TypeError, "got 1180591620717411303424$"),
     ],
@@ -69,6 +70,12 @@ def test_one_integer_is_the_number_of_a_row() -> None:
 def test_what_the_function_returns_is_checked_at_each_call(returned: Any, error: type[Exception], text: str) -> None:
     with pytest.raises(error, match=text):
         qtab.train("MountainCar-v0", discretizer=lambda _: returned, shape=(19, 15), **SETTINGS)
+
+
+@pytest.mark.parametrize(("returned", "error"), [(7, ValueError), (-1, ValueError), (1.0, TypeError)])
+def test_one_index_is_asked_for_where_the_shape_has_one_axis(returned: Any, error: type[Exception]) -> None:
+    with pytest.raises(error, match=f"discretizer must return an integer from 0 to 4, got {returned}$"):
+        qtab.train("MountainCar-v0", discretizer=lambda _: returned, shape=5, **SETTINGS)
 
 
 def test_an_error_of_the_function_reaches_the_user_with_the_run() -> None:

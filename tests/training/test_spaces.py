@@ -180,7 +180,11 @@ def test_each_key_has_its_discretizer_in_every_use_of_the_run(tmp_path: Path) ->
             {"a": {"discretizer": "bins", "low": (1, 2)}},
             r"discretizer\['a'\]: low must hold 1",
         ),
-        (Box(-1, 1, (1,)), {"a": "bins"}, r"must be a name: it has no keys"),
+        (
+            Box(-1, 1, (1,)),
+            {"a": "bins"},
+            "discretizer must be a name or a function for an observation space without keys",
+        ),
         (Discrete(3), {}, "discretizer must name a discretizer for at least one key"),
     ],
     ids=str,
@@ -188,6 +192,22 @@ def test_each_key_has_its_discretizer_in_every_use_of_the_run(tmp_path: Path) ->
 def test_a_mapping_that_does_not_fit_is_refused(space: gym.Space[Any], discretizer: Any, text: str) -> None:
     with pytest.raises(ValueError, match=text):
         qtab.train(Sampled(space), discretizer=discretizer, **SETTINGS)
+
+
+@pytest.mark.parametrize(
+    ("discretizer", "error", "text"),
+    [
+        ({0: "bins"}, ValueError, r"discretizer must be a name or a function for an .*, got \{'0': \{"),
+        ({"position": {"bins": 3}}, TypeError, r"discretizer\['position'\] must be a name, or a mapping of"),
+        ({"position": 5}, TypeError, r"discretizer\['position'\] must be a name, or a mapping of .*, got 5$"),
+    ],
+    ids=str,
+)
+def test_a_mapping_is_checked_before_a_preset_is_fitted_to_it(
+    discretizer: Any, error: type[Exception], text: str
+) -> None:
+    with pytest.raises(error, match=text):
+        qtab.train("MountainCar-v0", discretizer=discretizer, **SETTINGS)
 
 
 @pytest.mark.parametrize(

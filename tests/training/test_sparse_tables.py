@@ -82,7 +82,7 @@ def test_a_function_without_a_shape_names_cells_by_any_integers() -> None:
     run = qtab.train(Tutorial(3), discretizer=place, max_rows=9, **SETTINGS)
     assert run.discretizer.n_met == 9  # type: ignore[attr-defined]
     assert qtab.verify(run, env=Tutorial(3)).equal
-    with pytest.raises(ValueError, match="discretizer must return as many integers each time, got"):
+    with pytest.raises(ValueError, match="discretizer must return the same number of integers each time, got"):
         qtab.train(Tutorial(3), discretizer=lambda o: [0] * (1 + o["agent"][0]), max_rows=9, **SETTINGS)
 
 

@@ -18,7 +18,8 @@ def kind(discretizer: Any) -> str:
 def uses_tiles(discretizer: Any) -> bool:
     """Whether a discretizer is, or contains, tile coding: no state has a row of its own then."""
     if isinstance(discretizer, Mapping):
-        return any(of_key["discretizer"] == "tiles" for of_key in discretizer.values())
+        names = (one.get("discretizer") if isinstance(one, Mapping) else one for one in discretizer.values())
+        return any(isinstance(name, str) and name == "tiles" for name in names)
     return bool(discretizer == "tiles")
 
 

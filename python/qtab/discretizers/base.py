@@ -125,6 +125,10 @@ class Discretizer(ABC):
         """Returns an observation of the environment as the extension reads it."""
         return observation
 
+    def along_axes(self, observation: Any) -> NDArray[Any]:
+        """Returns (d,): where an observation lies along each axis of :meth:`cell_edges`."""
+        return np.ravel(observation)
+
     def with_function(self, function: Callable[[Any], Any]) -> "Discretizer":  # noqa: ARG002
         """Returns the discretizer with another function, where it has one."""
         return self

@@ -205,6 +205,10 @@ class Composite(Discretizer):
         """
         return self.layout.flat(observation, self._dtype, self._first)
 
+    def along_axes(self, observation: Any) -> NDArray[Any]:
+        """Returns (d,): the components of an observation."""
+        return self.layout.flat(observation, np.float64, [None] * len(self.layout.parts))
+
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (n_active,) rows of an observation, or the (n, n_active) rows of n observations.
 

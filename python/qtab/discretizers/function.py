@@ -95,9 +95,14 @@ class Function(Discretizer):
             ValueError: if they do not lie within the shape.
         """
         returned = self.function(observation)
-        indices = np.asarray(returned)
+        try:
+            indices = np.asarray(returned)
+        except ValueError:  # parts of different lengths
+            indices = np.empty(0, object)
         if indices.dtype.kind not in "iub" or indices.ndim > 1:
-            raise TypeError(f"discretizer must return integers, {self._wanted}, got {shown(returned)}")
+            one_axis = self.cell_shape is not None and len(self.cell_shape) == 1
+            wanted = self._wanted if one_axis else f"integers, {self._wanted}"
+            raise TypeError(f"discretizer must return {wanted}, got {shown(returned)}")
         cell = tuple(int(index) for index in np.atleast_1d(indices))
         if self.cell_shape is None:
             return cell
@@ -115,7 +120,7 @@ class Function(Discretizer):
         if self.cell_shape is None:
             return "one or several"
         if len(self.cell_shape) == 1:
-            return f"one from 0 to {self.cell_shape[0] - 1}"
+            return f"an integer from 0 to {self.cell_shape[0] - 1}"
         return f"{len(self.cell_shape)} indices within the shape {self.cell_shape}, or the number of a row"
 
     def with_function(self, function: Callable[[Any], Any]) -> "Function":
@@ -128,6 +133,10 @@ class Function(Discretizer):
         for index, count in zip(self.cells(observation), self.shape, strict=True):
             row = row * count + index
         return row
+
+    def along_axes(self, observation: Any) -> NDArray[Any]:
+        """Returns (d,): the indices that the function gives."""
+        return np.array(self.cells(observation))
 
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (1,) row of an observation, or the (n, 1) rows of n observations of a space that has a shape.

@@ -103,11 +103,14 @@ def _by_key(layout: Layout, config: Config, n_actions: int) -> tuple[Group, ...]
     for key, options in chosen.items():
         name = f"discretizer[{key!r}]"
         if key not in keys:
-            known = (
-                f"is not one of its keys: {', '.join(map(repr, keys))}" if keys else "must be a name: it has no keys"
-            )
+            if not keys:
+                raise ValueError(
+                    "discretizer must be a name or a function for an observation space without keys, "
+                    f"got {shown(chosen)}"
+                )
             raise ValueError(
-                f"{name} does not fit the observation space, {key!r} {known}{did_you_mean(key, list(keys))}"
+                f"{name} does not fit the observation space, {key!r} is not one of its keys: "
+                f"{', '.join(map(repr, keys))}{did_you_mean(key, list(keys))}"
             )
         empty = dict.fromkeys(_OPTIONS) | {"scale": ()}
         of_key = replace_checked(config, **{**empty, **options, "max_rows": config.max_rows})

@@ -127,10 +127,18 @@ class Sparse(Discretizer):
                 raise ValueError(
                     f"max_rows must be more than {row}: all rows are given out, and yet another observation was met"
                 )
-            if len(cell) != len(next(iter(self.met), cell)):
-                raise ValueError(f"discretizer must return as many integers each time, got {len(cell) // 8}")
+            first = next(iter(self.met), cell)
+            if len(cell) != len(first):
+                raise ValueError(
+                    "discretizer must return the same number of integers each time, "
+                    f"got {len(first) // 8} and then {len(cell) // 8}"
+                )
             self.met[cell] = row
         return row
+
+    def along_axes(self, observation: Any) -> NDArray[Any]:
+        """Returns (1,): the row of an observation; the last for what was not met."""
+        return self.active_rows(observation)
 
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (1,) row of an observation, or the (n, 1) rows of n observations; the last for what was not met.

@@ -1,6 +1,6 @@
 """Observations in words, for the environments whose meaning is known."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import gymnasium as gym
@@ -16,7 +16,9 @@ def state_in_words(env: str, observation: Any, columns: int | None = None) -> st
     """Returns an observation in words: its components by name, or a place on a map of so many columns."""
     if columns is not None:
         return f"row {int(observation) // columns}, column {int(observation) % columns}"
-    if gymnasium_id(env) == "Taxi-v4":
+    if isinstance(observation, Mapping) or (isinstance(observation, tuple) and any(map(_has_parts, observation))):
+        return _number(observation)
+    if gymnasium_id(env) == "Taxi-v4" and np.ndim(observation) == 0:
         return _taxi(int(observation))
     numbers: Sequence[Any] = np.atleast_1d(np.asarray(observation)).tolist()
     known = describe(env).observation
@@ -44,7 +46,15 @@ def _taxi(state: int) -> str:
     return f"taxi in row {place // 5}, column {place % 5}, passenger {where}, destination {_PLACES[destination]}"
 
 
+def _has_parts(value: Any) -> bool:
+    return isinstance(value, Mapping | tuple) or np.ndim(value) > 0
+
+
 def _number(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key}: {_number(part)}' for key, part in value.items())}}}"
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_number, value))})"
     array = np.asarray(value)
     if array.ndim == 0:
         return f"{array.item():.6g}" if array.dtype.kind == "f" else str(array.item())

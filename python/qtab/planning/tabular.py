@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
-from qtab.discretizers import Identity
+from qtab.discretizers import Function, Identity, Sparse
 from qtab.discretizers.actions import Actions
 from qtab.results.run import Run
 
@@ -88,8 +88,13 @@ class TabularSolver:
         """Returns the expected return of a run's greedy policy, and 0.0 as its standard error: it is exact.
 
         Raises:
-            ValueError: if the run's Q table has another shape than the environment.
+            ValueError: if the run's Q table has another shape than the environment, or rows that are not its states.
         """
+        if isinstance(run.discretizer, Function | Sparse):
+            raise ValueError(
+                "run must have a table of the components of its observations, not of a function or of max_rows; "
+                "qtab.evaluate(run) estimates its return"
+            )
         shape = (*self._cells.shape, len(self._actions))
         found = (*run.discretizer.shape, len(run.actions))
         if not run.discretizer.has_cells or found != shape:

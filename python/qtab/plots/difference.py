@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.discretizers import Function, Sparse
 from qtab.envs.registry import gymnasium_id
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements import Raster, arrange
@@ -65,6 +66,10 @@ def difference(
     check_title(title)
     subject, best = subject_of("run", run), subject_of("optimum", optimum)
     _check_same(subject, best)
+    if isinstance(subject.discretizer, Function | Sparse):
+        raise ValueError(
+            "run must have a table of the components of its observations, not of a function or of max_rows"
+        )
     raster = arrange(subject, at, layout, sampled=optimum.search is not None)
     cost = costs(subject, best, raster)
     [ax] = axes_for([raster], ax)

@@ -65,14 +65,17 @@ def trajectory(
     check_title(title)
     subject = subject_of("run", run)
     raster = arrange(subject, at, layout)
-    played = _play(run, env, episodes, seed)
+    played = [
+        (np.array([subject.discretizer.along_axes(one) for one in observations]), terminated)
+        for observations, terminated in _play(run, env, episodes, seed)
+    ]
     ax = values(run, ax, at=at, layout=layout, title=title, numbers=False)
     for index, (observations, terminated) in enumerate(played):
         _draw_path(ax, raster, observations, terminated, index, episodes)
     return ax
 
 
-def _play(run: Run | Optimum, env: gym.Env | None, episodes: int, seed: int) -> list[tuple[NDArray[Any], bool]]:
+def _play(run: Run | Optimum, env: gym.Env | None, episodes: int, seed: int) -> list[tuple[list[Any], bool]]:
     """Returns the observations of each episode, and whether it ended in a terminal state."""
     if env is not None and not isinstance(env, gym.Env):
         raise TypeError(f"env must be an environment, got {env!r}")
@@ -101,7 +104,7 @@ def _play(run: Run | Optimum, env: gym.Env | None, episodes: int, seed: int) -> 
                 observation, _, terminated, truncated, info = playing.step(action)
                 observations.append(observation)
                 over = bool(terminated or truncated)
-            played.append((np.array(observations), bool(terminated)))
+            played.append((observations, bool(terminated)))
     return played
 
 

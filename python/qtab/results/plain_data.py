@@ -32,7 +32,7 @@ def plain_data(run: "Run") -> dict[str, Any]:
         "discretizer": dict(discretizer.spec()),
         "shape": list(discretizer.shape),
         "actions": [_plain(actions[column]) for column in range(len(actions))],
-        "q_tables": [_rows(table) for table in run.tables],
+        "q_tables": [_rows(_masked(table, run.action_masks)) for table in run.tables],
         "versions": dict(run.versions),
     }
 
@@ -44,7 +44,7 @@ def write(run: "Run", path: Path) -> None:
         OSError: if the file cannot be written.
         TypeError: if the environment's keyword arguments hold what JSON cannot.
         ValueError: if they hold a number that JSON cannot, the run is not one that training returns, or its
-            observations are nested, given to a function or given rows as they are met.
+            observations are nested, given to a function or given rows as they are met, or tile coding has action masks.
     """
     try:
         check_consistent(run)
@@ -55,6 +55,8 @@ def write(run: "Run", path: Path) -> None:
             "this run cannot be written: plain data describes discretizers of integers and of a Box of one axis of "
             f"floats, not {run.discretizer!r}"
         )
+    if run.config.action_mask is not False and run.action_masks is None:
+        raise ValueError("this run cannot be written: plain data holds the action masks of cells, not of tile coding")
     try:
         text = json.dumps(plain_data(run), allow_nan=False)
     except (TypeError, ValueError) as error:
@@ -70,6 +72,11 @@ def _plain(action: Any) -> Any:
     if isinstance(action, tuple):
         return [_plain(part) for part in action]
     return action.tolist() if isinstance(action, np.ndarray | np.generic) else action
+
+
+def _masked(table: NDArray[np.float64], action_masks: NDArray[np.bool_] | None) -> NDArray[np.float64]:
+    """Returns a table with -inf where the mask of a cell excludes an action, as the run's policy reads it."""
+    return table if action_masks is None else np.where(action_masks.reshape(table.shape), table, -np.inf)
 
 
 def _rows(table: NDArray[np.float64]) -> list[list[float | None]]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from qtab.discretizers import Function, Sparse
 from qtab.envs.descriptions import describe
 from qtab.plots.arrangements import blackjack as blackjack_module
 from qtab.plots.arrangements.blackjack import blackjack
@@ -34,7 +35,10 @@ def arrange(
     """
     shape = subject.discretizer.shape
     kind = describe(subject.env).layout
-    numbered = subject.discretizer.low.ndim == 0 and len(shape) == 1
+    numbered = subject.discretizer.low.ndim == 0 and len(shape) == 1 and not isinstance(subject.discretizer, Sparse)
+    # What a function returns, and rows that are given out as they are met, are not the states of a known map.
+    if isinstance(subject.discretizer, Function | Sparse):
+        kind = ""
     if layout is not None and not numbered:
         raise ValueError(f"layout must be None for observations that are not numbered states, got {layout!r}")
     is_blackjack = kind == "blackjack" and shape == blackjack_module.SHAPE
@@ -46,6 +50,6 @@ def arrange(
         return blackjack()
     if kind == "taxi" and shape == (TAXI_STATES,):
         return taxi()
-    if kind == "map" and numbered:
+    if kind == "map" and numbered and sum(map(len, known_layout(subject))) == shape[0]:
         return grid_map(subject, checked_layout(known_layout(subject), shape[0]))
     return plane(subject, at, sampled)

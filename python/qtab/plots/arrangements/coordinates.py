@@ -40,7 +40,8 @@ def coordinates(subject: Subject) -> tuple[Coordinate, ...]:
     """Returns the quantities that can be axes: angles first, then the remaining components in their order."""
     axes = subject.axes
     description = describe(subject.env)
-    angles = description.angles if len(description.observation) == len(axes) else ()
+    named = tuple(axis.name for axis in axes) == tuple(one.name for one in description.observation)
+    angles = description.angles if named else ()
     used = {index for angle in angles for index in (angle.cosine, angle.sine)}
     turns = [
         Coordinate(angle.quantity.name, angle.quantity.label, -np.pi, np.pi, (angle.cosine, angle.sine), None)
