@@ -20,6 +20,7 @@ class Function(Discretizer):
     """The user's function: every observation is given to it, whatever its space."""
 
     reads_space = True
+    has_component_axes = False
 
     function: Callable[[Any], Any]
     """From an observation to its indices within the shape, or to one integer, the number of its row."""

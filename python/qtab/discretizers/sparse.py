@@ -23,6 +23,7 @@ class Sparse(Discretizer):
     """
 
     reads_space = True
+    has_component_axes = False
 
     cells: Composite | Function
     """Finds the cell of an observation."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
-from qtab.discretizers import Function, Identity, Sparse
+from qtab.discretizers import Identity
 from qtab.discretizers.actions import Actions
 from qtab.results.run import Run
 
@@ -90,7 +90,7 @@ class TabularSolver:
         Raises:
             ValueError: if the run's Q table has another shape than the environment, or rows that are not its states.
         """
-        if isinstance(run.discretizer, Function | Sparse):
+        if not run.discretizer.has_component_axes:
             raise ValueError(
                 "run must have a table of the components of its observations, not of a function or of max_rows; "
                 "qtab.evaluate(run) estimates its return"

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.discretizers import Function, Sparse
 from qtab.envs.registry import gymnasium_id
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements import Raster, arrange
@@ -66,7 +65,7 @@ def difference(
     check_title(title)
     subject, best = subject_of("run", run), subject_of("optimum", optimum)
     _check_same(subject, best)
-    if isinstance(subject.discretizer, Function | Sparse):
+    if not subject.discretizer.has_component_axes:
         raise ValueError(
             "run must have a table of the components of its observations, not of a function or of max_rows"
         )

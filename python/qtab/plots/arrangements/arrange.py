@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 
-from qtab.discretizers import Function, Sparse
 from qtab.envs.descriptions import describe
 from qtab.plots.arrangements import blackjack as blackjack_module
 from qtab.plots.arrangements.blackjack import blackjack
@@ -34,11 +33,9 @@ def arrange(
         ValueError: for one that does not fit the environment.
     """
     shape = subject.discretizer.shape
-    kind = describe(subject.env).layout
-    numbered = subject.discretizer.low.ndim == 0 and len(shape) == 1 and not isinstance(subject.discretizer, Sparse)
-    # What a function returns, and rows that are given out as they are met, are not the states of a known map.
-    if isinstance(subject.discretizer, Function | Sparse):
-        kind = ""
+    has_components = subject.discretizer.has_component_axes
+    kind = describe(subject.env).layout if has_components else ""  # other rows are not the states of a known map
+    numbered = subject.discretizer.low.ndim == 0 and len(shape) == 1 and has_components
     if layout is not None and not numbered:
         raise ValueError(f"layout must be None for observations that are not numbered states, got {layout!r}")
     is_blackjack = kind == "blackjack" and shape == blackjack_module.SHAPE
