@@ -81,6 +81,7 @@ EXTRA: Mapping[str, EnvEntry] = {
     f"{PREFIX}MaximizationBias-v0": EnvEntry(
         "MaximizationBias", "", "qtab.envs.maximization_bias:MaximizationBiasEnv", has_table=True
     ),
+    f"{PREFIX}RandomWalk-v0": EnvEntry(_TABLE, "", "qtab.envs.random_walk:RandomWalkEnv", has_table=True),
 }
 """Environments that Gymnasium does not have, by their id."""
 

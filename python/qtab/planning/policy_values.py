@@ -21,8 +21,8 @@ from qtab.discretizers.actions import choose_actions
 from qtab.envs.matching import unknown_wrapper
 from qtab.envs.native import table_env
 from qtab.envs.registry import spec_of, versioned
+from qtab.planning.policies import GivenPolicy, probabilities
 from qtab.planning.solve import has_transition_table
-from qtab.prediction.policies import GivenPolicy, probabilities
 
 
 @with_fields

@@ -8,6 +8,7 @@ mod envs;
 mod error;
 mod interrupt;
 mod planning;
+mod prediction;
 mod rng;
 mod runs;
 mod spec;
@@ -32,6 +33,8 @@ mod _core {
     };
     #[pymodule_export]
     use super::planning::{PyMdpSolver, PyMountainCarSearch};
+    #[pymodule_export]
+    use super::prediction::estimate_values;
     #[pymodule_export]
     use super::rng::PyAgentRng;
     #[pymodule_export]

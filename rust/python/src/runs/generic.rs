@@ -145,6 +145,12 @@ fn build_learner<R>(
 where
     R: ActiveRows + Send + 'static,
 {
+    if let Some(prediction) = &spec.prediction {
+        if n_active != 1 || prediction.num_states() != n_rows {
+            return Err(invalid("rows", format!("rows for each of the {n_rows} cells"), prediction.num_states()));
+        }
+        return Ok(into_run(task, prediction.predictor(spec, stop)?, rng, spec));
+    }
     let agent = generic_agent(spec, n_rows, n_active, &mut rng, stop)?;
     let weights = agent.table.values().len();
     let new_model = || Model::new(n_rows, spec.num_actions, stop).map_err(allocation);

@@ -5,8 +5,9 @@ mod many;
 mod results;
 mod trainer;
 
+pub(crate) use env_spec::EnvironmentSpec;
 pub(crate) use many::train_many;
 pub(crate) use trainer::PyTrainer;
 
 /// Signals are checked after this much work: some 8192 steps of Q-learning on a grid, a fraction of a millisecond.
-const WORK_BETWEEN_CHECKS: u64 = 8192;
+pub(crate) const WORK_BETWEEN_CHECKS: u64 = 8192;
