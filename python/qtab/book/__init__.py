@@ -13,7 +13,7 @@ from qtab.book.experiment import Experiment
 from qtab.book.registry import EXPERIMENTS, find, run
 from qtab.book.result import Line, Result
 from qtab.book.setting import Setting
-from qtab.envs.grid_worlds import dyna_maze, windy_grid_world
+from qtab.envs.grid_worlds import dyna_maze, grid_world, windy_grid_world
 
 __all__ = [
     "EXPERIMENTS",
@@ -23,6 +23,7 @@ __all__ = [
     "Setting",
     "dyna_maze",
     "find",
+    "grid_world",
     "run",
     "windy_grid_world",
 ]
