@@ -75,9 +75,9 @@ def grid_world(
     A move that would end in a wall leaves the agent in its cell, and the edge of the grid stops it.
 
     Args:
-        layout: The rows of the map, of one length: ``"."`` a free cell, ``"#"`` a wall, ``"S"`` a start, ``"G"`` a goal,
-            which ends the episode. An episode begins in any of the starts with the same probability. Without a goal
-            only a time limit ends it.
+        layout: The rows of the map, of one length: ``"."`` a free cell, ``"#"`` a wall, ``"S"`` a start, ``"G"`` a
+            goal, which ends the episode. An episode begins in any of the starts with the same probability. Without a
+            goal only a time limit ends it.
         wind: For each column the number of cells by which a move that begins there is shifted upwards.
         step_reward: The reward of a step.
         goal_reward: The reward of a step into a goal.

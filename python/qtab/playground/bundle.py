@@ -15,8 +15,8 @@ def bundle(sources: Mapping[str, str], entry: str) -> str:
     """Returns one script that does what the module ``entry`` does.
 
     Args:
-        sources: The text of each module by its file name. The modules may use ``import { a, b as c } from "./file.js"``,
-            ``import "./file.js"`` and ``export`` before a function, a class or a const.
+        sources: The text of each module by its file name. The modules may use ``import { a, b as c } from "./a.js"``,
+            ``import "./a.js"`` and ``export`` before a function, a class or a const.
         entry: The module to begin with.
 
     Raises:

@@ -141,7 +141,7 @@ def _layout(env: Any) -> list[str]:
 
 
 def _table(env: Any) -> dict[str, Any]:
-    """``P`` in a shorter form: for each state and action its outcomes (index of the probability, state, reward, end)."""
+    """``P`` shorter: for each state and action its outcomes (index of the probability, state, reward, end)."""
     states = range(len(env.P))
     outcomes = [[env.P[state][action] for action in sorted(env.P[state])] for state in states]
     probabilities = sorted({float(outcome[0]) for row in outcomes for cell in row for outcome in cell})
@@ -159,7 +159,7 @@ def _table(env: Any) -> dict[str, Any]:
 
 
 def _finite(value: float) -> float | None:
-    return value if abs(value) < 1e6 else None  # noqa: PLR2004
+    return value if abs(value) < 1e6 else None
 
 
 def _plain(value: Any) -> Any:
