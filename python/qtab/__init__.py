@@ -24,6 +24,7 @@ _MODULES = {
     "Gap": "qtab.planning.gap",
     "Optimum": "qtab.planning.optimum",
     "Playback": "qtab.rendering.play",
+    "PolicyValues": "qtab.planning.policy_values",
     "Progress": "qtab.training.callbacks",
     "Recording": "qtab.results.run",
     "Run": "qtab.results.run",
@@ -50,6 +51,7 @@ _MODULES = {
     "play": "qtab.rendering.play",
     "plot": "qtab.plots.run",
     "plots": "qtab.plots",
+    "policy_values": "qtab.planning.policy_values",
     "presets": "qtab.config.presets",
     "resume": "qtab.training.resume",
     "sb3": "qtab.sb3",
@@ -78,6 +80,8 @@ if TYPE_CHECKING:
     from qtab.explanation.explanation import Explanation as Explanation
     from qtab.planning.gap import Gap as Gap
     from qtab.planning.optimum import Optimum as Optimum
+    from qtab.planning.policy_values import PolicyValues as PolicyValues
+    from qtab.planning.policy_values import policy_values as policy_values
     from qtab.planning.solve import optimum as optimum
     from qtab.plots.run import plot as plot
     from qtab.rendering.animate import Animation as Animation

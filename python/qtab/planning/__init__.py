@@ -2,6 +2,7 @@
 
 from qtab.planning.gap import Gap
 from qtab.planning.optimum import Optimum
+from qtab.planning.policy_values import PolicyValues, policy_values
 from qtab.planning.solve import optimum
 
-__all__ = ["Gap", "Optimum", "optimum"]
+__all__ = ["Gap", "Optimum", "PolicyValues", "optimum", "policy_values"]

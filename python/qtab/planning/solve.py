@@ -138,7 +138,7 @@ def _optimum_for_env(
         raise ValueError(f"env must have no wrapper that may change observations or rewards, got {wrapper}")
     discount = 1.0 if discount is None else checks.real("discount", discount, 0.0, 1.0)
     is_mountain_car = type(unwrapped) in (MountainCarEnv, RustMountainCarEnv)
-    if not is_mountain_car and not _has_transition_table(unwrapped):
+    if not is_mountain_car and not has_transition_table(unwrapped):
         raise ValueError(
             "env must have a transition table P and an initial_state_distrib, or be Blackjack or MountainCar-v0: the "
             f"optimum of {name} is not known"
@@ -170,7 +170,8 @@ def _optimum_for_env(
     )
 
 
-def _has_transition_table(env: Any) -> bool:
+def has_transition_table(env: Any) -> bool:
+    """Returns whether the transitions of an unwrapped environment are known."""
     return isinstance(env, BlackjackEnv) or (hasattr(env, "P") and hasattr(env, "initial_state_distrib"))
 
 
