@@ -9,7 +9,6 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.envs.classic_control.mountain_car import MountainCarEnv
 from gymnasium.envs.registration import EnvSpec
-from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 from numpy.typing import NDArray
 
 from qtab import _core
@@ -26,6 +25,7 @@ from qtab.envs.registry import spec_of, versioned
 from qtab.envs.stored import spec_of_run
 from qtab.planning.mountain_car import MountainCarSolver, Search, search_routes
 from qtab.planning.optimum import Optimum, Solver
+from qtab.planning.table import has_transition_table
 from qtab.planning.tabular import METHODS, TabularSolver, solve_table
 from qtab.results.run import Run
 from qtab.results.runs import Runs
@@ -168,11 +168,6 @@ def _optimum_for_env(
         search=best.search,
         solver=best.solver,
     )
-
-
-def has_transition_table(env: Any) -> bool:
-    """Returns whether the transitions of an unwrapped environment are known."""
-    return isinstance(env, BlackjackEnv) or (hasattr(env, "P") and hasattr(env, "initial_state_distrib"))
 
 
 @dataclass(frozen=True, eq=False)
