@@ -18,6 +18,7 @@ __all__ = [
     "Blackjack",
     "ClassicControl",
     "Discretizer",
+    "ExpectedUpdates",
     "MdpSolver",
     "MountainCarSearch",
     "NativeEnv",

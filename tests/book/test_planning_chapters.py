@@ -1,5 +1,8 @@
 """The figures of chapters 3, 4 and 8.7, 8.8: their numbers beside the book's, their tables and their pictures."""
 
+import dataclasses
+import functools
+
 import numpy as np
 import pytest
 
@@ -11,13 +14,18 @@ EXACT = [name for name, one in qtab.book.EXPERIMENTS.items() if isinstance(one, 
 SEVERAL_AXES = {"example-3.5": 1, "example-3.8": 2, "figure-4.1": 12, "figure-4.2": 7, "figure-4.3": 2}
 
 
-def lines(name):
-    return {line.name: line for line in qtab.book.run(name).lines}
+@functools.cache
+def computed(name):
+    return qtab.book.run(name, runs=5, seed=3)
+
+
+def lines(number):
+    return {line.name: line for line in computed(f"figure-{number}").lines}
 
 
 @pytest.mark.parametrize("name", EXACT)
 def test_a_computed_figure_has_a_table_and_a_picture(name, tmp_path):
-    result = qtab.book.run(name, runs=5, seed=3)
+    result = computed(name)
     assert "computed, without random numbers" in str(result)
     assert "std. error" not in str(result)
     assert [line.name for line in result.lines] == list(result.experiment.line_names)
@@ -32,7 +40,7 @@ def test_a_computed_figure_has_a_table_and_a_picture(name, tmp_path):
 
 def test_the_values_after_each_sweep_are_the_books():
     found = lines("4.1")
-    rows = {
+    rows: dict[str, list[float]] = {
         "k = 1": [0, -1, -1, -1],
         "k = 2": [0, -1.75, -2, -2],  # the book cuts -1.75 to -1.7
         "k = 3": [0, -2.4375, -2.9375, -3],
@@ -82,8 +90,7 @@ def test_sample_updates_have_the_error_of_simulated_ones():
 def small():
     experiment = qtab.book.find("8.8")
     assert isinstance(experiment, UpdateDistributions)
-    settings = {field: getattr(experiment, field) for field in experiment.__dataclass_fields__}
-    return UpdateDistributions(**{**settings, "tasks": (Tasks(60, 1, 600), Tasks(90, 3, 900)), "points": 7})
+    return dataclasses.replace(experiment, tasks=(Tasks(60, 1, 600), Tasks(90, 3, 900)), points=7)
 
 
 def test_updates_on_policy_are_better_at_first_and_worse_in_the_end(small):

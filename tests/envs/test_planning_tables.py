@@ -1,5 +1,7 @@
 """The tables of chapters 3, 4 and 8: their numbers by hand, by the book and by simulation."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -78,8 +80,8 @@ def test_a_random_task_has_the_asked_for_form():
 
 @pytest.mark.parametrize("name", IDS)
 def test_each_trains_in_rust_by_its_id(name):
-    settings = {"episodes": 2, "max_episode_steps": 20, "seed": 1}
-    kwargs = {"cars": 4} if name.startswith("Jacks") else {"states": 20} if name.startswith("Random") else {}
+    settings: Any = {"episodes": 2, "max_episode_steps": 20, "seed": 1}
+    kwargs: Any = {"cars": 4} if name.startswith("Jacks") else {"states": 20} if name.startswith("Random") else {}
     run = qtab.train(f"qtab/{name}", env_kwargs=kwargs, **settings)
     assert run.config.backend == "rust"
     assert qtab.verify(run).equal

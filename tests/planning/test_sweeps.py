@@ -15,7 +15,7 @@ from qtab.envs.small_grid_worlds import grid_world_4x4
 from qtab.reference import dynamic_programming as reference
 
 
-@settings(max_examples=settings.default.max_examples // 2)
+@settings(max_examples=settings().max_examples // 2)
 @given(
     seed=st.integers(0, 10_000),
     states=st.integers(1, 12),

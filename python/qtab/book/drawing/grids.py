@@ -1,4 +1,4 @@
-"""Grid worlds of the book's figures: a number in each cell, and arrows for the actions of a policy."""
+"""CellMap worlds of the book's figures: a number in each cell, and arrows for the actions of a policy."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ _LENGTH = 0.32
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class CellMap:
     """A grid to draw."""
 
     title: str
@@ -41,7 +41,7 @@ def greedy_actions(q_values: FloatArray, tolerance: float = 1e-9) -> NDArray[np.
     return best
 
 
-def draw_grids(title: str, grids: Sequence[Grid], columns: int) -> "Axes":
+def draw_grids(title: str, grids: Sequence[CellMap], columns: int) -> "Axes":
     """Draws grids beside and below each other in a new figure; returns the last axes."""
     shape = next(np.shape(part)[:2] for one in grids for part in (one.values, one.best) if part is not None)
     rows = -(-len(grids) // columns)
@@ -56,7 +56,7 @@ def draw_grids(title: str, grids: Sequence[Grid], columns: int) -> "Axes":
     return last
 
 
-def _draw(ax: Any, grid: Grid, shape: tuple[int, ...]) -> None:
+def _draw(ax: Any, grid: CellMap, shape: tuple[int, ...]) -> None:
     rows, columns = shape
     ax.set(xlim=(-0.5, columns - 0.5), ylim=(rows - 0.5, -0.5), aspect="equal", xticks=[], yticks=[])
     ax.set_title(grid.title, fontsize="small")

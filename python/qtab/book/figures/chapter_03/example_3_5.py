@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from qtab.book.drawing import Grid, draw_grids
+from qtab.book.drawing import CellMap, draw_grids
 from qtab.book.exact_experiment import ExactExperiment, exact_line
 from qtab.book.figures.chapter_03.grid import DISCOUNT, as_grid, grid_text
 from qtab.book.result import Line, Result
@@ -21,7 +21,7 @@ def _compute() -> list[Line]:
 def _draw(result: Result, ax: "Axes | None") -> "Axes":
     if ax is not None:
         raise ValueError("ax must be None for example-3.5, which creates its own axes")
-    return draw_grids(result.experiment.heading, [Grid("values of the random policy", as_grid(result.lines[0]))], 1)
+    return draw_grids(result.experiment.heading, [CellMap("values of the random policy", as_grid(result.lines[0]))], 1)
 
 
 EXPERIMENT = ExactExperiment(

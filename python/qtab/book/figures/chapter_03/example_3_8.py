@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from qtab.book.drawing import Grid, draw_grids, greedy_actions
+from qtab.book.drawing import CellMap, draw_grids, greedy_actions
 from qtab.book.exact_experiment import ExactExperiment, exact_line
 from qtab.book.figures.chapter_03.grid import DISCOUNT, SIZE, as_grid, grid_text
 from qtab.book.result import Line, Result
@@ -29,7 +29,7 @@ def _draw(result: Result, ax: "Axes | None") -> "Axes":
         raise ValueError("ax must be None for example-3.8, which creates its own axes")
     values, *actions = result.lines
     best = greedy_actions(np.stack([as_grid(line) for line in actions], axis=-1)).reshape(SIZE, SIZE, len(_ACTIONS))
-    grids = [Grid("optimal values", as_grid(values)), Grid("optimal policies", best=best)]
+    grids = [CellMap("optimal values", as_grid(values)), CellMap("optimal policies", best=best)]
     return draw_grids(result.experiment.heading, grids, 2)
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from qtab.book.drawing import Grid, draw_grids, greedy_actions
+from qtab.book.drawing import CellMap, draw_grids, greedy_actions
 from qtab.book.exact_experiment import ExactExperiment, exact_line
 from qtab.book.result import Line, Result
 from qtab.book.runner import FloatArray
@@ -53,9 +53,9 @@ def _draw(result: Result, ax: "Axes | None") -> "Axes":
     grids = []
     for line in result.lines:
         values = as_grid(line)
-        grids.append(Grid(f"{line.name}: values", values, terminal=TERMINAL))
+        grids.append(CellMap(f"{line.name}: values", values, terminal=TERMINAL))
         best = greedy_actions(next_values(values))
-        grids.append(Grid(f"{line.name}: greedy policy", best=best, terminal=TERMINAL))
+        grids.append(CellMap(f"{line.name}: greedy policy", best=best, terminal=TERMINAL))
     return draw_grids(result.experiment.heading, grids, 4)
 
 

@@ -1,7 +1,7 @@
 """Figure 4.3: value iteration for the gambler's problem."""
 
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -37,7 +37,8 @@ def _compute() -> list[Line]:
 def smallest_best_stakes(q_values: FloatArray, tolerance: float = 1e-9) -> FloatArray:
     """Returns (states,): the smallest stake among those that are best, up to rounding errors."""
     best = q_values >= q_values.max(axis=1, keepdims=True) - tolerance
-    return np.argmax(best, axis=1) + 1.0
+    smallest: FloatArray = np.argmax(best, axis=1) + 1.0
+    return smallest
 
 
 def _draw(result: Result, ax: "Axes | None") -> "Axes":
@@ -51,7 +52,7 @@ def _draw(result: Result, ax: "Axes | None") -> "Axes":
     finish(upper, "", "value: the probability of winning", result.experiment.heading)
     lower.bar(policy.x, policy.mean, width=1.0, color=line_colors([policy], lower)[0])
     finish(lower, "capital", POLICY)
-    last: Any = lower
+    last: Axes = lower
     return last
 
 
