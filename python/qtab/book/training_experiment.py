@@ -27,6 +27,8 @@ BATCH_RUNS = 5_000
 class TrainingExperiment(Experiment):
     """An experiment that trains settings with many seeds."""
 
+    counts_failures = True
+
     settings: Sequence[Setting]
     max_episode_steps: int = MAX_EPISODE_STEPS
     """Episodes are truncated after this many steps. The book has no time limit."""
