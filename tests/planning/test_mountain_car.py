@@ -24,8 +24,9 @@ def found() -> qtab.Optimum:
 def drive(env: gym.Env, position: float, actions: Any) -> list[bool]:
     """Whether each step ended the episode, in Gymnasium's own environment."""
     env.reset()
-    env.unwrapped.state = (position, 0.0)  # type: ignore[attr-defined]
-    return [bool(env.step(int(action))[2]) for action in actions]
+    inner: Any = env.unwrapped
+    inner.state = (position, 0.0)
+    return [bool(inner.step(int(action))[2]) for action in actions]
 
 
 def test_every_route_reaches_the_goal_in_gymnasium_with_its_last_action(found):
