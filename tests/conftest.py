@@ -5,7 +5,6 @@ import os
 import signal
 import sys
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
 
@@ -52,27 +51,6 @@ def closed_figures() -> Iterator[None]:
     yield
     if "matplotlib.pyplot" in sys.modules:
         sys.modules["matplotlib.pyplot"].close("all")
-
-
-@pytest.fixture(scope="session", autouse=True)
-def one_search_for_each_mountain_car() -> Iterator[None]:
-    """Keeps the results of the search over MountainCar's dynamics, which takes seconds and is the same every time."""
-    from qtab import _core
-    from qtab.planning import solve
-
-    found: dict[tuple[Any, ...], Any] = {}
-    search = solve._search_mountain_car
-
-    def once(env: Any, discount: float, max_episode_steps: int, bar: Any) -> Any:
-        constants = tuple(repr(getattr(env, name)) for name in _core.parameter_names("MountainCar"))
-        task = (constants, discount, max_episode_steps)
-        if task not in found:
-            found[task] = search(env, discount, max_episode_steps, bar)
-        return found[task]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(solve, "_search_mountain_car", once)
-        yield
 
 
 @pytest.fixture

@@ -195,7 +195,7 @@ def between(folder: Path) -> str:
 
 @pytest.fixture(scope="module")
 def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Executed]:
-    """All notebooks, executed one after the other in one kernel: a kernel and its imports take as long as most cells."""
+    """All notebooks, executed one after the other in one kernel, whose start takes as long as many cells."""
     nbclient = pytest.importorskip("nbclient")
     pytest.importorskip("ipykernel")
     folder = tmp_path_factory.mktemp("notebooks")

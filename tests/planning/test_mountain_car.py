@@ -46,6 +46,24 @@ def test_the_optimum_is_labelled_best_known_and_not_exact(found):
     assert found.reward_threshold == -110
 
 
+def test_the_same_search_is_not_made_again_and_its_results_cannot_be_changed(found, monkeypatch):
+    def refuse(*arguments: Any) -> Any:
+        raise AssertionError(f"searched again: {arguments}")
+
+    monkeypatch.setattr("qtab._core.MountainCarSearch", refuse)
+    again: Any = qtab.optimum("MountainCar-v0")
+    for name in ("values", "q_values", "policy"):
+        assert getattr(again, name).tobytes() == getattr(found, name).tobytes()
+    assert again.expected_return == found.expected_return
+    again.values[:] = 0  # its own
+    assert found.values.any()
+    for array in (again.search.starts, again.search.steps, again.search.routes[0], again.search.positions):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+    with pytest.raises(AssertionError, match="searched again"):
+        qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": -0.0})
+
+
 def test_start_positions_cover_gymnasiums_range(found):
     starts = found.search.starts
     assert len(starts) == 1000
