@@ -5,7 +5,6 @@ import pytest
 
 from qtab import stats
 
-
 STATISTICS = ("mean", "median", "iqm")
 
 
