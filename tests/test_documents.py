@@ -82,7 +82,7 @@ def test_the_readmes_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_the_python_of_the_page_on_actions_runs() -> None:
     namespace: dict[str, Any] = {}
-    for block in PYTHON.findall((ROOT / "docs/actions.md").read_text(encoding="utf-8")):
+    for block in PYTHON.findall((ROOT / "docs/how_to/actions.md").read_text(encoding="utf-8")):
         exec(block, namespace)  # noqa: S102 - our own page
     assert namespace["run"].action_names[1] == "{dimmer: 1, lamps: (0, 1)}"
     assert repr(namespace["run"].predict(0)[0]) == "{'dimmer': 2, 'lamps': array([1, 1], dtype=int8)}"
@@ -112,7 +112,7 @@ def test_the_python_of_the_page_on_callbacks_runs(tmp_path: Path, monkeypatch: p
     for name, library in libraries.items():
         monkeypatch.setitem(sys.modules, name, library)
     namespace: dict[str, Any] = {}
-    for block in PYTHON.findall((ROOT / "docs/callbacks.md").read_text(encoding="utf-8")):
+    for block in PYTHON.findall((ROOT / "docs/how_to/callbacks.md").read_text(encoding="utf-8")):
         exec(block, namespace)  # noqa: S102 - our own page
     assert len(qtab.load("best.npz").episode_returns) <= len(qtab.load("run.npz").episode_returns)
     assert namespace["run"].episode_returns[-100:].mean() >= -105
