@@ -6,21 +6,25 @@
     print(result)
     result.plot()
 
-Each experiment is a module of :mod:`qtab.book.figures`, which states its settings and what the book leaves open.
+Each experiment is a module in the folder of its chapter in :mod:`qtab.book.figures`. It states the settings, and what
+the book leaves open.
 """
 
 from qtab.book.experiment import Experiment
-from qtab.book.registry import EXPERIMENTS, find, run
+from qtab.book.registry import CHAPTERS, EXPERIMENTS, find, run
 from qtab.book.result import Line, Result
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
 from qtab.envs.grid_worlds import dyna_maze, windy_grid_world
 
 __all__ = [
+    "CHAPTERS",
     "EXPERIMENTS",
     "Experiment",
     "Line",
     "Result",
     "Setting",
+    "TrainingExperiment",
     "dyna_maze",
     "find",
     "run",

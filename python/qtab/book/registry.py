@@ -1,39 +1,41 @@
 """All experiments of the book, by name and by number."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from qtab._utils.suggestions import did_you_mean
 from qtab.book.experiment import Experiment
 from qtab.book.figures import (
-    example_6_5,
-    example_6_6,
-    figure_6_3,
-    figure_6_5,
-    figure_8_2,
-    figure_10_1,
-    figure_10_2,
-    figure_10_3,
-    figure_10_4,
-    figure_12_10,
-    figure_12_11,
+    chapter_02,
+    chapter_03,
+    chapter_04,
+    chapter_05,
+    chapter_06,
+    chapter_07,
+    chapter_08,
+    chapter_09,
+    chapter_10,
+    chapter_12,
+    chapter_13,
 )
 from qtab.book.result import Result
 
+CHAPTERS: Mapping[int, Sequence[Experiment]] = {
+    2: chapter_02.EXPERIMENTS,
+    3: chapter_03.EXPERIMENTS,
+    4: chapter_04.EXPERIMENTS,
+    5: chapter_05.EXPERIMENTS,
+    6: chapter_06.EXPERIMENTS,
+    7: chapter_07.EXPERIMENTS,
+    8: chapter_08.EXPERIMENTS,
+    9: chapter_09.EXPERIMENTS,
+    10: chapter_10.EXPERIMENTS,
+    12: chapter_12.EXPERIMENTS,
+    13: chapter_13.EXPERIMENTS,
+}
+"""The experiments of each chapter."""
+
 EXPERIMENTS: Mapping[str, Experiment] = {
-    module.EXPERIMENT.name: module.EXPERIMENT
-    for module in (
-        example_6_5,
-        example_6_6,
-        figure_6_3,
-        figure_6_5,
-        figure_8_2,
-        figure_10_1,
-        figure_10_2,
-        figure_10_3,
-        figure_10_4,
-        figure_12_10,
-        figure_12_11,
-    )
+    experiment.name: experiment for chapter in CHAPTERS.values() for experiment in chapter
 }
 """The experiments by name, ordered by chapter."""
 

@@ -1,11 +1,11 @@
 """Figure 10.3: one-step and eight-step semi-gradient Sarsa on Mountain Car."""
 
-from qtab.book.experiment import Experiment
 from qtab.book.measures import lengths
 from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
 
-EXPERIMENT = Experiment(
+EXPERIMENT = TrainingExperiment(
     name="figure-10.3",
     title="one-step and eight-step Sarsa on Mountain Car",
     book="n = 1 with α = 0.5/8, n = 8 with α = 0.3/8; 500 episodes, 100 runs",

@@ -1,8 +1,8 @@
 """Figure 8.2: Dyna-Q on a maze."""
 
-from qtab.book.experiment import Experiment
 from qtab.book.measures import lengths
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
 from qtab.envs.grid_worlds import dyna_maze
 
 _DYNA = {
@@ -16,7 +16,7 @@ _DYNA = {
     "episodes": 50,
 }
 
-EXPERIMENT = Experiment(
+EXPERIMENT = TrainingExperiment(
     name="figure-8.2",
     title="Dyna-Q with different numbers of planning steps",
     book="α = 0.1, ε = 0.1, γ = 0.95, initial values of zero, ties at random; 50 episodes, 30 runs",

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from qtab.book.experiment import Experiment
 from qtab.book.measures import mean_return
 from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
 
 ALPHAS = tuple(round(0.2 * fifth, 1) for fifth in range(1, 11))
 KINDS: dict[str, dict[str, Any]] = {
@@ -15,7 +15,7 @@ KINDS: dict[str, dict[str, Any]] = {
     "accumulating": {"algorithm": "sarsa_lambda", "traces": "accumulating"},
 }
 
-EXPERIMENT = Experiment(
+EXPERIMENT = TrainingExperiment(
     name="figure-12.11",
     title="Sarsa(λ) with four kinds of traces on Mountain Car",
     book="true online Sarsa(λ), and Sarsa(λ) with replacing traces, with replacing traces that clear the traces of "

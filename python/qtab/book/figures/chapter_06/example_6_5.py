@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from qtab.book.experiment import Experiment
 from qtab.book.measures import episodes_by
 from qtab.book.runner import EpisodeLog, FloatArray
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
 from qtab.envs.grid_worlds import windy_grid_world
 
 STEPS = 8000
@@ -35,7 +35,7 @@ def last_lengths(log: EpisodeLog) -> FloatArray:
     return means
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = TrainingExperiment(
     name="example-6.5",
     title="Sarsa on the windy grid world",
     book="ε = 0.1, α = 0.5, initial values of zero; the figure shows one run of 8,000 steps",

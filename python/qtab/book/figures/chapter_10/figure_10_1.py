@@ -8,12 +8,12 @@ import numpy as np
 
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing import draw_surfaces
-from qtab.book.experiment import Experiment, line_of
 from qtab.book.measures import mean_length
 from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
 from qtab.book.result import Line, Result
 from qtab.book.runner import FloatArray
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment, line_of
 from qtab.results.run import Run
 from qtab.training.train import train
 
@@ -53,7 +53,7 @@ def draw_cost_to_go(result: Result, ax: "Axes | None") -> "Axes":
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class CostToGo(Experiment):
+class CostToGo(TrainingExperiment):
     """The cost-to-go of one run at five times."""
 
     def run(

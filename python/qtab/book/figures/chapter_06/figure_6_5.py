@@ -1,8 +1,8 @@
 """Figure 6.5: maximization bias."""
 
-from qtab.book.experiment import Experiment
 from qtab.book.runner import EpisodeLog, FloatArray
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
 
 _BOOK = {"preset": "book", "learning_rate": 0.1, "discount": 1.0, "epsilon": 0.1, "ties": "random", "episodes": 300}
 
@@ -13,7 +13,7 @@ def left(log: EpisodeLog) -> FloatArray:
     return percentages
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = TrainingExperiment(
     name="figure-6.5",
     title="maximization bias",
     book="ε = 0.1, α = 0.1, γ = 1, initial values of zero, rewards of mean -0.1 and variance 1, ties at random; 10,000 "

@@ -1,8 +1,8 @@
 """Example 6.6: Sarsa and Q-learning on the cliff."""
 
-from qtab.book.experiment import Experiment
 from qtab.book.measures import final_return, returns
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
 
 _ALGORITHMS = {"Sarsa": "sarsa", "Q-learning": "q_learning"}
 _EPISODES = 500
@@ -16,7 +16,7 @@ _COMMON = {
     "episodes": _EPISODES,
 }
 
-EXPERIMENT = Experiment(
+EXPERIMENT = TrainingExperiment(
     name="example-6.6",
     title="Sarsa and Q-learning on the cliff",
     book="ε = 0.1, γ = 1, 500 episodes",

@@ -1,14 +1,14 @@
 """Figure 6.3: interim and asymptotic performance on the cliff, as a function of α."""
 
-from qtab.book.experiment import Experiment
 from qtab.book.measures import mean_return
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
 
 ALPHAS = tuple(round(0.1 * tenth, 1) for tenth in range(1, 11))
 _ALGORITHMS = {"Sarsa": "sarsa", "Q-learning": "q_learning", "Expected Sarsa": "expected_sarsa"}
 _COMMON = {"discount": 1.0, "epsilon": 0.1, "epsilon_schedule": "constant", "ties": "random", "initial_q": 0.0}
 
-EXPERIMENT = Experiment(
+EXPERIMENT = TrainingExperiment(
     name="figure-6.3",
     title="interim and asymptotic performance on the cliff",
     book="ε = 0.1; interim: the first 100 episodes, 50,000 runs; asymptotic: 100,000 episodes, 10 runs (after van "

@@ -1,11 +1,11 @@
 """Figure 10.2: learning curves of semi-gradient Sarsa on Mountain Car."""
 
-from qtab.book.experiment import Experiment
 from qtab.book.measures import lengths
 from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
 
-EXPERIMENT = Experiment(
+EXPERIMENT = TrainingExperiment(
     name="figure-10.2",
     title="semi-gradient Sarsa on Mountain Car",
     book="8 tilings, ε = 0, α of 0.1/8, 0.2/8 and 0.5/8; 500 episodes, 100 runs",

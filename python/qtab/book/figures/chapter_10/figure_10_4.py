@@ -1,9 +1,9 @@
 """Figure 10.4: n-step semi-gradient Sarsa on Mountain Car, early performance by n and α."""
 
-from qtab.book.experiment import Experiment
 from qtab.book.measures import mean_length
 from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
 from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
 
 ALPHAS = (0.1, 0.14, 0.2, 0.28, 0.4, 0.57, 0.8, 1.13, 1.6)
 """Evenly spaced on a log scale, as in the book."""
@@ -25,7 +25,7 @@ def n_step_settings() -> tuple[Setting, ...]:
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = TrainingExperiment(
     name="figure-10.4",
     title="n-step semi-gradient Sarsa on Mountain Car, by n and α",
     book="n of 1, 2, 4, 8 and 16; the first 50 episodes, 100 runs",

@@ -1,0 +1,7 @@
+"""Chapter 4: dynamic programming."""
+
+from collections.abc import Sequence
+
+from qtab.book.experiment import Experiment
+
+EXPERIMENTS: Sequence[Experiment] = ()
