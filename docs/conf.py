@@ -33,7 +33,7 @@ extensions = [
     "public_names",
     "short_signatures",
 ]
-exclude_patterns = ["_build", "_extensions", "_inventories", "_templates", "**/_*.md"]
+exclude_patterns = ["_build", "_checks", "_extensions", "_inventories", "_templates", "**/_*.md"]
 templates_path = ["_templates"]
 nitpicky = True
 suppress_warnings = [
@@ -91,6 +91,7 @@ html_favicon = "_static/icon.svg"
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
+html_context = {"default_mode": "auto"}
 html_theme_options = {
     "logo": {"text": "qtab", "image_light": "_static/icon.svg", "image_dark": "_static/icon.svg", "alt_text": ""},
     "header_links_before_dropdown": 7,
@@ -99,11 +100,12 @@ html_theme_options = {
     "navbar_persistent": ["search-button"],
     "navigation_depth": 3,
     "show_toc_level": 2,
+    "secondary_sidebar_items": {"**": ["page-toc"], "index": []},
     "footer_start": ["copyright"],
     "footer_center": [],
     "footer_end": ["theme-version"],
-    "pygments_light_style": "a11y-high-contrast-light",
-    "pygments_dark_style": "a11y-high-contrast-dark",
+    "pygments_light_style": "github-light",
+    "pygments_dark_style": "github-dark",
 }
-html_sidebars = {"index": [], "playground": []}
+html_sidebars = {"index": []}
 copybutton_exclude = ".linenos, .gp, .go"
