@@ -16,7 +16,7 @@ mod vector;
 
 use pyo3::prelude::*;
 
-// The module needs no interpreter's lock: docs/free_threading.md lists what threads share, and what guards it.
+// The module needs no interpreter's lock: docs/explanation/free_threading.md lists what threads share, and what guards it.
 #[pymodule(gil_used = false)]
 mod _core {
     use pyo3::types::PyTuple;
