@@ -1,7 +1,7 @@
-"""Makes the pictures of docs/gallery.md by running its code: each block's last figure becomes the picture below it.
+"""Makes the pictures of docs/gallery/index.md by running its code: each block's last figure becomes the picture below it.
 
-python docs/gallery.py               # all of them, in about a minute
-python docs/gallery.py lake windy    # only some; the code is run from the top in any case
+python docs/gallery/pictures.py               # all of them, in about a minute
+python docs/gallery/pictures.py lake windy    # only some; the code is run from the top in any case
 """
 
 import re
@@ -36,12 +36,11 @@ def draw(code: str, namespace: dict[str, Any], path: Path) -> None:
 
 def main() -> None:
     """Draws all pictures, or those named on the command line."""
-    page = Path(__file__).with_suffix(".md")
+    page = Path(__file__).with_name("index.md")
     namespace: dict[str, Any] = {}
     wanted = set(sys.argv[1:])
     for picture, code in blocks(page).items():
         path = page.parent / picture
-        path.parent.mkdir(exist_ok=True)
         if wanted and path.stem not in wanted:
             exec(code, namespace)  # noqa: S102 - a later block may need its runs
             continue

@@ -1,6 +1,6 @@
-"""Makes the pictures of docs/motion.md by running its code.
+"""Makes the pictures of docs/gallery/motion.md by running its code.
 
-python docs/motion.py    # in about half a minute
+python docs/gallery/motion.py    # in about half a minute
 """
 
 import os
@@ -23,7 +23,6 @@ def main() -> None:
         for block in BLOCK.findall(text):
             exec(block, namespace)  # noqa: S102 - the page's own code
         for picture in pictures:
-            picture.parent.mkdir(exist_ok=True)
             picture.write_bytes(Path(picture.name).read_bytes())
             print(f"{picture.name}: {picture.stat().st_size / 1000:.0f} kB")
         print(f"run.html: {Path('run.html').stat().st_size / 1000:.0f} kB")

@@ -1,8 +1,8 @@
-"""Prints the tables of docs/environments.md: the results of every preset over 100 seeds, which takes a minute or two.
+"""Prints the tables of docs/reference/environments.md: the results of every preset over 100 seeds, which takes a minute or two.
 
 With an environment, those of one preset over other seeds:
 
-    python docs/solved.py MountainCar-v0 solved --first-seed 10000 --seeds 1000
+    python docs/reference/environments.py MountainCar-v0 solved --first-seed 10000 --seeds 1000
 """
 
 import argparse
