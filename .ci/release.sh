@@ -1,4 +1,5 @@
-# Tasks of the release workflow, for .ci/run, which sources this file. They read TAG, TARGET and FREE_THREADED.
+# Tasks of the release workflow, for .ci/run, which sources this file. They read TAG, REPOSITORY, TARGET and
+# FREE_THREADED.
 
 # The sdist in dist/. `.ci/run wheel sdist` first builds a wheel from it, installs that and runs it.
 sdist() {
@@ -55,9 +56,13 @@ pyodide() {
         .venv-pyodide/$bin/cibuildwheel --only cp314-pyodide_wasm32 --output-dir dist
 }
 
-# Writes the version of $TAG, such as v1.2.3, into the files that name it. Without a tag they stay as they are.
+# Writes the version of $TAG, such as v1.2.3, into the files that name it, and the address of $REPOSITORY into the links of
+# the README, which PyPI shows. Without a tag they stay as they are.
 version() {
     if [ -n "${TAG-}" ]; then
         "$host_python" .ci/version.py "$TAG"
+        if [ -n "${REPOSITORY-}" ]; then
+            "$host_python" .ci/links.py "$REPOSITORY" "$TAG"
+        fi
     fi
 }

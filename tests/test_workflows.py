@@ -108,3 +108,20 @@ def test_a_tag_without_a_version_or_without_a_section_of_the_changelog_is_refuse
     assert done.returncode == 1
     assert error in done.stderr
     assert (tmp_path / "Cargo.lock").read_bytes() == (ROOT / "Cargo.lock").read_bytes()
+
+
+def test_the_links_of_the_readme_become_absolute_for_pypi(tmp_path: Path):
+    (tmp_path / ".ci").mkdir()
+    (tmp_path / ".ci" / "links.py").write_bytes((ROOT / ".ci" / "links.py").read_bytes())
+    (tmp_path / "README.md").write_bytes((ROOT / "README.md").read_bytes())
+    address = "https://example.org/someone/qtab"
+    command = [sys.executable, ".ci/links.py", address, "v3.4.5"]
+    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
+    text = (tmp_path / "README.md").read_text(encoding="utf-8")
+    assert f"]({address}/raw/v3.4.5/docs/pictures/first_picture.png)" in text
+    assert f"]({address}/blob/v3.4.5/docs/tutorial/index.md)" in text
+    assert re.findall(r"\]\((?!https://)[^)]*\)", text) == []
+    refused = subprocess.run(
+        [*command[:2], "x; y", "v3.4.5"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert "the repository must be like" in refused.stderr

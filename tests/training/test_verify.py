@@ -187,6 +187,6 @@ def test_a_difference_of_a_run_from_another_machine_names_the_machine():
     assert "the run was trained with platform Linux aarch64 musl 1.2: other libraries" in str(verification)
     assert "trained with" in verification._repr_html_()
     assert qtab.verify(dataclasses.replace(run, versions=versions)).trained_with is None
-    here = qtab.verify(dataclasses.replace(run, episode_returns=run.episode_returns - 1))
-    assert here.trained_with == {}
-    assert "trained with" not in str(here)
+    same = qtab.verify(dataclasses.replace(run, episode_returns=run.episode_returns - 1))
+    assert same.trained_with == {}
+    assert "trained with" not in str(same)
