@@ -10,7 +10,7 @@ from typing import Any
 from qtab.playground.bundle import bundle
 from qtab.playground.definitions import definitions
 
-BUILD_COMMAND = "rustup target add wasm32-unknown-unknown && python rust/web/build.py"
+BUILD_COMMAND = "rustup target add wasm32-unknown-unknown && python rust/web/build_backend.py"
 """What builds the WebAssembly module in a checkout."""
 
 STYLE = '<link rel="stylesheet" href="style.css">'
