@@ -66,7 +66,7 @@ function numberField(parts, id, read, apply) {
     if (!refused) apply(value);
   });
   const show = (value) => {
-    const text = String(value);
+    const text = shortest(value);
     if (input.getAttribute("aria-invalid") && document.activeElement === input) return;
     if (input.value !== text) {
       input.value = text;
@@ -74,6 +74,12 @@ function numberField(parts, id, read, apply) {
     }
   };
   return { input, show };
+}
+
+/** A number as text; limits of observations are 32-bit numbers, of which seven digits say all. */
+function shortest(value) {
+  const short = Number(value.toPrecision(7));
+  return String(Math.fround(short) === value ? short : value);
 }
 
 /** A number: a text field for exact values, and a slider. */

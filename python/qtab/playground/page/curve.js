@@ -177,8 +177,14 @@ function drawMarks(g, box, marks, y, colors) {
     g.setLineDash([]);
     const at = Math.min(y(value) - 9, above - 14);
     above = at;
+    const label = `${name} ${number(value)}`;
+    const wide = g.measureText(label).width;
+    g.fillStyle = colors.card;
+    g.globalAlpha = 0.82;
+    g.fillRect(box.right - wide - 3, at - 7, wide + 6, 14);
+    g.globalAlpha = 1;
     g.fillStyle = colors.good;
     g.textAlign = "right";
-    g.fillText(`${name} ${number(value)}`, box.right, at);
+    g.fillText(label, box.right, at);
   }
 }

@@ -15,9 +15,9 @@ export const EXAMPLES = {
     },
     {
       preset: "article",
-      settings: { scale: [20, 200], discount: 1, initial_q: 0, epsilon: 0.1 },
-      title: "The article, mended",
-      look: "Still Q-learning on a grid, with four changes: smaller cells, γ = 1, initial values of 0 and less exploration. Each step costs 1, so a value of 0 is optimistic, and the agent explores on its own.",
+      settings: { scale: [20, 200], discount: 1, initial_q: 0, epsilon: 0, learning_rate: 0.5, learning_rate_schedule: "linear" },
+      title: "Optimistic: better",
+      look: "Still Q-learning on a grid, now with γ = 1, smaller cells, a falling α, and initial values of 0. As each step costs 1, these are optimistic: the agent explores without ε, and soon reaches the flag in nearly every episode. The threshold stays out of reach.",
     },
     {
       preset: "solved",

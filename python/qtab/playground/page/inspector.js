@@ -38,7 +38,7 @@ export function showInspection(title, place, inspection, { actions, bootstrap, u
 function valueTable({ actionValues, visits }, actions) {
   const largest = Math.max(...actionValues);
   const widest = Math.max(...Array.from(actionValues, Math.abs), 1e-300);
-  const head = make("tr", {}, ...["Action", "Value", "Visits", "Size of the value"].map((textContent) => make("th", { scope: "col", textContent })));
+  const head = make("tr", {}, ...["Action", "Value", "Visits", "Size"].map((textContent) => make("th", { scope: "col", textContent })));
   const rows = actions.map((action, index) => {
     const bar = make("span", { className: "bar" });
     const share = Math.abs(actionValues[index]) / widest;

@@ -1,9 +1,9 @@
 // Brings the parts of the page together: the reader's choices, the engine that trains, and what shows its results.
 
 import { Controls } from "./controls.js";
-import { complete, Engine, loadDefinitions } from "./engine.js";
+import { Engine, loadDefinitions } from "./engine.js";
 import { setUpEnvironments } from "./environments.js";
-import { exampleState, setUpExamples } from "./examples.js";
+import { EXAMPLES, exampleState, setUpExamples } from "./examples.js";
 import { setUpDialog, setUpShortcuts } from "./shortcuts.js";
 import { copyText, pythonProgram } from "./python_code.js";
 import { fragment, restore } from "./share.js";
@@ -21,7 +21,9 @@ function start(definitions) {
   let spoken = 0;
   const announce = (text, delay = 0) => {
     clearTimeout(spoken);
-    spoken = setTimeout(() => { element("live").textContent = text; }, delay);
+    const say = () => { element("live").textContent = text; };
+    if (delay) spoken = setTimeout(say, delay);
+    else say();
   };
   setUpTheme(element("theme"));
   const store = new Store(definitions);
@@ -42,9 +44,13 @@ function start(definitions) {
   setUpPage(store, training, view, announce);
   store.subscribe(() => training.start());
   training.start();
-  if (left.length) view.showNote(`Parts of the address do not fit and were left out: ${[...new Set(left)].join(", ")}.`);
+  const note = (names) => {
+    if (names.length) view.showNote(`Parts of the address do not fit and were left out: ${[...new Set(names)].join(", ")}.`);
+  };
+  note(left);
+  addEventListener("hashchange", () => note(restore(store, location.hash.slice(1))));
   if (matchMedia("(max-width: 860px)").matches) element("settings-fold").open = false;
-  globalThis.playground = { engine: training.engine, store, training, view, complete };
+  globalThis.playground = { engine: training.engine, store, training, view, fragment, restore, pythonProgram, EXAMPLES };
 }
 
 function setUpPage(store, training, view, announce) {
@@ -75,7 +81,6 @@ function setUpPage(store, training, view, announce) {
     clearTimeout(waiting);
     waiting = setTimeout(() => history.replaceState(null, "", `#${fragment(store)}`), ADDRESS_DELAY);
   });
-  addEventListener("hashchange", () => restore(store, location.hash.slice(1)));
   setUpShortcuts(
     [
       ["r", "run to the end", press.run],

@@ -5,6 +5,7 @@ export class Training {
   constructor(store, Engine, { onStart, onResult, onProblem }) {
     Object.assign(this, { store, onStart, onResult, onProblem });
     this.state = "loading";
+    this.id = null;
     this.cell = null;
     this.at = null;
     this.environment = null;
@@ -22,7 +23,7 @@ export class Training {
     this.state = run ? "training" : "paused";
     this.at = null;
     this.onStart();
-    this.engine.start({ ...this.store.request(), run });
+    this.id = this.engine.start({ ...this.store.request(), run });
     if (this.cell !== null) this.engine.inspect(this.cell);
   }
 

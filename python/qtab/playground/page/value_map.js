@@ -32,9 +32,11 @@ export class StateMap {
    */
   show(content) {
     this.content = content;
+    if (Array.isArray(this.agent) !== Boolean(content.plane)) this.agent = null;
     const cells = content.map.columns * content.map.rows;
     this.focused = Math.min(this.focused, cells - 1);
-    if (this.selected !== null && this.selected >= cells) this.selected = null;
+    if (this.selected >= cells) this.selected = null;
+    if (this.agent >= cells) this.agent = null;
     this.canvas.setAttribute("aria-label", content.label);
     if (this.grid) {
       this.grid.setAttribute("aria-rowcount", content.map.rows);

@@ -95,8 +95,8 @@ export class View {
     const bySeed = seeds.map((_, index) => returns.subarray(index * done, (index + 1) * done));
     this.marks.showKey(seeds.length, episodes, marks);
     this.curve.show(bySeed, episodes, marks);
-    this.showMotion(result);
     this.showMaps(result);
+    this.showMotion(result);
     this.showState();
     element("results").dataset.drawn = `${result.id} ${result.state}`;
     element("results").dataset.milliseconds = Math.round(performance.now() - this.store.changedAt);
@@ -183,13 +183,13 @@ export class View {
   }
 
   placeOf(observation, cell) {
-    const { plane } = this.frame();
+    const { plane } = this.values.content;
     return plane ? [observation[plane.xIndex], observation[plane.yIndex]] : cell;
   }
 
   showAgent(step) {
-    if (this.isStale || !this.episode || !this.values.content || (this.result.current && this.result.state === "paused")) return;
-    const { observations, components, cells } = this.episode;
+    if (this.isStale || !this.values.content) return;
+    const { observations, components, cells } = this.motion.episode;
     const at = Math.min(step, cells.length - 1);
     const place = this.placeOf(observations.subarray(at * components, (at + 1) * components), cells[at]);
     if (JSON.stringify(place) !== JSON.stringify(this.values.agent)) this.values.showAgent(place);
