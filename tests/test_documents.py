@@ -10,7 +10,7 @@ import pytest
 import qtab
 from support.repository import ROOT, tracked_files
 
-PAGES = [path for path in tracked_files(".md") if path.parent in (ROOT, ROOT / "docs")]
+PAGES = [path for path in tracked_files(".md") if path.parent in (ROOT, ROOT / "docs", ROOT / "docs/book")]
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 PYTHON = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
 

@@ -1,7 +1,8 @@
 """The notebooks in examples/: how they are stored, and that they run, show pictures and print the right numbers."""
 
+import copy
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -81,8 +82,8 @@ def test_the_links_of_a_notebook_lead_to_files(name: str) -> None:
 class Executed:
     """The outputs of a notebook that ran."""
 
-    def __init__(self, notebook: Any) -> None:
-        self._cells = {cell.id: cell.outputs for cell in notebook.cells if cell.cell_type == "code"}
+    def __init__(self, cells: Sequence[Any]) -> None:
+        self._cells = {cell.id.rpartition("--")[2]: cell.outputs for cell in cells if cell.cell_type == "code"}
 
     def shown(self, cell: str, kind: str) -> list[str]:
         """What a cell shows of a MIME type; the text that it prints counts as plain."""
@@ -95,7 +96,7 @@ class Executed:
     @property
     def errors(self) -> list[str]:
         """What was printed on standard error, which a reader would see in red."""
-        return [str(output.text) for outputs in self._cells.values() for output in outputs if _is_red(output)]
+        return [str(output) for outputs in self._cells.values() for output in outputs if _is_red(output)]
 
 
 def _is_red(output: Any) -> bool:
@@ -187,24 +188,43 @@ CHECKS: dict[str, Callable[[Executed], None]] = {
 }
 
 
-@pytest.mark.slow
-@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of Jupyter's libraries
-@pytest.mark.parametrize("name", PICTURES)
-def test_a_notebook_runs_and_shows_what_it_says(name: str, tmp_path: Path) -> None:
+def between(folder: Path) -> str:
+    """What is run before each notebook: it starts with an empty namespace, in a folder of its own."""
+    return f"%reset -f\nimport os\nos.makedirs({str(folder)!r})\nos.chdir({str(folder)!r})"
+
+
+@pytest.fixture(scope="module")
+def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Executed]:
+    """All notebooks, executed one after the other in one kernel, whose start takes as long as many cells."""
     nbclient = pytest.importorskip("nbclient")
     pytest.importorskip("ipykernel")
-    notebook = nbformat.from_dict(stored(name))
+    folder = tmp_path_factory.mktemp("notebooks")
+    cells: dict[str, list[Any]] = {}
+    for name in PICTURES:
+        cells[name] = [nbformat.v4.new_code_cell(between(folder / name)), *copy.deepcopy(stored(name)).cells]
+        for cell in cells[name]:
+            cell.id = f"{name}--{cell.id}"  # two notebooks have cells of the same name
+    every = nbformat.v4.new_notebook(cells=[cell for of_one in cells.values() for cell in of_one])
     # The kernel chooses its own backend, as it does for a reader.
     with pytest.MonkeyPatch.context() as environment:
         environment.delenv("MPLBACKEND", raising=False)
-        environment.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
-        nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3").execute(cwd=str(tmp_path))
-    executed = Executed(notebook)
-    assert executed.errors == []
-    assert {cell: len(executed.shown(cell, PNG)) for cell in PICTURES[name].split()} == dict.fromkeys(
+        environment.setenv("IPYTHONDIR", str(folder / "ipython"))
+        # A cell that fails is reported with its notebook, and the next notebook runs.
+        client = nbclient.NotebookClient(every, timeout=300, kernel_name="python3", allow_errors=True)
+        client.execute(cwd=str(folder))
+    return {name: Executed(of_one) for name, of_one in cells.items()}
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of Jupyter's libraries
+@pytest.mark.parametrize("name", PICTURES)
+def test_a_notebook_runs_and_shows_what_it_says(name: str, request: pytest.FixtureRequest) -> None:
+    shown: Executed = request.getfixturevalue("executed")[name]
+    assert shown.errors == []
+    assert {cell: len(shown.shown(cell, PNG)) for cell in PICTURES[name].split()} == dict.fromkeys(
         PICTURES[name].split(), 1
     )
-    assert [cell for cell in TABLES[name].split() if "<table" not in "".join(executed.shown(cell, HTML))] == []
+    assert [cell for cell in TABLES[name].split() if "<table" not in "".join(shown.shown(cell, HTML))] == []
     for cell in PLAYERS.get(name, "").split():
-        assert re.search(r"<(video|img)[^>]* src=|data:(video|image)/", "".join(executed.shown(cell, HTML))), cell
-    CHECKS[name](executed)
+        assert re.search(r"<(video|img)[^>]* src=|data:(video|image)/", "".join(shown.shown(cell, HTML))), cell
+    CHECKS[name](shown)

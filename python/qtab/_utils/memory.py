@@ -56,25 +56,28 @@ def free_memory() -> int:
     return max(min(free), 0)
 
 
-def check_memory(what: str, needed: int, limit: int) -> None:
+def check_memory(what: str, needed: int, limit: int, instead: str = "") -> None:
     """Checks that something fits into the memory limit, and where that is the default, into what is free.
 
     Args:
         what: What needs the memory, for the message.
         needed: The bytes it needs.
         limit: The limit in bytes.
+        instead: Which setting would help, to be added to the message.
 
     Raises:
         MemoryError: if it does not fit.
     """
     if needed > limit:
+        default = ", by default half of the machine's memory" if limit == memory_limit(None) else ""
         raise MemoryError(
-            f"{what} need {readable(needed)}, more than memory_limit={limit} ({readable(limit)}); "
-            "request less, or increase memory_limit"
+            f"{what} need {readable(needed)}, more than memory_limit={limit} ({readable(limit)}{default}); "
+            f"request less, or increase memory_limit{instead}"
         )
     if needed > ALWAYS_FREE and limit == memory_limit(None) and needed > (free := free_memory()):
         raise MemoryError(
-            f"{what} need {readable(needed)}, more than the {readable(free)} of memory that are free; request less"
+            f"{what} need {readable(needed)}, more than the {readable(free)} of memory that are free; "
+            f"request less{instead}"
         )
 
 

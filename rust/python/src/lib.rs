@@ -31,7 +31,7 @@ mod _core {
         numpy_uses_libm, parameter_names, step_cart_poles,
     };
     #[pymodule_export]
-    use super::planning::{PyMdpSolver, PyMountainCarSearch};
+    use super::planning::{PyExpectedUpdates, PyMdpSolver, PyMountainCarSearch};
     #[pymodule_export]
     use super::rng::PyAgentRng;
     #[pymodule_export]
