@@ -101,7 +101,7 @@ ENVIRONMENTS: Mapping[str, Entry] = {
     ),
     "CliffWalking-v1": Entry(
         "Cliff walking",
-        "Walk to the goal along a cliff. Each step costs 1; a step off the cliff costs 100 and leads back to the start.",
+        "Walk to the goal along a cliff. Each step costs 1; a step off the cliff costs 100 and leads to the start.",
         "cliff",
         "CliffWalking-v1",
     ),
