@@ -108,7 +108,7 @@ export class View {
     element("progress").max = episodes;
     element("progress").value = done;
     element("stop").disabled = state !== "training";
-    element("run").textContent = state === "finished" || state === "diverged" ? "Run again" : done ? "Continue" : "Run";
+    element("run").textContent = state === "finished" || state === "diverged" ? "Run again" : state === "paused" && done ? "Continue" : "Run";
     element("run").disabled = state === "training";
     if (state === "diverged") {
       element("problem").hidden = false;
@@ -233,9 +233,9 @@ export class View {
     const { inspection } = this.result;
     if (this.values.selected !== (inspection?.cell ?? null) && inspection) this.values.select(inspection.cell);
     const { actions } = this.store.entry;
-    const bootstrap = this.store.definitions.bootstrap?.[this.store.state.settings.algorithm] ?? "max Q(S', a)";
+    const bootstraps = this.store.definitions.bootstraps[this.store.state.settings.algorithm];
     const unvisitedText = "No update yet: the agent has not left this state by a step.";
     const named = inspection && { ...inspection, state: this.stateText(inspection) };
-    showInspection(element("inspector-title"), element("inspection"), named, { actions, bootstrap, unvisitedText });
+    showInspection(element("inspector-title"), element("inspection"), named, { actions, bootstraps, unvisitedText });
   }
 }
