@@ -50,6 +50,7 @@ _MODULES = {
     "load_runs": "qtab.results.runs_storage",
     "load_sweep": "qtab.sweeps.results",
     "optimum": "qtab.planning.solve",
+    "planning": "qtab.planning",
     "play": "qtab.rendering.play",
     "plot": "qtab.plots.run",
     "plots": "qtab.plots",
@@ -70,6 +71,7 @@ if TYPE_CHECKING:
     # The table again, in the only form that editors and type checkers read. A test compares the two.
     from qtab import book as book
     from qtab import callbacks as callbacks
+    from qtab import planning as planning
     from qtab import plots as plots
     from qtab import prediction as prediction
     from qtab import sb3 as sb3

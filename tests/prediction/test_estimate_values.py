@@ -240,3 +240,14 @@ def test_features_of_numbered_states() -> None:
     assert tile_coding(6, 3, 2, 1).tolist() == [[0, 3], [0, 3], [0, 4], [1, 4], [1, 4], [1, 5]]
     with pytest.raises(ValueError, match="offset must shift the 4 tilings by less than the width 3 in all"):
         tile_coding(6, 3, 4, 1)
+
+
+def test_batch_td_settles_where_all_rewards_are_zero() -> None:
+    # The values fall to 0, where the smallest numbers of float64 once went round in circles.
+    env_kwargs = {"states": 5, "left_reward": 0.0, "right_reward": 0.0}
+    found = qtab.estimate_values(
+        WALK, "random", method="batch_td", initial_value=0.5, episodes=3, seeds=20, env_kwargs=env_kwargs
+    )
+    visited = found.values != 0.5
+    assert visited.any()
+    assert np.abs(found.values[visited]).max() < 1e-10

@@ -1,7 +1,6 @@
 """``qtab.policy_values``: the exact values of a given policy, by dynamic programming."""
 
 from collections.abc import Mapping
-from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -14,15 +13,9 @@ from numpy.typing import NDArray
 from qtab import _core
 from qtab._utils import checks, html, svg
 from qtab._utils.fields import with_fields
-from qtab._utils.shown import shown
 from qtab.config.unknown import suggesting
-from qtab.discretizers import Identity
-from qtab.discretizers.actions import choose_actions
-from qtab.envs.matching import unknown_wrapper
-from qtab.envs.native import table_env
-from qtab.envs.registry import spec_of, versioned
 from qtab.planning.policies import GivenPolicy, probabilities
-from qtab.planning.solve import has_transition_table
+from qtab.planning.table import opened_table
 
 
 @with_fields
@@ -126,45 +119,17 @@ def policy_values(
             transition table, or a policy that collects rewards forever without a discount.
     """
     discount = checks.real("discount", discount, 0.0, 1.0)
-    with ExitStack() as on_exit:
-        if not isinstance(env, gym.Env):
-            if not isinstance(env, str | EnvSpec):
-                raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
-            if env_kwargs is not None and not isinstance(env_kwargs, Mapping):
-                raise TypeError(f"env_kwargs must map names to values, got {shown(env_kwargs)}")
-            env = gym.make(env if isinstance(env, EnvSpec) else spec_of(versioned(env)), **(env_kwargs or {}))
-            on_exit.callback(env.close)
-        elif env_kwargs is not None:
-            raise ValueError(f"env_kwargs must be None if env is an environment object, got {shown(env_kwargs)}")
-        return _policy_values(env, policy, discount)
-
-
-def _policy_values(env: gym.Env, policy: GivenPolicy, discount: float) -> PolicyValues:
-    name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
-    wrapper = unknown_wrapper(env)
-    if wrapper is not None:
-        raise ValueError(f"env must have no wrapper that may change observations or rewards, got {wrapper}")
-    if not has_transition_table(env.unwrapped):
-        raise ValueError(
-            f"env must have a transition table P and an initial_state_distrib, or be Blackjack: the values of {name} "
-            "cannot be computed; qtab.estimate_values estimates them"
-        )
-    actions = choose_actions(env.action_space, None)
-    cells = Identity.of_space(env.observation_space, len(actions))
-    table = probabilities("policy", policy, env.observation_space, cells, actions)
-    solver = _core.MdpSolver(table_env(env.unwrapped))
-    values, q_values, error = solver.policy_evaluation(np.ascontiguousarray(table.ravel()), discount)
-    if len(values) < cells.n_rows or q_values.size != len(values) * len(actions):
-        raise ValueError(f"P must have {cells.n_rows} states of {len(actions)} actions, as the spaces of env have")
-    # The first states are those that observations show; where an observation hides part of the state, the hidden
-    # variants follow.
+    with opened_table(env, env_kwargs) as table:
+        cells, actions, solver = table.cells, table.actions, table.solver
+        given = probabilities("policy", policy, table.env.observation_space, cells, actions)
+    values, q_values, error = solver.policy_evaluation(np.ascontiguousarray(given.ravel()), discount)
     observed = slice(cells.n_rows)
     return PolicyValues(
-        env=name,
+        env=table.name,
         discount=discount,
         values=values[observed].reshape(cells.shape),
         q_values=q_values.reshape(len(values), -1)[observed].reshape(*cells.shape, len(actions)),
-        probabilities=table.reshape(*cells.shape, len(actions)),
+        probabilities=given.reshape(*cells.shape, len(actions)),
         error=error,
         expected_return=float(np.dot(solver.initial_distribution, values)),
         solver=solver,

@@ -120,6 +120,8 @@ def estimate_values(
     if env_kwargs is not None:
         given["env_kwargs"] = env_kwargs
     resolved, space = resolve_prediction(env, policy, settings, numbers[0], given)
+    log_default_limit(resolved)
+    log_python_stepping(resolved)
     estimates, failed = run_prediction(
         resolved, space, settings, policy, behavior, features, numbers, points, thread_count(threads), limit
     )
@@ -147,8 +149,6 @@ def resolve_prediction(
     resolved = resolve(made, {**settings.config(), **of_run, **given, "seed": seed}, owns_env=made is not env)
     if not resolved.discretizer.has_cells or resolved.discretizer.reads_space:
         raise ValueError(f"env must have observations with a cell each, got {resolved.discretizer!r}")
-    log_default_limit(resolved)
-    log_python_stepping(resolved)
     if isinstance(made, gym.Env) or not callable(policy):
         return resolved, made.observation_space if isinstance(made, gym.Env) else None
     # A function of the observation has to see observations of the right type.

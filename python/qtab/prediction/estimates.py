@@ -99,10 +99,11 @@ class ValueEstimates:
             raise ValueError("weights must be at least 0 and not all 0")
         shares = shares / shares.sum()
         axes = tuple(range(1, exact.ndim + 1))
-        errors = [
-            np.sqrt((shares * (self.values_after(point) - exact) ** 2).sum(axis=axes))
-            for point in range(len(self.episodes))
-        ]
+        with np.errstate(over="ignore"):  # values that diverge have an infinite error
+            errors = [
+                np.sqrt((shares * (self.values_after(point) - exact) ** 2).sum(axis=axes))
+                for point in range(len(self.episodes))
+            ]
         return np.stack(errors, axis=1)
 
     def _per_state(self, name: str, numbers: ArrayLike) -> NDArray[np.float64]:

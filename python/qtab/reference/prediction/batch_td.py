@@ -5,21 +5,21 @@ import numpy as np
 from qtab.reference.prediction.common import Prediction
 
 SETTLED = 1e-12
-"""The largest change, as a fraction of the largest value or reward, at which values have settled."""
+"""The largest change, as a fraction of the largest value or reward so far, at which values have settled."""
 
 
 def batch_td(prediction: Prediction) -> None:
     """After each episode, presents all transitions so far again and again until the values settle."""
     w = prediction.w
     counts: dict[tuple[int, float, int | None], float] = {}
-    visits = np.zeros_like(w)
+    visits, scale = np.zeros_like(w), 0.0
     for episode in prediction.episodes():
         for visit in episode:
             [row], [next_row] = prediction.rows[visit.state], prediction.rows[visit.next_state]
             transition = row, visit.reward, None if visit.terminal else next_row
             counts[transition] = counts.get(transition, 0.0) + 1.0
             visits[row] += 1.0
-        rewards = [abs(reward) for _, reward, _ in counts]
+        scale = max(scale, np.abs(w).max(), *(abs(reward) for _, reward, _ in counts))
         while True:
             errors = np.zeros_like(w)
             for (row, reward, next_row), count in counts.items():
@@ -28,6 +28,6 @@ def batch_td(prediction: Prediction) -> None:
             seen = visits > 0.0
             increments = errors[seen] / visits[seen]
             w[seen] += increments
-            largest = max(np.abs(w[seen]).max(), *rewards)
-            if np.abs(increments).max() <= SETTLED * largest:
+            scale = max(scale, np.abs(w[seen]).max())
+            if np.abs(increments).max() <= SETTLED * scale:
                 break

@@ -1,5 +1,6 @@
 //! The learning algorithms, one per file. What they share is in `common`.
 
+mod any_algorithm;
 mod common;
 mod double_q_learning;
 mod dyna_q;
@@ -12,6 +13,7 @@ mod sarsa_lambda;
 mod true_online_sarsa_lambda;
 mod watkins_q_lambda;
 
+pub use any_algorithm::{AnyAlgorithm, LearnerVisitor, TraceOptions};
 pub use common::{
     ActionMasks, Agent, Learner, Model, ModelEntry, TdLearner, TraceKind, Traces, TruncationHandling, UpdateRule,
 };

@@ -3,7 +3,7 @@
 
 use crate::StopFlag;
 
-use super::bellman::{action_value, action_values, converge};
+use super::bellman::{action_values, choices, converge, expected_value};
 use super::stop_checks::StopChecks;
 use super::{MAX_SWEEPS, PlanningError};
 use crate::envs::Env;
@@ -50,11 +50,7 @@ pub fn policy_evaluation(
     {
         return Err(PlanningError::NoProperPolicy(state));
     }
-    let backup = |state: usize, values: &[f64]| {
-        choices(mdp, policy, state).fold(0.0, |sum, (action, probability)| {
-            sum + probability * action_value(mdp, state, action, discount, values)
-        })
-    };
+    let backup = |state: usize, values: &[f64]| expected_value(mdp, policy, state, discount, values);
     let mut values = filled(&0.0, mdp.num_states(), stop)?;
     let sweeps = converge(&mut values, mdp, stop, backup)?;
     let (mut residual, mut largest) = (0.0_f64, 0.0_f64);
@@ -116,12 +112,6 @@ pub fn expected_visits(mdp: &TabularMdp, policy: &[f64], stop: &StopFlag<'_>) ->
         current = next;
     }
     Err(PlanningError::NotConverged)
-}
-
-/// The actions that a policy takes in a state, and their probabilities.
-fn choices<'a>(mdp: &TabularMdp, policy: &'a [f64], state: usize) -> impl Iterator<Item = (usize, f64)> + 'a {
-    let row = &policy[state * mdp.num_actions()..][..mdp.num_actions()];
-    row.iter().copied().enumerate().filter(|&(_, probability)| probability > 0.0)
 }
 
 /// From which states an episode can end under a policy.

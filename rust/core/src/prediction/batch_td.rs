@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::{LinearValues, PredictionRule, PredictionStep};
 use crate::tasks::Next;
 
-/// The values have settled when a presentation changes none by more than this fraction of the largest value or reward.
+/// The values have settled when a presentation changes none by more than this fraction of the largest value or reward so far.
 const SETTLED: f64 = 1e-12;
 /// How many transitions are read in one call. A step that needs more is left unfinished.
 const MAX_TRANSITIONS_PER_CALL: u64 = 65_536;
@@ -29,7 +29,8 @@ pub struct BatchTd {
     visits: Vec<f64>,
     /// The sum of the errors of each row in this presentation.
     errors: Vec<f64>,
-    largest_reward: f64,
+    /// The largest magnitude of a value or a reward so far.
+    scale: f64,
     unfinished: bool,
     work: u64,
 }
@@ -42,7 +43,7 @@ impl BatchTd {
             places: HashMap::new(),
             visits: vec![0.0; rows],
             errors: vec![0.0; rows],
-            largest_reward: 0.0,
+            scale: 0.0,
             unfinished: false,
             work: 1,
         }
@@ -55,17 +56,17 @@ impl BatchTd {
             let next_value = next.map_or(0.0, |next| values.weights[next as usize]);
             self.errors[row as usize] += count * (reward + values.discount * next_value - values.weights[row as usize]);
         }
-        let (mut change, mut largest) = (0.0_f64, self.largest_reward);
+        let mut change = 0.0_f64;
         for ((value, error), &visits) in values.weights.iter_mut().zip(&self.errors).zip(&self.visits) {
             if visits > 0.0 {
                 let increment = error / visits;
                 *value += increment;
                 change = change.max(increment.abs());
-                largest = largest.max(value.abs());
+                self.scale = self.scale.max(value.abs());
             }
         }
         values.check_finite(change);
-        change <= SETTLED * largest || values.diverged()
+        change <= SETTLED * self.scale || values.diverged()
     }
 }
 
@@ -83,9 +84,10 @@ impl PredictionRule for BatchTd {
             self.transitions.push((row, (step.reward, next), 0.0));
         }
         self.transitions[place].2 += 1.0;
-        self.largest_reward = self.largest_reward.max(step.reward.abs());
+        self.scale = self.scale.max(step.reward.abs());
         self.visits[row as usize] += 1.0;
         if step.is_last() {
+            self.scale = values.weights.iter().fold(self.scale, |scale, value| scale.max(value.abs()));
             self.resume(values);
         }
     }

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use qtab_core::envs::tabular::TabularMdp;
 use qtab_core::planning::{
     FiniteHorizon, Mdp, PlanningError, PolicyEvaluation, Solution, expected_visits, finite_horizon, policy_evaluation,
-    policy_iteration, policy_return, value_iteration,
+    policy_iteration, policy_return, sweep, value_iteration,
 };
 use qtab_core::{Env, StopFlag};
 
@@ -42,10 +42,28 @@ impl PyMdpSolver {
         indices(py, &self.0.rows)
     }
 
+    /// The number of actions.
+    #[getter]
+    fn n_actions(&self) -> usize {
+        self.0.table.num_actions()
+    }
+
     /// The probability that an episode starts in each state.
     #[getter]
     fn initial_distribution<'py>(&self, py: Python<'py>) -> Array<'py, f64> {
         PyArray1::from_slice(py, self.0.table.initial_distribution())
+    }
+
+    /// The outcomes of each state-action pair, the actions of state 0 first, as `P` lists them: probability, next state,
+    /// reward, terminated.
+    fn transitions(&self) -> Vec<Vec<(f64, u32, f64, bool)>> {
+        let pairs = (0..self.0.table.num_states()).flat_map(|state| {
+            (0..self.0.table.num_actions()).map(move |action| {
+                let outcomes = self.0.table.outcomes(state, action);
+                outcomes.map(|(probability, step)| (probability, step.state, step.reward, step.terminated)).collect()
+            })
+        });
+        pairs.collect()
     }
 
     fn value_iteration<'py>(&self, py: Python<'py>, discount: f64) -> PyResult<PySolution<'py>> {
@@ -100,6 +118,27 @@ impl PyMdpSolver {
         let found = run_interruptible(py, |stop| policy_evaluation(&self.0.table, &policy, discount, stop))?;
         let PolicyEvaluation { values, q_values, error, .. } = found.map_err(endless)?;
         Ok((PyArray1::from_vec(py, values), PyArray1::from_vec(py, q_values), error))
+    }
+
+    /// The values after one more sweep: with a policy those of policy evaluation, otherwise those of value iteration.
+    fn sweep<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+        discount: f64,
+        policy: Option<PyReadonlyArray1<'py, f64>>,
+        in_place: bool,
+    ) -> PyResult<Array<'py, f64>> {
+        let mut values = values.as_slice()?.to_vec();
+        if values.len() != self.0.table.num_states() {
+            return Err(PyValueError::new_err("values must have a number for each state"));
+        }
+        let policy = policy.map(|policy| self.by_state(policy.as_slice()?)).transpose()?;
+        let swept = run_interruptible(py, |stop| {
+            sweep(&self.0.table, policy.as_deref(), discount, &mut values, in_place, stop)
+        })?;
+        swept.map_err(|error| to_py_err(error, discount))?;
+        Ok(PyArray1::from_vec(py, values))
     }
 
     /// The expected number of visits of each state in an episode under such a policy.

@@ -1,6 +1,5 @@
 //! Estimates with many seeds in one call, on threads of the call's own where Rust steps the environment.
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
@@ -55,14 +54,8 @@ pub(crate) fn estimate_values(
     match EnvironmentSpec::parse(&fields.nested("env")?)? {
         EnvironmentSpec::Native(env) => {
             let factory = env.runs(&run_spec, 0)?;
-            let work = Work {
-                factory: &*factory,
-                seeds: &seeds,
-                episodes,
-                rows: Mutex::new(rows),
-                failed: Mutex::default(),
-                cancelled: AtomicBool::new(false),
-            };
+            let work =
+                Work { factory: &*factory, seeds: &seeds, episodes, rows: Mutex::new(rows), failed: Mutex::default() };
             run_interruptible(py, |stop| {
                 thread::scope(|scope| {
                     // This thread is one of the workers.
@@ -97,13 +90,12 @@ struct Work<'a> {
     episodes: &'a [u64],
     rows: Mutex<Rows<'a>>,
     failed: Mutex<Vec<FailedRun>>,
-    cancelled: AtomicBool,
 }
 
 impl Work<'_> {
     /// What one thread does: one run after the other, until none is left.
     fn run_worker(&self, stop: &StopFlag<'_>) {
-        while !self.cancelled.load(Ordering::Acquire) && !stop.is_set() {
+        while !stop.is_set() {
             let Some((index, row)) = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
             let check = || if stop.is_set() { Err(RunError::Allocation(STOPPED)) } else { Ok(()) };
             let done = self
