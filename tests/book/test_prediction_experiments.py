@@ -49,7 +49,7 @@ def test_an_experiment_is_estimated_verified_and_drawn(name: str) -> None:
     result = experiment.run(2)
     assert {line.name for line in result.lines} <= set(qtab.book.find(name).line_names)
     assert all(np.isfinite(line.mean).all() for line in result.lines)
-    assert result.plot().get_title() or result.plot().figure.get_suptitle()
+    assert result.plot().get_title(loc="left")
     assert experiment.heading in str(result)
 
 
@@ -79,8 +79,10 @@ def test_weighted_importance_sampling_has_the_lower_error_at_first() -> None:
 def test_the_value_of_the_blackjack_state_is_the_books() -> None:
     from qtab.book.blackjack import STATE, blackjack, index_of, single_state
 
-    assert blackjack().truth.values[STATE] == pytest.approx(-0.27726, abs=2e-4)
-    assert single_state().truth.values[index_of(STATE)] == pytest.approx(blackjack().truth.values[STATE], abs=1e-12)
+    assert blackjack().true_values.values[STATE] == pytest.approx(-0.27726, abs=2e-4)
+    assert single_state().true_values.values[index_of(STATE)] == pytest.approx(
+        blackjack().true_values.values[STATE], abs=1e-12
+    )
     result = short("figure-5.3").run(2)
     assert len(result.lines) == 2
 
@@ -94,7 +96,7 @@ def test_blackjack_surfaces_come_near_the_exact_values() -> None:
     from qtab.book.blackjack import blackjack
 
     result = qtab.book.run("figure-5.1")
-    exact = blackjack().truth.values[12:22, 1:11, 0]
+    exact = blackjack().true_values.values[12:22, 1:11, 0]
     surface = result.surfaces["no usable ace, after 500,000 episodes"]
     assert np.abs(surface - exact).max() < 0.1
     assert len(result.plot().figure.axes) == 4

@@ -31,7 +31,7 @@ def solved(env: Any, policy: NDArray[np.float64], discount: float) -> NDArray[np
                 weight = policy[state, action] * probability
                 rewards[state] += weight * reward
                 chain[state, next_state] += 0.0 if terminated else weight * discount
-    values: NDArray[np.float64] = np.linalg.solve(np.eye(count) - chain, rewards)
+    values: NDArray[Any] = np.linalg.solve(np.eye(count) - chain, rewards)
     return values
 
 

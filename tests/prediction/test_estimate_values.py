@@ -42,7 +42,7 @@ def test_a_method_equals_plain_numpy(method: Any) -> None:
 
 @given(data=st.data())
 def test_any_settings_equal_plain_numpy(data: st.DataObject) -> None:
-    method = data.draw(st.sampled_from(METHODS))
+    method: Any = data.draw(st.sampled_from(METHODS))
     options = dict(OPTIONS[method])
     rate = st.floats(0.0, 1.0)
     for name in options.keys() & {"learning_rate", "trace_decay"}:
@@ -94,7 +94,7 @@ def test_blackjack_off_policy_agrees_with_the_exact_values() -> None:
     def sticks(hand: tuple[int, int, int]) -> int:
         return int(hand[0] < 20)
 
-    truth = qtab.policy_values("Blackjack-v1", sticks, env_kwargs={"sab": True})
+    true_values = qtab.policy_values("Blackjack-v1", sticks, env_kwargs={"sab": True})
     for weighted in (True, False):
         found = qtab.estimate_values(
             "Blackjack-v1",
@@ -109,17 +109,17 @@ def test_blackjack_off_policy_agrees_with_the_exact_values() -> None:
         )
         # The states that many episodes pass through: the dealer shows a ten.
         states = np.s_[12:20, 10, 0]
-        error = np.abs(found.mean - truth.values)[states]
+        error = np.abs(found.mean - true_values.values)[states]
         assert (error < 4.5 * found.standard_error[states]).all()
 
 
 def test_td_finds_lower_errors_than_monte_carlo_on_the_random_walk() -> None:
-    truth = qtab.policy_values(WALK, "random")
+    true_values = qtab.policy_values(WALK, "random")
     monte_carlo = qtab.estimate_values(WALK, "random", method="monte_carlo", learning_rate=0.05, episodes=50, seeds=50)
     td = qtab.estimate_values(
         WALK, "random", method="td_lambda", trace_decay=0.8, learning_rate=0.1, episodes=50, seeds=50
     )
-    assert td.rms_error(truth).mean(axis=0)[-1] < monte_carlo.rms_error(truth).mean(axis=0)[-1]
+    assert td.rms_error(true_values).mean(axis=0)[-1] < monte_carlo.rms_error(true_values).mean(axis=0)[-1]
 
 
 def test_threads_and_the_other_seeds_do_not_change_a_run() -> None:
@@ -178,7 +178,7 @@ def test_pictures_and_tables_of_estimates() -> None:
     found = qtab.estimate_values(WALK, "random", seeds=3, episodes=3, learning_rate=0.1)
     assert "<table" in found._repr_html_()
     assert repr(found) == "<ValueEstimates of qtab/RandomWalk-v0: td, 19 states, 3 runs of 3 episodes>"
-    assert len(found.plot(truth=np.zeros(19)).lines) == 2
+    assert len(found.plot(true_values=np.zeros(19)).lines) == 2
     blackjack = qtab.estimate_values("Blackjack-v1", "random", episodes=3)
     assert len(blackjack.plot().images) == 1
 

@@ -32,7 +32,7 @@ class PredictionTask:
 
     env: gym.Env
     policy: GivenPolicy
-    truth: PolicyValues
+    true_values: PolicyValues
 
 
 Measure: TypeAlias = Callable[[ValueEstimates, PolicyValues], FloatArray]
@@ -89,7 +89,7 @@ class PredictionExperiment(Experiment):
             for done, setting in enumerate(self.settings):
                 task, count = setting.task(), min(runs, setting.max_runs or runs)
                 estimates, diverged = _estimate(task, setting.arguments, range(seed, seed + count), threads)
-                samples = setting.measure(estimates, task.truth)
+                samples = setting.measure(estimates, task.true_values)
                 for number, row in enumerate(samples if setting.each_run else ()):
                     name = f"{setting.line} {number + 1}"
                     parts[name] = [dataclasses.replace(_line(setting, row[None], diverged), name=name)]
@@ -144,6 +144,14 @@ def _joined(parts: list[Line]) -> Line:
     return dataclasses.replace(parts[0], **columns)
 
 
+def draw_in_range(result: Result, ax: "Axes | None") -> "Axes":
+    """Draws the lines without bands around points far above the figure, where runs diverge; returns the axes."""
+    top = 1.1 * (result.experiment.y_range or (0.0, np.inf))[1]
+    lines = [dataclasses.replace(one, error=np.where(one.mean < top, one.error, np.nan)) for one in result.lines]
+    lines = [dataclasses.replace(one, mean=np.where(one.mean < 1e3, one.mean, np.nan)) for one in lines]
+    return draw_lines(dataclasses.replace(result, lines=tuple(lines)), ax)
+
+
 @dataclass(frozen=True)
 class Panel:
     """One of several axes side by side."""
@@ -166,7 +174,7 @@ def draw_panels(panels: Sequence[Panel]) -> Draw:
             part = figure.add_subplot(1, len(panels), index + 1)
             lines = tuple(line for line in result.lines if panel.lines(line.name))
             experiment = dataclasses.replace(result.experiment, **panel.layout)
-            ax = draw_lines(dataclasses.replace(result, experiment=experiment, lines=lines), part)
+            ax = draw_in_range(dataclasses.replace(result, experiment=experiment, lines=lines), part)
             ax.set_title(panel.title, loc="left")
         figure.suptitle(result.experiment.heading)
         assert ax is not None  # noqa: S101 - there are panels

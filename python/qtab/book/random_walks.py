@@ -41,33 +41,34 @@ def thousand_states() -> PredictionTask:
     return _walk(1000, 100, -1.0)
 
 
-def mean_rms_error(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:
+def mean_rms_error(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:
     """Returns (runs, 1): the RMS error over the states, averaged over the recorded episodes."""
-    return estimates.rms_error(truth).mean(axis=1, keepdims=True)
+    errors: FloatArray = estimates.rms_error(true_values).mean(axis=1, keepdims=True)
+    return errors
 
 
-def rms_errors(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:
+def rms_errors(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:
     """Returns (runs, points): the RMS error over the states after each recorded episode."""
-    return estimates.rms_error(truth)
+    return estimates.rms_error(true_values)
 
 
-def root_value_error(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:
+def root_value_error(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:
     """Returns (runs, points): the root of VE (equation 9.1), which weights states by how often they are visited."""
-    return estimates.rms_error(truth, truth.state_distribution)
+    return estimates.rms_error(true_values, true_values.state_distribution)
 
 
 def values_at(point: int) -> Measure:
     """Returns a measure: (runs, states), the values at a recorded point."""
 
-    def values(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:  # noqa: ARG001 - as other measures
+    def values(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:  # noqa: ARG001 - as other measures
         return estimates.values_after(point)
 
     return values
 
 
-def true_values(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:
+def exact_values(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:
     """Returns (runs, states): the exact values in every run."""
-    return np.broadcast_to(truth.values, (len(estimates.seeds), *truth.values.shape))
+    return np.broadcast_to(true_values.values, (len(estimates.seeds), *true_values.values.shape))
 
 
 def by_trace_decay_and_rate(method: str) -> tuple[PredictionSetting, ...]:

@@ -56,7 +56,8 @@ class PolicyValues:
         flat = np.ascontiguousarray(self.probabilities.reshape(-1))
         every = self.solver.expected_visits(flat)
         # Several states share a row where the observation hides part of the state.
-        rows = np.bincount(self.solver.rows, weights=every, minlength=self.values.size)
+        rows = np.zeros(self.values.size)
+        np.add.at(rows, self.solver.rows, every)
         return rows.reshape(self.values.shape)
 
     @property
@@ -66,7 +67,8 @@ class PolicyValues:
         Raises:
             ValueError: if episodes under this policy may never end.
         """
-        return self.visits / self.visits.sum()
+        distribution: NDArray[np.float64] = self.visits / self.visits.sum()
+        return distribution
 
     def __repr__(self) -> str:
         """One line: the values are not shown."""

@@ -82,18 +82,18 @@ class ValueEstimates:
             total = total + weights[:, active]
         return total.reshape(len(self.seeds), *self.shape)
 
-    def rms_error(self, truth: ArrayLike, weights: ArrayLike | None = None) -> NDArray[np.float64]:
+    def rms_error(self, true_values: ArrayLike, weights: ArrayLike | None = None) -> NDArray[np.float64]:
         """Returns (seeds, points): the root of the weighted mean of the squared errors over the states.
 
         Args:
-            truth: (*cells,): the true values, such as those of :func:`qtab.policy_values`.
+            true_values: (*cells,): the true values, such as those of :func:`qtab.policy_values`.
             weights: (*cells,): how much each state counts, such as ``state_distribution`` for the value error VE of
                 Sutton & Barto's equation 9.1; None counts all the same.
 
         Raises:
             ValueError: if an argument has another shape, or the weights are negative or all zero.
         """
-        exact = self._per_state("truth", truth)
+        exact = self._per_state("true_values", true_values)
         shares = np.ones(exact.shape) if weights is None else self._per_state("weights", weights)
         if not (shares >= 0.0).all() or not shares.sum() > 0.0:
             raise ValueError("weights must be at least 0 and not all 0")
@@ -126,7 +126,7 @@ class ValueEstimates:
 
         return verify_values(self, episodes, seed)
 
-    def plot(self, ax: "Axes | None" = None, *, truth: ArrayLike | None = None) -> "Axes":
+    def plot(self, ax: "Axes | None" = None, *, true_values: ArrayLike | None = None) -> "Axes":
         """Draws the mean values over the states, and returns the axes.
 
         States of one component are a line with a band of two standard errors to each side; those of two or more are a
@@ -134,14 +134,14 @@ class ValueEstimates:
 
         Args:
             ax: The axes to draw on; None creates a new figure.
-            truth: (*cells,): the true values, drawn as a dashed line beside those of one component.
+            true_values: (*cells,): the true values, drawn as a dashed line beside those of one component.
 
         Raises:
             ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         """
         from qtab.prediction.plot import draw_values
 
-        return draw_values(self, ax, None if truth is None else self._per_state("truth", truth))
+        return draw_values(self, ax, None if true_values is None else self._per_state("true_values", true_values))
 
     def save(self, path: Path | str) -> None:
         """Writes the estimates to an ``.npz`` file, completely or not at all.

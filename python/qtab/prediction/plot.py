@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates
 
 
-def draw_values(estimates: "ValueEstimates", ax: "Axes | None", truth: NDArray[np.float64] | None) -> "Axes":
+def draw_values(estimates: "ValueEstimates", ax: "Axes | None", true_values: NDArray[np.float64] | None) -> "Axes":
     """Draws the mean values over the states; see :meth:`qtab.ValueEstimates.plot`."""
     ax = axes_or_new(ax)
     title = f"{estimates.env}: values by {estimates.settings.method}"
@@ -26,8 +26,8 @@ def draw_values(estimates: "ValueEstimates", ax: "Axes | None", truth: NDArray[n
             states, mean, linewidth=1.6, marker="o" if len(mean) <= 40 else "", markersize=4, label="mean"
         )
         ax.fill_between(states, mean - error, mean + error, color=line.get_color(), alpha=0.25, linewidth=0)
-        if truth is not None:
-            ax.plot(states, truth, color="0.5", linestyle="--", linewidth=1.2, label="true values")
+        if true_values is not None:
+            ax.plot(states, true_values, color="0.5", linestyle="--", linewidth=1.2, label="true values")
         return finish(ax, "state", "value", title)
     while mean.ndim > 2:
         mean = mean[..., mean.shape[-1] // 2]

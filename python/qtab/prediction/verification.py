@@ -2,6 +2,7 @@
 
 from contextlib import closing
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import gymnasium as gym
 import numpy as np
@@ -12,8 +13,10 @@ from qtab._utils.fields import with_fields
 from qtab.config.config import replace_checked
 from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.envs.stored import spec_of_run
-from qtab.prediction.estimates import ValueEstimates
 from qtab.reference.prediction import estimate
+
+if TYPE_CHECKING:
+    from qtab.prediction.estimates import ValueEstimates
 
 
 @with_fields
@@ -42,7 +45,7 @@ class ValuesVerification:
 
 
 def verify_values(
-    estimates: ValueEstimates, episodes: int | None, seed: int | None, env: gym.Env | None = None
+    estimates: "ValueEstimates", episodes: int | None, seed: int | None, env: gym.Env | None = None
 ) -> ValuesVerification:
     """Compares a run of some estimates with plain NumPy; see :meth:`qtab.ValueEstimates.verify`.
 

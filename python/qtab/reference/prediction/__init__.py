@@ -1,13 +1,13 @@
 """The prediction methods in plain NumPy: slow, readable, and equal to Rust to the last bit."""
 
 from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
 
 import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.prediction.estimates import ValueEstimates
 from qtab.reference.prediction.batch_td import batch_td
 from qtab.reference.prediction.common import Prediction
 from qtab.reference.prediction.importance_sampling import importance_sampling
@@ -17,6 +17,9 @@ from qtab.reference.prediction.offline_lambda_return import offline_lambda_retur
 from qtab.reference.prediction.td import td
 from qtab.reference.prediction.td_lambda import td_lambda
 from qtab.reference.prediction.true_online_td_lambda import true_online_td_lambda
+
+if TYPE_CHECKING:
+    from qtab.prediction.estimates import ValueEstimates
 
 METHODS: Mapping[str, Callable[[Prediction], None]] = {
     method.__name__: method
@@ -34,7 +37,7 @@ METHODS: Mapping[str, Callable[[Prediction], None]] = {
 """Each method by its name."""
 
 
-def estimate(env: gym.Env, config: Config, estimates: ValueEstimates, episodes: int) -> NDArray[np.float64]:
+def estimate(env: gym.Env, config: Config, estimates: "ValueEstimates", episodes: int) -> NDArray[np.float64]:
     """Returns (n_weights,): the weights after so many episodes.
 
     Args:

@@ -2,14 +2,17 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.prediction.estimates import ValueEstimates
 from qtab.reference.schedules import LearningRate
 from qtab.reference.task import Task
+
+if TYPE_CHECKING:
+    from qtab.prediction.estimates import ValueEstimates
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,7 @@ class Visit:
 class Prediction:
     """A task whose policy does not change, and the weights of its values."""
 
-    def __init__(self, env: gym.Env, config: Config, estimates: ValueEstimates, stop_after: int) -> None:
+    def __init__(self, env: gym.Env, config: Config, estimates: "ValueEstimates", stop_after: int) -> None:
         self.settings = estimates.settings
         self.task = Task(env, config, stop_after)
         self.discount = self.settings.discount

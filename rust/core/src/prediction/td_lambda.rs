@@ -5,13 +5,13 @@ use crate::tasks::Next;
 
 /// The traces z of all weights, and which of them may not be zero.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Traces {
+pub(super) struct StateTraces {
     pub(super) values: Vec<f64>,
     eligible: Vec<u32>,
     is_eligible: Vec<bool>,
 }
 
-impl Traces {
+impl StateTraces {
     pub(super) fn new(weights: usize) -> Self {
         Self { values: vec![0.0; weights], eligible: Vec::with_capacity(weights), is_eligible: vec![false; weights] }
     }
@@ -64,13 +64,13 @@ impl Traces {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TdLambda {
     trace_decay: f64,
-    traces: Traces,
+    traces: StateTraces,
 }
 
 impl TdLambda {
     /// `trace_decay` is λ, and `weights` the number of weights.
     pub fn new(trace_decay: f64, weights: usize) -> Self {
-        Self { trace_decay, traces: Traces::new(weights) }
+        Self { trace_decay, traces: StateTraces::new(weights) }
     }
 }
 

@@ -1,6 +1,6 @@
 //! True online TD(λ), with dutch traces (H. van Seijen and R. Sutton, 2014; Sutton & Barto, the box in section 12.5).
 
-use super::td_lambda::Traces;
+use super::td_lambda::StateTraces;
 use super::{LinearValues, PredictionRule, PredictionStep};
 use crate::tasks::Next;
 
@@ -13,14 +13,14 @@ use crate::tasks::Next;
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrueOnlineTdLambda {
     trace_decay: f64,
-    traces: Traces,
+    traces: StateTraces,
     v_old: f64,
 }
 
 impl TrueOnlineTdLambda {
     /// `trace_decay` is λ, and `weights` the number of weights.
     pub fn new(trace_decay: f64, weights: usize) -> Self {
-        Self { trace_decay, traces: Traces::new(weights), v_old: 0.0 }
+        Self { trace_decay, traces: StateTraces::new(weights), v_old: 0.0 }
     }
 }
 

@@ -54,8 +54,13 @@ pub(crate) fn estimate_values(
     match EnvironmentSpec::parse(&fields.nested("env")?)? {
         EnvironmentSpec::Native(env) => {
             let factory = env.runs(&run_spec, 0)?;
-            let work =
-                Work { factory: &*factory, seeds: &seeds, episodes, rows: Mutex::new(rows), failed: Mutex::default() };
+            let work = PredictionQueue {
+                factory: &*factory,
+                seeds: &seeds,
+                episodes,
+                rows: Mutex::new(rows),
+                failed: Mutex::default(),
+            };
             run_interruptible(py, |stop| {
                 thread::scope(|scope| {
                     // This thread is one of the workers.
@@ -84,7 +89,7 @@ pub(crate) fn estimate_values(
 }
 
 /// What the threads of one call share.
-struct Work<'a> {
+struct PredictionQueue<'a> {
     factory: &'a dyn RunFactory,
     seeds: &'a [Seed],
     episodes: &'a [u64],
@@ -92,7 +97,7 @@ struct Work<'a> {
     failed: Mutex<Vec<FailedRun>>,
 }
 
-impl Work<'_> {
+impl PredictionQueue<'_> {
     /// What one thread does: one run after the other, until none is left.
     fn run_worker(&self, stop: &StopFlag<'_>) {
         while !stop.is_set() {

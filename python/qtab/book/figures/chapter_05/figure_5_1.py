@@ -29,9 +29,9 @@ _SUMS, _CARDS = np.arange(12, 22), np.arange(1, 11)
 _ACES = ("no usable ace", "usable ace")
 
 
-def root_value_error(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:
+def root_value_error(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:
     """Returns (runs, points): the RMS error over the states, weighted by how often the policy visits them."""
-    return estimates.rms_error(truth, truth.state_distribution)
+    return estimates.rms_error(true_values, true_values.state_distribution)
 
 
 def draw_values(result: Result, ax: "Axes | None") -> "Axes":

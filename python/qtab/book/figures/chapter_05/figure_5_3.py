@@ -13,9 +13,9 @@ _POINTS = tuple(np.unique(np.geomspace(1, _EPISODES, 60).round().astype(int)).to
 _STATE = index_of((13, 2, 1))
 
 
-def squared_error(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:
+def squared_error(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:
     """Returns (runs, points): the squared error of the value of the state in which episodes begin."""
-    errors: FloatArray = (estimates.weights[:, :, _STATE] - truth.values[_STATE]) ** 2
+    errors: FloatArray = (estimates.weights[:, :, _STATE] - true_values.values[_STATE]) ** 2
     return errors
 
 

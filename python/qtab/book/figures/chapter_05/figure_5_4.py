@@ -22,7 +22,7 @@ def one_state() -> PredictionTask:
     return PredictionTask(env, [0], policy_values(env, [0]))
 
 
-def estimates_of_state(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:  # noqa: ARG001 - as others
+def estimates_of_state(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:  # noqa: ARG001 - as others
     """Returns (runs, points): the estimated value of the state."""
     return estimates.weights[:, :, 0]
 

@@ -1,7 +1,7 @@
 """Example 6.2: TD(0) and constant-α Monte Carlo on the random walk of five states."""
 
 from qtab.book.prediction_experiment import Panel, PredictionExperiment, PredictionSetting, draw_panels
-from qtab.book.random_walks import five_states, rms_errors, true_values, values_at
+from qtab.book.random_walks import exact_values, five_states, rms_errors, values_at
 
 _EPISODES = 100
 _STATES = tuple(float(state) for state in range(1, 6))
@@ -32,7 +32,7 @@ EXPERIMENT = PredictionExperiment(
             "true values",
             five_states,
             {**_START, "learning_rate": 0.1, "record": (0,)},
-            true_values,
+            exact_values,
             _STATES,
             max_runs=1,
             dashed=True,

@@ -6,7 +6,7 @@ import numpy as np
 
 from qtab.book.drawing import draw_lines
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
-from qtab.book.random_walks import thousand_states, true_values, values_at
+from qtab.book.random_walks import exact_values, thousand_states, values_at
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.planning.policy_values import PolicyValues
@@ -28,9 +28,9 @@ _ARGUMENTS: dict[str, Any] = {
 _ONE = {"method": "monte_carlo", "learning_rate": 0.0, "episodes": 1}
 
 
-def state_distribution(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:
+def state_distribution(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:
     """Returns (runs, states): the exact on-policy distribution in every run."""
-    return np.broadcast_to(truth.state_distribution, (len(estimates.seeds), 1000))
+    return np.broadcast_to(true_values.state_distribution, (len(estimates.seeds), 1000))
 
 
 def draw_with_distribution(result: Result, ax: "Axes | None") -> "Axes":
@@ -40,9 +40,13 @@ def draw_with_distribution(result: Result, ax: "Axes | None") -> "Axes":
             distribution = line
     values = tuple(line for line in result.lines if line is not distribution)
     ax = draw_lines(Result(result.experiment, values, result.runs, result.seed, result.seconds, draw_lines), ax)
+    for label in list(ax.texts):  # names at the ends would cover the second axis
+        label.remove()
+    ax.legend(loc="upper left", frameon=False)
     other = ax.twinx()
     other.fill_between(distribution.x, 0, distribution.mean, color="0.5", alpha=0.35, linewidth=0)
-    other.set(ylim=(0, 4 * distribution.mean.max()), ylabel=_DISTRIBUTION)
+    # Only the start, with 1.4 %, is above the figure.
+    other.set(ylim=(0, 5 * np.sort(distribution.mean)[-2]), ylabel=_DISTRIBUTION)
     return ax
 
 
@@ -53,7 +57,7 @@ EXPERIMENT = PredictionExperiment(
     "one run",
     unspecified="",
     settings=(
-        PredictionSetting("true values", thousand_states, _ONE, true_values, _STATES, dashed=True),
+        PredictionSetting("true values", thousand_states, _ONE, exact_values, _STATES, dashed=True),
         PredictionSetting(
             "Monte Carlo values", thousand_states, _ARGUMENTS, values_at(-1), _STATES, method="Monte Carlo"
         ),

@@ -1,7 +1,7 @@
 """Figure 9.2: bootstrapping with state aggregation: the values that TD reaches, and n-step TD by n and α."""
 
 from qtab.book.prediction_experiment import Panel, PredictionExperiment, PredictionSetting, draw_panels
-from qtab.book.random_walks import ALPHAS, EPISODES, TOP, mean_rms_error, thousand_states, true_values, values_at
+from qtab.book.random_walks import ALPHAS, EPISODES, TOP, exact_values, mean_rms_error, thousand_states, values_at
 from qtab.prediction.features import state_aggregation
 
 _STATES = tuple(float(state) for state in range(1, 1001))
@@ -19,7 +19,7 @@ EXPERIMENT = PredictionExperiment(
             "true values",
             thousand_states,
             {"learning_rate": 0.0, "episodes": 1},
-            true_values,
+            exact_values,
             _STATES,
             max_runs=1,
             dashed=True,

@@ -1,6 +1,6 @@
 """Figure 12.8: true online TD(λ) by λ and α on the random walk of 19 states."""
 
-from qtab.book.prediction_experiment import PredictionExperiment
+from qtab.book.prediction_experiment import PredictionExperiment, draw_in_range
 from qtab.book.random_walks import TOP, by_trace_decay_and_rate
 
 EXPERIMENT = PredictionExperiment(
@@ -15,4 +15,5 @@ EXPERIMENT = PredictionExperiment(
     y_label="RMS error over the first 10 episodes",
     table_x=(0.1, 0.2, 0.4, 0.6, 0.8, 1.0),
     y_range=(0.25, TOP),
+    draw=draw_in_range,
 )
