@@ -16,7 +16,7 @@ PROGRAMS = (
     "#env=MountainCar-v0&example=0",
     "#env=MountainCar-v0&discretizer=tiles&algorithm=true_online_sarsa_lambda&tilings=4&tiles=5,6&episodes=40&learning_rate=1.5",
     "#env=MountainCar-v0&discretizer=bins&bins=7,9&algorithm=n_step_sarsa&n_steps=3&episodes=60&initial_q=0&seed=5",
-    "#env=CartPole-v1&example=1",
+    "#env=CartPole-v1&discretizer=bins&bins=3,3,6,6&episodes=100&learning_rate_schedule=linear",
     "#env=FrozenLake-v1&example=1",
     "#env=FrozenLake8x8-v1%20(not%20slippery)&algorithm=double_q_learning&episodes=300&seed=11",
     "#env=CliffWalking-v1&algorithm=dyna_q_plus&planning_steps=5&episodes=40&learning_rate_schedule=visits&seeds=16&seed=2",

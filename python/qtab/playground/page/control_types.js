@@ -2,9 +2,26 @@
 
 import { highest, positions, readNumber } from "./numbers.js";
 
-/** What a setting is called: its title, or its name in words. */
-export function titleOf(name, definition) {
-  if (definition.title) return definition.title;
+const TITLES = {
+  initial_q: "Initial values",
+  min_epsilon: "Lowest ε",
+  min_learning_rate: "Lowest α",
+  epsilon_decay: "Decay of ε",
+  epsilon_warm_up: "Episodes before ε falls",
+  epsilon_schedule: "Schedule of ε",
+  learning_rate_schedule: "Schedule of α",
+  learning_rate_decay: "Decay of α",
+  learning_rate_warm_up: "Episodes before α falls",
+  n_steps: "Steps in a target",
+  max_episode_steps: "Time limit",
+  low: "Lower limits",
+  high: "Upper limits",
+  scale: "Cells per unit",
+};
+
+/** What a setting is called: a title, or its name in words. */
+export function titleOf(name) {
+  if (TITLES[name]) return TITLES[name];
   const words = name.replaceAll("_", " ");
   return words[0].toUpperCase() + words.slice(1);
 }
@@ -18,7 +35,7 @@ function make(tag, properties = {}, ...children) {
 /** The parts that all controls have: the label with its symbol, the sentence, and the place of a refusal. */
 function frame(name, definition, { forId = null, labelTag = "label" } = {}) {
   const symbol = definition.symbol ? [make("span", { className: "symbol", textContent: definition.symbol }), " "] : [];
-  const label = make(labelTag, { className: "name", id: `label-${name}` }, ...symbol, titleOf(name, definition));
+  const label = make(labelTag, { className: "name", id: `label-${name}` }, ...symbol, titleOf(name));
   if (forId) label.htmlFor = forId;
   const sentence = make("p", { id: `about-${name}`, textContent: definition.sentence });
   const refused = make("p", { className: "refused", hidden: true, id: `refused-${name}` });
@@ -95,7 +112,7 @@ export function numberControl(store, name, definition) {
   const field = numberField(parts, id, (text) => readNumber(name, text, limits()), (value) => store.set(name, value));
   parts.head.append(field.input);
   const slider = make("input", { type: "range", min: 0, max: 1000, step: 1, id: `slide-${name}` });
-  slider.setAttribute("aria-label", titleOf(name, definition));
+  slider.setAttribute("aria-label", titleOf(name));
   slider.addEventListener("input", () => store.set(name, positions(limits()).value(Number(slider.value))));
   slider.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];

@@ -16,7 +16,7 @@ function make(tag, properties = {}, ...children) {
 }
 
 /** Shows an inspection below a title; null shows how to select a state. */
-export function showInspection(title, place, inspection, { actions, bootstrap, unvisitedText }) {
+export function showInspection(title, place, inspection, { actions, bootstraps, unvisitedText }) {
   if (!inspection) {
     title.textContent = "A state and its numbers";
     place.replaceChildren(make("p", { className: "hint", textContent: HINT }));
@@ -27,8 +27,8 @@ export function showInspection(title, place, inspection, { actions, bootstrap, u
   const updates = make("div", {}, make("h4", { textContent: "Last updates, newest first" }));
   const newest = [...inspection.updates].reverse().slice(0, SHOWN_UPDATES);
   if (newest.length) {
-    updates.append(make("p", { className: "equation symbols", textContent: symbolEquation(newest[0].kind, bootstrap) }));
-    updates.append(make("ol", { className: "updates" }, ...newest.map((update) => updateItem(update, actions, newest[0], bootstrap))));
+    updates.append(make("p", { className: "equation symbols", textContent: symbolEquation(newest[0], bootstraps) }));
+    updates.append(make("ol", { className: "updates" }, ...newest.map((update) => updateItem(update, actions, newest[0], bootstraps))));
   } else {
     updates.append(make("p", { className: "hint", textContent: unvisitedText }));
   }
@@ -52,13 +52,14 @@ function valueTable({ actionValues, visits }, actions) {
   return make("table", { className: "action-values" }, make("thead", {}, head), make("tbody", {}, ...rows));
 }
 
-function updateItem(update, actions, first, bootstrap) {
+function updateItem(update, actions, first, bootstraps) {
   const end = ENDS[update.next];
-  const when = `Episode ${count(update.episode + 1)}, step ${count(update.step + 1)}: ${actions[update.action]}, reward ${number(update.reward)}`;
+  const reward = update.reward === null ? "" : `, reward ${number(update.reward)}`;
+  const when = `Episode ${count(update.episode + 1)}, step ${count(update.step + 1)}: ${actions[update.action]}${reward}`;
   const parts = numberEquation(update);
   const equation = make("p", { className: "equation" }, parts[0], make("b", { textContent: parts[1] }));
   const item = make("li", {}, make("p", { className: "when", textContent: end ? `${when}; ${end}` : when }));
-  if (update.kind !== first.kind) item.append(make("p", { className: "equation symbols", textContent: symbolEquation(update.kind, bootstrap) }));
+  if (update.kind !== first.kind || update.table !== first.table) item.append(make("p", { className: "equation symbols", textContent: symbolEquation(update, bootstraps) }));
   item.append(equation);
   return item;
 }

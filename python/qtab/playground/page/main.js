@@ -1,7 +1,7 @@
 // Brings the parts of the page together: the reader's choices, the engine that trains, and what shows its results.
 
 import { Controls } from "./controls.js";
-import { Engine, loadDefinitions } from "./engine.js";
+import { definitions, Engine } from "./engine.js";
 import { setUpEnvironments } from "./environments.js";
 import { EXAMPLES, exampleState, setUpExamples } from "./examples.js";
 import { setUpDialog, setUpShortcuts } from "./shortcuts.js";
@@ -17,11 +17,11 @@ const ADDRESS_DELAY = 400;
 const SPOKEN_DELAY = 700;
 const element = (id) => document.getElementById(id);
 
-function start(definitions) {
+function start() {
   let spoken = 0;
   const announce = (text, delay = 0) => {
     clearTimeout(spoken);
-    const say = () => { element("live").textContent = text; };
+    const say = () => { element("live").textContent = typeof text === "function" ? text() : text; };
     if (delay) spoken = setTimeout(say, delay);
     else say();
   };
@@ -34,7 +34,7 @@ function start(definitions) {
     onStart: () => view.expectAnother(),
     onResult: (result) => {
       view.show(result);
-      if (["paused", "finished", "diverged"].includes(result.state)) announce(view.spoken(result), SPOKEN_DELAY);
+      if (["paused", "finished", "diverged"].includes(result.state)) announce(() => view.spoken(result), SPOKEN_DELAY);
     },
     onProblem: (message) => view.showProblem(message),
   });
@@ -101,4 +101,4 @@ function setUpPage(store, training, view, announce) {
   );
 }
 
-loadDefinitions().then(start);
+start();

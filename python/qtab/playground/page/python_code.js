@@ -52,7 +52,7 @@ export function pythonProgram(store) {
   lines.push("", many ? "runs = qtab.train_many(" : "run = qtab.train(", ...[env, ...settings].map((each) => `${INDENT}${each},`), ")");
   if (many) lines.push("print(runs.final_returns())  # the mean return of the last 100 episodes of each seed", "run = runs[0]");
   else lines.push("print(run.episode_returns[-100:].mean())  # the mean return of the last 100 episodes");
-  lines.push("print(run.q_table)");
+  lines.push(state.settings.discretizer === "tiles" ? "print(run.tables)" : "print(run.q_table)");
   return `${lines.join("\n")}\n`;
 }
 

@@ -21,7 +21,7 @@ export class Store {
     return {
       environment,
       example: null,
-      settings: complete(this.definitions, environment, entry.presets[name]),
+      settings: complete(environment, entry.presets[name]),
       seed: 0,
       seeds: 1,
       grid: copyGrid(Object.values(entry.grids ?? {})[0]),
@@ -40,7 +40,7 @@ export class Store {
   /** Changes parts of the state. Settings are completed: what no longer applies is dropped. */
   update(changes) {
     const state = { ...this.state, ...changes };
-    if (changes.settings) state.settings = complete(this.definitions, state.environment, changes.settings);
+    if (changes.settings) state.settings = complete(state.environment, changes.settings);
     this.state = state;
     this.changedAt = performance.now();
     for (const listener of this.listeners) listener(state, Object.keys(changes));

@@ -59,6 +59,7 @@ export class Training {
     if (this.state === "training") this.engine.stop();
     else if (this.state !== "paused") this.start(false);
     if (unit === "step" && this.at !== null) this.inspect(this.at);
+    this.state = "training";
     this.engine.advance(unit);
   }
 

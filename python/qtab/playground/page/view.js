@@ -108,7 +108,7 @@ export class View {
     element("progress").max = episodes;
     element("progress").value = done;
     element("stop").disabled = state !== "training";
-    element("run").textContent = state === "finished" || state === "diverged" ? "Run again" : done ? "Continue" : "Run";
+    element("run").textContent = state === "finished" || state === "diverged" ? "Run again" : state === "paused" && done ? "Continue" : "Run";
     element("run").disabled = state === "training";
     if (state === "diverged") {
       element("problem").hidden = false;
@@ -209,6 +209,15 @@ export class View {
     return `${place}${kind}: value ${number(map.values[cell])}${policy}, visited ${counted(map.visits[cell], "time")}.`;
   }
 
+  /** The state of an inspected cell: its observation, or its place on the grid. */
+  stateText({ cell, observation }) {
+    const { observations } = this.store.entry;
+    const { columns } = this.result.map;
+    if (!observations) return `row ${Math.floor(cell / columns) + 1}, column ${(cell % columns) + 1}`;
+    const parts = observations.map(({ name, unit }, index) => `${name} ${number(Number(observation[index].toFixed(6)), 3)}${unit ? ` ${unit}` : ""}`);
+    return parts.join(", ");
+  }
+
   pick(cell, how) {
     if (this.painter.isPainting) {
       this.painter.paint(cell, how);
@@ -224,8 +233,9 @@ export class View {
     const { inspection } = this.result;
     if (this.values.selected !== (inspection?.cell ?? null) && inspection) this.values.select(inspection.cell);
     const { actions } = this.store.entry;
-    const bootstrap = this.store.definitions.bootstrap?.[this.store.state.settings.algorithm] ?? "max Q(S', a)";
+    const bootstraps = this.store.definitions.bootstraps[this.store.state.settings.algorithm];
     const unvisitedText = "No update yet: the agent has not left this state by a step.";
-    showInspection(element("inspector-title"), element("inspection"), inspection, { actions, bootstrap, unvisitedText });
+    const named = inspection && { ...inspection, state: this.stateText(inspection) };
+    showInspection(element("inspector-title"), element("inspection"), named, { actions, bootstraps, unvisitedText });
   }
 }
