@@ -27,12 +27,12 @@ wasm_module() {
 }
 
 # Sets CHROMIUM to the browser's program, which apt-get installs if there is none.
-chromium() {
-    export CHROMIUM=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)}
+find_chromium() {
+    export CHROMIUM=${CHROMIUM:-$(type -P chromium || type -P chromium-browser || type -P google-chrome || true)}
     [ -z "$CHROMIUM" ] || return 0
     local sudo=
     [ "$(id -u)" = 0 ] || sudo=sudo
-    $sudo apt-get install --yes --quiet chromium && CHROMIUM=$(command -v chromium)
+    $sudo apt-get install --yes --quiet chromium && CHROMIUM=$(type -P chromium)
 }
 
 # The playground in Chromium: the module built anew, its tables compared with Python's, the page's controls.
@@ -40,7 +40,7 @@ playground() {
     tools
     wasm_module
     [ "${QTAB_PLAYGROUND:-}" = 1 ] || return 0
-    if ! chromium; then
+    if ! find_chromium; then
         skipped "the tests of the page: there is no Chromium, and apt-get cannot install it"
         return 0
     fi

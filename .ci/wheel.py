@@ -1,8 +1,8 @@
 """What the wheel must do in an environment that has its required dependencies only."""
 
+import os
 import sys
 import sysconfig
-import os
 from importlib.metadata import distributions
 
 import gymnasium
