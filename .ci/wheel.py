@@ -1,5 +1,8 @@
 """What the wheel must do in an environment that has its required dependencies only."""
 
+import os
+import sys
+import sysconfig
 from importlib.metadata import distributions
 
 import gymnasium
@@ -7,6 +10,9 @@ import qtab
 
 extras = {"matplotlib", "tyro", "tqdm", "moviepy", "pygame"} & {found.metadata["Name"] for found in distributions()}
 assert not extras, f"the wheel installed {extras}"
+
+if sysconfig.get_config_var("Py_GIL_DISABLED"):
+    assert not sys._is_gil_enabled(), "importing qtab turned the interpreter's lock on"
 
 run = qtab.train("MountainCar-v0", seed=0, episodes=200)
 assert qtab.verify(run, episodes=20).equal
@@ -18,6 +24,9 @@ assert verification.equal
 env = gymnasium.make("qtab/MountainCar-v0")
 env.reset(seed=0)
 env.step(env.action_space.sample())
+
+if os.environ.get("QTAB_PLAYGROUND"):  # where it could be built
+    assert "AGFzbQ" in qtab.playground.page(), "the wheel lacks the WebAssembly module of the playground"
 
 try:
     qtab.plot(run)

@@ -10,9 +10,16 @@ import pytest
 import qtab
 from qtab.book import runner
 from qtab.book.result import CSV_COLUMNS
+from qtab.book.training_experiment import TrainingExperiment
 from support.parity import run_of
 
-NAMES = list(qtab.book.EXPERIMENTS)
+NAMES = [name for name, experiment in qtab.book.EXPERIMENTS.items() if isinstance(experiment, TrainingExperiment)]
+
+
+def training_experiment(name: str) -> TrainingExperiment:
+    experiment = qtab.book.find(name)
+    assert isinstance(experiment, TrainingExperiment)
+    return experiment
 
 
 def line(result, name):
@@ -21,7 +28,7 @@ def line(result, name):
 
 def measured(number, name, alpha, runs, **changes):
     """(episodes,) The mean return of each episode of one setting."""
-    experiment = qtab.book.find(number)
+    experiment = training_experiment(number)
     setting: Any = next(one for one in experiment.settings if (one.line, one.x) == (name, (alpha,)))
     outcome = runner.train_runs(setting.env, {**experiment.config(setting), **changes}, range(runs), 2)
     return outcome.returns.mean(axis=0)
@@ -64,7 +71,7 @@ def test_the_shortest_path_through_the_maze_takes_fourteen_steps():
 
 @pytest.mark.parametrize("name", NAMES)
 def test_an_experiment_equals_the_reference(name):
-    experiment = qtab.book.find(name)
+    experiment = training_experiment(name)
     lines = {setting.line: setting for setting in experiment.settings}
     for setting in {id(setting): setting for setting in (*list(lines.values())[:1], experiment.settings[-1])}.values():
         env = setting.env if isinstance(setting.env, str) else setting.env()
@@ -112,7 +119,7 @@ def test_threads_and_other_runs_do_not_change_a_run():
         again = qtab.book.run("8.2", runs=3, seed=7, threads=threads)
         for one, other in zip(several.lines, again.lines, strict=True):
             assert one.mean.tobytes() == other.mean.tobytes()
-    experiment = qtab.book.find("10.4")
+    experiment = training_experiment("10.4")
     setting: Any = experiment.settings[3]
     alone = qtab.train(setting.env, seed=8, **experiment.config(setting))
     outcome = runner.train_runs(setting.env, experiment.config(setting), [7, 8], 2)
@@ -120,7 +127,7 @@ def test_threads_and_other_runs_do_not_change_a_run():
 
 
 def test_a_run_that_diverges_counts_as_truncated_where_train_raises():
-    experiment = qtab.book.find("12.11")
+    experiment = training_experiment("12.11")
     setting: Any = next(one for one in experiment.settings if (one.line, one.x) == ("accumulating", (1.6,)))
     config = experiment.config(setting)
     outcome = runner.train_runs(setting.env, config, range(6), 2)
@@ -202,12 +209,12 @@ def test_true_online_learns_fastest_and_accumulating_traces_diverge():
 
 
 def test_a_complete_figure_has_the_books_number_of_runs():
-    counts = {name: experiment.runs for name, experiment in qtab.book.EXPERIMENTS.items()}
+    counts = {name: qtab.book.EXPERIMENTS[name].runs for name in NAMES}
     assert counts["figure-6.3"] == 50_000
     assert counts["figure-6.5"] == 10_000
     assert counts["figure-8.2"] == 30
     assert {counts[f"figure-{number}"] for number in ("10.2", "10.3", "10.4", "12.10", "12.11")} == {100}
-    limits = {name: experiment.max_episode_steps for name, experiment in qtab.book.EXPERIMENTS.items()}
+    limits = {name: training_experiment(name).max_episode_steps for name in NAMES}
     assert {name for name, limit in limits.items() if limit == 20_000} == {"figure-10.3", "figure-10.4"}
     assert set(limits.values()) == {5_000, 20_000}
 
@@ -247,7 +254,7 @@ def outcome(*lengths):
 
 def test_measures_of_runs_are_computed_as_documented():
     from qtab.book import measures
-    from qtab.book.figures import example_6_5, figure_6_5
+    from qtab.book.figures.chapter_06 import example_6_5, figure_6_5
 
     several = outcome([2, 1, 1], [1, 2, 3])
     assert measures.mean_length(several).tolist() == [[4 / 3], [2.0]]

@@ -1,66 +1,29 @@
-"""An experiment of the book: it trains its settings and makes a line of the figure from each."""
+"""What all experiments of the book share: a description, a number of runs, and a result with a table and a figure."""
 
-import dataclasses
-import time
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from qtab._utils import checks, html
-from qtab._utils.progress import ProgressBar
-from qtab.book import runner
 from qtab.book.description import Description
-from qtab.book.drawing import draw_lines
-from qtab.book.result import Line, Result
-from qtab.book.runner import EpisodeLog, FloatArray
-from qtab.book.setting import Setting
+from qtab.book.result import Result
 from qtab.training.train_many import thread_count
-
-BATCH_RUNS = 5_000
-"""Runs are trained and measured in batches of this size, which bounds the memory and moves the progress bar."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Experiment(Description):
+class Experiment(Description, ABC):
     """An experiment of the book that can be run."""
 
-    settings: Sequence[Setting]
+    @property
+    @abstractmethod
+    def line_names(self) -> Sequence[str]:
+        """The names of the lines, each once."""
 
-    def _repr_html_(self) -> str:
-        """What the experiment is, for notebooks."""
-        facts = {
-            "run it": f"qtab.book.run({self.name!r})",
-            "in the book": self.book,
-            "not in the book": self.unspecified,
-            "lines": "; ".join(dict.fromkeys(setting.line for setting in self.settings)),
-            "runs": f"{self.runs:,} of each setting",
-            "axes": f"{self.y_label} by {self.x_label}",
-        }
-        return html.report(self.heading, (), list(facts.items()))
-
+    @abstractmethod
     def run(
         self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
     ) -> Result:
-        """Trains every setting with every seed; see :func:`qtab.book.run`."""
-        runs, seed, threads = self.check_arguments(runs, seed, threads)
-        started = time.perf_counter()
-        counts = [min(runs, setting.max_runs or runs) for setting in self.settings]
-        parts: dict[str, list[Line]] = {}
-        with ProgressBar(sum(counts), "run", progress, self.name) as bar:
-            done = 0
-            for setting, count in zip(self.settings, counts, strict=True):
-                samples = _Samples(setting)
-                for first in range(0, count, BATCH_RUNS):
-                    seeds = range(seed + first, seed + min(first + BATCH_RUNS, count))
-                    samples.add(runner.train_runs(setting.env, self.config(setting), seeds, threads))
-                    done += len(seeds)
-                    bar.move_to(done)
-                parts.setdefault(setting.line, []).append(samples.line())
-        lines = tuple(map(_joined, parts.values()))
-        return Result(self, lines, runs, seed, time.perf_counter() - started, draw_lines)
+        """Runs the experiment; see :func:`qtab.book.run`."""
 
     def check_arguments(self, runs: int | None, seed: int, threads: int | None) -> tuple[int, int, int]:
         """Returns the number of runs of each setting, the first seed, and the number of threads.
@@ -72,49 +35,14 @@ class Experiment(Description):
         runs = self.runs if runs is None else checks.integer("runs", runs, least=1)
         return runs, checks.integer("seed", seed, least=0), thread_count(threads)
 
-    def config(self, setting: Setting) -> dict[str, Any]:
-        """Returns the keyword arguments of :func:`qtab.train` for a setting, without the seed."""
-        return {"max_episode_steps": self.max_episode_steps, **setting.config}
-
-
-class _Samples:
-    """The measurements of a setting, collected over batches of runs."""
-
-    def __init__(self, setting: Setting) -> None:
-        self._setting = setting
-        self._batches: list[FloatArray] = []
-        self._truncated: NDArray[np.int64] = np.zeros(1, np.int64)
-        self._diverged = 0
-
-    def add(self, log: EpisodeLog) -> None:
-        self._batches.append(self._setting.measure(log))
-        # A point of a learning curve is made from one episode of each run, any other point from all episodes.
-        is_curve = self._setting.x is None
-        self._truncated = self._truncated + (log.truncated.sum(axis=0) if is_curve else log.truncated.sum())
-        self._diverged += int(log.diverged.sum())
-
-    def line(self) -> Line:
-        return line_of(self._setting, np.concatenate(self._batches), self._truncated, self._diverged)
-
-
-def line_of(setting: Setting, samples: FloatArray, truncated: "NDArray[np.int64] | int", diverged: int) -> Line:
-    """Returns the line through the points of one setting.
-
-    Args:
-        setting: The setting.
-        samples: (runs, points): the measurements.
-        truncated: The number of truncated episodes, for all points or (points,) for each.
-        diverged: The number of runs that diverged.
-    """
-    runs, points = samples.shape
-    error = samples.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(points, np.nan)
-    x = np.arange(1.0, points + 1) if setting.x is None else np.array(setting.x, np.float64)
-    counts = np.broadcast_to(truncated, points), np.broadcast_to(diverged, points)
-    return Line(setting.line, x, samples.mean(axis=0), error, runs, *counts, setting.drawn)
-
-
-def _joined(parts: list[Line]) -> Line:
-    """Returns the points of several settings as one line."""
-    names = ("x", "mean", "error", "truncated", "diverged")
-    columns: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
-    return dataclasses.replace(parts[0], **columns)
+    def _repr_html_(self) -> str:
+        """What the experiment is, for notebooks."""
+        facts = {
+            "run it": f"qtab.book.run({self.name!r})",
+            "in the book": self.book,
+            **({"not in the book": self.unspecified} if self.unspecified else {}),
+            "lines": "; ".join(self.line_names),
+            "runs": f"{self.runs:,} of each setting",
+            "axes": f"{self.y_label} by {self.x_label}",
+        }
+        return html.report(self.heading, (), list(facts.items()))

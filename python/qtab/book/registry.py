@@ -1,39 +1,52 @@
 """All experiments of the book, by name and by number."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from qtab._utils.suggestions import did_you_mean
 from qtab.book.experiment import Experiment
 from qtab.book.figures import (
-    example_6_5,
-    example_6_6,
-    figure_6_3,
-    figure_6_5,
-    figure_8_2,
-    figure_10_1,
-    figure_10_2,
-    figure_10_3,
-    figure_10_4,
-    figure_12_10,
-    figure_12_11,
+    chapter_02,
+    chapter_03,
+    chapter_04,
+    chapter_05,
+    chapter_06,
+    chapter_07,
+    chapter_08,
+    chapter_09,
+    chapter_10,
+    chapter_12,
+    chapter_13,
 )
 from qtab.book.result import Result
 
+
+@dataclass(frozen=True)
+class Chapter:
+    """A chapter of the book."""
+
+    number: int
+    title: str
+    experiments: Sequence[Experiment]
+
+
+CHAPTERS: Sequence[Chapter] = (
+    Chapter(2, "Multi-armed bandits", chapter_02.EXPERIMENTS),
+    Chapter(3, "Finite Markov decision processes", chapter_03.EXPERIMENTS),
+    Chapter(4, "Dynamic programming", chapter_04.EXPERIMENTS),
+    Chapter(5, "Monte Carlo methods", chapter_05.EXPERIMENTS),
+    Chapter(6, "Temporal-difference learning", chapter_06.EXPERIMENTS),
+    Chapter(7, "n-step bootstrapping", chapter_07.EXPERIMENTS),
+    Chapter(8, "Planning and learning with tabular methods", chapter_08.EXPERIMENTS),
+    Chapter(9, "On-policy prediction with approximation", chapter_09.EXPERIMENTS),
+    Chapter(10, "On-policy control with approximation", chapter_10.EXPERIMENTS),
+    Chapter(12, "Eligibility traces", chapter_12.EXPERIMENTS),
+    Chapter(13, "Policy gradient methods", chapter_13.EXPERIMENTS),
+)
+"""The chapters that have experiments."""
+
 EXPERIMENTS: Mapping[str, Experiment] = {
-    module.EXPERIMENT.name: module.EXPERIMENT
-    for module in (
-        example_6_5,
-        example_6_6,
-        figure_6_3,
-        figure_6_5,
-        figure_8_2,
-        figure_10_1,
-        figure_10_2,
-        figure_10_3,
-        figure_10_4,
-        figure_12_10,
-        figure_12_11,
-    )
+    experiment.name: experiment for chapter in CHAPTERS for experiment in chapter.experiments
 }
 """The experiments by name, ordered by chapter."""
 

@@ -45,6 +45,10 @@ class Line:
     """The number of runs of the setting that diverged."""
     drawn: bool = True
     """Whether the figure shows the line."""
+    method: str = ""
+    """The method that decides the color of the line; empty means the name of the line."""
+    dashed: bool = False
+    """Whether the line is dashed."""
 
     def __repr__(self) -> str:
         """One line of text: the points are not shown."""
@@ -71,6 +75,8 @@ class Result:
     """Draws the figure."""
     surfaces: Mapping[str, FloatArray] = field(default_factory=dict, repr=False)
     """The surfaces of a figure that has them, by title."""
+    table: str = field(default="", repr=False)
+    """The table as text, where it is not one of the points of the lines."""
 
     def __repr__(self) -> str:
         """One line: ``str(result)`` shows the table."""
@@ -110,7 +116,7 @@ class Result:
         return data_frame(columns)
 
     def __str__(self) -> str:
-        return "\n".join([*_head(self), "", *_rows(self)])
+        return "\n".join([*_head(self), "", *([self.table] if self.table else _rows(self))])
 
     def save(self, path: Path | str) -> None:
         """Writes all points of all lines to a CSV file, completely or not at all.
@@ -147,14 +153,10 @@ def _head(result: Result) -> Iterator[str]:
     experiment = result.experiment
     yield experiment.heading
     for name, text in (("the book", experiment.book), ("unspecified", experiment.unspecified)):
-        yield from _wrapped(f"{name}: {text}")
-    counts = sorted({line.runs for line in result.lines}, reverse=True)
-    runs = f"{' and '.join(f'{count:,}' for count in counts)} {'run' if counts == [1] else 'runs'} of each setting"
-    if result.runs != experiment.runs:
-        comparison = "FEWER" if result.runs < experiment.runs else "more"
-        runs += f" ({comparison} than the {experiment.runs:,} of the full figure)"
-    limit = f"episodes are truncated at {experiment.max_episode_steps:,} steps"
-    yield from _wrapped(f"{runs}, seeds from {result.seed}; {limit}; {result.seconds:.1f} s")
+        if text:
+            yield from _wrapped(f"{name}: {text}")
+    conditions = experiment.conditions([line.runs for line in result.lines], result.runs, result.seed)
+    yield from _wrapped(f"{conditions}; {result.seconds:.1f} s")
 
 
 def _wrapped(text: str) -> list[str]:
@@ -163,20 +165,25 @@ def _wrapped(text: str) -> list[str]:
 
 def _rows(result: Result) -> list[str]:
     experiment = result.experiment
-    rows = [("", experiment.x_label, experiment.y_label, "std. error", "truncated", "diverged")]
+    has_errors = not all(np.isnan(line.error).all() for line in result.lines)
+    head = ["", experiment.x_label, experiment.y_label]
+    if has_errors or experiment.counts_failures:
+        head.append("std. error")
+    if experiment.counts_failures:
+        head += ["truncated", "diverged"]
+    rows = [head]
     for line in result.lines:
         for index in _table_points(result, line):
             error = line.error[index]
-            rows.append(
-                (
-                    line.name,
-                    f"{line.x[index]:g}",
-                    _rounded(line.mean[index], error),
-                    "-" if math.isnan(error) else _rounded(error, error),
-                    str(line.truncated[index]),
-                    str(line.diverged[index]),
-                )
-            )
+            row = [
+                line.name,
+                f"{line.x[index]:g}",
+                _rounded(line.mean[index], error),
+                "-" if math.isnan(error) else _rounded(error, error),
+                str(line.truncated[index]),
+                str(line.diverged[index]),
+            ]
+            rows.append(row[: len(head)])
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.config.choices import CHOICES
+from qtab.config.choices import ALGORITHM_NAMES, CHOICES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,22 +87,36 @@ def palette(
     if colors is not None:
         return _given(keys if labels is None else labels, colors)
     if first is None and len(set(keys)) == len(keys):
-        algorithms = [_algorithm(key) for key in keys]
+        algorithms = [algorithm(key) for key in keys]
         if None not in algorithms:
-            return [color(CHOICES["algorithm"].index(str(name)), ax) for name in algorithms]
+            return [readable(algorithm_color(key), ax) for key in keys]
         if len(keys) > 2 and all(isinstance(key, int | float) and not isinstance(key, bool) for key in keys):
-            return _sequential(keys, ax)
+            return sequential(keys, ax)
     return [color((first or 0) + index, ax) for index in range(len(keys))]
 
 
-def _algorithm(key: Any) -> str | None:
+def algorithm_color(key: Any) -> str:
+    """Returns the color of the algorithm that a label names, the same in every plot; empty for other labels."""
+    name = algorithm(key)
+    return COLORS[CHOICES["algorithm"].index(name) % len(COLORS)] if name else ""
+
+
+def algorithm(key: Any) -> str | None:
     """Returns the algorithm that a label names, such as ``"sarsa"`` or ``"True online Sarsa(λ)"``; None for others."""
-    words = str(key).lower().replace("(λ)", " lambda").replace("+", " plus").replace("-", " ").split()
-    name = "_".join(words).replace("'s", "")
-    return name if name in CHOICES["algorithm"] else None
+    return _BY_NAME.get(_plain(str(key)))
 
 
-def _sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:
+def _plain(name: str) -> str:
+    """Returns a name without the differences between ``"Q-learning"``, ``"q learning"`` and ``"q_learning"``."""
+    return name.lower().replace("-", " ").replace("_", " ")
+
+
+_BY_NAME = {_plain(name): key for key, written in ALGORITHM_NAMES.items() for name in (key, written)}
+"""The algorithms by their names in the settings and in the book."""
+
+
+def sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:
+    """Returns a color for each number, in their order."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 

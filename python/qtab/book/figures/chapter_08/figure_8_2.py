@@ -1,0 +1,34 @@
+"""Figure 8.2: Dyna-Q on a maze."""
+
+from qtab.book.measures import lengths
+from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment
+from qtab.envs.grid_worlds import dyna_maze
+
+_DYNA = {
+    "algorithm": "dyna_q",
+    "learning_rate": 0.1,
+    "discount": 0.95,
+    "epsilon": 0.1,
+    "epsilon_schedule": "constant",
+    "ties": "random",
+    "initial_q": 0.0,
+    "episodes": 50,
+}
+
+EXPERIMENT = TrainingExperiment(
+    name="figure-8.2",
+    title="Dyna-Q with different numbers of planning steps",
+    book="α = 0.1, ε = 0.1, γ = 0.95, initial values of zero, ties at random; 50 episodes, 30 runs",
+    unspecified="nothing. In the book the first episode is the same for every n (about 1,700 steps, not shown). Here "
+    "it differs, because planning and acting draw from the same random generator",
+    settings=tuple(
+        Setting(f"n = {steps}", dyna_maze, {**_DYNA, "planning_steps": steps}, lengths) for steps in (0, 5, 50)
+    ),
+    runs=30,
+    x_label="episode",
+    y_label="steps per episode",
+    table_x=(1, 2, 3, 5, 10, 20, 30, 50),
+    x_range=(2, 50),
+    y_range=(0, 800),
+)

@@ -1,0 +1,102 @@
+"""Figure 10.1: the cost-to-go of Mountain Car as it is learned."""
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from qtab._utils.progress import ProgressBar
+from qtab.book.drawing import draw_surfaces
+from qtab.book.measures import mean_length
+from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
+from qtab.book.result import Line, Result
+from qtab.book.runner import FloatArray
+from qtab.book.setting import Setting
+from qtab.book.training_experiment import TrainingExperiment, line_of
+from qtab.results.run import Run
+from qtab.training.train import train
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+FIRST_STEPS = 428
+EPISODES = (12, 104, 1000, 9000)
+GRID_POINTS = 40
+"""The number of points of a surface along each axis."""
+
+_SARSA = {
+    **TILE_CODING,
+    "algorithm": "sarsa_lambda",
+    "traces": "replacing",
+    "trace_decay": 0.9,
+    "learning_rate": 0.5,
+}
+_POSITIONS = np.linspace(-1.2, 0.5, GRID_POINTS)
+_VELOCITIES = np.linspace(-0.07, 0.07, GRID_POINTS)
+
+
+def cost_to_go(run: Run) -> FloatArray:
+    """Returns (positions, velocities): the negative of the largest action value."""
+    return np.array([[-run.q_values((x, v)).max() for v in _VELOCITIES] for x in _POSITIONS])
+
+
+def draw_cost_to_go(result: Result, ax: "Axes | None") -> "Axes":
+    """Draws the five surfaces side by side in a new figure.
+
+    Raises:
+        ValueError: if ``ax`` is not None.
+    """
+    if ax is not None:
+        raise ValueError("ax must be None for figure-10.1, which creates five axes")
+    return draw_surfaces(result.experiment.heading, _POSITIONS, _VELOCITIES, result.surfaces)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class CostToGo(TrainingExperiment):
+    """The cost-to-go of one run at five times."""
+
+    def run(
+        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
+    ) -> Result:
+        """Trains up to each of the five times. A shorter run equals the start of a longer one with the same seed."""
+        runs, seed, _ = self.check_arguments(runs, seed, threads)
+        started = time.perf_counter()
+        lines: list[Line] = []
+        surfaces: dict[str, FloatArray] = {}
+        with ProgressBar(runs * len(self.settings), "surface", progress, self.name) as bar:
+            for setting in self.settings:
+                samples, truncated = [], 0
+                for number in range(runs):
+                    run = train(ENV, progress=False, **self.config(setting), seed=seed + number)
+                    surface = cost_to_go(run)
+                    surfaces.setdefault(setting.line, surface)
+                    samples.append((surface.max(), surface.mean()))
+                    # The setting within the first episode is truncated on purpose.
+                    if run.config.max_episode_steps != FIRST_STEPS:
+                        truncated += int((~run.terminated).sum())
+                    bar.move_to(len(lines) * runs + len(samples))
+                lines.append(line_of(setting, np.array(samples), truncated, 0))
+        return Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_cost_to_go, surfaces)
+
+
+EXPERIMENT = CostToGo(
+    name="figure-10.1",
+    title="the cost-to-go of Mountain Car",
+    book=f"one run with ε = 0, shown after step {FIRST_STEPS} of the first episode and after episodes 12, 104, 1000 "
+    "and 9000. According to a footnote, the data come from semi-gradient Sarsa(λ)",
+    unspecified=f"λ, α and the kind of traces (0.9, 0.5/8, replacing here); {UNSPECIFIED}",
+    settings=(
+        # The last step bootstraps from the next state, as it would within a longer episode.
+        Setting(
+            f"episode 1, step {FIRST_STEPS}",
+            ENV,
+            {**_SARSA, "episodes": 1, "max_episode_steps": FIRST_STEPS},
+            mean_length,
+        ),
+        *(Setting(f"episode {episode}", ENV, {**_SARSA, "episodes": episode}, mean_length) for episode in EPISODES),
+    ),
+    runs=1,
+    x_label="1: largest, 2: mean",
+    y_label="cost-to-go",
+)
