@@ -25,6 +25,7 @@ PICTURES = {
     "chapter_6": "windy-policy cliff cliff-policies bias",
     "your_environment": "curve policy values visits difference many",
     "study": "sensitivity profile curves",
+    "playground": "picture",
 }
 """The cells that show one picture each."""
 TABLES = {
@@ -32,6 +33,7 @@ TABLES = {
     "chapter_6": "windy compare experiment",
     "your_environment": "train verify optimum",
     "study": "search confirm improvement reload",
+    "playground": "change",
 }
 """The cells that show a table."""
 PLAYERS = {"mountain_car": "play-article play-solved animation"}
@@ -48,7 +50,7 @@ def source(name: str, cell: str) -> str:
     return str(text)
 
 
-def test_there_are_four_and_the_readme_links_them() -> None:
+def test_there_are_five_and_the_readme_links_them() -> None:
     assert sorted(path.stem for path in NOTEBOOKS) == sorted(PICTURES)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert [path.name for path in NOTEBOOKS if f"(examples/{path.name})" not in readme] == []
@@ -180,11 +182,20 @@ def check_study(executed: Executed) -> None:
     assert executed.text("reload").startswith("the same means: True\n")
 
 
+def check_playground(executed: Executed) -> None:
+    """The values that were assigned to widgets reach the agent."""
+    settings: dict[str, Any] = {"learning_rate": 0.2, "discount": 1.0, "epsilon": 0.0, "episodes": 1000}
+    assert executed.text("change") == repr(qtab.train("MountainCar-v0", seed=0, **settings))
+    runs = qtab.train_many("MountainCar-v0", seeds=100, **settings)
+    assert f"episodes: {qtab.stats.mean(runs.final_returns(100))}" in executed.text("seeds")
+
+
 CHECKS: dict[str, Callable[[Executed], None]] = {
     "mountain_car": check_mountain_car,
     "chapter_6": check_chapter_6,
     "your_environment": check_your_environment,
     "study": check_study,
+    "playground": check_playground,
 }
 
 

@@ -1,6 +1,9 @@
 """A table is refused before it is made when it does not fit into what the machine has free."""
 
+import ctypes
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -90,3 +93,26 @@ def test_the_limit_of_a_container_counts(
     monkeypatch.setattr(memory, "_CONTROL_GROUPS", (tuple(map(str, paths)),))
     found = memory.free_memory()
     assert found == expected if expected is not None else found > min(without, 10_000)
+
+
+@pytest.mark.parametrize(
+    ("answer", "limit", "free"), [(1, 8 * 2**30, 3 * 2**30), (0, memory.DEFAULT_LIMIT, sys.maxsize)]
+)
+def test_windows_is_asked_for_the_memory_of_the_machine(
+    monkeypatch: pytest.MonkeyPatch, answer: int, limit: int, free: int
+) -> None:
+    """By a stand-in for its library; where Windows does not answer, the limit is the default."""
+
+    def global_memory_status(pointer: Any) -> int:
+        status = pointer._obj
+        assert status.length == ctypes.sizeof(status) == 64
+        if answer:
+            status.total, status.free = 16 * 2**30, 3 * 2**30
+        return answer
+
+    kernel = SimpleNamespace(GlobalMemoryStatusEx=global_memory_status)
+    monkeypatch.setattr(ctypes, "windll", SimpleNamespace(kernel32=kernel), raising=False)
+    monkeypatch.setattr(memory, "sys", SimpleNamespace(platform="win32", maxsize=sys.maxsize))
+    monkeypatch.setattr(memory, "_CONTROL_GROUPS", ())
+    monkeypatch.setattr(memory, "Path", lambda _: Path("/nowhere"))
+    assert (memory.memory_limit(None), memory.free_memory()) == (limit, free)

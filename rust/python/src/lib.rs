@@ -16,7 +16,8 @@ mod vector;
 
 use pyo3::prelude::*;
 
-#[pymodule]
+// The module needs no interpreter's lock: docs/explanation/free_threading.md lists what threads share, and what guards it.
+#[pymodule(gil_used = false)]
 mod _core {
     use pyo3::types::PyTuple;
 
