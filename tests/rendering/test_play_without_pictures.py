@@ -1,5 +1,7 @@
 """``qtab.play`` in an environment that cannot be rendered."""
 
+from typing import Any
+
 import gymnasium as gym
 import pytest
 from gymnasium.envs.toy_text.frozen_lake import FrozenLakeEnv
@@ -14,7 +16,8 @@ def test_an_environment_without_pictures_is_refused_without_advice_to_save_them(
         metadata = {"render_modes": ["ansi"]}  # noqa: RUF012 - as in Gymnasium's classes
 
     run = qtab.train("FrozenLake-v1", seed=0, episodes=5)
-    gym.register("Plain-v0", Plain)
+    entry_point: Any = Plain
+    gym.register("Plain-v0", entry_point)
     try:
         with pytest.raises(ValueError, match="Plain-v0 cannot be rendered as 'rgb_array'; its render modes are: 'ansi"):
             qtab.play(run, env="Plain-v0")
