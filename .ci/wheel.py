@@ -6,6 +6,7 @@ from importlib.metadata import distributions
 
 import gymnasium
 import qtab
+import qtab.playground
 
 extras = {"matplotlib", "tyro", "tqdm", "moviepy", "pygame"} & {found.metadata["Name"] for found in distributions()}
 assert not extras, f"the wheel installed {extras}"
@@ -23,6 +24,9 @@ assert verification.equal
 env = gymnasium.make("qtab/MountainCar-v0")
 env.reset(seed=0)
 env.step(env.action_space.sample())
+
+page = qtab.playground.page()
+assert "AGFzbQ" in page, "the wheel lacks the WebAssembly module of the playground"
 
 try:
     qtab.plot(run)

@@ -1,9 +1,8 @@
 """The playground on the site: its files in ``playground/``, and the directive ``{playground}``, a frame that shows it.
 
-``.ci/run docs`` builds it first. Without it the site is built all the same, and the directive says what is missing.
+``.ci/run docs`` builds its WebAssembly first. Without it the site is built all the same, and says what is missing.
 """
 
-import shutil
 from pathlib import Path
 
 from docutils import nodes
@@ -11,13 +10,17 @@ from docutils.parsers.rst import Directive
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
-SOURCE = Path(__file__).parents[2] / "python" / "qtab" / "playground"
+from qtab.playground import assemble, write_site
+
 MISSING = "This build of the site has no playground: its WebAssembly was not built."
 
 
 def is_built() -> bool:
-    """Whether the page is there, with its WebAssembly."""
-    return (SOURCE / "index.html").is_file() and any(SOURCE.rglob("*.wasm"))
+    """Whether the WebAssembly is there."""
+    try:
+        return bool(assemble.wasm())
+    except FileNotFoundError:
+        return False
 
 
 class Playground(Directive):
@@ -29,21 +32,19 @@ class Playground(Directive):
             return [nodes.note("", nodes.paragraph(text=MISSING))]
         env = self.state.document.settings.env
         path = "../" * env.docname.count("/") + "playground/index.html"
+        link = f'<p><a href="{path}">Open the playground in a page of its own</a></p>'
         frame = f'<iframe class="playground" src="{path}" title="The playground" loading="lazy"></iframe>'
-        link = f'<p><a href="{path}">Open the playground in a window of its own</a></p>'
-        return [nodes.raw("", frame + link, format="html")]
+        return [nodes.raw("", link + frame, format="html")]
 
 
 def copy_playground(app: Sphinx, error: Exception | None) -> None:
-    """Copies the page, its scripts and its WebAssembly."""
+    """Writes the page, its scripts and its WebAssembly."""
     if error is not None or app.builder.format != "html":
         return
-    if not is_built():
-        logging.getLogger(__name__).info(f"playground: {MISSING}")
-        return
-    target = Path(app.outdir) / "playground"
-    shutil.rmtree(target, ignore_errors=True)
-    shutil.copytree(SOURCE, target, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
+    if is_built():
+        write_site(Path(app.outdir) / "playground")
+    else:
+        logging.getLogger(__name__).info(MISSING)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

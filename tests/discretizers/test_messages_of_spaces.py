@@ -78,7 +78,6 @@ def test_a_component_of_an_observation_is_named_by_its_keys(observation: Any, me
         (spaces.Box(0, 1, (1,)), {"discretizer": "bins", "bins": (3, 4)}, "^bins must hold 1 number for .* got"),
         (spaces.Discrete(10**12), {}, r"2\*\*32 values \(max_rows= .* got Discrete\(1000000000000\)"),
     ],
-    ids=str,
 )
 def test_a_space_is_refused_with_what_would_fit(space: Any, settings: Any, message: str) -> None:
     with pytest.raises(ValueError, match=message):

@@ -34,7 +34,7 @@ class TrainingExperiment(Experiment):
     """Episodes are truncated after this many steps. The book has no time limit."""
 
     def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:
-        """Returns how a result was made, in words; see :meth:`Description.conditions`."""
+        """Returns how a result was made, in words; see ``Description.conditions``."""
         limit = f"episodes are truncated at {self.max_episode_steps:,} steps"
         return f"{super().conditions(counts, runs, seed)}; {limit}"
 
