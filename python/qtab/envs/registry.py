@@ -78,8 +78,14 @@ ENTRIES: Mapping[str, EnvEntry] = {
 """Gymnasium's environments, by Gymnasium's id."""
 
 EXTRA: Mapping[str, EnvEntry] = {
+    f"{PREFIX}KArmedBandit-v0": EnvEntry(
+        "KArmedBandit", "", "qtab.envs.k_armed_bandit:KArmedBanditEnv", has_table=True
+    ),
     f"{PREFIX}MaximizationBias-v0": EnvEntry(
         "MaximizationBias", "", "qtab.envs.maximization_bias:MaximizationBiasEnv", has_table=True
+    ),
+    f"{PREFIX}ShortCorridor-v0": EnvEntry(
+        "ShortCorridor", "", "qtab.envs.short_corridor:ShortCorridorEnv", has_table=True
     ),
 }
 """Environments that Gymnasium does not have, by their id."""

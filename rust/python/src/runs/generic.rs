@@ -5,8 +5,9 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
 use qtab_core::learners::{
-    Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
-    TdLearner, Traces, TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
+    ActorCritic, ActorCriticLambda, Agent, Critic, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, GradientBandit,
+    Model, NStepSarsa, PolicyGradientLearner, PolicyGradientRule, QLearning, Reinforce, Sarsa, SarsaLambda, TdLearner,
+    Traces, TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
 };
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, VisitCounter};
@@ -91,6 +92,25 @@ where
     Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
 }
 
+/// Boxed runs of a task that is made from a seed. `shape` is the number of rows and of active rows.
+pub(crate) fn boxed_factory<W>(
+    new_task: impl Fn(&Seed) -> W + Send + Sync + 'static,
+    shape: (usize, usize),
+    spec: &Arc<RunSpec>,
+    record: usize,
+    keep: fn(Recordings<W::Snapshot>) -> AnyRecordings,
+) -> Box<dyn RunFactory>
+where
+    W: RngSnapshot + Task<Active: Send, State: Send> + Send + 'static,
+    W::Snapshot: Send + 'static,
+    RunError: From<W::Error> + From<TrainingError<W::Error>>,
+{
+    let spec = Arc::clone(spec);
+    let build =
+        move |seed: &Seed, stop: &StopFlag<'_>| boxed_run(new_task(seed), shape, seed, &spec, (record, stop), keep);
+    Box::new(Factory { build, batching: Batching::one_by_one() })
+}
+
 /// A run of any learner, with recordings if asked for. `shape` is the number of rows and of active rows.
 pub(super) fn boxed_run<W>(
     task: W,
@@ -152,8 +172,8 @@ where
     // Known when this is compiled, so that Dyna is left out of the code for several rows.
     let single_row = size_of::<R>() == size_of::<u32>();
     Ok(match spec.algorithm {
-        AlgorithmSpec::DynaQ { .. } | AlgorithmSpec::DynaQPlus { .. } if !single_row => {
-            return Err(invalid("discretizer", "one with one active row, for Dyna", "'tiles'"));
+        algorithm if algorithm.needs_a_table() && !single_row => {
+            return Err(invalid("discretizer", "one with one active row, for this algorithm", "'tiles'"));
         }
         AlgorithmSpec::QLearning => with_rule(task, agent, QLearning, rng, spec),
         AlgorithmSpec::Sarsa => with_rule(task, agent, Sarsa, rng, spec),
@@ -179,7 +199,46 @@ where
             let rule = DynaQPlus::new(new_model()?, planning_steps, time_weight, stop).map_err(allocation)?;
             with_rule(task, agent, rule, rng, spec)
         }
+        AlgorithmSpec::GradientBandit { baseline } => {
+            let rule = GradientBandit::new(baseline, n_rows, stop).map_err(allocation)?;
+            with_rule(task, agent, rule, rng, spec)
+        }
+        AlgorithmSpec::Reinforce | AlgorithmSpec::ReinforceWithBaseline { .. } => {
+            let critic = new_critic(spec, (n_rows, n_active), stop)?;
+            with_gradient(task, agent, critic, Reinforce::new(), rng, spec)
+        }
+        AlgorithmSpec::ActorCritic { .. } => {
+            let critic = new_critic(spec, (n_rows, n_active), stop)?;
+            with_gradient(task, agent, critic, ActorCritic::new(), rng, spec)
+        }
+        AlgorithmSpec::ActorCriticLambda { trace_decay, .. } => {
+            let critic = new_critic(spec, (n_rows, n_active), stop)?;
+            let rule = ActorCriticLambda::new(trace_decay, n_rows, stop).map_err(allocation)?;
+            with_gradient(task, agent, critic, rule, rng, spec)
+        }
     })
+}
+
+/// The state values of an algorithm that learns them.
+fn new_critic(spec: &RunSpec, (n_rows, n_active): (usize, usize), stop: &StopFlag<'_>) -> PyResult<Option<Critic>> {
+    let Some(rate) = spec.algorithm.value_learning_rate() else { return Ok(None) };
+    let table = spec.initial_q.critic_table((n_rows, spec.num_actions), stop)?;
+    Ok(Some(Critic { table, step_size: rate / n_active as f64 }))
+}
+
+fn with_gradient<R, U>(
+    task: BoxedTask<R, RunError>,
+    agent: Agent,
+    critic: Option<Critic>,
+    rule: U,
+    rng: AgentRng,
+    spec: &RunSpec,
+) -> Box<dyn Run>
+where
+    R: ActiveRows + Send + 'static,
+    U: PolicyGradientRule<R> + Send + 'static,
+{
+    into_run(task, PolicyGradientLearner { agent, critic, rule }, rng, spec)
 }
 
 fn with_rule<R, U>(task: BoxedTask<R, RunError>, agent: Agent, rule: U, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>

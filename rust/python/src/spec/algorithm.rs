@@ -18,6 +18,11 @@ pub(crate) enum AlgorithmSpec {
     WatkinsQLambda(TraceSpec),
     DynaQ { planning_steps: u32 },
     DynaQPlus { planning_steps: u32, time_weight: f64 },
+    GradientBandit { baseline: bool },
+    Reinforce,
+    ReinforceWithBaseline { value_learning_rate: f64 },
+    ActorCritic { value_learning_rate: f64 },
+    ActorCriticLambda { value_learning_rate: f64, trace_decay: f64 },
 }
 
 /// Eligibility traces.
@@ -46,6 +51,18 @@ pub(crate) const ALGORITHMS: &[Variant<AlgorithmSpec>] = &[
         let (planning_steps, time_weight) = (fields.get("planning_steps")?, fields.get("time_weight")?);
         Ok(AlgorithmSpec::DynaQPlus { planning_steps, time_weight })
     }),
+    ("gradient_bandit", |fields| Ok(AlgorithmSpec::GradientBandit { baseline: fields.get("baseline")? })),
+    ("reinforce", |_| Ok(AlgorithmSpec::Reinforce)),
+    ("reinforce_with_baseline", |fields| {
+        Ok(AlgorithmSpec::ReinforceWithBaseline { value_learning_rate: fields.get("value_learning_rate")? })
+    }),
+    ("actor_critic", |fields| {
+        Ok(AlgorithmSpec::ActorCritic { value_learning_rate: fields.get("value_learning_rate")? })
+    }),
+    ("actor_critic_lambda", |fields| {
+        let (value_learning_rate, trace_decay) = (fields.get("value_learning_rate")?, fields.get("trace_decay")?);
+        Ok(AlgorithmSpec::ActorCriticLambda { value_learning_rate, trace_decay })
+    }),
 ];
 
 fn n_step_sarsa(fields: &Fields<'_>) -> PyResult<AlgorithmSpec> {
@@ -62,7 +79,27 @@ impl AlgorithmSpec {
 
     /// How many tables the algorithm learns.
     pub(crate) fn n_tables(&self) -> usize {
-        if matches!(self, Self::DoubleQLearning) { 2 } else { 1 }
+        if matches!(self, Self::DoubleQLearning) || self.value_learning_rate().is_some() { 2 } else { 1 }
+    }
+
+    /// The step size of the state values; None for an algorithm that learns none.
+    pub(crate) fn value_learning_rate(&self) -> Option<f64> {
+        match *self {
+            Self::ReinforceWithBaseline { value_learning_rate }
+            | Self::ActorCritic { value_learning_rate }
+            | Self::ActorCriticLambda { value_learning_rate, .. } => Some(value_learning_rate),
+            _ => None,
+        }
+    }
+
+    /// Whether the algorithm learns preferences, of which the policy is the softmax.
+    pub(crate) fn learns_preferences(&self) -> bool {
+        matches!(self, Self::GradientBandit { .. } | Self::Reinforce) || self.value_learning_rate().is_some()
+    }
+
+    /// Whether the algorithm works with one active row only.
+    pub(crate) fn needs_a_table(&self) -> bool {
+        matches!(self, Self::DynaQ { .. } | Self::DynaQPlus { .. } | Self::GradientBandit { .. })
     }
 }
 

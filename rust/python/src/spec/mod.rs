@@ -72,6 +72,7 @@ impl RunSpec {
             count_visits: false,
         };
         spec.check_tile_coding()?;
+        spec.check_preferences()?;
         Ok(spec)
     }
 
@@ -83,8 +84,25 @@ impl RunSpec {
         if self.terminal_update == TerminalUpdate::Assign {
             return Err(invalid("terminal_update", "'target' for tile coding", "'assign'"));
         }
-        if matches!(self.algorithm, AlgorithmSpec::DynaQ { .. } | AlgorithmSpec::DynaQPlus { .. }) {
-            return Err(invalid("algorithm", "an algorithm without a model for tile coding", "Dyna-Q"));
+        if self.algorithm.needs_a_table() {
+            return Err(invalid("algorithm", "an algorithm for several active rows for tile coding", "another"));
+        }
+        if matches!(self.policy, PolicySpec::Ucb { .. }) {
+            return Err(invalid("policy", "'epsilon_greedy' or 'softmax' for tile coding", "'ucb'"));
+        }
+        Ok(())
+    }
+
+    /// Refuses preferences with another policy than the softmax, and with a learning rate that falls with visits.
+    fn check_preferences(&self) -> PyResult<()> {
+        if !self.algorithm.learns_preferences() {
+            return Ok(());
+        }
+        if !matches!(self.policy, PolicySpec::Softmax { .. }) {
+            return Err(invalid("policy", "'softmax' for an algorithm that learns preferences", "another"));
+        }
+        if matches!(self.learning_rate, LearningRateSpec::Visits { .. }) {
+            return Err(invalid("learning_rate", "a schedule by the episode for this algorithm", "'visits'"));
         }
         Ok(())
     }
