@@ -109,8 +109,8 @@ class Config:
     value_learning_rate: float | None = None
     """α of the state values that are learned beside a policy: the baseline of REINFORCE, the critic of actor-critic."""
     initial_q: float | tuple[float, float] | NDArray[np.float64] = (-1.0, 1.0)
-    """The initial Q table, or preferences: drawn uniformly from a range (low, high), one number everywhere, or an array to continue
-    from. In an array, -inf marks an action that a state does not have and that is never chosen."""
+    """The initial Q table, or preferences: drawn uniformly from a range (low, high), one number everywhere, or an array
+    to continue from. In an array, -inf marks an action that a state does not have and that is never chosen."""
     terminal_update: TerminalUpdate = "target"
     """The update at a terminal state: move the value towards the reward (target, as in the textbook), or set it to the
     reward (assign, as in the well-known article)."""

@@ -50,8 +50,8 @@ _BANDIT_BOOK: SharedSettings = {
     "episodes": 1000,
 }
 
-# Sutton & Barto, 2nd ed., Figure 13.1. The first policy goes right with probability 0.05, as the figure's returns at the
-# first episodes show; the book does not state it.
+# Sutton & Barto, 2nd ed., Figure 13.1. The first policy goes right with probability 0.05, as the figure's first returns
+# show; the book does not state it.
 _CORRIDOR_BOOK: SharedSettings = {
     "algorithm": "reinforce",
     "learning_rate": 2.0**-13,

@@ -31,7 +31,8 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
     Raises:
         MemoryError: if the runs of so many ``seeds`` would take more than half of the machine's memory.
         TypeError: for an argument of the wrong type.
-        ValueError: for a run without a finished episode, one of an algorithm that learns preferences, or the optimum of another environment.
+        ValueError: for a run without a finished episode, one of an algorithm that learns preferences, or the
+            optimum of another environment.
     """
     checks.instance("run", run, Run)
     check_learns_values(run.config)

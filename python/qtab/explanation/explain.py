@@ -54,8 +54,8 @@ def explain(
     Raises:
         RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or a run of an algorithm that learns preferences. Of a run that was resumed with more episodes while a rate fell, only
-            the episodes before can be explained.
+        ValueError: for an argument out of range, or a run of an algorithm that learns preferences. Of a run
+            that was resumed with more episodes while a rate fell, only the episodes before can be explained.
     """
     checks.instance("run", run, Run)
     check_learns_values(run.config)

@@ -12,9 +12,9 @@ from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.discretizers import Discretizer, Identity
 from qtab.discretizers.actions import Actions
-from qtab.results.action_values import read_by_policy
 from qtab.discretizers.edges import Edges
 from qtab.planning.optimum import Optimum
+from qtab.results.action_values import read_by_policy
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.run import Run
 from qtab.results.runs import Runs

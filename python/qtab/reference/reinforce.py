@@ -41,7 +41,7 @@ def _reinforce(task: Task, *, with_baseline: bool) -> Result:
         for (state, action), error in zip(visits, returns, strict=False):
             if critic is not None:
                 # δ = G - v(S, w), w <- w + α δ ∇v(S, w)
-                error -= critic.value(state)  # noqa: PLW2901
+                error -= critic.value(state)
                 critic.update(state, error)
             # θ <- θ + α γ^t δ ∇ ln π(A | S, θ)
             ascend(task, theta, state, action, power * error)

@@ -190,7 +190,8 @@ class Run(WithPage):
             episode_start: Ignored.
             deterministic: True takes the greedy action, which is the most likely one of preferences. False draws an
                 action from the behaviour policy, with the ε or the temperature that the last episode of the training
-                left: an ε that fell to 0 leaves the greedy action, as does exploration "ucb". The draws come from a generator of this run, which is seeded by its seed.
+                left: an ε that fell to 0 leaves the greedy action, as does exploration "ucb". The draws come from a
+                generator of this run, which is seeded by its seed.
             action_masks: (actions,) or (n, actions): which actions there are. None: by the run's ``action_mask``.
 
         Raises:

@@ -3,6 +3,17 @@
 from qtab.book.drawing.colors import METHOD_COLORS, line_colors
 from qtab.book.drawing.files import save_plot
 from qtab.book.drawing.lines import draw_lines
+from qtab.book.drawing.panels import Panel, draw_panels
 from qtab.book.drawing.surfaces import draw_surfaces
+from qtab.book.drawing.top_labels import label_tops
 
-__all__ = ["METHOD_COLORS", "draw_lines", "draw_surfaces", "line_colors", "save_plot"]
+__all__ = [
+    "METHOD_COLORS",
+    "Panel",
+    "draw_lines",
+    "draw_panels",
+    "draw_surfaces",
+    "label_tops",
+    "line_colors",
+    "save_plot",
+]

@@ -18,6 +18,7 @@ METHOD_COLORS: Mapping[str, str] = {
     "greedy": _GREEN,
     "UCB": _ORANGE,
     "gradient bandit": _PURPLE,
+    "gradient bandit without baseline": _BROWN,
     "optimistic greedy": _TEAL,
     # chapters 5 to 9, 12
     "TD": _BLUE,
