@@ -2,6 +2,7 @@
 
 mod actor_critic;
 mod actor_critic_lambda;
+mod any_algorithm;
 mod common;
 mod double_q_learning;
 mod dyna_q;
@@ -18,6 +19,7 @@ mod watkins_q_lambda;
 
 pub use actor_critic::ActorCritic;
 pub use actor_critic_lambda::ActorCriticLambda;
+pub use any_algorithm::{AnyAlgorithm, LearnerVisitor, TraceOptions};
 pub use common::{
     ActionMasks, Agent, Critic, Learner, Model, ModelEntry, PolicyGradientLearner, PolicyGradientRule, TdLearner,
     TraceKind, Traces, TruncationHandling, UpdateRule,

@@ -4,11 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
-use qtab_core::learners::{
-    ActorCritic, ActorCriticLambda, Agent, Critic, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, GradientBandit,
-    Model, NStepSarsa, PolicyGradientLearner, PolicyGradientRule, QLearning, Reinforce, Sarsa, SarsaLambda, TdLearner,
-    Traces, TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
-};
+use qtab_core::learners::{LearnerVisitor, TruncationHandling};
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, VisitCounter};
 use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
@@ -19,7 +15,7 @@ use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
 use crate::rng::environment_rng;
-use crate::spec::{AlgorithmSpec, DiscretizerSpec, RunSpec, TilesSpec, TraceSpec};
+use crate::spec::{DiscretizerSpec, RunSpec, TilesSpec};
 
 /// Runs in an environment whose observations are `M` float32 numbers, with any discretizer of a Box.
 pub(crate) fn generic_box<E, const M: usize>(
@@ -166,94 +162,31 @@ where
     R: ActiveRows + Send + 'static,
 {
     let agent = generic_agent(spec, n_rows, n_active, &mut rng, stop)?;
-    let weights = agent.table.values().len();
-    let new_model = || Model::new(n_rows, spec.num_actions, stop).map_err(allocation);
-    let new_traces = |cutoff: f64| Traces::new(weights, cutoff, stop).map_err(allocation);
-    // Known when this is compiled, so that Dyna is left out of the code for several rows.
-    let single_row = size_of::<R>() == size_of::<u32>();
-    Ok(match spec.algorithm {
-        algorithm if algorithm.needs_a_table() && !single_row => {
-            return Err(invalid("discretizer", "one with one active row, for this algorithm", "'tiles'"));
+    // The generator draws both tables before the run takes it over.
+    let second_table = match spec.algorithm.n_tables() {
+        1 => None,
+        _ if spec.algorithm.value_learning_rate().is_some() => {
+            Some(spec.initial_q.critic_table((n_rows, spec.num_actions), stop)?)
         }
-        AlgorithmSpec::QLearning => with_rule(task, agent, QLearning, rng, spec),
-        AlgorithmSpec::Sarsa => with_rule(task, agent, Sarsa, rng, spec),
-        AlgorithmSpec::ExpectedSarsa => with_rule(task, agent, ExpectedSarsa, rng, spec),
-        AlgorithmSpec::DoubleQLearning => {
-            let second = spec.initial_q.table((1, 2), (n_rows, spec.num_actions), &mut rng, stop)?;
-            into_run(task, DoubleQLearning::new(agent, second), rng, spec)
-        }
-        AlgorithmSpec::NStepSarsa { n_steps } => with_rule(task, agent, NStepSarsa::new(n_steps), rng, spec),
-        AlgorithmSpec::SarsaLambda(TraceSpec { kind, decay, cutoff }) => {
-            with_rule(task, agent, SarsaLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, rng, spec)
-        }
-        AlgorithmSpec::TrueOnlineSarsaLambda { trace_decay, trace_cutoff } => {
-            with_rule(task, agent, TrueOnlineSarsaLambda::new(new_traces(trace_cutoff)?, trace_decay), rng, spec)
-        }
-        AlgorithmSpec::WatkinsQLambda(TraceSpec { kind, decay, cutoff }) => {
-            with_rule(task, agent, WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, rng, spec)
-        }
-        AlgorithmSpec::DynaQ { planning_steps } => {
-            with_rule(task, agent, DynaQ::new(new_model()?, planning_steps), rng, spec)
-        }
-        AlgorithmSpec::DynaQPlus { planning_steps, time_weight } => {
-            let rule = DynaQPlus::new(new_model()?, planning_steps, time_weight, stop).map_err(allocation)?;
-            with_rule(task, agent, rule, rng, spec)
-        }
-        AlgorithmSpec::GradientBandit { baseline } => {
-            let rule = GradientBandit::new(baseline, n_rows, stop).map_err(allocation)?;
-            with_rule(task, agent, rule, rng, spec)
-        }
-        AlgorithmSpec::Reinforce | AlgorithmSpec::ReinforceWithBaseline { .. } => {
-            let critic = new_critic(spec, (n_rows, n_active), stop)?;
-            with_gradient(task, agent, critic, Reinforce::new(), rng, spec)
-        }
-        AlgorithmSpec::ActorCritic { .. } => {
-            let critic = new_critic(spec, (n_rows, n_active), stop)?;
-            with_gradient(task, agent, critic, ActorCritic::new(), rng, spec)
-        }
-        AlgorithmSpec::ActorCriticLambda { trace_decay, .. } => {
-            let critic = new_critic(spec, (n_rows, n_active), stop)?;
-            let rule = ActorCriticLambda::new(trace_decay, n_rows, stop).map_err(allocation)?;
-            with_gradient(task, agent, critic, rule, rng, spec)
-        }
-    })
+        tables => Some(spec.initial_q.table((1, tables), (n_rows, spec.num_actions), &mut rng, stop)?),
+    };
+    let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation };
+    let run = spec.algorithm.learner::<R, _>(agent, second_table, stop, run).map_err(allocation)?;
+    run.ok_or_else(|| invalid("discretizer", "one with one active row, for this algorithm", "'tiles'"))
 }
 
-/// The state values of an algorithm that learns them.
-fn new_critic(spec: &RunSpec, (n_rows, n_active): (usize, usize), stop: &StopFlag<'_>) -> PyResult<Option<Critic>> {
-    let Some(rate) = spec.algorithm.value_learning_rate() else { return Ok(None) };
-    let table = spec.initial_q.critic_table((n_rows, spec.num_actions), stop)?;
-    Ok(Some(Critic { table, step_size: rate / n_active as f64 }))
-}
-
-fn with_gradient<R, U>(
+/// All of a run but its learner.
+struct BoxedRun<R> {
     task: BoxedTask<R, RunError>,
-    agent: Agent,
-    critic: Option<Critic>,
-    rule: U,
     rng: AgentRng,
-    spec: &RunSpec,
-) -> Box<dyn Run>
-where
-    R: ActiveRows + Send + 'static,
-    U: PolicyGradientRule<R> + Send + 'static,
-{
-    into_run(task, PolicyGradientLearner { agent, critic, rule }, rng, spec)
+    terminate: bool,
 }
 
-fn with_rule<R, U>(task: BoxedTask<R, RunError>, agent: Agent, rule: U, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>
-where
-    R: ActiveRows + Send + 'static,
-    U: UpdateRule<R, Agent> + Send + 'static,
-{
-    into_run(task, TdLearner { agent, rule }, rng, spec)
-}
+impl<R: ActiveRows + Send + 'static> LearnerVisitor<R> for BoxedRun<R> {
+    type Output = Box<dyn Run>;
 
-fn into_run<R, L>(task: BoxedTask<R, RunError>, learner: L, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>
-where
-    R: ActiveRows + Send + 'static,
-    L: Learner<R> + Send + 'static,
-{
-    let learner = TruncationHandling { learner, terminate: spec.terminate_on_truncation };
-    Box::new(Trainer::new(task, learner, rng))
+    fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
+        let learner = TruncationHandling { learner, terminate: self.terminate };
+        Box::new(Trainer::new(self.task, learner, self.rng))
+    }
 }

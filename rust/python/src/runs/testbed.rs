@@ -1,15 +1,19 @@
 //! Runs on the k-armed testbed that record whether the optimal action was taken, compiled for what bandits are taught with.
 
 use pyo3::prelude::*;
-use qtab_core::learners::{GradientBandit, QLearning, TdLearner};
+use qtab_core::learners::{Agent, AnyAlgorithm, GradientBandit, QLearning, TdLearner};
+use qtab_core::random::Pcg64;
 use qtab_core::tasks::{KArmedBandit, Testbed};
-use qtab_core::{Budget, Learner, StopFlag, Trainer};
+use qtab_core::{Budget, Learner, QTable, StopFlag, Trainer};
 
 use super::agent::generic_agent;
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
 use crate::rng::{BitGenerator, agent_pcg64, environment_rng};
-use crate::spec::{AlgorithmSpec, RunSpec};
+use crate::spec::RunSpec;
+
+/// The number of actions in the book, with which the loops over actions are unrolled.
+const BOOK_ACTIONS: usize = 10;
 
 /// Trains until both slices are full, or `stop` is set: the reward of each step, and whether its action was optimal.
 pub(crate) fn run_testbed(
@@ -26,11 +30,16 @@ pub(crate) fn run_testbed(
     let mut rng = agent_pcg64(seed);
     let agent = generic_agent(spec, 1, 1, &mut rng, stop)?;
     let learned = match spec.algorithm {
-        AlgorithmSpec::QLearning => {
-            let trainer = Trainer::new(task, TdLearner { agent, rule: QLearning }, rng);
-            train(trainer, rewards, optimal, stop)
+        AnyAlgorithm::QLearning if spec.num_actions == BOOK_ACTIONS => {
+            let Agent { table, policy, learning_rate, discount, terminal_update, .. } = agent;
+            let table = QTable::<BOOK_ACTIONS>::new(table.values().to_vec(), BOOK_ACTIONS);
+            let agent = Agent { table, policy, learning_rate, discount, terminal_update, masks: None };
+            train(Trainer::new(task, TdLearner { agent, rule: QLearning }, rng), rewards, optimal, stop)
         }
-        AlgorithmSpec::GradientBandit { baseline } => {
+        AnyAlgorithm::QLearning => {
+            train(Trainer::new(task, TdLearner { agent, rule: QLearning }, rng), rewards, optimal, stop)
+        }
+        AnyAlgorithm::GradientBandit { baseline } => {
             let rule = GradientBandit::new(baseline, 1, stop).map_err(allocation)?;
             train(Trainer::new(task, TdLearner { agent, rule }, rng), rewards, optimal, stop)
         }
@@ -40,7 +49,7 @@ pub(crate) fn run_testbed(
 }
 
 fn train<L: Learner<[u32; 1]>>(
-    mut trainer: Trainer<KArmedBandit, L, qtab_core::random::Pcg64>,
+    mut trainer: Trainer<KArmedBandit, L, Pcg64>,
     rewards: &mut [f64],
     optimal: &mut [bool],
     stop: &StopFlag<'_>,

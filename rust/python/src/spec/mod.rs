@@ -11,10 +11,11 @@ mod product;
 mod schedule;
 
 use pyo3::prelude::*;
+use qtab_core::learners::AnyAlgorithm;
 use qtab_core::q_table::TerminalUpdate;
 
 pub(crate) use action_masks::ActionMasksSpec;
-pub(crate) use algorithm::{ALGORITHMS, AlgorithmSpec, TraceSpec};
+pub(crate) use algorithm::ALGORITHMS;
 pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType, TilesSpec};
 pub(crate) use fields::{Fields, Variant};
 pub(crate) use initial_q::InitialQSpec;
@@ -30,7 +31,7 @@ pub(crate) struct RunSpec {
     pub(crate) discretizer: DiscretizerSpec,
     pub(crate) num_actions: usize,
     pub(crate) max_episode_steps: u64,
-    pub(crate) algorithm: AlgorithmSpec,
+    pub(crate) algorithm: AnyAlgorithm,
     pub(crate) policy: PolicySpec,
     pub(crate) learning_rate: LearningRateSpec,
     pub(crate) discount: f64,
@@ -57,7 +58,7 @@ impl RunSpec {
             discretizer: DiscretizerSpec::parse(&fields.nested("discretizer")?)?,
             num_actions,
             max_episode_steps: fields.get("max_episode_steps")?,
-            algorithm: AlgorithmSpec::parse(&fields.nested("algorithm")?)?,
+            algorithm: algorithm::algorithm(&fields.nested("algorithm")?)?,
             policy: PolicySpec::parse(&fields.nested("policy")?, episodes)?,
             learning_rate: LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?,
             discount: fields.get("discount")?,
@@ -84,7 +85,7 @@ impl RunSpec {
         if self.terminal_update == TerminalUpdate::Assign {
             return Err(invalid("terminal_update", "'target' for tile coding", "'assign'"));
         }
-        if self.algorithm.needs_a_table() {
+        if self.algorithm.needs_single_rows() {
             return Err(invalid("algorithm", "an algorithm for several active rows for tile coding", "another"));
         }
         if matches!(self.policy, PolicySpec::Ucb { .. }) {

@@ -1,0 +1,206 @@
+//! An algorithm chosen at run time, and the learner that it makes of an agent.
+
+use super::{
+    ActorCritic, ActorCriticLambda, Agent, Critic, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, GradientBandit,
+    Learner, Model, NStepSarsa, PolicyGradientLearner, PolicyGradientRule, QLearning, Reinforce, Sarsa, SarsaLambda,
+    TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
+};
+use crate::features::ActiveRows;
+use crate::memory::AllocationError;
+use crate::{QTable, StopFlag};
+
+/// One of the algorithms with its options.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AnyAlgorithm {
+    /// [`QLearning`]
+    QLearning,
+    /// [`Sarsa`]
+    Sarsa,
+    /// [`ExpectedSarsa`]
+    ExpectedSarsa,
+    /// [`DoubleQLearning`]
+    DoubleQLearning,
+    /// [`NStepSarsa`]
+    NStepSarsa {
+        /// The number of rewards in a target, at least 1.
+        n_steps: usize,
+    },
+    /// [`SarsaLambda`]
+    SarsaLambda(TraceOptions),
+    /// [`TrueOnlineSarsaLambda`]
+    TrueOnlineSarsaLambda {
+        /// The trace decay λ.
+        trace_decay: f64,
+        /// Traces at or below this are dropped.
+        trace_cutoff: f64,
+    },
+    /// [`WatkinsQLambda`]
+    WatkinsQLambda(TraceOptions),
+    /// [`DynaQ`]
+    DynaQ {
+        /// The updates from the model after each step.
+        planning_steps: u32,
+    },
+    /// [`DynaQPlus`]
+    DynaQPlus {
+        /// The updates from the model after each step.
+        planning_steps: u32,
+        /// The weight κ of the bonus for actions not tried for long.
+        time_weight: f64,
+    },
+    /// [`GradientBandit`]
+    GradientBandit {
+        /// Whether rewards are compared with their average.
+        baseline: bool,
+    },
+    /// [`Reinforce`]
+    Reinforce,
+    /// [`Reinforce`] with a [`Critic`]
+    ReinforceWithBaseline {
+        /// The step size αʷ of the state values.
+        value_learning_rate: f64,
+    },
+    /// [`ActorCritic`]
+    ActorCritic {
+        /// The step size αʷ of the state values.
+        value_learning_rate: f64,
+    },
+    /// [`ActorCriticLambda`]
+    ActorCriticLambda {
+        /// The step size αʷ of the state values.
+        value_learning_rate: f64,
+        /// The trace decay λ.
+        trace_decay: f64,
+    },
+}
+
+/// The options of an algorithm whose eligibility traces are of a kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TraceOptions {
+    /// What a visit does to a trace.
+    pub kind: TraceKind,
+    /// The trace decay λ.
+    pub decay: f64,
+    /// Traces at or below this are dropped.
+    pub cutoff: f64,
+}
+
+/// What is done with the learner that [`AnyAlgorithm::learner`] makes, whichever its type.
+pub trait LearnerVisitor<R> {
+    /// The result.
+    type Output;
+
+    /// Takes the learner.
+    fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Self::Output;
+}
+
+impl AnyAlgorithm {
+    /// How many tables the algorithm learns.
+    pub fn n_tables(&self) -> usize {
+        if matches!(self, Self::DoubleQLearning) || self.value_learning_rate().is_some() { 2 } else { 1 }
+    }
+
+    /// Whether the algorithm learns a model or average rewards, for which each state must have a row of the table.
+    pub fn needs_single_rows(&self) -> bool {
+        matches!(self, Self::DynaQ { .. } | Self::DynaQPlus { .. } | Self::GradientBandit { .. })
+    }
+
+    /// The step size of the state values, which are the second table; `None` for an algorithm that learns none.
+    pub fn value_learning_rate(&self) -> Option<f64> {
+        match *self {
+            Self::ReinforceWithBaseline { value_learning_rate }
+            | Self::ActorCritic { value_learning_rate }
+            | Self::ActorCriticLambda { value_learning_rate, .. } => Some(value_learning_rate),
+            _ => None,
+        }
+    }
+
+    /// Whether the table holds preferences, of which the policy must be the softmax.
+    pub fn learns_preferences(&self) -> bool {
+        matches!(self, Self::GradientBandit { .. } | Self::Reinforce) || self.value_learning_rate().is_some()
+    }
+
+    /// Makes a learner of an agent and passes it to `visitor`. `second_table` is the other table of Double Q-learning, or
+    /// the state values of a critic.
+    /// `None` where the algorithm needs single rows and `R` holds several, or a second table and there is none.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn learner<R, V>(
+        self,
+        agent: Agent,
+        mut second_table: Option<QTable>,
+        stop: &StopFlag<'_>,
+        visitor: V,
+    ) -> Result<Option<V::Output>, AllocationError>
+    where
+        R: ActiveRows + Send + 'static,
+        V: LearnerVisitor<R>,
+    {
+        // Known when this is compiled, so that what needs single rows is left out of the code for several rows.
+        if self.needs_single_rows() && size_of::<R>() != size_of::<u32>() {
+            return Ok(None);
+        }
+        let (n_rows, num_actions) = agent.table.shape();
+        let critic = match self.value_learning_rate() {
+            Some(rate) => match second_table.take() {
+                Some(table) => Some(Critic { table, step_size: rate / agent.learning_rate.n_active() }),
+                None => return Ok(None),
+            },
+            None => None,
+        };
+        let new_model = || Model::new(n_rows, num_actions, stop);
+        let new_traces = |cutoff: f64| Traces::new(n_rows * num_actions, cutoff, stop);
+        Ok(Some(match self {
+            Self::QLearning => with_rule(agent, QLearning, visitor),
+            Self::Sarsa => with_rule(agent, Sarsa, visitor),
+            Self::ExpectedSarsa => with_rule(agent, ExpectedSarsa, visitor),
+            Self::DoubleQLearning => match second_table {
+                Some(second_table) => visitor.visit(DoubleQLearning::new(agent, second_table)),
+                None => return Ok(None),
+            },
+            Self::NStepSarsa { n_steps } => with_rule(agent, NStepSarsa::new(n_steps), visitor),
+            Self::SarsaLambda(TraceOptions { kind, decay, cutoff }) => {
+                with_rule(agent, SarsaLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, visitor)
+            }
+            Self::TrueOnlineSarsaLambda { trace_decay, trace_cutoff } => {
+                with_rule(agent, TrueOnlineSarsaLambda::new(new_traces(trace_cutoff)?, trace_decay), visitor)
+            }
+            Self::WatkinsQLambda(TraceOptions { kind, decay, cutoff }) => {
+                with_rule(agent, WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, visitor)
+            }
+            Self::DynaQ { planning_steps } => with_rule(agent, DynaQ::new(new_model()?, planning_steps), visitor),
+            Self::DynaQPlus { planning_steps, time_weight } => {
+                with_rule(agent, DynaQPlus::new(new_model()?, planning_steps, time_weight, stop)?, visitor)
+            }
+            Self::GradientBandit { baseline } => {
+                with_rule(agent, GradientBandit::new(baseline, n_rows, stop)?, visitor)
+            }
+            Self::Reinforce | Self::ReinforceWithBaseline { .. } => {
+                with_gradient(agent, critic, Reinforce::new(), visitor)
+            }
+            Self::ActorCritic { .. } => with_gradient(agent, critic, ActorCritic::new(), visitor),
+            Self::ActorCriticLambda { trace_decay, .. } => {
+                with_gradient(agent, critic, ActorCriticLambda::new(trace_decay, n_rows, stop)?, visitor)
+            }
+        }))
+    }
+}
+
+fn with_gradient<R, U, V>(agent: Agent, critic: Option<Critic>, rule: U, visitor: V) -> V::Output
+where
+    R: ActiveRows + Send + 'static,
+    U: PolicyGradientRule<R> + Send + 'static,
+    V: LearnerVisitor<R>,
+{
+    visitor.visit(PolicyGradientLearner { agent, critic, rule })
+}
+
+fn with_rule<R, U, V>(agent: Agent, rule: U, visitor: V) -> V::Output
+where
+    R: ActiveRows + Send + 'static,
+    U: UpdateRule<R, Agent> + Send + 'static,
+    V: LearnerVisitor<R>,
+{
+    visitor.visit(TdLearner { agent, rule })
+}
