@@ -94,7 +94,7 @@ def check_options(fields: Mapping[str, Any]) -> None:
     for name in OPTIONS:
         if is_set(fields[name]) and (reason := mismatch(name, fields[name], fields)):
             raise ValueError(reason)
-    for name in ("terminal_update", "learning_rate_schedule", "algorithm", "exploration"):
+    for name in ("terminal_update", "learning_rate_schedule", "algorithm", "exploration", "action_mask"):
         if reason := mismatch(name, fields[name], fields):
             raise ValueError(reason)
 
@@ -124,6 +124,9 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
         return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"
     if name == "exploration" and algorithm in PREFERENCES and value != "softmax":
         return f"exploration must be 'softmax' for algorithm {algorithm!r}, got {shown(value)}"
+    if name == "action_mask" and value is not False and algorithm in PREFERENCES and with_tiles:
+        # They update states after the next one is seen, and only the mask of the last one is known.
+        return f"action_mask must be False for algorithm {algorithm!r} with discretizer 'tiles', got {shown(value)}"
     if (name, value) == ("exploration", "ucb") and with_tiles:
         return other_choice(name, value, ("ucb",), "for discretizer 'tiles'")
     return None
