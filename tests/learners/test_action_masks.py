@@ -183,6 +183,20 @@ def test_an_environment_without_masks_and_a_function_that_fails_are_named() -> N
         qtab.train("FrozenLake-v1", action_mask=fails)
 
 
+def test_an_error_of_a_function_is_raised_whichever_state_it_was_asked_for() -> None:
+    def fails_far_away(observation: Any) -> Any:
+        return [True, True, True, observation.left]
+
+    def fails_at_the_goal(observation: Any) -> Any:
+        return [True] * 4 if observation < 15 else [1 / 0] * 4
+
+    for function, error in ((fails_far_away, AttributeError), (fails_at_the_goal, ZeroDivisionError)):
+        with pytest.raises(error) as caught:  # FrozenLake's goal, state 15, is terminal and never asked for in Python
+            qtab.train("FrozenLake-v1", action_mask=function, seed=0, episodes=1)
+        notes = getattr(caught.value, "__notes__", ["in action_mask("])
+        assert notes[0].startswith("in action_mask(")
+
+
 def test_a_state_that_is_never_reached_needs_no_mask() -> None:
     def only_of_the_start(observation: Any) -> Any:
         return {0: [1, 0, 0, 0]}[observation]

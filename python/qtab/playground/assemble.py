@@ -10,9 +10,10 @@ from typing import Any
 from qtab.playground.bundle import bundle
 from qtab.playground.definitions import definitions
 
-BUILD_COMMAND = "rustup target add wasm32-unknown-unknown && python rust/web/build.py"
+BUILD_COMMAND = "rustup target add wasm32-unknown-unknown && python rust/web/build_backend.py"
 """What builds the WebAssembly module in a checkout."""
 
+MODULE = "qtab.wasm"
 STYLE = '<link rel="stylesheet" href="style.css">'
 SCRIPT = '<script type="module" src="main.js"></script>'
 # No request can leave the page: not for scripts, styles, pictures or data.
@@ -76,7 +77,7 @@ def wasm() -> bytes:
         FileNotFoundError: if it was not built; the message says how to build it.
     """
     try:
-        return (_folder() / "qtab.wasm").read_bytes()
+        return (_folder() / MODULE).read_bytes()
     except FileNotFoundError:
         raise FileNotFoundError(
             "this installation has no WebAssembly module, because Rust's target wasm32-unknown-unknown was not there "

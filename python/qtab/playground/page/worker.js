@@ -60,7 +60,7 @@ function send(message) {
 }
 
 /** Begins the newest request. */
-function begin({ id, request, inspected }) {
+function begin({ id, request, inspected, later }) {
   run = null;
   const { environment, settings, seeds, map } = request;
   const described = call({ call: "start", environment, settings, seeds, ...(map ? { map } : {}) });
@@ -72,6 +72,7 @@ function begin({ id, request, inspected }) {
   };
   if (run.state === "paused") report();
   if (inspected !== null) run.inspected = inspected;
+  for (const message of later) handlers[message.type](message);
 }
 
 /** Trains for a slice. */
@@ -175,10 +176,10 @@ const handlers = {
     source = message.bytes ?? message.url;
   },
   start(message) {
-    pending = message;
+    pending = { ...message, later: [] };
   },
   advance({ unit, count }) {
-    if (!run || pending || run.state === "finished" || run.state === "diverged") return;
+    if (!run || run.state === "finished" || run.state === "diverged") return;
     if (unit === "step") {
       for (let step = 0; step < count; step++) call({ call: "step" });
       const { state, done } = call({ call: "advance", work: 0 });
@@ -212,9 +213,13 @@ const handlers = {
   },
 };
 
+// These act on the run that was asked for last, even if it has not begun.
+const ACTS_ON_RUN = ["advance", "run", "stop"];
+
 onmessage = ({ data }) => {
   try {
-    handlers[data.type]?.(data);
+    if (pending && ACTS_ON_RUN.includes(data.type)) pending.later.push(data);
+    else handlers[data.type]?.(data);
   } catch (error) {
     fail(run?.id, error);
   }

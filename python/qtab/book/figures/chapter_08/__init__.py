@@ -3,6 +3,10 @@
 from collections.abc import Sequence
 
 from qtab.book.experiment import Experiment
-from qtab.book.figures.chapter_08 import figure_8_2
+from qtab.book.figures.chapter_08 import figure_8_2, figure_8_7, figure_8_8
 
-EXPERIMENTS: Sequence[Experiment] = (figure_8_2.EXPERIMENT,)
+EXPERIMENTS: Sequence[Experiment] = (
+    figure_8_2.EXPERIMENT,
+    figure_8_7.EXPERIMENT,
+    figure_8_8.EXPERIMENT,
+)
