@@ -85,7 +85,9 @@ def versioned(folder: Path, tag: str, changelog: str) -> subprocess.CompletedPro
     ("tag", "heading", "version"),
     [("v3.4.5", "## [3.4.5] - 2031-01-02", "3.4.5"), ("v3.4.5-rc.1", "## [3.4.5] - unreleased", "3.4.5-rc.1")],
 )
-def test_the_version_of_a_tag_is_written_wherever_it_stands(tmp_path: Path, tag: str, heading: str, version: str) -> None:
+def test_the_version_of_a_tag_is_written_wherever_it_stands(
+    tmp_path: Path, tag: str, heading: str, version: str
+) -> None:
     assert versioned(tmp_path, tag, heading).returncode == 0
     crates = len(re.findall(r'^name = "qtab-', (ROOT / "Cargo.lock").read_text(encoding="utf-8"), re.MULTILINE))
     for name, places in zip(NAMES, (2, crates, 1), strict=True):
