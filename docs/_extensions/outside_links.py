@@ -19,9 +19,6 @@ PAGES = {
     "SECURITY.md": "docs/reference/security.md",
     "README.md": "docs/index.md",
     "README.md#install": "docs/install.md",
-    "README.md#how-fast": "docs/explanation/speed.md",
-    "README.md#learners-discretizers-actions": "docs/reference/choices.md",
-    "README.md#parts": "docs/install.md#parts",
 }
 """What the site shows instead of a file outside of ``docs/``, or of one of its sections."""
 
