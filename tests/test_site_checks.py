@@ -59,6 +59,9 @@ def test_links_out_of_the_documentation_become_pages_of_the_site() -> None:
     assert links.rewrite(text, "docs/how_to") == (
         "[a](../notebooks/study.ipynb) [b](../reference/contributing.md) [c](spaces.md) ![d](../gallery/x.png)"
     )
-    assert links.rewrite_notebook("[e](chapter_6.ipynb) [f](../docs/book.md#x)") == "[e](chapter_6.ipynb) [f](../book.md#x)"
+    assert (
+        links.rewrite_notebook("[e](chapter_6.ipynb) [f](../docs/book.md#x)")
+        == "[e](chapter_6.ipynb) [f](../book.md#x)"
+    )
     with pytest.raises(Exception, match="not a file of the repository"):
         links.rewrite("[g](../../nothing.md)", "docs/how_to")

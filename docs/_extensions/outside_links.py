@@ -1,7 +1,7 @@
 """Links that leave ``docs/``: they lead to files on GitHub, and to the pages that the site has instead of them.
 
-``[a notebook](../../examples/study.ipynb)`` becomes the page of that notebook, ``[README](../../README.md#install)`` the
-page with the same text, and any other file a download. So each page reads well in both places.
+``[a notebook](../../examples/study.ipynb)`` becomes the page of that notebook, ``[README](../../README.md#install)``
+the page with the same text, and any other file a download. So each page reads well in both places.
 """
 
 import json
