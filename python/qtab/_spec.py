@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._discretizer_spec import DiscretizerSpec as DiscretizerSpec
-from qtab.config.choices import BitGenerator, OnTruncation, TerminalUpdate, Ties, Traces
+from qtab.config.choices import BitGenerator, Model, OnTruncation, TargetPolicy, TerminalUpdate, Ties, Traces
 
 if TYPE_CHECKING:
     from qtab._core import NativeEnv
@@ -132,10 +132,18 @@ class UniformSpec(TypedDict):
 InitialQSpec: TypeAlias = TableSpec | UniformSpec | ConstantSpec
 
 
-class OneStepSpec(TypedDict):
+class PlainSpec(TypedDict):
     """An algorithm without options."""
 
-    type: Literal["q_learning", "sarsa", "expected_sarsa", "double_q_learning"]
+    type: Literal[
+        "q_learning",
+        "sarsa",
+        "expected_sarsa",
+        "double_q_learning",
+        "monte_carlo",
+        "monte_carlo_es",
+        "off_policy_monte_carlo",
+    ]
 
 
 class NStepSarsaSpec(TypedDict):
@@ -167,6 +175,7 @@ class DynaQSpec(TypedDict):
 
     type: Literal["dyna_q"]
     planning_steps: int
+    model: Model
 
 
 class DynaQPlusSpec(TypedDict):
@@ -177,8 +186,49 @@ class DynaQPlusSpec(TypedDict):
     time_weight: float
 
 
+class NStepTreeBackupSpec(TypedDict):
+    """n-step tree backup."""
+
+    type: Literal["n_step_tree_backup"]
+    n_steps: int
+    target_policy: TargetPolicy
+
+
+class NStepQSigmaSpec(TypedDict):
+    """n-step Q(sigma)."""
+
+    type: Literal["n_step_q_sigma"]
+    n_steps: int
+    sigma: float
+    target_policy: TargetPolicy
+
+
+class PrioritizedSweepingSpec(TypedDict):
+    """Prioritized sweeping."""
+
+    type: Literal["prioritized_sweeping"]
+    planning_steps: int
+    priority_threshold: float
+
+
+class DifferentialSpec(TypedDict):
+    """An algorithm for the average reward."""
+
+    type: Literal["differential_sarsa", "differential_q_learning"]
+    reward_learning_rate: float
+
+
 AlgorithmSpec: TypeAlias = (
-    OneStepSpec | NStepSarsaSpec | TraceSpec | TrueOnlineSarsaLambdaSpec | DynaQSpec | DynaQPlusSpec
+    PlainSpec
+    | NStepSarsaSpec
+    | TraceSpec
+    | TrueOnlineSarsaLambdaSpec
+    | DynaQSpec
+    | DynaQPlusSpec
+    | NStepTreeBackupSpec
+    | NStepQSigmaSpec
+    | PrioritizedSweepingSpec
+    | DifferentialSpec
 )
 
 

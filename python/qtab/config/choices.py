@@ -14,12 +14,22 @@ Algorithm: TypeAlias = Literal[
     "watkins_q_lambda",
     "dyna_q",
     "dyna_q_plus",
+    "monte_carlo",
+    "monte_carlo_es",
+    "off_policy_monte_carlo",
+    "n_step_tree_backup",
+    "n_step_q_sigma",
+    "prioritized_sweeping",
+    "differential_sarsa",
+    "differential_q_learning",
 ]
 LearningRateSchedule: TypeAlias = Literal["constant", "linear", "exponential", "visits"]
 Exploration: TypeAlias = Literal["epsilon_greedy", "softmax"]
 EpsilonSchedule: TypeAlias = Literal["constant", "linear", "exponential"]
 Ties: TypeAlias = Literal["first", "random"]
 Traces: TypeAlias = Literal["accumulating", "replacing", "clearing"]
+TargetPolicy: TypeAlias = Literal["greedy", "behavior"]
+Model: TypeAlias = Literal["deterministic", "stochastic"]
 DiscretizerName: TypeAlias = Literal["round", "bins", "edges", "tiles", "identity"]
 TerminalUpdate: TypeAlias = Literal["target", "assign"]
 OnTruncation: TypeAlias = Literal["bootstrap", "terminate"]
@@ -33,6 +43,8 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "epsilon_schedule": get_args(EpsilonSchedule),
     "ties": get_args(Ties),
     "traces": get_args(Traces),
+    "target_policy": get_args(TargetPolicy),
+    "model": get_args(Model),
     "discretizer": get_args(DiscretizerName),
     "terminal_update": get_args(TerminalUpdate),
     "on_truncation": get_args(OnTruncation),

@@ -23,7 +23,9 @@ from qtab.config.choices import (
     EpsilonSchedule,
     Exploration,
     LearningRateSchedule,
+    Model,
     OnTruncation,
+    TargetPolicy,
     TerminalUpdate,
     Ties,
     Traces,
@@ -80,10 +82,11 @@ class Config:
     """α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided among the
     tilings, and may be up to 2."""
     discount: float = 0.9
-    """γ: the discount factor, in [0, 1]."""
+    """γ: the discount factor, in [0, 1]. It must be 1, the default there, for algorithms that learn the average reward."""
     learning_rate_schedule: LearningRateSchedule = "constant"
     """How the learning rate falls: linearly or exponentially over the episodes, or (visits) as learning_rate / n at the
-    n-th visit of a state and action."""
+    n-th visit of a state and action. The default of Monte Carlo methods is visits, with a learning rate of 1: averages.
+    Off-policy Monte Carlo, which needs it, weights the visits."""
     min_learning_rate: float | None = None
     """The lowest learning rate of a schedule, in [0, learning_rate]."""
     learning_rate_decay: float | None = None
@@ -99,10 +102,21 @@ class Config:
     """Traces at or below this are dropped, in [0, 1]. With 0, only those that underflow to 0 are."""
     n_steps: int | None = None
     """n: the number of rewards in a target."""
+    sigma: float | None = None
+    """σ: the degree of sampling of Q(σ), from 0 (tree backup: expected values) to 1 (Sarsa: sampled actions)."""
+    target_policy: TargetPolicy | None = None
+    """The policy whose values are learned: the greedy one (greedy), or the one that acts (behavior)."""
     planning_steps: int | None = None
     """The number of updates from the model after each step."""
     time_weight: float | None = None
     """κ: Dyna-Q+ plans with a bonus of κ √τ on the reward of an action not tried for τ steps."""
+    model: Model | None = None
+    """What Dyna-Q plans with: what last followed a state and action (deterministic), or a sample of all that followed
+    it so far (stochastic)."""
+    priority_threshold: float | None = None
+    """θ: prioritized sweeping plans the updates that would change a value by more than this, before α."""
+    reward_learning_rate: float | None = None
+    """β: the step size of the average reward, in [0, 1]."""
     initial_q: float | tuple[float, float] | NDArray[np.float64] = (-1.0, 1.0)
     """The initial Q table: drawn uniformly from a range (low, high), one number everywhere, or an array to continue
     from. In an array, -inf marks an action that a state does not have and that is never chosen."""

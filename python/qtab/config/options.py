@@ -22,16 +22,27 @@ class Option:
 
 
 _WITH_TRACES = ("sarsa_lambda", "watkins_q_lambda")
+_WITH_TARGET_POLICY = ("n_step_tree_backup", "n_step_q_sigma")
 _FALLING = ("linear", "exponential")
+
+AVERAGE_REWARD = ("differential_sarsa", "differential_q_learning")
+"""The algorithms that learn the average reward, without a discount."""
+MONTE_CARLO = ("monte_carlo", "monte_carlo_es", "off_policy_monte_carlo")
+"""The algorithms that learn from the returns of whole episodes."""
 
 # A choice comes before the options that depend on it.
 OPTIONS: Mapping[str, Option] = {
     "trace_decay": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda"), 0.9),
     "traces": Option("algorithm", _WITH_TRACES, "replacing"),
     "trace_cutoff": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda"), 0.0),
-    "n_steps": Option("algorithm", ("n_step_sarsa",), 4),
-    "planning_steps": Option("algorithm", ("dyna_q", "dyna_q_plus"), 10),
+    "n_steps": Option("algorithm", ("n_step_sarsa", *_WITH_TARGET_POLICY), 4),
+    "sigma": Option("algorithm", ("n_step_q_sigma",), 0.5),
+    "target_policy": Option("algorithm", _WITH_TARGET_POLICY, "greedy"),
+    "planning_steps": Option("algorithm", ("dyna_q", "dyna_q_plus", "prioritized_sweeping"), 10),
     "time_weight": Option("algorithm", ("dyna_q_plus",), 1e-3),
+    "model": Option("algorithm", ("dyna_q",), "deterministic"),
+    "priority_threshold": Option("algorithm", ("prioritized_sweeping",), 1e-4),
+    "reward_learning_rate": Option("algorithm", AVERAGE_REWARD, 0.01),
     "min_learning_rate": Option("learning_rate_schedule", (*_FALLING, "visits"), 0.0),
     "learning_rate_decay": Option("learning_rate_schedule", ("exponential",), 0.999),
     "learning_rate_warm_up": Option("learning_rate_schedule", _FALLING, 0),
@@ -54,9 +65,17 @@ OPTIONS: Mapping[str, Option] = {
     "high": Option("discretizer", ("bins", "tiles"), None),
 }
 
-ONE_STEP = ("q_learning", "sarsa", "expected_sarsa", "double_q_learning", "dyna_q", "dyna_q_plus")
+ONE_STEP = (
+    "q_learning",
+    "sarsa",
+    "expected_sarsa",
+    "double_q_learning",
+    "dyna_q",
+    "dyna_q_plus",
+    "prioritized_sweeping",
+)
 """The algorithms that can assign a value at a terminal state, as the article does, if they learn a table."""
-TABLES_ONLY = ("dyna_q", "dyna_q_plus")
+TABLES_ONLY = ("dyna_q", "dyna_q_plus", *MONTE_CARLO, "prioritized_sweeping")
 """The algorithms that do not work with tile coding."""
 
 
@@ -74,7 +93,7 @@ def check_options(fields: Mapping[str, Any]) -> None:
     for name in OPTIONS:
         if is_set(fields[name]) and (reason := mismatch(name, fields[name], fields)):
             raise ValueError(reason)
-    for name in ("terminal_update", "learning_rate_schedule", "algorithm"):
+    for name in ("terminal_update", "learning_rate_schedule", "discount", "algorithm"):
         if reason := mismatch(name, fields[name], fields):
             raise ValueError(reason)
 
@@ -98,6 +117,10 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
             return "terminal_update must be 'target' for discretizer 'tiles', got 'assign'"
     if (name, value, algorithm) == ("learning_rate_schedule", "visits", "true_online_sarsa_lambda"):
         return other_choice(name, value, ("visits",), f"for algorithm {algorithm!r}")
+    if name == "learning_rate_schedule" and value != "visits" and algorithm == "off_policy_monte_carlo":
+        return f"{name} must be 'visits' for algorithm {algorithm!r}, got {shown(value)}"
+    if name == "discount" and value != 1 and algorithm in AVERAGE_REWARD:
+        return f"discount must be 1 for algorithm {algorithm!r}, which learns the average reward, got {shown(value)}"
     if name == "algorithm" and value in TABLES_ONLY and with_tiles:
         others = other_choice(name, value, TABLES_ONLY, "for discretizer 'tiles'")
         return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"

@@ -6,6 +6,14 @@ from qtab.reference.double_q_learning import double_q_learning
 from qtab.reference.dyna_q import dyna_q
 from qtab.reference.dyna_q_plus import dyna_q_plus
 from qtab.reference.expected_sarsa import expected_sarsa
+from qtab.reference.monte_carlo import monte_carlo
+from qtab.reference.monte_carlo_es import monte_carlo_es
+from qtab.reference.off_policy_monte_carlo import off_policy_monte_carlo
+from qtab.reference.n_step_tree_backup import n_step_tree_backup
+from qtab.reference.n_step_q_sigma import n_step_q_sigma
+from qtab.reference.prioritized_sweeping import prioritized_sweeping
+from qtab.reference.differential_sarsa import differential_sarsa
+from qtab.reference.differential_q_learning import differential_q_learning
 from qtab.reference.n_step_sarsa import n_step_sarsa
 from qtab.reference.q_learning import q_learning
 from qtab.reference.sarsa import sarsa
@@ -28,6 +36,14 @@ LEARNERS: Mapping[str, Callable[..., Result]] = {
         watkins_q_lambda,
         dyna_q,
         dyna_q_plus,
+        monte_carlo,
+        monte_carlo_es,
+        off_policy_monte_carlo,
+        n_step_tree_backup,
+        n_step_q_sigma,
+        prioritized_sweeping,
+        differential_sarsa,
+        differential_q_learning,
     )
 }
 """Each algorithm by its name."""
@@ -38,6 +54,14 @@ __all__ = [
     "double_q_learning",
     "dyna_q",
     "dyna_q_plus",
+    "monte_carlo",
+    "monte_carlo_es",
+    "off_policy_monte_carlo",
+    "n_step_tree_backup",
+    "n_step_q_sigma",
+    "prioritized_sweeping",
+    "differential_sarsa",
+    "differential_q_learning",
     "expected_sarsa",
     "n_step_sarsa",
     "q_learning",

@@ -1,11 +1,19 @@
 //! The learning algorithms, one per file. What they share is in `common`.
 
 mod common;
+mod differential_q_learning;
+mod differential_sarsa;
 mod double_q_learning;
 mod dyna_q;
 mod dyna_q_plus;
 mod expected_sarsa;
+mod monte_carlo;
+mod monte_carlo_es;
+mod n_step_q_sigma;
 mod n_step_sarsa;
+mod n_step_tree_backup;
+mod off_policy_monte_carlo;
+mod prioritized_sweeping;
 mod q_learning;
 mod sarsa;
 mod sarsa_lambda;
@@ -13,13 +21,22 @@ mod true_online_sarsa_lambda;
 mod watkins_q_lambda;
 
 pub use common::{
-    ActionMasks, Agent, Learner, Model, ModelEntry, TdLearner, TraceKind, Traces, TruncationHandling, UpdateRule,
+    ActionMasks, Agent, DynaModel, Learner, Model, ModelEntry, NStep, NStepMethod, PlanningProgress, StochasticModel,
+    TargetPolicy, TdLearner, TraceKind, Traces, TruncationHandling, UpdateRule, Visit,
 };
+pub use differential_q_learning::DifferentialQLearning;
+pub use differential_sarsa::DifferentialSarsa;
 pub use double_q_learning::DoubleQLearning;
 pub use dyna_q::DynaQ;
 pub use dyna_q_plus::DynaQPlus;
 pub use expected_sarsa::ExpectedSarsa;
-pub use n_step_sarsa::NStepSarsa;
+pub use monte_carlo::MonteCarlo;
+pub use monte_carlo_es::MonteCarloEs;
+pub use n_step_q_sigma::{NStepQSigma, QSigma};
+pub use n_step_sarsa::{NStepReturn, NStepSarsa};
+pub use n_step_tree_backup::{NStepTreeBackup, TreeBackup};
+pub use off_policy_monte_carlo::OffPolicyMonteCarlo;
+pub use prioritized_sweeping::PrioritizedSweeping;
 pub use q_learning::QLearning;
 pub use sarsa::Sarsa;
 pub use sarsa_lambda::SarsaLambda;

@@ -10,6 +10,9 @@ pub trait Policy {
     /// The expected value Σₐ π(a) Q(a), summed from left to right.
     fn expected_value(&mut self, values: &[f64]) -> f64;
 
+    /// The probability π(a) of an action.
+    fn probability(&mut self, values: &[f64], action: usize) -> f64;
+
     /// Called after every episode.
     fn end_episode(&mut self);
 }

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
 use qtab_core::learners::{
-    Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
-    TdLearner, Traces, TrueOnlineSarsaLambda, TruncationHandling, UpdateRule, WatkinsQLambda,
+    Agent, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model,
+    MonteCarlo, MonteCarloEs, NStepQSigma, NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping,
+    QLearning, Sarsa, SarsaLambda, StochasticModel, TdLearner, Traces, TrueOnlineSarsaLambda, TruncationHandling,
+    UpdateRule, WatkinsQLambda,
 };
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, VisitCounter};
@@ -18,7 +20,7 @@ use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
 use crate::rng::environment_rng;
-use crate::spec::{AlgorithmSpec, DiscretizerSpec, RunSpec, TilesSpec, TraceSpec};
+use crate::spec::{AlgorithmSpec, DiscretizerSpec, LearningRateSpec, RunSpec, TilesSpec, TraceSpec};
 
 /// Runs in an environment whose observations are `M` float32 numbers, with any discretizer of a Box.
 pub(crate) fn generic_box<E, const M: usize>(
@@ -149,11 +151,12 @@ where
     let weights = agent.table.values().len();
     let new_model = || Model::new(n_rows, spec.num_actions, stop).map_err(allocation);
     let new_traces = |cutoff: f64| Traces::new(weights, cutoff, stop).map_err(allocation);
-    // Known when this is compiled, so that Dyna is left out of the code for several rows.
+    let limit = spec.max_episode_steps;
+    // Known when this is compiled, so that what needs a table is left out of the code for several rows.
     let single_row = size_of::<R>() == size_of::<u32>();
     Ok(match spec.algorithm {
-        AlgorithmSpec::DynaQ { .. } | AlgorithmSpec::DynaQPlus { .. } if !single_row => {
-            return Err(invalid("discretizer", "one with one active row, for Dyna", "'tiles'"));
+        algorithm if !single_row && algorithm.needs_table() => {
+            return Err(invalid("discretizer", "one with one active row, for an algorithm for tables", "'tiles'"));
         }
         AlgorithmSpec::QLearning => with_rule(task, agent, QLearning, rng, spec),
         AlgorithmSpec::Sarsa => with_rule(task, agent, Sarsa, rng, spec),
@@ -172,12 +175,45 @@ where
         AlgorithmSpec::WatkinsQLambda(TraceSpec { kind, decay, cutoff }) => {
             with_rule(task, agent, WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, rng, spec)
         }
-        AlgorithmSpec::DynaQ { planning_steps } => {
+        AlgorithmSpec::DynaQ { planning_steps, stochastic: false } => {
             with_rule(task, agent, DynaQ::new(new_model()?, planning_steps), rng, spec)
+        }
+        AlgorithmSpec::DynaQ { planning_steps, stochastic: true } => {
+            let model = StochasticModel::new(n_rows, spec.num_actions, stop).map_err(allocation)?;
+            with_rule(task, agent, DynaQ::new(model, planning_steps), rng, spec)
         }
         AlgorithmSpec::DynaQPlus { planning_steps, time_weight } => {
             let rule = DynaQPlus::new(new_model()?, planning_steps, time_weight, stop).map_err(allocation)?;
             with_rule(task, agent, rule, rng, spec)
+        }
+        AlgorithmSpec::MonteCarlo => {
+            with_rule(task, agent, MonteCarlo::new(weights, limit, stop).map_err(allocation)?, rng, spec)
+        }
+        AlgorithmSpec::MonteCarloEs => {
+            with_rule(task, agent, MonteCarloEs::new(weights, limit, stop).map_err(allocation)?, rng, spec)
+        }
+        AlgorithmSpec::OffPolicyMonteCarlo => {
+            let LearningRateSpec::Visits { value, minimum } = spec.learning_rate else {
+                return Err(invalid("learning_rate", "'visits' for off-policy Monte Carlo", "a schedule"));
+            };
+            let rule = OffPolicyMonteCarlo::new(weights, limit, (value, minimum), stop).map_err(allocation)?;
+            with_rule(task, agent, rule, rng, spec)
+        }
+        AlgorithmSpec::NStepTreeBackup { n_steps, target_policy } => {
+            with_rule(task, agent, NStepTreeBackup::new(n_steps, target_policy), rng, spec)
+        }
+        AlgorithmSpec::NStepQSigma { n_steps, sigma, target_policy } => {
+            with_rule(task, agent, NStepQSigma::new(n_steps, sigma, target_policy), rng, spec)
+        }
+        AlgorithmSpec::PrioritizedSweeping { planning_steps, priority_threshold } => {
+            let rule = PrioritizedSweeping::new(new_model()?, planning_steps, priority_threshold, stop);
+            with_rule(task, agent, rule.map_err(allocation)?, rng, spec)
+        }
+        AlgorithmSpec::DifferentialSarsa { reward_learning_rate } => {
+            with_rule(task, agent, DifferentialSarsa::new(reward_learning_rate), rng, spec)
+        }
+        AlgorithmSpec::DifferentialQLearning { reward_learning_rate } => {
+            with_rule(task, agent, DifferentialQLearning::new(reward_learning_rate), rng, spec)
         }
     })
 }

@@ -83,8 +83,8 @@ impl RunSpec {
         if self.terminal_update == TerminalUpdate::Assign {
             return Err(invalid("terminal_update", "'target' for tile coding", "'assign'"));
         }
-        if matches!(self.algorithm, AlgorithmSpec::DynaQ { .. } | AlgorithmSpec::DynaQPlus { .. }) {
-            return Err(invalid("algorithm", "an algorithm without a model for tile coding", "Dyna-Q"));
+        if self.algorithm.needs_table() {
+            return Err(invalid("algorithm", "one for several active rows with tile coding", "one for tables"));
         }
         Ok(())
     }

@@ -67,6 +67,14 @@ impl<R, L: Learner<R>> Learner<R> for TruncationHandling<L> {
         self.learner.resume(next, rng)
     }
 
+    fn planning_updates(&self) -> Option<u64> {
+        self.learner.planning_updates()
+    }
+
+    fn average_reward(&self) -> Option<f64> {
+        self.learner.average_reward()
+    }
+
     fn end_episode(&mut self) {
         self.learner.end_episode();
     }
