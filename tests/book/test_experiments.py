@@ -214,7 +214,7 @@ def test_a_complete_figure_has_the_books_number_of_runs():
     assert counts["figure-6.5"] == 10_000
     assert counts["figure-8.2"] == 30
     assert {counts[f"figure-{number}"] for number in ("10.2", "10.3", "10.4", "12.10", "12.11")} == {100}
-    limits = {name: qtab.book.EXPERIMENTS[name].max_episode_steps for name in NAMES}
+    limits = {name: training_experiment(name).max_episode_steps for name in NAMES}
     assert {name for name, limit in limits.items() if limit == 20_000} == {"figure-10.3", "figure-10.4"}
     assert set(limits.values()) == {5_000, 20_000}
 

@@ -13,7 +13,9 @@ from support.posix import posix_only
 def test_without_a_name_the_experiments_are_listed(tmp_path):
     done = qtab_here("book", cwd=tmp_path)
     assert done.returncode == 0
-    assert [row.split()[0] for row in done.stdout.splitlines()] == list(qtab.book.EXPERIMENTS)
+    names = [row.split()[0] for row in done.stdout.splitlines() if row.startswith("  ")]
+    assert names == list(qtab.book.EXPERIMENTS)
+    assert "Chapter 6: Temporal-difference learning\n  example-6.5   Sarsa on the windy grid world\n" in done.stdout
 
 
 def test_an_experiment_prints_its_settings_and_its_table(tmp_path):
@@ -87,5 +89,20 @@ def test_ctrl_c_stops_an_experiment_and_leaves_no_file(tmp_path):
     assert not (tmp_path / "cliff.png").exists()
 
 
-def test_a_plot_without_an_experiment_is_refused(tmp_path):
-    assert "NAME must be given" in refused("book", "--plot", "maze.png", cwd=tmp_path)
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--plot", "maze.png"], "NAME must be given"),
+        (["--out", "figures"], "NAME must be given"),
+        (["all"], "--out must name a folder for qtab book all"),
+        (
+            ["all", "--out", "figures", "--plot", "maze.png"],
+            "--out must name a folder for qtab book all, without --plot",
+        ),
+        (["8.2", "--out", "figures"], "--out must be left out, except with qtab book all"),
+        (["all", "--out", "figures", "--runs", "0"], "--runs must be an integer of at least 1, got 0"),
+    ],
+)
+def test_a_file_or_a_folder_needs_its_experiments(arguments, message, tmp_path):
+    assert message in refused("book", *arguments, cwd=tmp_path)
+    assert not (tmp_path / "figures").exists()

@@ -62,7 +62,6 @@ WORDS: dict[str, dict[str, str]] = {
         "RustReset": "ToyTextMixin",
         "say_limit": "log_default_limit",
         "SubEnvironments": "PythonVectorEnv",
-        "sweeping": "sweeps",
         "TableTruth": "TabularSolver",
         "train_to_the_end": "train_unless_stopped",
         "ValleyTruth": "MountainCarSolver",
@@ -279,6 +278,5 @@ VARIABLES: dict[str, dict[str, str]] = {
 """Usual words, refused as the name of anything, a parameter or a local variable included."""
 
 ALLOWED: dict[tuple[str, str], str] = {
-    ("CHANGELOG.md", "sweeping"): "it tells what was renamed",
 }
 """Exceptions, by path and word, with the reason."""

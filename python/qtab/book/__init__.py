@@ -5,13 +5,15 @@
     result = qtab.book.run("10.4")
     print(result)
     result.plot()
+    qtab.book.run_all("figures")
 
 Each experiment is a module in the folder of its chapter in :mod:`qtab.book.figures`. It states the settings, and what
 the book leaves open.
 """
 
+from qtab.book.collection import run_all
 from qtab.book.experiment import Experiment
-from qtab.book.registry import CHAPTERS, EXPERIMENTS, find, run
+from qtab.book.registry import CHAPTERS, EXPERIMENTS, Chapter, find, run
 from qtab.book.result import Line, Result
 from qtab.book.setting import Setting
 from qtab.book.training_experiment import TrainingExperiment
@@ -20,6 +22,7 @@ from qtab.envs.grid_worlds import dyna_maze, windy_grid_world
 __all__ = [
     "CHAPTERS",
     "EXPERIMENTS",
+    "Chapter",
     "Experiment",
     "Line",
     "Result",
@@ -28,6 +31,7 @@ __all__ = [
     "dyna_maze",
     "find",
     "run",
+    "run_all",
     "windy_grid_world",
 ]
 

@@ -1,9 +1,7 @@
 """What an experiment is called, where it comes from, and how its table and figure are laid out."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
-
-MAX_EPISODE_STEPS = 5_000
-"""The time limit of an experiment that does not set another one."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -23,8 +21,10 @@ class Description:
     y_label: str
     table_x: tuple[float, ...] | None = None
     """The points that the printed table shows; None shows all."""
-    max_episode_steps: int = MAX_EPISODE_STEPS
-    """Episodes are truncated after this many steps. The book has no time limit."""
+    log_x: bool = False
+    """Whether the x axis is logarithmic."""
+    x_ticks: tuple[float, ...] | None = None
+    """Where the x axis is labeled; None lets matplotlib choose."""
     log_y: bool = False
     """Whether the y axis is logarithmic."""
     x_range: tuple[float, float] | None = None
@@ -41,6 +41,22 @@ class Description:
     def heading(self) -> str:
         """``"Figure 10.4: ..."``."""
         return f"{self.name.replace('-', ' ').capitalize()}: {self.title}"
+
+    def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:
+        """Returns how a result was made, in words.
+
+        Args:
+            counts: The numbers of runs of the lines.
+            runs: The number of runs that was asked for.
+            seed: The seed of the first run.
+        """
+        several = sorted(set(counts), reverse=True)
+        text = (
+            f"{' and '.join(f'{count:,}' for count in several)} {'run' if several == [1] else 'runs'} of each setting"
+        )
+        if runs != self.runs:
+            text += f" ({'FEWER' if runs < self.runs else 'more'} than the {self.runs:,} of the full figure)"
+        return f"{text}, seeds from {seed}"
 
     def __repr__(self) -> str:
         """One line."""

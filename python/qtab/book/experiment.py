@@ -40,7 +40,7 @@ class Experiment(Description, ABC):
         facts = {
             "run it": f"qtab.book.run({self.name!r})",
             "in the book": self.book,
-            "not in the book": self.unspecified,
+            **({"not in the book": self.unspecified} if self.unspecified else {}),
             "lines": "; ".join(self.line_names),
             "runs": f"{self.runs:,} of each setting",
             "axes": f"{self.y_label} by {self.x_label}",

@@ -1,6 +1,7 @@
 """All experiments of the book, by name and by number."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from qtab._utils.suggestions import did_you_mean
 from qtab.book.experiment import Experiment
@@ -19,23 +20,33 @@ from qtab.book.figures import (
 )
 from qtab.book.result import Result
 
-CHAPTERS: Mapping[int, Sequence[Experiment]] = {
-    2: chapter_02.EXPERIMENTS,
-    3: chapter_03.EXPERIMENTS,
-    4: chapter_04.EXPERIMENTS,
-    5: chapter_05.EXPERIMENTS,
-    6: chapter_06.EXPERIMENTS,
-    7: chapter_07.EXPERIMENTS,
-    8: chapter_08.EXPERIMENTS,
-    9: chapter_09.EXPERIMENTS,
-    10: chapter_10.EXPERIMENTS,
-    12: chapter_12.EXPERIMENTS,
-    13: chapter_13.EXPERIMENTS,
-}
-"""The experiments of each chapter."""
+
+@dataclass(frozen=True)
+class Chapter:
+    """A chapter of the book."""
+
+    number: int
+    title: str
+    experiments: Sequence[Experiment]
+
+
+CHAPTERS: Sequence[Chapter] = (
+    Chapter(2, "Multi-armed bandits", chapter_02.EXPERIMENTS),
+    Chapter(3, "Finite Markov decision processes", chapter_03.EXPERIMENTS),
+    Chapter(4, "Dynamic programming", chapter_04.EXPERIMENTS),
+    Chapter(5, "Monte Carlo methods", chapter_05.EXPERIMENTS),
+    Chapter(6, "Temporal-difference learning", chapter_06.EXPERIMENTS),
+    Chapter(7, "n-step bootstrapping", chapter_07.EXPERIMENTS),
+    Chapter(8, "Planning and learning with tabular methods", chapter_08.EXPERIMENTS),
+    Chapter(9, "On-policy prediction with approximation", chapter_09.EXPERIMENTS),
+    Chapter(10, "On-policy control with approximation", chapter_10.EXPERIMENTS),
+    Chapter(12, "Eligibility traces", chapter_12.EXPERIMENTS),
+    Chapter(13, "Policy gradient methods", chapter_13.EXPERIMENTS),
+)
+"""The chapters that have experiments."""
 
 EXPERIMENTS: Mapping[str, Experiment] = {
-    experiment.name: experiment for chapter in CHAPTERS.values() for experiment in chapter
+    experiment.name: experiment for chapter in CHAPTERS for experiment in chapter.experiments
 }
 """The experiments by name, ordered by chapter."""
 

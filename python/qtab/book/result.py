@@ -45,6 +45,10 @@ class Line:
     """The number of runs of the setting that diverged."""
     drawn: bool = True
     """Whether the figure shows the line."""
+    method: str = ""
+    """The method that decides the color of the line; empty means the name of the line."""
+    dashed: bool = False
+    """Whether the line is dashed."""
 
     def __repr__(self) -> str:
         """One line of text: the points are not shown."""
@@ -147,14 +151,10 @@ def _head(result: Result) -> Iterator[str]:
     experiment = result.experiment
     yield experiment.heading
     for name, text in (("the book", experiment.book), ("unspecified", experiment.unspecified)):
-        yield from _wrapped(f"{name}: {text}")
-    counts = sorted({line.runs for line in result.lines}, reverse=True)
-    runs = f"{' and '.join(f'{count:,}' for count in counts)} {'run' if counts == [1] else 'runs'} of each setting"
-    if result.runs != experiment.runs:
-        comparison = "FEWER" if result.runs < experiment.runs else "more"
-        runs += f" ({comparison} than the {experiment.runs:,} of the full figure)"
-    limit = f"episodes are truncated at {experiment.max_episode_steps:,} steps"
-    yield from _wrapped(f"{runs}, seeds from {result.seed}; {limit}; {result.seconds:.1f} s")
+        if text:
+            yield from _wrapped(f"{name}: {text}")
+    conditions = experiment.conditions([line.runs for line in result.lines], result.runs, result.seed)
+    yield from _wrapped(f"{conditions}; {result.seconds:.1f} s")
 
 
 def _wrapped(text: str) -> list[str]:

@@ -28,3 +28,7 @@ class Setting:
     """The maximum number of runs, where the book has fewer runs of this setting than of the others."""
     drawn: bool = True
     """Whether the figure shows the line; the table always does."""
+    method: str = ""
+    """The method that decides the color of the line; empty means the name of the line."""
+    dashed: bool = False
+    """Whether the line is dashed."""

@@ -2,7 +2,7 @@
 
 import dataclasses
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,8 @@ from qtab.book.result import Line, Result
 from qtab.book.runner import EpisodeLog, FloatArray
 from qtab.book.setting import Setting
 
+MAX_EPISODE_STEPS = 5_000
+"""The time limit of an experiment that does not set another one."""
 BATCH_RUNS = 5_000
 """Runs are trained and measured in batches of this size, which bounds the memory and moves the progress bar."""
 
@@ -26,6 +28,13 @@ class TrainingExperiment(Experiment):
     """An experiment that trains settings with many seeds."""
 
     settings: Sequence[Setting]
+    max_episode_steps: int = MAX_EPISODE_STEPS
+    """Episodes are truncated after this many steps. The book has no time limit."""
+
+    def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:
+        """Returns how a result was made, in words; see :meth:`Description.conditions`."""
+        limit = f"episodes are truncated at {self.max_episode_steps:,} steps"
+        return f"{super().conditions(counts, runs, seed)}; {limit}"
 
     @property
     def line_names(self) -> Sequence[str]:
@@ -90,8 +99,18 @@ def line_of(setting: Setting, samples: FloatArray, truncated: "NDArray[np.int64]
     runs, points = samples.shape
     error = samples.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(points, np.nan)
     x = np.arange(1.0, points + 1) if setting.x is None else np.array(setting.x, np.float64)
-    counts = np.broadcast_to(truncated, points), np.broadcast_to(diverged, points)
-    return Line(setting.line, x, samples.mean(axis=0), error, runs, *counts, setting.drawn)
+    return Line(
+        name=setting.line,
+        x=x,
+        mean=samples.mean(axis=0),
+        error=error,
+        runs=runs,
+        truncated=np.broadcast_to(truncated, points),
+        diverged=np.broadcast_to(diverged, points),
+        drawn=setting.drawn,
+        method=setting.method,
+        dashed=setting.dashed,
+    )
 
 
 def _joined(parts: list[Line]) -> Line:

@@ -15,6 +15,7 @@ from qtab.cli.usage import UsageError, usage_errors
 from qtab.plots.axes import check_format
 
 COMMAND = "qtab book"
+ALL = "all"
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class Arguments:
     """Run an experiment of Sutton & Barto's book with the book's number of runs, and print the results."""
 
     experiment: Annotated[tyro.conf.Positional[str | None], tyro.conf.arg(metavar="NAME")] = None
-    """figure-10.4, or 10.4 if no example has the same number; without a name, the experiments are listed."""
+    """figure-10.4, or 10.4 if no example has the same number, or all; without a name, the experiments are listed."""
     runs: Annotated[int | None, OPTIONAL_INT] = None
     """The number of runs of each setting; by default as many as in the book."""
     seed: Annotated[int, INT] = 0
@@ -31,6 +32,8 @@ class Arguments:
     """Draw the figure to this file; its suffix determines the format."""
     save: Path | None = None
     """Write all points to this CSV file."""
+    out: Path | None = None
+    """With all: the folder for the table, the points and the picture of each experiment; what is there is left out."""
     threads: Annotated[int | None, OPTIONAL_INT] = None
     """The number of threads; by default one per core. It does not change the results."""
 
@@ -38,12 +41,15 @@ class Arguments:
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
     options = parse(Arguments, COMMAND, arguments)
-    if options.experiment is None and (options.plot is not None or options.save is not None):
-        raise UsageError("NAME must be given with --plot or --save; qtab book lists the names")
     if options.experiment is None:
-        for name, experiment in book.EXPERIMENTS.items():
-            print_above(f"{name:14}{experiment.title}")
+        if any(path is not None for path in (options.plot, options.save, options.out)):
+            raise UsageError("NAME must be given with --plot, --save or --out; qtab book lists the names")
+        _list()
         return 0
+    if options.experiment == ALL:
+        return _run_all(options)
+    if options.out is not None:
+        raise UsageError("--out must be left out, except with qtab book all; --plot and --save write single files")
     with usage_errors(("runs", "seed", "threads", "plot", "save"), "name"):
         experiment = book.find(options.experiment)
         if options.plot is not None:
@@ -63,3 +69,24 @@ def run(arguments: list[str]) -> int:
         save_plot(result, options.plot)
         print_above(f"Saved the plot to {options.plot}")
     return 0
+
+
+def _list() -> None:
+    """Prints the experiments of each chapter."""
+    for chapter in book.CHAPTERS:
+        print_above(f"Chapter {chapter.number}: {chapter.title}")
+        for experiment in chapter.experiments:
+            print_above(f"  {experiment.name:14}{experiment.title}")
+
+
+def _run_all(options: Arguments) -> int:
+    if options.out is None or options.plot is not None or options.save is not None:
+        raise UsageError("--out must name a folder for qtab book all, without --plot and --save")
+    with usage_errors(("runs", "seed", "threads"), "name"):
+        book.run_all(options.out, options.runs, options.seed, threads=options.threads, on_start=_announce)
+    print_above(f"Saved {len(book.EXPERIMENTS)} experiments to {options.out}")
+    return 0
+
+
+def _announce(experiment: book.Experiment, done: bool) -> None:
+    print_above(f"{experiment.heading}{' (already there)' if done else ''}")

@@ -87,22 +87,29 @@ def palette(
     if colors is not None:
         return _given(keys if labels is None else labels, colors)
     if first is None and len(set(keys)) == len(keys):
-        algorithms = [_algorithm(key) for key in keys]
+        algorithms = [algorithm(key) for key in keys]
         if None not in algorithms:
-            return [color(CHOICES["algorithm"].index(str(name)), ax) for name in algorithms]
+            return [readable(algorithm_color(key), ax) for key in keys]
         if len(keys) > 2 and all(isinstance(key, int | float) and not isinstance(key, bool) for key in keys):
-            return _sequential(keys, ax)
+            return sequential(keys, ax)
     return [color((first or 0) + index, ax) for index in range(len(keys))]
 
 
-def _algorithm(key: Any) -> str | None:
+def algorithm_color(key: Any) -> str:
+    """Returns the color of the algorithm that a label names, the same in every plot; empty for other labels."""
+    name = algorithm(key)
+    return COLORS[CHOICES["algorithm"].index(name) % len(COLORS)] if name else ""
+
+
+def algorithm(key: Any) -> str | None:
     """Returns the algorithm that a label names, such as ``"sarsa"`` or ``"True online Sarsa(λ)"``; None for others."""
     words = str(key).lower().replace("(λ)", " lambda").replace("+", " plus").replace("-", " ").split()
     name = "_".join(words).replace("'s", "")
     return name if name in CHOICES["algorithm"] else None
 
 
-def _sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:
+def sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:
+    """Returns a color for each number, in their order."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 

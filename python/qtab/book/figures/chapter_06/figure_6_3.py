@@ -22,6 +22,8 @@ EXPERIMENT = TrainingExperiment(
             mean_return,
             x=(alpha,),
             max_runs=max_runs,
+            method=name,
+            dashed=kind == "interim",
         )
         for kind, episodes, max_runs in (("interim", 100, None), ("asymptotic", 100_000, 10))
         for name, algorithm in _ALGORITHMS.items()
@@ -30,5 +32,6 @@ EXPERIMENT = TrainingExperiment(
     runs=50_000,
     x_label="α",
     y_label="sum of rewards per episode",
+    x_ticks=ALPHAS,
     y_range=(-160, 0),
 )

@@ -4,6 +4,8 @@ from qtab.book.runner import EpisodeLog, FloatArray
 from qtab.book.setting import Setting
 from qtab.book.training_experiment import TrainingExperiment
 
+FINAL = 20
+"""The table's value at the end is the mean of so many episodes."""
 _BOOK = {"preset": "book", "learning_rate": 0.1, "discount": 1.0, "epsilon": 0.1, "ties": "random", "episodes": 300}
 
 
@@ -13,14 +15,29 @@ def left(log: EpisodeLog) -> FloatArray:
     return percentages
 
 
+def final_left(log: EpisodeLog) -> FloatArray:
+    """Returns (runs, 1): the percentage of the last 20 episodes that went left."""
+    percentages: FloatArray = left(log)[:, -FINAL:].mean(axis=1, keepdims=True)
+    return percentages
+
+
 EXPERIMENT = TrainingExperiment(
     name="figure-6.5",
     title="maximization bias",
     book="ε = 0.1, α = 0.1, γ = 1, initial values of zero, rewards of mean -0.1 and variance 1, ties at random; 10,000 "
     "runs of 300 episodes",
-    unspecified='the number of actions in B ("many"; 10 here)',
+    unspecified='the number of actions in B ("many"; 10 here). The greedy action in the target of Double Q-learning is '
+    "the first of several here, not a random one",
     settings=tuple(
-        Setting(name, "qtab/MaximizationBias-v0", {**_BOOK, "algorithm": algorithm}, left)
+        Setting(
+            name + suffix,
+            "qtab/MaximizationBias-v0",
+            {**_BOOK, "algorithm": algorithm},
+            measure,
+            x,
+            drawn=not suffix,
+        )
+        for suffix, measure, x in (("", left, None), (f", last {FINAL} episodes", final_left, (300.0,)))
         for name, algorithm in (("Q-learning", "q_learning"), ("Double Q-learning", "double_q_learning"))
     ),
     runs=10_000,

@@ -35,5 +35,7 @@ EXPERIMENT = TrainingExperiment(
     x_label="α × number of tilings (8)",
     y_label="steps per episode",
     max_episode_steps=20_000,
+    log_x=True,
+    x_ticks=ALPHAS,
     y_range=(215, 300),
 )

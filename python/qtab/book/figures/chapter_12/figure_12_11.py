@@ -35,5 +35,6 @@ EXPERIMENT = TrainingExperiment(
     runs=100,
     x_label="α × number of tilings (8)",
     y_label="reward per episode",
+    x_ticks=ALPHAS,
     y_range=(-550, -150),
 )

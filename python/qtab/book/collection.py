@@ -1,0 +1,83 @@
+"""All experiments of the book in a folder: the table, the points and the picture of each."""
+
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from qtab._utils import checks
+from qtab._utils.files import replacing
+from qtab._utils.versions import versions
+from qtab.book.experiment import Experiment
+from qtab.book.registry import EXPERIMENTS
+
+SUFFIXES = (".txt", ".csv", ".png")
+"""The files of an experiment: its table, its points, and its picture."""
+RECORD = "book.json"
+"""How each experiment in the folder was run: an experiment that was run otherwise is run again."""
+
+
+def run_all(
+    folder: "str | os.PathLike[str]",
+    runs: int | None = None,
+    seed: int = 0,
+    *,
+    threads: int | None = None,
+    progress: bool | None = None,
+    on_start: Callable[[Experiment, bool], None] | None = None,
+) -> None:
+    """Runs every experiment of the book and writes its table, its points and its picture to a folder.
+
+    An experiment whose files are there already, from a call with the same ``runs`` and ``seed`` and the same versions,
+    is not run again: a call that was interrupted continues with what is missing.
+
+    Args:
+        folder: The folder, which is created if it does not exist.
+        runs: The number of runs of each setting; None means as many as in the book.
+        seed: The seed of the first run of each setting.
+        threads: The number of threads; None means one per core. It does not change the results.
+        progress: Whether to show a progress bar for each experiment; None shows one on a terminal if it takes longer
+            than a second.
+        on_start: Called before each experiment with it, and whether it is left out because its files are there.
+
+    Raises:
+        KeyboardInterrupt: on Ctrl-C; what was written stays.
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        OSError: if a file cannot be written.
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+    from qtab.book.drawing import save_plot
+
+    target = checks.path("folder", folder)
+    for experiment in EXPERIMENTS.values():
+        experiment.check_arguments(runs, seed, threads)
+    target.mkdir(parents=True, exist_ok=True)
+    record = _read(target / RECORD)
+    how = {"runs": runs, "seed": seed, "versions": versions()}
+    for name, experiment in EXPERIMENTS.items():
+        files = [target / f"{name}{suffix}" for suffix in SUFFIXES]
+        done = record.get(name) == how and all(file.exists() for file in files)
+        if on_start is not None:
+            on_start(experiment, done)
+        if done:
+            continue
+        result = experiment.run(runs, seed, threads=threads, progress=progress)
+        table, points, picture = files
+        with replacing(table) as temporary:
+            temporary.write_text(f"{result}\n", encoding="utf-8")
+        result.save(points)
+        save_plot(result, picture)
+        record[name] = how
+        with replacing(target / RECORD) as temporary:
+            temporary.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
+
+
+def _read(path: Path) -> dict[str, Any]:
+    """Returns what is recorded; nothing where there is no record, or one that cannot be read."""
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return record if isinstance(record, dict) else {}

@@ -1,0 +1,76 @@
+"""Names at the right ends of lines, which read more easily than a legend."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from qtab.book.result import Line
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MAX_LABELS = 8
+"""More lines than this have a legend."""
+SIZE = 9.0
+"""The font size, in points."""
+LINE_HEIGHT = 1.25
+"""The least distance of two labels, in font sizes."""
+MAX_SHIFT = 3.0
+"""If a label had to move further from its line than this, in font sizes, all lines have a legend."""
+
+
+def label_ends(ax: "Axes", lines: Sequence[Line], colors: Sequence[Any]) -> bool:
+    """Writes the name of each line beside its last point inside the axes, in the color of the line.
+
+    Returns False, having written nothing, where the labels would not fit: then a legend is needed.
+    """
+    ends = [end for line in lines if (end := _last_point(ax, line)) is not None]
+    if not 0 < len(ends) == len(lines) <= MAX_LABELS:
+        return False
+    if len({x for x, _ in ends}) > 1:
+        return False  # a line leaves the axes before the right edge
+    pixels = SIZE * ax.figure.dpi / 72
+    wanted = np.array([ax.transData.transform(end)[1] for end in ends])
+    shifted = _spread(wanted, LINE_HEIGHT * pixels)
+    if np.abs(shifted - wanted).max() > MAX_SHIFT * pixels:
+        return False
+    for line, hue, end, shift in zip(lines, colors, ends, (shifted - wanted) * 72 / ax.figure.dpi, strict=True):
+        ax.annotate(
+            line.name,
+            end,
+            (6, shift),
+            textcoords="offset points",
+            color=hue,
+            fontsize=SIZE,
+            va="center",
+            annotation_clip=False,
+        )
+    return True
+
+
+def _last_point(ax: "Axes", line: Line) -> "tuple[float, float] | None":
+    (left, right), (low, high) = sorted(ax.get_xlim()), sorted(ax.get_ylim())
+    inside = (line.x >= left) & (line.x <= right) & (line.mean >= low) & (line.mean <= high)
+    if not inside.any():
+        return None
+    last = int(np.flatnonzero(inside)[-1])
+    return float(line.x[last]), float(line.mean[last])
+
+
+def _spread(wanted: Any, distance: float) -> Any:
+    """Returns heights at least a distance apart, in the same order, whose middle stays where it was in each cluster."""
+    order = np.argsort(wanted, kind="stable")
+    clusters: list[tuple[float, int]] = []  # the middle and the number of labels of each, from below
+    for height in wanted[order]:
+        clusters.append((float(height), 1))
+        while len(clusters) > 1:
+            (below, n_below), (above, n_above) = clusters[-2:]
+            if above - below >= distance * (n_below + n_above) / 2:
+                break
+            count = n_below + n_above
+            clusters[-2:] = [((below * n_below + above * n_above) / count, count)]
+    heights = [middle + distance * (index - (count - 1) / 2) for middle, count in clusters for index in range(count)]
+    spread = np.empty(len(wanted))
+    spread[order] = heights
+    return spread

@@ -1,0 +1,50 @@
+"""Lines of the book's figures."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from qtab.book.drawing.colors import line_colors
+from qtab.book.drawing.end_labels import label_ends
+from qtab.book.result import Result
+from qtab.plots.axes import axes_or_new
+from qtab.plots.labels import finish
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MAX_MARKERS = 40
+"""A line with more points than this is drawn without markers."""
+
+
+def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
+    """Draws the lines of a result with bands of two standard errors on each side, and returns the axes."""
+    experiment = result.experiment
+    ax = axes_or_new(ax)
+    drawn = [line for line in result.lines if line.drawn]
+    colors = line_colors(drawn, ax)
+    for line, hue in zip(drawn, colors, strict=True):
+        marker: dict[str, Any] = {"marker": "o", "markersize": 4} if len(line.x) <= MAX_MARKERS else {}
+        error = np.nan_to_num(line.error)
+        low, high = line.mean - 2 * error, line.mean + 2 * error
+        ax.fill_between(line.x, low, high, color=hue, alpha=0.25, linewidth=0)
+        style = "--" if line.dashed else "-"
+        ax.plot(line.x, line.mean, style, color=hue, linewidth=1.6, label=line.name, **marker)
+    if experiment.log_x:
+        ax.set_xscale("log")
+    if experiment.x_ticks is not None:
+        ax.set_xticks(experiment.x_ticks, [f"{tick:g}" for tick in experiment.x_ticks])
+        ax.set_xticks([], minor=True)
+    if experiment.log_y:
+        ax.set_yscale("log")
+        for axis in ("set_major_formatter", "set_minor_formatter"):
+            getattr(ax.yaxis, axis)("{x:,.0f}")
+    if experiment.x_range is not None:
+        ax.set_xlim(*experiment.x_range)
+    if experiment.y_range is not None:
+        ax.set_ylim(*experiment.y_range)
+    finish(ax, experiment.x_label, experiment.y_label, experiment.heading)
+    legend = ax.get_legend()
+    if legend is not None and label_ends(ax, drawn, colors):
+        legend.remove()
+    return ax
