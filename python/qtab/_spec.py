@@ -260,6 +260,7 @@ class RunSpec(TypedDict):
     policy: PolicySpec
     learning_rate: LearningRateSpec
     discount: float
+    count_bonus: float
     initial_q: InitialQSpec
     action_masks: ActionMasksSpec
     terminal_update: TerminalUpdate

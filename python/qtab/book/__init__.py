@@ -17,7 +17,7 @@ from qtab.book.registry import CHAPTERS, EXPERIMENTS, Chapter, find, run
 from qtab.book.result import Line, Result
 from qtab.book.setting import Setting
 from qtab.book.training_experiment import TrainingExperiment
-from qtab.envs.grid_worlds import dyna_maze, windy_grid_world
+from qtab.envs.grid_worlds import dyna_maze, grid_world, windy_grid_world
 
 __all__ = [
     "CHAPTERS",
@@ -30,6 +30,7 @@ __all__ = [
     "TrainingExperiment",
     "dyna_maze",
     "find",
+    "grid_world",
     "run",
     "run_all",
     "windy_grid_world",

@@ -146,6 +146,9 @@ class Config:
     temperature: float | None = None
     """τ: softmax chooses an action with probability proportional to exp(Q / τ); above 0."""
 
+    count_bonus: float = 0.0
+    """The bonus of exploration: the agent learns from the reward + count_bonus / √n at the n-th visit of a state and
+    action. 0 is none; it is not part of the returns."""
     action_mask: Mask = False
     """Which actions each observation has: those of the environment's masks (True), by its method action_masks() or else
     in info["action_mask"]; those of a function, from an observation to (actions,) booleans or 0 and 1; or all (False).

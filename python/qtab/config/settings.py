@@ -81,6 +81,7 @@ class SharedSettings(EnvironmentSettings, total=False):
     epsilon_warm_up: Integer | None
     ties: Ties | None
     temperature: Real | None
+    count_bonus: Real
     action_mask: bool | Callable[[Any], Any]
     discretizer: DiscretizerName | Callable[[Any], Any] | Mapping[str, Any]
     shape: Integer | Integers | None

@@ -9,7 +9,7 @@ from qtab.config.options import OPTIONS
 
 ADDED = (
     *("action_mask", "shape", "max_rows", "sigma", "target_policy", "model", "priority_threshold"),
-    "reward_learning_rate",
+    *("reward_learning_rate", "count_bonus"),
 )
 """Settings that earlier versions do not have: files hold them only where they differ from their defaults."""
 

@@ -222,6 +222,7 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "edges": _edges,
     "low": _each(checks.finite),
     "high": _each(checks.finite),
+    "count_bonus": _not_negative,
     "actions": _actions,
     "action_mask": mask_setting,
     "initial_q": _initial_q,

@@ -1,10 +1,12 @@
-"""Grid worlds of Sutton & Barto's book as transition tables.
+"""Grid worlds as transition tables: those of Sutton & Barto's book, and any that is drawn as text.
 
 A state is the number of a cell, counted row by row from the upper left corner.
 """
 
-from collections.abc import Callable
+from collections.abc import Mapping, Sequence
 
+from qtab._utils import checks
+from qtab._utils.shown import shown
 from qtab.envs.tabular import TabularEnv, Transition
 
 Cell = tuple[int, int]
@@ -28,8 +30,10 @@ WINDY_GRID_WORLD = (
 )
 """The map of the windy grid world, for ``layout=`` of pictures."""
 
-_WIND = (0, 0, 0, 1, 1, 1, 2, 2, 1, 0)
+WIND = (0, 0, 0, 1, 1, 1, 2, 2, 1, 0)
 """The number of cells by which the wind of each column shifts a move upwards."""
+
+WALL, START, GOAL, FREE = "#SG."
 
 DYNA_MAZE = (
     ".......#G",
@@ -47,14 +51,7 @@ def windy_grid_world() -> TabularEnv:
 
     Every move is shifted upwards by the wind of the column that it starts from. The shortest path takes 15 steps.
     """
-    rows, columns, start, goal = 7, 10, (3, 0), (3, 7)
-
-    def step(cell: Cell, action: int) -> Cell:
-        row, column = cell
-        down, right = _MOVES[action]
-        return _clip(row + down - _WIND[column], rows), _clip(column + right, columns)
-
-    return _grid_world(rows, columns, start, goal, step, step_reward=-1.0, goal_reward=-1.0)
+    return grid_world(WINDY_GRID_WORLD, wind=WIND, step_reward=-1.0, goal_reward=-1.0)
 
 
 def dyna_maze() -> TabularEnv:
@@ -62,40 +59,71 @@ def dyna_maze() -> TabularEnv:
 
     A move into an obstacle or off the grid leaves the agent in its cell. The shortest path takes 14 steps.
     """
-    rows, columns = len(DYNA_MAZE), len(DYNA_MAZE[0])
-    markers = {DYNA_MAZE[row][column]: (row, column) for row in range(rows) for column in range(columns)}
-
-    def step(cell: Cell, action: int) -> Cell:
-        down, right = _MOVES[action]
-        row, column = _clip(cell[0] + down, rows), _clip(cell[1] + right, columns)
-        return cell if DYNA_MAZE[row][column] == "#" else (row, column)
-
-    return _grid_world(rows, columns, markers["S"], markers["G"], step, step_reward=0.0, goal_reward=1.0)
+    return grid_world(DYNA_MAZE, step_reward=0.0, goal_reward=1.0)
 
 
-def _grid_world(
-    rows: int,
-    columns: int,
-    start: Cell,
-    goal: Cell,
-    step: Callable[[Cell, int], Cell],
+def grid_world(
+    layout: Sequence[str],
     *,
-    step_reward: float,
-    goal_reward: float,
+    wind: Sequence[int] | None = None,
+    step_reward: float = -1.0,
+    goal_reward: float = 0.0,
+    rewards: Mapping[Cell, float] | None = None,
 ) -> TabularEnv:
-    """Returns the environment of a deterministic ``step(cell, action) -> next cell``; the goal is terminal."""
+    """Returns the grid world that a map shows, with four actions: up, right, down, left.
 
-    def state(cell: Cell) -> int:
-        return cell[0] * columns + cell[1]
+    A move that would end in a wall leaves the agent in its cell, and the edge of the grid stops it.
+
+    Args:
+        layout: The rows of the map, of one length: ``"."`` a free cell, ``"#"`` a wall, ``"S"`` a start, ``"G"`` a
+            goal, which ends the episode. An episode begins in any of the starts with the same probability. Without a
+            goal only a time limit ends it.
+        wind: For each column the number of cells by which a move that begins there is shifted upwards.
+        step_reward: The reward of a step.
+        goal_reward: The reward of a step into a goal.
+        rewards: Other rewards, of the steps into certain cells, each given as (row, column).
+
+    Raises:
+        ValueError: if the map, the wind or a cell does not fit, or a reward is not finite.
+    """
+    rows, columns = _size(layout)
+    wind = [0] * columns if wind is None else list(wind)
+    if len(wind) != columns:
+        raise ValueError(f"wind must hold {columns} integers, one for each column, got {shown(wind)}")
+    shifts = [checks.integer("wind", shift, least=0) for shift in wind]
+    cells = [(row, column) for row in range(rows) for column in range(columns)]
+    starts = [cell for cell in cells if layout[cell[0]][cell[1]] == START]
+    if not starts:
+        raise ValueError(f"layout must have a start, {START!r}, got {shown(layout)}")
+    entered = {cell: goal_reward if layout[cell[0]][cell[1]] == GOAL else step_reward for cell in cells}
+    for cell, reward in (rewards or {}).items():
+        if cell not in entered:
+            raise ValueError(f"rewards must name cells (row, column) of the {rows} x {columns} grid, got {shown(cell)}")
+        entered[cell] = checks.finite("rewards", reward)
 
     def transition(cell: Cell, action: int) -> Transition:
-        next_cell = step(cell, action)
-        at_goal = next_cell == goal
-        return 1.0, state(next_cell), goal_reward if at_goal else step_reward, at_goal
+        (row, column), (down, right) = cell, _MOVES[action]
+        next_cell = _clip(row + down - shifts[column], rows), _clip(column + right, columns)
+        if layout[next_cell[0]][next_cell[1]] == WALL:
+            next_cell = cell
+        at_goal = layout[next_cell[0]][next_cell[1]] == GOAL
+        return 1.0, next_cell[0] * columns + next_cell[1], float(entered[next_cell]), at_goal
 
-    cells = [(row, column) for row in range(rows) for column in range(columns)]
-    table = {state(cell): {action: [transition(cell, action)] for action in _MOVES} for cell in cells}
-    return TabularEnv(table, [float(cell == start) for cell in cells])
+    table = {state: {action: [transition(cell, action)] for action in _MOVES} for state, cell in enumerate(cells)}
+    return TabularEnv(table, [float(cell in starts) / len(starts) for cell in cells])
+
+
+def _size(layout: Sequence[str]) -> tuple[int, int]:
+    """The rows and columns of a map, which is checked."""
+    rows = len(layout)
+    lengths = {len(row) for row in layout}
+    if isinstance(layout, str) or len(lengths) != 1 or 0 in lengths:
+        raise ValueError(f"layout must hold rows of one length, got {shown(layout)}")
+    if unknown := set("".join(layout)) - {WALL, START, GOAL, FREE}:
+        raise ValueError(
+            f"layout must consist of {FREE!r}, {WALL!r}, {START!r} and {GOAL!r}, got {shown(min(unknown))}"
+        )
+    return rows, lengths.pop()
 
 
 def _clip(index: int, count: int) -> int:

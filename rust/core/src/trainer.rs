@@ -89,6 +89,11 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         if self.episode.is_some() { finished } else { finished.saturating_sub(1) }
     }
 
+    /// The unfinished episode, if there is one: its return and its number of steps so far, and the action to take next.
+    pub fn unfinished_episode(&self) -> Option<(f64, i64, usize)> {
+        self.episode.as_ref().map(|episode| (episode.episode_return, episode.length, episode.action))
+    }
+
     /// Takes the finished episodes out. The run cannot be continued.
     pub fn take_episodes(&mut self) -> EpisodeLog {
         std::mem::take(&mut self.episodes)
@@ -235,7 +240,7 @@ mod tests {
             terminal_update: TerminalUpdate::Target,
             masks: None,
         };
-        let learner = TruncationHandling { learner: TdLearner { agent, rule: rule.clone() }, terminate };
+        let learner = TruncationHandling { learner: TdLearner { agent, rule: rule.clone() }, terminate, bonus: None };
         let mut whole = Trainer::new(task, learner, Pcg64::new(&seed));
         let mut in_parts = whole.clone();
         whole.advance(Budget { episodes: 2, work: u64::MAX }).expect("no bounds are left");

@@ -1,5 +1,6 @@
 //! The learning algorithms, one per file. What they share is in `common`.
 
+mod any_algorithm;
 mod common;
 mod differential_q_learning;
 mod differential_sarsa;
@@ -20,9 +21,10 @@ mod sarsa_lambda;
 mod true_online_sarsa_lambda;
 mod watkins_q_lambda;
 
+pub use any_algorithm::{AnyAlgorithm, LearnerVisitor, TraceOptions};
 pub use common::{
-    ActionMasks, Agent, DynaModel, Learner, Model, ModelEntry, NStep, NStepMethod, PlanningProgress, StochasticModel,
-    TargetPolicy, TdLearner, TraceKind, Traces, TruncationHandling, UpdateRule, Visit,
+    ActionMasks, Agent, CountBonus, DynaModel, Learner, Model, ModelEntry, NStep, NStepMethod, PlanningProgress,
+    StochasticModel, TargetPolicy, TdLearner, TraceKind, Traces, TruncationHandling, UpdateRule, Visit,
 };
 pub use differential_q_learning::DifferentialQLearning;
 pub use differential_sarsa::DifferentialSarsa;

@@ -48,6 +48,24 @@ impl CostToGo {
     /// # Errors
     /// `Stopped` after `stop` was set.
     pub fn new(car: MountainCar, max_steps: u64, stop: &StopFlag<'_>) -> Result<Self, PlanningError> {
+        Self::coarse(car, max_steps, 1, stop)
+    }
+
+    /// The same on a coarser grid, of every `finest_stride`-th point along both axes, where it is 1, 2, 4, 8 or 16: the
+    /// iteration then takes a fraction of the time, and values near the edges are off by more.
+    ///
+    /// # Errors
+    /// `Stopped` after `stop` was set.
+    ///
+    /// # Panics
+    /// For another stride.
+    pub fn coarse(
+        car: MountainCar,
+        max_steps: u64,
+        finest_stride: usize,
+        stop: &StopFlag<'_>,
+    ) -> Result<Self, PlanningError> {
+        assert!([1, 2, 4, 8, 16].contains(&finest_stride), "stride must be 1, 2, 4, 8 or 16, got {finest_stride}");
         let horizon = (max_steps as f64).clamp(HORIZON_BOUNDS.0, HORIZON_BOUNDS.1);
         let mut coarser = Self { car, points: [2, 2], steps: vec![0.0; 4], horizon };
         let mut stride = COARSEST_STRIDE;
@@ -56,7 +74,7 @@ impl CostToGo {
             let mut finer = Self { car, points, steps: vec![0.0; points[0] * points[1]], horizon };
             finer.steps = (0..finer.steps.len()).map(|point| coarser.steps(finer.state(point))).collect();
             finer.converge(stop)?;
-            if stride == 1 {
+            if stride == finest_stride {
                 return Ok(finer);
             }
             (coarser, stride) = (finer, stride / 2);

@@ -1,6 +1,7 @@
 //! Tasks: what a learner interacts with. An environment, its features and its time limit.
 
 mod boxed_task;
+mod changing_task;
 mod episode_recorder;
 mod native_task;
 mod rng_snapshot;
@@ -8,6 +9,7 @@ mod task;
 mod visit_counter;
 
 pub use boxed_task::BoxedTask;
+pub use changing_task::ChangingTask;
 pub use episode_recorder::{EpisodeRecorder, Recording, Recordings};
 pub use native_task::{NativeTask, TimedState};
 pub use rng_snapshot::RngSnapshot;

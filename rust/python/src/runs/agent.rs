@@ -2,14 +2,14 @@
 
 use pyo3::prelude::*;
 use qtab_core::StopFlag;
-use qtab_core::learners::Agent;
+use qtab_core::learners::{Agent, AnyAlgorithm};
 use qtab_core::memory::AllocationError;
 use qtab_core::policies::AnyPolicy;
 use qtab_core::random::Rng;
 use qtab_core::schedules::LearningRate;
 
 use crate::error::allocation;
-use crate::spec::{AlgorithmSpec, LearningRateSpec, PolicySpec, RunSpec};
+use crate::spec::{LearningRateSpec, PolicySpec, RunSpec};
 
 /// The agent of any learner, with its first table.
 pub(super) fn generic_agent(
@@ -22,7 +22,7 @@ pub(super) fn generic_agent(
     let shape = (n_rows, spec.num_actions);
     let masks = match spec.algorithm {
         // It plans with actions that it has not tried.
-        AlgorithmSpec::DynaQPlus { .. } if spec.action_masks.is_none() => {
+        AnyAlgorithm::DynaQPlus { .. } if spec.action_masks.is_none() => {
             spec.initial_q.masks(n_rows * spec.num_actions, spec.num_actions)?
         }
         _ => spec.action_masks.build(shape, n_active, stop)?,

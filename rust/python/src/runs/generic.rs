@@ -4,12 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
-use qtab_core::learners::{
-    Agent, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model,
-    MonteCarlo, MonteCarloEs, NStepQSigma, NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping,
-    QLearning, Sarsa, SarsaLambda, StochasticModel, TdLearner, Traces, TrueOnlineSarsaLambda, TruncationHandling,
-    UpdateRule, WatkinsQLambda,
-};
+use qtab_core::learners::{CountBonus, LearnerVisitor, TruncationHandling};
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, VisitCounter};
 use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
@@ -20,7 +15,7 @@ use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
 use crate::rng::environment_rng;
-use crate::spec::{AlgorithmSpec, DiscretizerSpec, LearningRateSpec, RunSpec, TilesSpec, TraceSpec};
+use crate::spec::{DiscretizerSpec, RunSpec, TilesSpec};
 
 /// Runs in an environment whose observations are `M` float32 numbers, with any discretizer of a Box.
 pub(crate) fn generic_box<E, const M: usize>(
@@ -93,6 +88,28 @@ where
     Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
 }
 
+/// Runs on a task of its own kind, whose states each have a row.
+pub(crate) fn task_runs<W>(
+    num_actions: usize,
+    num_rows: usize,
+    spec: &Arc<RunSpec>,
+    record: usize,
+    new_task: impl Fn(&Seed) -> W + Send + Sync + 'static,
+) -> PyResult<Box<dyn RunFactory>>
+where
+    W: RngSnapshot<Snapshot = (u64, Option<u32>)> + Task<Active: Send, State: Send> + Send + 'static,
+    RunError: From<W::Error> + From<TrainingError<W::Error>>,
+{
+    if spec.num_actions != num_actions {
+        return Err(invalid("num_actions", format!("{num_actions}, the environment's"), spec.num_actions));
+    }
+    let spec = Arc::clone(spec);
+    let build = move |seed: &Seed, stop: &StopFlag<'_>| {
+        boxed_run(new_task(seed), (num_rows, 1), seed, &spec, (record, stop), AnyRecordings::Native)
+    };
+    Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
+}
+
 /// A run of any learner, with recordings if asked for. `shape` is the number of rows and of active rows.
 pub(super) fn boxed_run<W>(
     task: W,
@@ -148,89 +165,33 @@ where
     R: ActiveRows + Send + 'static,
 {
     let agent = generic_agent(spec, n_rows, n_active, &mut rng, stop)?;
-    let weights = agent.table.values().len();
-    let new_model = || Model::new(n_rows, spec.num_actions, stop).map_err(allocation);
-    let new_traces = |cutoff: f64| Traces::new(weights, cutoff, stop).map_err(allocation);
-    let limit = spec.max_episode_steps;
-    // Known when this is compiled, so that what needs a table is left out of the code for several rows.
-    let single_row = size_of::<R>() == size_of::<u32>();
-    Ok(match spec.algorithm {
-        algorithm if !single_row && algorithm.needs_table() => {
-            return Err(invalid("discretizer", "one with one active row, for an algorithm for tables", "'tiles'"));
-        }
-        AlgorithmSpec::QLearning => with_rule(task, agent, QLearning, rng, spec),
-        AlgorithmSpec::Sarsa => with_rule(task, agent, Sarsa, rng, spec),
-        AlgorithmSpec::ExpectedSarsa => with_rule(task, agent, ExpectedSarsa, rng, spec),
-        AlgorithmSpec::DoubleQLearning => {
-            let second = spec.initial_q.table((1, 2), (n_rows, spec.num_actions), &mut rng, stop)?;
-            into_run(task, DoubleQLearning::new(agent, second), rng, spec)
-        }
-        AlgorithmSpec::NStepSarsa { n_steps } => with_rule(task, agent, NStepSarsa::new(n_steps), rng, spec),
-        AlgorithmSpec::SarsaLambda(TraceSpec { kind, decay, cutoff }) => {
-            with_rule(task, agent, SarsaLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, rng, spec)
-        }
-        AlgorithmSpec::TrueOnlineSarsaLambda { trace_decay, trace_cutoff } => {
-            with_rule(task, agent, TrueOnlineSarsaLambda::new(new_traces(trace_cutoff)?, trace_decay), rng, spec)
-        }
-        AlgorithmSpec::WatkinsQLambda(TraceSpec { kind, decay, cutoff }) => {
-            with_rule(task, agent, WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, rng, spec)
-        }
-        AlgorithmSpec::DynaQ { planning_steps, stochastic: false } => {
-            with_rule(task, agent, DynaQ::new(new_model()?, planning_steps), rng, spec)
-        }
-        AlgorithmSpec::DynaQ { planning_steps, stochastic: true } => {
-            let model = StochasticModel::new(n_rows, spec.num_actions, stop).map_err(allocation)?;
-            with_rule(task, agent, DynaQ::new(model, planning_steps), rng, spec)
-        }
-        AlgorithmSpec::DynaQPlus { planning_steps, time_weight } => {
-            let rule = DynaQPlus::new(new_model()?, planning_steps, time_weight, stop).map_err(allocation)?;
-            with_rule(task, agent, rule, rng, spec)
-        }
-        AlgorithmSpec::MonteCarlo => {
-            with_rule(task, agent, MonteCarlo::new(weights, limit, stop).map_err(allocation)?, rng, spec)
-        }
-        AlgorithmSpec::MonteCarloEs => {
-            with_rule(task, agent, MonteCarloEs::new(weights, limit, stop).map_err(allocation)?, rng, spec)
-        }
-        AlgorithmSpec::OffPolicyMonteCarlo => {
-            let LearningRateSpec::Visits { value, minimum } = spec.learning_rate else {
-                return Err(invalid("learning_rate", "'visits' for off-policy Monte Carlo", "a schedule"));
-            };
-            let rule = OffPolicyMonteCarlo::new(weights, limit, (value, minimum), stop).map_err(allocation)?;
-            with_rule(task, agent, rule, rng, spec)
-        }
-        AlgorithmSpec::NStepTreeBackup { n_steps, target_policy } => {
-            with_rule(task, agent, NStepTreeBackup::new(n_steps, target_policy), rng, spec)
-        }
-        AlgorithmSpec::NStepQSigma { n_steps, sigma, target_policy } => {
-            with_rule(task, agent, NStepQSigma::new(n_steps, sigma, target_policy), rng, spec)
-        }
-        AlgorithmSpec::PrioritizedSweeping { planning_steps, priority_threshold } => {
-            let rule = PrioritizedSweeping::new(new_model()?, planning_steps, priority_threshold, stop);
-            with_rule(task, agent, rule.map_err(allocation)?, rng, spec)
-        }
-        AlgorithmSpec::DifferentialSarsa { reward_learning_rate } => {
-            with_rule(task, agent, DifferentialSarsa::new(reward_learning_rate), rng, spec)
-        }
-        AlgorithmSpec::DifferentialQLearning { reward_learning_rate } => {
-            with_rule(task, agent, DifferentialQLearning::new(reward_learning_rate), rng, spec)
-        }
-    })
+    // The generator draws both tables before the run takes it over.
+    let second_table = match spec.algorithm.n_tables() {
+        1 => None,
+        tables => Some(spec.initial_q.table((1, tables), (n_rows, spec.num_actions), &mut rng, stop)?),
+    };
+    let bonus = match spec.count_bonus {
+        0.0 => None,
+        weight => Some(CountBonus::new(weight, (n_rows, spec.num_actions), stop).map_err(allocation)?),
+    };
+    let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation, bonus };
+    let run = spec.algorithm.learner::<R, _>(agent, second_table, stop, run).map_err(allocation)?;
+    run.ok_or_else(|| invalid("discretizer", "one with one active row, for an algorithm for tables", "'tiles'"))
 }
 
-fn with_rule<R, U>(task: BoxedTask<R, RunError>, agent: Agent, rule: U, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>
-where
-    R: ActiveRows + Send + 'static,
-    U: UpdateRule<R, Agent> + Send + 'static,
-{
-    into_run(task, TdLearner { agent, rule }, rng, spec)
+/// All of a run but its learner.
+struct BoxedRun<R> {
+    task: BoxedTask<R, RunError>,
+    rng: AgentRng,
+    terminate: bool,
+    bonus: Option<CountBonus>,
 }
 
-fn into_run<R, L>(task: BoxedTask<R, RunError>, learner: L, rng: AgentRng, spec: &RunSpec) -> Box<dyn Run>
-where
-    R: ActiveRows + Send + 'static,
-    L: Learner<R> + Send + 'static,
-{
-    let learner = TruncationHandling { learner, terminate: spec.terminate_on_truncation };
-    Box::new(Trainer::new(task, learner, rng))
+impl<R: ActiveRows + Send + 'static> LearnerVisitor<R> for BoxedRun<R> {
+    type Output = Box<dyn Run>;
+
+    fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
+        let learner = TruncationHandling { learner, terminate: self.terminate, bonus: self.bonus };
+        Box::new(Trainer::new(self.task, learner, self.rng))
+    }
 }

@@ -11,7 +11,7 @@ mod run;
 mod specialized;
 
 pub(crate) use factory::{RunBatch, RunFactory};
-pub(crate) use generic::{generic, generic_box};
+pub(crate) use generic::{generic, generic_box, task_runs};
 pub(crate) use python_env::PythonEnv;
 pub(crate) use python_task::python_run;
 pub(crate) use run::{AnyRecordings, BuiltRun, Run};

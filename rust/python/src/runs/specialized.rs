@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::batch::BatchedRun;
-use qtab_core::learners::{Agent, ExpectedSarsa, QLearning, Sarsa, TdLearner, UpdateRule};
+use qtab_core::learners::{Agent, AnyAlgorithm, ExpectedSarsa, QLearning, Sarsa, TdLearner, UpdateRule};
 use qtab_core::policies::{EpsilonGreedy, Policy, TieBreaking};
 use qtab_core::random::Pcg64;
 use qtab_core::schedules::{Schedule, StepSize};
@@ -17,7 +17,7 @@ use super::{AnyRecordings, Run, RunFactory, generic};
 use crate::convert::Seed;
 use crate::error::allocation;
 use crate::rng::{BitGenerator, agent_pcg64, environment_rng};
-use crate::spec::{AlgorithmSpec, LearningRateSpec, PolicySpec, RunSpec, ScheduleSpec};
+use crate::spec::{LearningRateSpec, PolicySpec, RunSpec, ScheduleSpec};
 
 /// A run of an update rule `U` with a policy `P` and a learning rate `A`.
 type OneStepRun<E, F, U, P, A, const N: usize> = Trainer<NativeTask<E, F>, TdLearner<U, Agent<N, P, A>>, Pcg64>;
@@ -74,9 +74,15 @@ where
         return generic(env, features, spec, record);
     };
     let one_step =
-        matches!(spec.algorithm, AlgorithmSpec::QLearning | AlgorithmSpec::Sarsa | AlgorithmSpec::ExpectedSarsa);
+        matches!(spec.algorithm, AnyAlgorithm::QLearning | AnyAlgorithm::Sarsa | AnyAlgorithm::ExpectedSarsa);
     let fits = spec.num_actions == N && env.num_actions() == N && spec.bit_generator == BitGenerator::Pcg64;
-    if !one_step || !fits || !spec.action_masks.is_none() || spec.terminate_on_truncation || record > 0 {
+    if !one_step
+        || !fits
+        || !spec.action_masks.is_none()
+        || spec.terminate_on_truncation
+        || spec.count_bonus != 0.0
+        || record > 0
+    {
         return generic(env, features, spec, record);
     }
     let builder = Builder::<E, F, N> { env, features, spec: Arc::clone(spec) };
@@ -114,10 +120,8 @@ where
     {
         let schedule = learning_rate.build(self.spec.episodes);
         match (self.spec.algorithm, learning_rate) {
-            (AlgorithmSpec::Sarsa, _) => self.with_rule(Sarsa, policy, schedule, Batching::one_by_one()),
-            (AlgorithmSpec::ExpectedSarsa, _) => {
-                self.with_rule(ExpectedSarsa, policy, schedule, Batching::one_by_one())
-            }
+            (AnyAlgorithm::Sarsa, _) => self.with_rule(Sarsa, policy, schedule, Batching::one_by_one()),
+            (AnyAlgorithm::ExpectedSarsa, _) => self.with_rule(ExpectedSarsa, policy, schedule, Batching::one_by_one()),
             (_, ScheduleSpec::Constant { value }) => self.with_rule(QLearning, policy, value, batching.constant),
             _ => self.with_rule(QLearning, policy, schedule, batching.scheduled),
         }

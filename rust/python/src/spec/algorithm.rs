@@ -1,82 +1,59 @@
 //! Which learner is trained, with its own options.
 
 use pyo3::prelude::*;
-use qtab_core::learners::{TargetPolicy, TraceKind};
+use qtab_core::learners::{AnyAlgorithm, TargetPolicy, TraceKind, TraceOptions};
 
+use super::LearningRateSpec;
 use super::fields::{Fields, Variant};
 use crate::error::invalid;
 
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum AlgorithmSpec {
-    QLearning,
-    Sarsa,
-    ExpectedSarsa,
-    DoubleQLearning,
-    NStepSarsa { n_steps: usize },
-    SarsaLambda(TraceSpec),
-    TrueOnlineSarsaLambda { trace_decay: f64, trace_cutoff: f64 },
-    WatkinsQLambda(TraceSpec),
-    DynaQ { planning_steps: u32, stochastic: bool },
-    DynaQPlus { planning_steps: u32, time_weight: f64 },
-    MonteCarlo,
-    MonteCarloEs,
-    OffPolicyMonteCarlo,
-    NStepTreeBackup { n_steps: usize, target_policy: TargetPolicy },
-    NStepQSigma { n_steps: usize, sigma: f64, target_policy: TargetPolicy },
-    PrioritizedSweeping { planning_steps: u32, priority_threshold: f64 },
-    DifferentialSarsa { reward_learning_rate: f64 },
-    DifferentialQLearning { reward_learning_rate: f64 },
-}
-
-/// Eligibility traces.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TraceSpec {
-    pub(crate) kind: TraceKind,
-    pub(crate) decay: f64,
-    pub(crate) cutoff: f64,
-}
-
 /// Every algorithm by its name. `qtab.config` lists the same names; a test compares the two lists.
-pub(crate) const ALGORITHMS: &[Variant<AlgorithmSpec>] = &[
-    ("q_learning", |_| Ok(AlgorithmSpec::QLearning)),
-    ("sarsa", |_| Ok(AlgorithmSpec::Sarsa)),
-    ("expected_sarsa", |_| Ok(AlgorithmSpec::ExpectedSarsa)),
-    ("double_q_learning", |_| Ok(AlgorithmSpec::DoubleQLearning)),
-    ("n_step_sarsa", |fields| n_steps(fields).map(|n_steps| AlgorithmSpec::NStepSarsa { n_steps })),
-    ("sarsa_lambda", |fields| TraceSpec::parse(fields).map(AlgorithmSpec::SarsaLambda)),
+pub(crate) const ALGORITHMS: &[Variant<AnyAlgorithm>] = &[
+    ("q_learning", |_| Ok(AnyAlgorithm::QLearning)),
+    ("sarsa", |_| Ok(AnyAlgorithm::Sarsa)),
+    ("expected_sarsa", |_| Ok(AnyAlgorithm::ExpectedSarsa)),
+    ("double_q_learning", |_| Ok(AnyAlgorithm::DoubleQLearning)),
+    ("n_step_sarsa", |fields| n_steps(fields).map(|n_steps| AnyAlgorithm::NStepSarsa { n_steps })),
+    ("sarsa_lambda", |fields| trace_options(fields).map(AnyAlgorithm::SarsaLambda)),
     ("true_online_sarsa_lambda", |fields| {
         let (trace_decay, trace_cutoff) = (fields.get("trace_decay")?, fields.get("trace_cutoff")?);
-        Ok(AlgorithmSpec::TrueOnlineSarsaLambda { trace_decay, trace_cutoff })
+        Ok(AnyAlgorithm::TrueOnlineSarsaLambda { trace_decay, trace_cutoff })
     }),
-    ("watkins_q_lambda", |fields| TraceSpec::parse(fields).map(AlgorithmSpec::WatkinsQLambda)),
+    ("watkins_q_lambda", |fields| trace_options(fields).map(AnyAlgorithm::WatkinsQLambda)),
     ("dyna_q", |fields| {
-        let stochastic = fields.word("model", &[("deterministic", false), ("stochastic", true)])?;
-        Ok(AlgorithmSpec::DynaQ { planning_steps: fields.get("planning_steps")?, stochastic })
+        let planning_steps = fields.get("planning_steps")?;
+        Ok(match fields.word("model", &[("deterministic", false), ("stochastic", true)])? {
+            false => AnyAlgorithm::DynaQ { planning_steps },
+            true => AnyAlgorithm::StochasticDynaQ { planning_steps },
+        })
     }),
     ("dyna_q_plus", |fields| {
         let (planning_steps, time_weight) = (fields.get("planning_steps")?, fields.get("time_weight")?);
-        Ok(AlgorithmSpec::DynaQPlus { planning_steps, time_weight })
+        Ok(AnyAlgorithm::DynaQPlus { planning_steps, time_weight })
     }),
-    ("monte_carlo", |_| Ok(AlgorithmSpec::MonteCarlo)),
-    ("monte_carlo_es", |_| Ok(AlgorithmSpec::MonteCarloEs)),
-    ("off_policy_monte_carlo", |_| Ok(AlgorithmSpec::OffPolicyMonteCarlo)),
+    // The settings of a run that some of them need besides are filled in afterwards.
+    ("monte_carlo", |_| Ok(AnyAlgorithm::MonteCarlo { max_episode_steps: 0 })),
+    ("monte_carlo_es", |_| Ok(AnyAlgorithm::MonteCarloEs { max_episode_steps: 0 })),
+    ("off_policy_monte_carlo", |_| {
+        Ok(AnyAlgorithm::OffPolicyMonteCarlo { max_episode_steps: 0, learning_rate: 1.0, min_learning_rate: 0.0 })
+    }),
     ("n_step_tree_backup", |fields| {
         let (n_steps, target_policy) = (n_steps(fields)?, target_policy(fields)?);
-        Ok(AlgorithmSpec::NStepTreeBackup { n_steps, target_policy })
+        Ok(AnyAlgorithm::NStepTreeBackup { n_steps, target_policy })
     }),
     ("n_step_q_sigma", |fields| {
         let (n_steps, target_policy) = (n_steps(fields)?, target_policy(fields)?);
-        Ok(AlgorithmSpec::NStepQSigma { n_steps, sigma: fields.get("sigma")?, target_policy })
+        Ok(AnyAlgorithm::NStepQSigma { n_steps, sigma: fields.get("sigma")?, target_policy })
     }),
     ("prioritized_sweeping", |fields| {
         let (planning_steps, priority_threshold) = (fields.get("planning_steps")?, fields.get("priority_threshold")?);
-        Ok(AlgorithmSpec::PrioritizedSweeping { planning_steps, priority_threshold })
+        Ok(AnyAlgorithm::PrioritizedSweeping { planning_steps, priority_threshold })
     }),
     ("differential_sarsa", |fields| {
-        Ok(AlgorithmSpec::DifferentialSarsa { reward_learning_rate: fields.get("reward_learning_rate")? })
+        Ok(AnyAlgorithm::DifferentialSarsa { reward_learning_rate: fields.get("reward_learning_rate")? })
     }),
     ("differential_q_learning", |fields| {
-        Ok(AlgorithmSpec::DifferentialQLearning { reward_learning_rate: fields.get("reward_learning_rate")? })
+        Ok(AnyAlgorithm::DifferentialQLearning { reward_learning_rate: fields.get("reward_learning_rate")? })
     }),
 ];
 
@@ -91,38 +68,35 @@ fn target_policy(fields: &Fields<'_>) -> PyResult<TargetPolicy> {
     fields.word("target_policy", &[("greedy", TargetPolicy::Greedy), ("behavior", TargetPolicy::Behavior)])
 }
 
-impl AlgorithmSpec {
-    pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
-        fields.tagged(ALGORITHMS)
-    }
-
-    /// Whether it needs a table with one row for each state.
-    pub(crate) fn needs_table(&self) -> bool {
-        matches!(
-            self,
-            Self::DynaQ { .. }
-                | Self::DynaQPlus { .. }
-                | Self::MonteCarlo
-                | Self::MonteCarloEs
-                | Self::OffPolicyMonteCarlo
-                | Self::PrioritizedSweeping { .. }
-        )
-    }
-
-    /// How many tables the algorithm learns.
-    pub(crate) fn n_tables(&self) -> usize {
-        if matches!(self, Self::DoubleQLearning) { 2 } else { 1 }
-    }
+/// Parses an algorithm by its name. Monte Carlo methods also need the time limit, and the off-policy one the learning rate.
+pub(crate) fn algorithm(
+    fields: &Fields<'_>,
+    max_episode_steps: u64,
+    learning_rate: LearningRateSpec,
+) -> PyResult<AnyAlgorithm> {
+    Ok(match fields.tagged(ALGORITHMS)? {
+        AnyAlgorithm::MonteCarlo { .. } => AnyAlgorithm::MonteCarlo { max_episode_steps },
+        AnyAlgorithm::MonteCarloEs { .. } => AnyAlgorithm::MonteCarloEs { max_episode_steps },
+        AnyAlgorithm::OffPolicyMonteCarlo { .. } => match learning_rate {
+            LearningRateSpec::Visits { value, minimum } => AnyAlgorithm::OffPolicyMonteCarlo {
+                max_episode_steps,
+                learning_rate: value,
+                min_learning_rate: minimum,
+            },
+            LearningRateSpec::Schedule(_) => {
+                return Err(invalid("learning_rate", "'visits' for 'off_policy_monte_carlo'", "a schedule"));
+            }
+        },
+        algorithm => algorithm,
+    })
 }
 
-impl TraceSpec {
-    fn parse(fields: &Fields<'_>) -> PyResult<Self> {
-        let kinds = [
-            ("accumulating", TraceKind::Accumulating),
-            ("replacing", TraceKind::Replacing),
-            ("clearing", TraceKind::Clearing),
-        ];
-        let kind = fields.word("traces", &kinds)?;
-        Ok(Self { kind, decay: fields.get("trace_decay")?, cutoff: fields.get("trace_cutoff")? })
-    }
+fn trace_options(fields: &Fields<'_>) -> PyResult<TraceOptions> {
+    let kinds = [
+        ("accumulating", TraceKind::Accumulating),
+        ("replacing", TraceKind::Replacing),
+        ("clearing", TraceKind::Clearing),
+    ];
+    let kind = fields.word("traces", &kinds)?;
+    Ok(TraceOptions { kind, decay: fields.get("trace_decay")?, cutoff: fields.get("trace_cutoff")? })
 }

@@ -11,10 +11,11 @@ mod product;
 mod schedule;
 
 use pyo3::prelude::*;
+use qtab_core::learners::AnyAlgorithm;
 use qtab_core::q_table::TerminalUpdate;
 
 pub(crate) use action_masks::ActionMasksSpec;
-pub(crate) use algorithm::{ALGORITHMS, AlgorithmSpec, TraceSpec};
+pub(crate) use algorithm::ALGORITHMS;
 pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType, TilesSpec};
 pub(crate) use fields::{Fields, Variant};
 pub(crate) use initial_q::InitialQSpec;
@@ -30,10 +31,12 @@ pub(crate) struct RunSpec {
     pub(crate) discretizer: DiscretizerSpec,
     pub(crate) num_actions: usize,
     pub(crate) max_episode_steps: u64,
-    pub(crate) algorithm: AlgorithmSpec,
+    pub(crate) algorithm: AnyAlgorithm,
     pub(crate) policy: PolicySpec,
     pub(crate) learning_rate: LearningRateSpec,
     pub(crate) discount: f64,
+    /// The weight of the bonus for rarely visited state-action pairs; 0 for none.
+    pub(crate) count_bonus: f64,
     pub(crate) initial_q: InitialQSpec,
     pub(crate) action_masks: ActionMasksSpec,
     pub(crate) terminal_update: TerminalUpdate,
@@ -53,14 +56,17 @@ impl RunSpec {
         if num_actions == 0 {
             return Err(invalid("num_actions", "at least 1", num_actions));
         }
+        let (max_episode_steps, learning_rate) =
+            (fields.get("max_episode_steps")?, LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?);
         let spec = Self {
             discretizer: DiscretizerSpec::parse(&fields.nested("discretizer")?)?,
             num_actions,
-            max_episode_steps: fields.get("max_episode_steps")?,
-            algorithm: AlgorithmSpec::parse(&fields.nested("algorithm")?)?,
+            max_episode_steps,
+            algorithm: algorithm::algorithm(&fields.nested("algorithm")?, max_episode_steps, learning_rate)?,
             policy: PolicySpec::parse(&fields.nested("policy")?, episodes)?,
-            learning_rate: LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?,
+            learning_rate,
             discount: fields.get("discount")?,
+            count_bonus: fields.get("count_bonus")?,
             initial_q: InitialQSpec::parse(&fields.nested("initial_q")?)?,
             action_masks: ActionMasksSpec::parse(&fields.nested("action_masks")?)?,
             terminal_update: fields
@@ -83,7 +89,7 @@ impl RunSpec {
         if self.terminal_update == TerminalUpdate::Assign {
             return Err(invalid("terminal_update", "'target' for tile coding", "'assign'"));
         }
-        if self.algorithm.needs_table() {
+        if self.algorithm.needs_single_rows() {
             return Err(invalid("algorithm", "one for several active rows with tile coding", "one for tables"));
         }
         Ok(())

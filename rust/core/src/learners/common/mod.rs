@@ -3,6 +3,7 @@
 mod action_masks;
 mod agent;
 mod average_reward;
+mod count_bonus;
 mod dyna_model;
 mod eligible_weights;
 mod episode_steps;
@@ -31,6 +32,7 @@ pub(in crate::learners) use agent::available;
 pub(in crate::learners) use agent::row_work;
 pub(crate) use agent::{MAX_WORK_PER_CALL, VALUES_PER_WORK};
 pub(in crate::learners) use average_reward::AverageReward;
+pub use count_bonus::CountBonus;
 pub use dyna_model::DynaModel;
 pub(in crate::learners) use episode_steps::EpisodeSteps;
 pub(in crate::learners) use first_visits::{FirstVisits, step_of};

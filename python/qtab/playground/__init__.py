@@ -1,0 +1,9 @@
+"""The playground: one page that trains in the browser, with the core crate in WebAssembly.
+
+``qtab playground`` opens it; :func:`page` returns it as one self-contained HTML file.
+"""
+
+from qtab.playground.assemble import page, write_site
+from qtab.playground.definitions import definitions
+
+__all__ = ["definitions", "page", "write_site"]

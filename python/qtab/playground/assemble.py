@@ -1,0 +1,100 @@
+"""The playground as one self-contained HTML file, or as the files of a site."""
+
+import base64
+import json
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+from qtab.playground.bundle import bundle
+from qtab.playground.definitions import definitions
+
+BUILD_COMMAND = "rustup target add wasm32-unknown-unknown && python rust/web/build.py"
+"""What builds the WebAssembly module in a checkout."""
+
+STYLE = '<link rel="stylesheet" href="style.css">'
+SCRIPT = '<script type="module" src="main.js"></script>'
+# No request can leave the page: not for scripts, styles, pictures or data.
+POLICY = (
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline' "
+    "'wasm-unsafe-eval' blob:; style-src 'unsafe-inline'; img-src data: blob:; worker-src blob:; base-uri 'none'; "
+    "form-action 'none'\">"
+)
+
+
+def page() -> str:
+    """Returns the playground as one HTML file, with the WebAssembly module inside.
+
+    Raises:
+        FileNotFoundError: if the module was not built; the message says how to build it.
+    """
+    sources = _sources()
+    html = _text("index.html")
+    for line in (STYLE, SCRIPT):
+        if line not in html:
+            raise ValueError(f"index.html must hold the line {line}")
+    style = f"<style>\n{_text('style.css')}\n</style>"
+    script = f'<script type="module">\n{bundle(sources, "main.js")}\n</script>'
+    html = html.replace(STYLE, f"{POLICY}\n{style}")
+    return html.replace(SCRIPT, f"{data_script(sources)}\n{script}")
+
+
+def data_script(sources: dict[str, str] | None = None) -> str:
+    """Returns the script that holds what engine.js would otherwise load: the module, the worker, the definitions."""
+    sources = _sources() if sources is None else sources
+    data = {
+        "wasm": base64.b64encode(wasm()).decode(),
+        "worker": bundle(sources, "worker.js"),
+        "definitions": definitions(),
+    }
+    return f"<script>globalThis.QTAB_PLAYGROUND = {_json(data)};</script>"
+
+
+def write_site(folder: Path) -> None:
+    """Writes the playground as separate files, for a site: index.html, the modules, the definitions, qtab.wasm.
+
+    Raises:
+        FileNotFoundError: if the WebAssembly module was not built; the message says how to build it.
+    """
+    module = wasm()
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in ("index.html", "style.css"):
+        (folder / name).write_text(_text(name), encoding="utf-8")
+    for name, source in _sources().items():
+        (folder / name).write_text(source, encoding="utf-8")
+    (folder / "definitions.json").write_text(_json(definitions()), encoding="utf-8")
+    (folder / "qtab.wasm").write_bytes(module)
+
+
+def wasm() -> bytes:
+    """Returns the WebAssembly module.
+
+    Raises:
+        FileNotFoundError: if it was not built; the message says how to build it.
+    """
+    try:
+        return (_folder() / "qtab.wasm").read_bytes()
+    except FileNotFoundError:
+        raise FileNotFoundError(
+            "this installation has no WebAssembly module, because Rust's target wasm32-unknown-unknown was not there "
+            f"when it was built; in a checkout, build it with: {BUILD_COMMAND}"
+        ) from None
+
+
+def _folder() -> Traversable:
+    return files("qtab.playground") / "page"
+
+
+def _text(name: str) -> str:
+    return (_folder() / name).read_text(encoding="utf-8")
+
+
+def _sources() -> dict[str, str]:
+    """The text of each module by its file name."""
+    return {file.name: file.read_text(encoding="utf-8") for file in _folder().iterdir() if file.name.endswith(".js")}
+
+
+def _json(data: Any) -> str:
+    """JSON that may stand in a script of a page."""
+    return json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")

@@ -1,0 +1,55 @@
+"""ES modules as one script, so that a page works from a single file: browsers load no modules from ``file://``."""
+
+import re
+from collections.abc import Mapping
+from graphlib import CycleError, TopologicalSorter
+
+_IMPORT = re.compile(
+    r"""^import\s+(?:\{(?P<names>[^}]*)\}\s+from\s+)?["']\./(?P<file>[\w.-]+)["'];?[ \t]*$""", re.MULTILINE
+)
+_DECLARED = re.compile(r"^export\s+(?=(?:async\s+)?(?:function\*?|class|const)\s+(?P<name>\w+))", re.MULTILINE)
+_OTHER = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
+
+
+def bundle(sources: Mapping[str, str], entry: str) -> str:
+    """Returns one script that does what the module ``entry`` does.
+
+    Args:
+        sources: The text of each module by its file name. The modules may use ``import { a, b as c } from "./a.js"``,
+            ``import "./a.js"`` and ``export`` before a function, a class or a const.
+        entry: The module to begin with.
+
+    Raises:
+        ValueError: for other imports and exports, a missing module, or modules that import each other in a circle.
+    """
+    needed: dict[str, set[str]] = {}
+    waiting = [entry]
+    while waiting:
+        name = waiting.pop()
+        if name in needed:
+            continue
+        if name not in sources:
+            raise ValueError(f"the module {name} is missing")
+        needed[name] = {found["file"] for found in _IMPORT.finditer(sources[name])}
+        waiting.extend(needed[name])
+    try:
+        order = list(TopologicalSorter(needed).static_order())
+    except CycleError as error:
+        raise ValueError(f"modules import each other in a circle: {' -> '.join(error.args[1])}") from None
+    return "\n".join(["const modules = {};", *(_wrapped(name, sources[name]) for name in order)])
+
+
+def _wrapped(name: str, source: str) -> str:
+    """A module as a function that returns what the module exports."""
+    exported = [found["name"] for found in _DECLARED.finditer(source)]
+    body = _DECLARED.sub("", _IMPORT.sub(_destructured, source))
+    if other := _OTHER.search(body):
+        raise ValueError(f"{name}: {other[0]!r} is not a form of import or export that can be bundled")
+    return f"modules[{name!r}] = (() => {{\n{body}\nreturn {{ {', '.join(exported)} }};\n}})();"
+
+
+def _destructured(found: re.Match[str]) -> str:
+    if found["names"] is None:
+        return ""
+    names = re.sub(r"\s+as\s+", ": ", " ".join(found["names"].split()))
+    return f"const {{ {names} }} = modules[{found['file']!r}];"

@@ -1,0 +1,171 @@
+"""What the page knows of environments and settings, made from the package's own definitions."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from functools import cache
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from qtab._utils.versions import versions
+from qtab.config.presets import presets
+from qtab.envs.descriptions import describe
+from qtab.envs.grid_worlds import ACTION_NAMES
+from qtab.playground.environments import ENVIRONMENTS, Entry
+from qtab.playground.settings import LEFT_OUT, rules, settings
+
+GRID_TIME_LIMIT = 1000
+"""The time limit of grid worlds, which have none of their own, in steps."""
+_GRID_PRESET = {
+    "learning_rate": 0.5,
+    "discount": 1.0,
+    "epsilon": 0.1,
+    "epsilon_schedule": "constant",
+    "initial_q": 0.0,
+    "episodes": 500,
+}
+
+
+@cache
+def definitions() -> dict[str, Any]:
+    """Returns all that the page shows of environments and settings, ready for JSON."""
+    return {
+        "version": versions()["qtab"],
+        "environments": {key: _environment(key, entry) for key, entry in ENVIRONMENTS.items()},
+        "settings": _plain(settings()),
+        "rules": rules(),
+    }
+
+
+def _environment(key: str, entry: Entry) -> dict[str, Any]:
+    made = _grid_world(entry) if entry.grids else _gymnasium(entry)
+    return {
+        "id": key,
+        "title": entry.title,
+        "sentence": entry.sentence,
+        "drawing": entry.drawing,
+        "python": entry.env or None,
+        "env_kwargs": dict(entry.env_kwargs),
+        "best_known": entry.best_known,
+        "grids": {name: _plain(asdict(grid)) for name, grid in entry.grids.items()},
+        **made,
+    }
+
+
+def _grid_world(entry: Entry) -> dict[str, Any]:
+    grid = next(iter(entry.grids.values()))
+    return {
+        "actions": list(ACTION_NAMES),
+        "observations": None,
+        "states": len(grid.layout) * len(grid.layout[0]),
+        "layout": list(grid.layout),
+        "table": None,
+        "max_episode_steps": GRID_TIME_LIMIT,
+        "threshold": None,
+        "discretizers": ["identity"],
+        "options": {},
+        "presets": {"learns": {**_GRID_PRESET, "discretizer": "identity"}},
+        "map": None,
+    }
+
+
+def _gymnasium(entry: Entry) -> dict[str, Any]:
+    env = gym.make(entry.env, **entry.env_kwargs)
+    spec, unwrapped = env.spec, env.unwrapped
+    assert spec is not None  # noqa: S101 - made by its id
+    description = describe(entry.env)
+    tabular = isinstance(env.observation_space, gym.spaces.Discrete)
+    given = {
+        name: {setting: value for setting, value in preset.items() if setting not in LEFT_OUT}
+        for name, preset in presets(entry.env).items()
+    }
+    made = {
+        "actions": list(description.actions),
+        "observations": None,
+        "states": None,
+        "layout": None,
+        "table": None,
+        "max_episode_steps": spec.max_episode_steps or GRID_TIME_LIMIT,
+        "threshold": spec.reward_threshold,
+        "presets": {
+            name: _plain({"discretizer": "identity" if tabular else "round", **preset})
+            for name, preset in given.items()
+        },
+    }
+    env.close()
+    if tabular:
+        made |= {
+            "states": int(env.observation_space.n),
+            "layout": _layout(unwrapped),
+            "table": _table(unwrapped),
+            "discretizers": ["identity"],
+            "options": {},
+            "map": None,
+        }
+        return made
+    low, high = env.observation_space.low, env.observation_space.high
+    bounded = bool(np.isfinite([low, high]).all()) and bool((np.abs([low, high]) < 1e6).all())
+    components = [quantity.name for quantity in description.observation]
+    plane = description.plane or components[:2]
+    return made | {
+        "observations": [
+            {"name": quantity.name, "unit": quantity.unit or None, "low": _finite(lower), "high": _finite(upper)}
+            for quantity, lower, upper in zip(description.observation, low.tolist(), high.tolist(), strict=True)
+        ],
+        "discretizers": ["round", "bins", "tiles"] if bounded else ["bins", "tiles"],
+        "options": _options(given, low.tolist(), high.tolist(), bounded),
+        "map": {"x": components.index(plane[0]), "y": components.index(plane[1])},
+    }
+
+
+def _options(given: Mapping[str, Mapping[str, Any]], low: Any, high: Any, bounded: bool) -> dict[str, Any]:
+    """The defaults of the options that depend on the observations: those of the presets, or the observation space's."""
+    found: dict[str, Any] = {"low": low, "high": high} if bounded else {}
+    for preset in given.values():
+        for name in ("scale", "low", "high"):
+            if name in preset and name not in found:
+                found[name] = _plain(preset[name])
+    return found
+
+
+def _layout(env: Any) -> list[str]:
+    """The map of a lake or a cliff, a letter for each cell: start, goal, frozen, hole, cliff."""
+    if hasattr(env, "desc"):
+        return ["".join(letter.decode() for letter in row) for row in env.desc.tolist()]
+    rows, columns = env.shape
+    letters = np.where(env._cliff, "C", ".")
+    letters[np.unravel_index(env.start_state_index, env.shape)] = "S"
+    letters[rows - 1, columns - 1] = "G"
+    return ["".join(row) for row in letters.tolist()]
+
+
+def _table(env: Any) -> dict[str, Any]:
+    """``P`` shorter: for each state and action its outcomes (index of the probability, state, reward, end)."""
+    states = range(len(env.P))
+    outcomes = [[env.P[state][action] for action in sorted(env.P[state])] for state in states]
+    probabilities = sorted({float(outcome[0]) for row in outcomes for cell in row for outcome in cell})
+    return {
+        "probabilities": probabilities,
+        "outcomes": [
+            [
+                [[probabilities.index(float(p)), int(state), float(reward), int(end)] for p, state, reward, end in cell]
+                for cell in row
+            ]
+            for row in outcomes
+        ],
+        "initial": [float(probability) for probability in env.initial_state_distrib],
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if abs(value) < 1e6 else None
+
+
+def _plain(value: Any) -> Any:
+    """Returns what JSON holds: tuples as lists."""
+    if isinstance(value, Mapping):
+        return {name: _plain(part) for name, part in value.items()}
+    if isinstance(value, tuple | list):
+        return [_plain(part) for part in value]
+    return value

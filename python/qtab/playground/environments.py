@@ -1,0 +1,121 @@
+"""The environments of the playground: what the page says of them, and how it draws them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
+
+from qtab.envs.grid_worlds import DYNA_MAZE, WIND, WINDY_GRID_WORLD
+
+Drawing: TypeAlias = Literal["mountain_car", "cart_pole", "frozen_lake", "cliff", "grid"]
+
+
+@dataclass(frozen=True)
+class GridWorld:
+    """A grid world, with the arguments of :func:`qtab.book.grid_world`."""
+
+    layout: tuple[str, ...]
+    wind: tuple[int, ...]
+    step_reward: float
+    goal_reward: float
+    rewards: tuple[tuple[int, int, float], ...] = ()
+    """Rows, columns and rewards."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """An environment of the playground."""
+
+    title: str
+    sentence: str
+    """What the agent does, and what it is rewarded for."""
+    drawing: Drawing
+    env: str = ""
+    """Gymnasium's id; empty for grid worlds."""
+    env_kwargs: Mapping[str, Any] = field(default_factory=dict)
+    best_known: float | None = None
+    """The expected return of the best known policy, where the page does not compute the optimal one."""
+    grids: Mapping[str, GridWorld] = field(default_factory=dict)
+    """Grid worlds to begin with, by their title."""
+
+
+_WINDY = GridWorld(WINDY_GRID_WORLD, WIND, step_reward=-1.0, goal_reward=-1.0)
+_MAZE = GridWorld(DYNA_MAZE, (0,) * len(DYNA_MAZE[0]), step_reward=0.0, goal_reward=1.0)
+_ROOMS = GridWorld(
+    (
+        "S....#.....",
+        ".....#.....",
+        "...........",
+        ".....#.....",
+        ".....#.....",
+        "#.####.....",
+        ".....###.##",
+        ".....#.....",
+        ".....#.....",
+        "...........",
+        ".....#....G",
+    ),
+    (0,) * 11,
+    step_reward=-1.0,
+    goal_reward=0.0,
+)
+_OPEN = GridWorld(
+    (
+        "........",
+        "........",
+        ".S....G.",
+        "........",
+        "........",
+        "........",
+    ),
+    (0,) * 8,
+    step_reward=-1.0,
+    goal_reward=10.0,
+)
+
+_LAKE = "Cross the frozen lake to the goal without falling into a hole. The reward is 1 at the goal and 0 elsewhere{}"
+_SLIPPERY = "; the ice is slippery, so that a move goes where it should only once in three times."
+_ICE = {"is_slippery": False}
+
+# The best known return is that of `qtab.optimum("MountainCar-v0")`, as docs/environments.md reports it.
+ENVIRONMENTS: Mapping[str, Entry] = {
+    "MountainCar-v0": Entry(
+        "Mountain car",
+        "Drive an underpowered car out of a valley: it must swing back and forth to reach the flag. Each step costs 1.",
+        "mountain_car",
+        "MountainCar-v0",
+        best_known=-97.67,
+    ),
+    "CartPole-v1": Entry(
+        "Cart pole",
+        "Balance a pole on a cart by pushing the cart left or right. Each step earns 1, up to 500 steps.",
+        "cart_pole",
+        "CartPole-v1",
+    ),
+    "FrozenLake-v1": Entry("Frozen lake", _LAKE.format(_SLIPPERY), "frozen_lake", "FrozenLake-v1"),
+    "FrozenLake-v1 (not slippery)": Entry(
+        "Frozen lake, not slippery", _LAKE.format("."), "frozen_lake", "FrozenLake-v1", _ICE
+    ),
+    "FrozenLake8x8-v1": Entry("Large frozen lake", _LAKE.format(_SLIPPERY), "frozen_lake", "FrozenLake8x8-v1"),
+    "FrozenLake8x8-v1 (not slippery)": Entry(
+        "Large frozen lake, not slippery", _LAKE.format("."), "frozen_lake", "FrozenLake8x8-v1", _ICE
+    ),
+    "CliffWalking-v1": Entry(
+        "Cliff walking",
+        "Walk to the goal along a cliff. Each step costs 1; a step off the cliff costs 100 and leads to the start.",
+        "cliff",
+        "CliffWalking-v1",
+    ),
+    "WindyGridWorld": Entry(
+        "Windy grid world",
+        "Walk to the goal while the wind of each column shifts every move upwards. Each step costs 1.",
+        "grid",
+        grids={"Windy grid world": _WINDY},
+    ),
+    "grid": Entry(
+        "Grid world to paint",
+        "Paint walls, rewards, starts and goals: the agent learns the way through your grid.",
+        "grid",
+        grids={"Open field": _OPEN, "Dyna maze": _MAZE, "Four rooms": _ROOMS, "Windy grid world": _WINDY},
+    ),
+}
+"""The environments by the key that the page uses."""

@@ -1,0 +1,238 @@
+//! An algorithm chosen at run time, and the learner that it makes of an agent.
+
+use super::{
+    Agent, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Learner, Model,
+    MonteCarlo, MonteCarloEs, NStepQSigma, NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping,
+    QLearning, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda,
+    UpdateRule, WatkinsQLambda,
+};
+use crate::features::ActiveRows;
+use crate::memory::AllocationError;
+use crate::{QTable, StopFlag};
+
+/// One of the algorithms with its options.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AnyAlgorithm {
+    /// [`QLearning`]
+    QLearning,
+    /// [`Sarsa`]
+    Sarsa,
+    /// [`ExpectedSarsa`]
+    ExpectedSarsa,
+    /// [`DoubleQLearning`]
+    DoubleQLearning,
+    /// [`NStepSarsa`]
+    NStepSarsa {
+        /// The number of rewards in a target, at least 1.
+        n_steps: usize,
+    },
+    /// [`SarsaLambda`]
+    SarsaLambda(TraceOptions),
+    /// [`TrueOnlineSarsaLambda`]
+    TrueOnlineSarsaLambda {
+        /// The trace decay λ.
+        trace_decay: f64,
+        /// Traces at or below this are dropped.
+        trace_cutoff: f64,
+    },
+    /// [`WatkinsQLambda`]
+    WatkinsQLambda(TraceOptions),
+    /// [`DynaQ`]
+    DynaQ {
+        /// The updates from the model after each step.
+        planning_steps: u32,
+    },
+    /// [`DynaQPlus`]
+    DynaQPlus {
+        /// The updates from the model after each step.
+        planning_steps: u32,
+        /// The weight κ of the bonus for actions not tried for long.
+        time_weight: f64,
+    },
+    /// [`DynaQ`] with a [`StochasticModel`]
+    StochasticDynaQ {
+        /// The updates from the model after each step.
+        planning_steps: u32,
+    },
+    /// [`MonteCarlo`]
+    MonteCarlo {
+        /// The most steps of an episode.
+        max_episode_steps: u64,
+    },
+    /// [`MonteCarloEs`]
+    MonteCarloEs {
+        /// The most steps of an episode.
+        max_episode_steps: u64,
+    },
+    /// [`OffPolicyMonteCarlo`]
+    OffPolicyMonteCarlo {
+        /// The most steps of an episode.
+        max_episode_steps: u64,
+        /// α, by which W / C is multiplied.
+        learning_rate: f64,
+        /// The smallest step size.
+        min_learning_rate: f64,
+    },
+    /// [`NStepTreeBackup`]
+    NStepTreeBackup {
+        /// The number of rewards in a target, at least 1.
+        n_steps: usize,
+        /// The target policy.
+        target_policy: TargetPolicy,
+    },
+    /// [`NStepQSigma`]
+    NStepQSigma {
+        /// The number of rewards in a target, at least 1.
+        n_steps: usize,
+        /// The degree of sampling σ.
+        sigma: f64,
+        /// The target policy.
+        target_policy: TargetPolicy,
+    },
+    /// [`PrioritizedSweeping`]
+    PrioritizedSweeping {
+        /// The most updates after each step.
+        planning_steps: u32,
+        /// The smallest error that is planned, θ.
+        priority_threshold: f64,
+    },
+    /// [`DifferentialSarsa`]
+    DifferentialSarsa {
+        /// The step size β of the average reward.
+        reward_learning_rate: f64,
+    },
+    /// [`DifferentialQLearning`]
+    DifferentialQLearning {
+        /// The step size β of the average reward.
+        reward_learning_rate: f64,
+    },
+}
+
+/// The options of an algorithm whose eligibility traces are of a kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TraceOptions {
+    /// What a visit does to a trace.
+    pub kind: TraceKind,
+    /// The trace decay λ.
+    pub decay: f64,
+    /// Traces at or below this are dropped.
+    pub cutoff: f64,
+}
+
+/// What is done with the learner that [`AnyAlgorithm::learner`] makes, whichever its type.
+pub trait LearnerVisitor<R> {
+    /// The result.
+    type Output;
+
+    /// Takes the learner.
+    fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Self::Output;
+}
+
+impl AnyAlgorithm {
+    /// How many tables the algorithm learns.
+    pub fn n_tables(&self) -> usize {
+        if matches!(self, Self::DoubleQLearning) { 2 } else { 1 }
+    }
+
+    /// Whether each state must have a row of the table: for a model, or for visits to be counted.
+    pub fn needs_single_rows(&self) -> bool {
+        matches!(
+            self,
+            Self::DynaQ { .. }
+                | Self::DynaQPlus { .. }
+                | Self::StochasticDynaQ { .. }
+                | Self::MonteCarlo { .. }
+                | Self::MonteCarloEs { .. }
+                | Self::OffPolicyMonteCarlo { .. }
+                | Self::PrioritizedSweeping { .. }
+        )
+    }
+
+    /// Makes a learner of an agent and passes it to `visitor`. `second_table` is the other table of Double Q-learning.
+    /// `None` where the algorithm needs single rows and `R` holds several, or a second table and there is none.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn learner<R, V>(
+        self,
+        agent: Agent,
+        second_table: Option<QTable>,
+        stop: &StopFlag<'_>,
+        visitor: V,
+    ) -> Result<Option<V::Output>, AllocationError>
+    where
+        R: ActiveRows + Send + 'static,
+        V: LearnerVisitor<R>,
+    {
+        // Known when this is compiled, so that Dyna is left out of the code for several rows.
+        if self.needs_single_rows() && size_of::<R>() != size_of::<u32>() {
+            return Ok(None);
+        }
+        let (n_rows, num_actions) = agent.table.shape();
+        let new_model = || Model::new(n_rows, num_actions, stop);
+        let new_traces = |cutoff: f64| Traces::new(n_rows * num_actions, cutoff, stop);
+        Ok(Some(match self {
+            Self::QLearning => with_rule(agent, QLearning, visitor),
+            Self::Sarsa => with_rule(agent, Sarsa, visitor),
+            Self::ExpectedSarsa => with_rule(agent, ExpectedSarsa, visitor),
+            Self::DoubleQLearning => match second_table {
+                Some(second_table) => visitor.visit(DoubleQLearning::new(agent, second_table)),
+                None => return Ok(None),
+            },
+            Self::NStepSarsa { n_steps } => with_rule(agent, NStepSarsa::new(n_steps), visitor),
+            Self::SarsaLambda(TraceOptions { kind, decay, cutoff }) => {
+                with_rule(agent, SarsaLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, visitor)
+            }
+            Self::TrueOnlineSarsaLambda { trace_decay, trace_cutoff } => {
+                with_rule(agent, TrueOnlineSarsaLambda::new(new_traces(trace_cutoff)?, trace_decay), visitor)
+            }
+            Self::WatkinsQLambda(TraceOptions { kind, decay, cutoff }) => {
+                with_rule(agent, WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, visitor)
+            }
+            Self::DynaQ { planning_steps } => with_rule(agent, DynaQ::new(new_model()?, planning_steps), visitor),
+            Self::DynaQPlus { planning_steps, time_weight } => {
+                with_rule(agent, DynaQPlus::new(new_model()?, planning_steps, time_weight, stop)?, visitor)
+            }
+            Self::StochasticDynaQ { planning_steps } => {
+                let model = StochasticModel::new(n_rows, num_actions, stop)?;
+                with_rule(agent, DynaQ::new(model, planning_steps), visitor)
+            }
+            Self::MonteCarlo { max_episode_steps } => {
+                with_rule(agent, MonteCarlo::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)
+            }
+            Self::MonteCarloEs { max_episode_steps } => {
+                with_rule(agent, MonteCarloEs::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)
+            }
+            Self::OffPolicyMonteCarlo { max_episode_steps, learning_rate, min_learning_rate } => {
+                let rates = (learning_rate, min_learning_rate);
+                let rule = OffPolicyMonteCarlo::new(n_rows * num_actions, max_episode_steps, rates, stop)?;
+                with_rule(agent, rule, visitor)
+            }
+            Self::NStepTreeBackup { n_steps, target_policy } => {
+                with_rule(agent, NStepTreeBackup::new(n_steps, target_policy), visitor)
+            }
+            Self::NStepQSigma { n_steps, sigma, target_policy } => {
+                with_rule(agent, NStepQSigma::new(n_steps, sigma, target_policy), visitor)
+            }
+            Self::PrioritizedSweeping { planning_steps, priority_threshold } => {
+                let rule = PrioritizedSweeping::new(new_model()?, planning_steps, priority_threshold, stop)?;
+                with_rule(agent, rule, visitor)
+            }
+            Self::DifferentialSarsa { reward_learning_rate } => {
+                with_rule(agent, DifferentialSarsa::new(reward_learning_rate), visitor)
+            }
+            Self::DifferentialQLearning { reward_learning_rate } => {
+                with_rule(agent, DifferentialQLearning::new(reward_learning_rate), visitor)
+            }
+        }))
+    }
+}
+
+fn with_rule<R, U, V>(agent: Agent, rule: U, visitor: V) -> V::Output
+where
+    R: ActiveRows + Send + 'static,
+    U: UpdateRule<R, Agent> + Send + 'static,
+    V: LearnerVisitor<R>,
+{
+    visitor.visit(TdLearner { agent, rule })
+}

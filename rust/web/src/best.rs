@@ -1,0 +1,80 @@
+//! The values and the policy to compare with: optimal from a transition table, or the best known of `MountainCar`.
+
+use std::cell::OnceCell;
+
+use qtab_core::envs::classic_control::{MountainCar, MountainCarState};
+use qtab_core::planning::{CostToGo, finite_horizon};
+use qtab_core::{Env, StopFlag};
+
+use crate::environment::{Environment, TableMap};
+use crate::plane::Cells;
+use crate::settings::Settings;
+use crate::training::Training;
+
+/// The most backups that are computed: about a tenth of a second.
+const MAX_BACKUPS: u64 = 20_000_000;
+/// The stride of `MountainCar`'s grid of costs: 181 × 71 points.
+const STRIDE: usize = 8;
+
+/// What is known to be good: values for the run's discount.
+pub(crate) struct Best {
+    pub(crate) kind: &'static str,
+    pub(crate) values: Vec<f64>,
+    pub(crate) greedy: Vec<u8>,
+    /// The expected undiscounted return within the time limit.
+    pub(crate) expected_return: Option<f64>,
+}
+
+/// What is computed once for all runs.
+#[derive(Default)]
+pub(crate) struct Planner {
+    mountain_car: OnceCell<Option<CostToGo>>,
+}
+
+impl Planner {
+    /// `None` where nothing is known, or computing it would take too long.
+    pub(crate) fn of(&self, training: &Training) -> Option<Best> {
+        let Training { environment, settings, cells, .. } = training;
+        match environment {
+            Environment::Table(table) => of_table(table, settings),
+            Environment::MountainCar(car) => self.of_mountain_car(*car, settings, cells),
+            Environment::CartPole(_) => None,
+        }
+    }
+
+    fn of_mountain_car(&self, car: MountainCar, settings: &Settings, cells: &Cells) -> Option<Best> {
+        let computed = self.mountain_car.get_or_init(|| CostToGo::coarse(car, 200, STRIDE, &StopFlag::new()).ok());
+        let costs = computed.as_ref()?;
+        let discount = settings.discount;
+        let (mut values, mut greedy) = (Vec::new(), Vec::new());
+        for cell in 0..cells.count() {
+            let observation = cells.observation(cell)?;
+            let &[position, velocity] = observation.as_slice() else { return None };
+            let state = MountainCarState { position, velocity };
+            let steps = costs.steps(state);
+            // A reward of -1 in each step: 1 + γ + γ² + …
+            values.push(if discount == 1.0 { -steps } else { -(1.0 - discount.powf(steps)) / (1.0 - discount) });
+            greedy.push(costs.best_action(state) as u8);
+        }
+        Some(Best { kind: "best known", values, greedy, expected_return: None })
+    }
+}
+
+fn of_table(table: &TableMap, settings: &Settings) -> Option<Best> {
+    let (steps, stop) = (settings.max_episode_steps, StopFlag::new());
+    let backups = steps.saturating_mul((table.mdp.num_outcomes().max(table.mdp.num_actions())) as u64);
+    if backups > MAX_BACKUPS {
+        return None;
+    }
+    let undiscounted = finite_horizon(&table.mdp, 1.0, steps, &stop).ok()?;
+    let expected_return = Some(undiscounted.expected_return);
+    let discounted = if settings.discount == 1.0 {
+        undiscounted
+    } else {
+        finite_horizon(&table.mdp, settings.discount, steps, &stop).ok()?
+    };
+    let is_wall = |state: usize| table.walls.get(state).copied().unwrap_or(false);
+    let values = discounted.values.iter().enumerate().map(|(state, &v)| if is_wall(state) { f64::NAN } else { v });
+    let greedy = discounted.policy.iter().enumerate().map(|(state, &a)| if is_wall(state) { u8::MAX } else { a as u8 });
+    Some(Best { kind: "optimal", values: values.collect(), greedy: greedy.collect(), expected_return })
+}

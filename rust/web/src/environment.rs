@@ -1,0 +1,98 @@
+//! The environment of a request.
+
+use qtab_core::envs::classic_control::{CartPole, MountainCar};
+use qtab_core::envs::tabular::{Outcome, TabularMdp};
+
+use crate::grid_world::{GridWorld, MAX_SIDE};
+use crate::json::Json;
+
+/// The most outcomes of a transition table.
+const MAX_OUTCOMES: usize = 100_000;
+
+/// An environment that the page can choose.
+pub(crate) enum Environment {
+    MountainCar(MountainCar),
+    CartPole(CartPole),
+    Table(TableMap),
+}
+
+/// A transition table whose states are the cells of a map, counted row by row.
+pub(crate) struct TableMap {
+    pub(crate) mdp: TabularMdp,
+    pub(crate) columns: usize,
+    /// Which cells are walls, in which the agent never is.
+    pub(crate) walls: Vec<bool>,
+}
+
+/// A range of each component of the observations.
+pub(crate) type Bounds = &'static [(f32, f32)];
+
+impl Environment {
+    pub(crate) fn parse(environment: &Json) -> Result<Self, String> {
+        match environment.get("kind").and_then(Json::text) {
+            Some("mountain_car") => Ok(Self::MountainCar(MountainCar::default())),
+            Some("cart_pole") => Ok(Self::CartPole(CartPole::default())),
+            Some("table") => table(environment).map(Self::Table),
+            Some("grid") => {
+                let grid = GridWorld::parse(environment)?;
+                Ok(Self::Table(TableMap { mdp: grid.mdp()?, columns: grid.columns(), walls: grid.walls() }))
+            }
+            _ => Err("environment must be one of the playground's".into()),
+        }
+    }
+
+    /// The bounds of the observation space; `None` for numbered states.
+    pub(crate) fn bounds(&self) -> Option<Bounds> {
+        match self {
+            Self::MountainCar(_) => Some(&[(-1.2, 0.6), (-0.07, 0.07)]),
+            Self::CartPole(_) => Some(&[
+                (-4.8, 4.8),
+                (f32::NEG_INFINITY, f32::INFINITY),
+                (-0.418_879_03, 0.418_879_03),
+                (f32::NEG_INFINITY, f32::INFINITY),
+            ]),
+            Self::Table(_) => None,
+        }
+    }
+}
+
+/// A table as `definitions.py` writes it: `P` with the probabilities by their index.
+fn table(environment: &Json) -> Result<TableMap, String> {
+    let invalid = || "table must hold probabilities, outcomes and initial".to_string();
+    let table = environment.get("table").ok_or_else(invalid)?;
+    let numbers = |name: &str| -> Option<Vec<f64>> { table.get(name)?.array()?.iter().map(Json::number).collect() };
+    let (probabilities, initial) =
+        (numbers("probabilities").ok_or_else(invalid)?, numbers("initial").ok_or_else(invalid)?);
+    let states = table.get("outcomes").and_then(Json::array).ok_or_else(invalid)?;
+    let num_actions = states.first().and_then(Json::array).map_or(0, <[Json]>::len);
+    let mut pairs = Vec::new();
+    let mut count = 0;
+    for state in states {
+        let actions = state.array().filter(|actions| actions.len() == num_actions).ok_or_else(invalid)?;
+        for action in actions {
+            let outcomes = action.array().ok_or_else(invalid)?;
+            count += outcomes.len();
+            if count > MAX_OUTCOMES {
+                return Err(format!("table must have at most {MAX_OUTCOMES} outcomes"));
+            }
+            let outcomes: Option<Vec<Outcome>> = outcomes.iter().map(|entry| outcome(entry, &probabilities)).collect();
+            pairs.push(outcomes.ok_or_else(invalid)?);
+        }
+    }
+    let columns = environment.get("columns").and_then(|columns| columns.integer(MAX_SIDE as u32)).unwrap_or(0) as usize;
+    if columns == 0 || states.len() % columns != 0 {
+        return Err(format!("columns must divide the {} states", states.len()));
+    }
+    let mdp = TabularMdp::new(num_actions, &initial, &pairs).map_err(|error| error.to_string())?;
+    Ok(TableMap { walls: vec![false; mdp.num_states()], mdp, columns })
+}
+
+fn outcome(entry: &Json, probabilities: &[f64]) -> Option<Outcome> {
+    let [probability, state, reward, terminated] = entry.array()? else { return None };
+    Some(Outcome {
+        probability: *probabilities.get(probability.integer(u32::MAX)? as usize)?,
+        state: state.integer(u32::MAX)?.into(),
+        reward: reward.number()?,
+        terminated: terminated.integer(1)? == 1,
+    })
+}

@@ -1,0 +1,131 @@
+//! The cells of a value map: those of a table's map, or of a plane through the observations.
+
+use crate::environment::{Bounds, Environment};
+use crate::json::Json;
+use crate::settings::Discretizer;
+
+/// The most cells along an axis; finer grids are shown at so many points.
+const MAX_CELLS: usize = 128;
+/// The cells along an axis where the discretizer has none of its own.
+const DEFAULT_CELLS: u32 = 48;
+
+/// The cells of a map, counted row by row from the upper left corner.
+#[derive(Clone, Debug)]
+pub(crate) enum Cells {
+    /// The states of a table, of which some are walls.
+    States { columns: usize, walls: Vec<bool> },
+    /// Cells of a plane through the observations.
+    Plane(Plane),
+}
+
+/// Two components of the observations; the others are fixed.
+#[derive(Clone, Debug)]
+pub(crate) struct Plane {
+    components: [usize; 2],
+    at: Vec<f64>,
+    /// The edges of the columns, ascending.
+    pub(crate) x_edges: Vec<f64>,
+    /// The edges of the rows, descending, as the uppermost row comes first.
+    pub(crate) y_edges: Vec<f64>,
+}
+
+impl Cells {
+    /// The cells that a request asks for in `map`, or the natural ones.
+    pub(crate) fn new(
+        environment: &Environment,
+        discretizer: &Discretizer,
+        map: Option<&Json>,
+    ) -> Result<Self, String> {
+        if let Environment::Table(table) = environment {
+            return Ok(Self::States { columns: table.columns, walls: table.walls.clone() });
+        }
+        let bounds = environment.bounds().unwrap_or_default();
+        let get = |name: &str| map.and_then(|map| map.get(name));
+        let integer = |name: &str, default: u32, most: u32| match get(name) {
+            None => Ok(default),
+            Some(given) => given.integer(most).ok_or_else(|| format!("map.{name} must be an integer from 0 to {most}")),
+        };
+        let last = bounds.len() as u32 - 1;
+        let components = [integer("x", 0, last)? as usize, integer("y", 1.min(last), last)? as usize];
+        let counts = [integer("columns", DEFAULT_CELLS, 128)?.max(1), integer("rows", DEFAULT_CELLS, 128)?.max(1)];
+        let at = match get("at").and_then(Json::array) {
+            None => vec![0.0; bounds.len()],
+            Some(at) => {
+                let at: Option<Vec<f64>> = at.iter().map(Json::number).collect();
+                at.filter(|at| at.len() == bounds.len()).ok_or("map.at must hold a number for each component")?
+            }
+        };
+        let [x_edges, mut y_edges] = [0, 1].map(|axis| edges(discretizer, bounds, components[axis], counts[axis]));
+        y_edges.reverse();
+        Ok(Self::Plane(Plane { components, at, x_edges, y_edges }))
+    }
+
+    pub(crate) fn columns(&self) -> usize {
+        match self {
+            Self::States { columns, .. } => *columns,
+            Self::Plane(plane) => plane.x_edges.len() - 1,
+        }
+    }
+
+    pub(crate) fn rows(&self) -> usize {
+        match self {
+            Self::States { columns, walls } => walls.len() / columns,
+            Self::Plane(plane) => plane.y_edges.len() - 1,
+        }
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.columns() * self.rows()
+    }
+
+    /// The observation in the middle of a cell; `None` for walls and what is no cell.
+    pub(crate) fn observation(&self, cell: usize) -> Option<Vec<f64>> {
+        match self {
+            Self::States { walls, .. } => walls.get(cell).filter(|wall| !**wall).map(|_| vec![cell as f64]),
+            Self::Plane(plane) => {
+                if cell >= self.count() {
+                    return None;
+                }
+                let middle = |edges: &[f64], index: usize| (edges[index] + edges[index + 1]) / 2.0;
+                let mut observation = plane.at.clone();
+                observation[plane.components[0]] = middle(&plane.x_edges, cell % self.columns());
+                observation[plane.components[1]] = middle(&plane.y_edges, cell / self.columns());
+                Some(observation)
+            }
+        }
+    }
+
+    /// The cell of an observation; what lies outside the plane belongs to the outermost cells.
+    pub(crate) fn cell(&self, observation: &[f64]) -> usize {
+        match self {
+            Self::States { walls, .. } => observation.first().map_or(0, |&state| (state as usize).min(walls.len() - 1)),
+            Self::Plane(plane) => {
+                let [x, y] = plane.components.map(|component| observation.get(component).copied().unwrap_or(0.0));
+                let column = plane.x_edges[1..self.columns()].partition_point(|&edge| edge <= x);
+                let row = plane.y_edges[1..self.rows()].partition_point(|&edge| edge > y);
+                row * self.columns() + column
+            }
+        }
+    }
+}
+
+/// The edges of the cells along a component, ascending.
+fn edges(discretizer: &Discretizer, bounds: Bounds, component: usize, count: u32) -> Vec<f64> {
+    let even = |low: f64, high: f64, count: u32| {
+        (0..=count).map(|edge| low + (high - low) * f64::from(edge) / f64::from(count)).collect()
+    };
+    match discretizer {
+        Discretizer::Grid(grid) => {
+            let edges = &grid.edges[component];
+            if edges.len() > MAX_CELLS + 1 {
+                return even(edges[0], edges[edges.len() - 1], MAX_CELLS as u32);
+            }
+            edges.clone()
+        }
+        Discretizer::Tiles { limits, .. } => even(limits[component].0, limits[component].1, count),
+        Discretizer::Identity => {
+            let (low, high) = bounds[component];
+            even(low.into(), high.into(), count)
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! A training run of any type.
+
+use qtab_core::features::ActiveRows;
+use qtab_core::random::AgentRng;
+use qtab_core::tasks::BoxedTask;
+use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer};
+
+use crate::subject::Failure;
+use crate::update_recorder::UpdateRecorder;
+use crate::updates::Watch;
+
+/// The unfinished episode of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Progress {
+    pub(crate) episode_return: f64,
+    pub(crate) steps: i64,
+    /// The action to take next.
+    pub(crate) action: usize,
+}
+
+pub(crate) trait Run {
+    /// Trains up to a number of finished episodes, or until so much work is done.
+    fn advance(&mut self, episodes: usize, work: u64) -> Result<(), Failure>;
+
+    fn episodes(&self) -> &EpisodeLog;
+
+    fn tables(&self) -> Vec<&[f64]>;
+
+    fn visits(&self) -> Option<&[i64]>;
+
+    fn diverged(&self) -> bool;
+
+    /// The unfinished episode, if there is one.
+    fn progress(&self) -> Option<Progress>;
+
+    /// What was seen of the updates of a state.
+    fn watch(&self) -> Option<&Watch>;
+}
+
+impl<R, L> Run for Trainer<BoxedTask<R, Failure>, UpdateRecorder<L>, AgentRng>
+where
+    R: ActiveRows,
+    L: Learner<R>,
+{
+    fn advance(&mut self, episodes: usize, work: u64) -> Result<(), Failure> {
+        Trainer::advance(self, Budget { episodes, work }).map_err(Failure::from)
+    }
+
+    fn episodes(&self) -> &EpisodeLog {
+        Trainer::episodes(self)
+    }
+
+    fn tables(&self) -> Vec<&[f64]> {
+        self.learner().tables()
+    }
+
+    fn visits(&self) -> Option<&[i64]> {
+        self.task().visits()
+    }
+
+    fn diverged(&self) -> bool {
+        self.learner().diverged()
+    }
+
+    fn progress(&self) -> Option<Progress> {
+        let (episode_return, steps, action) = self.unfinished_episode()?;
+        Some(Progress { episode_return, steps, action })
+    }
+
+    fn watch(&self) -> Option<&Watch> {
+        self.learner().watch()
+    }
+}

@@ -1,0 +1,120 @@
+//! How observations become rows of the table.
+
+use qtab_core::features::{AnyGrid, Axis, Bins, Edges, MAX_TILINGS, Rounding, TileCoding};
+
+use super::fields::{Fields, SettingError};
+use crate::environment::Bounds;
+
+/// The most rows of a table.
+const MAX_ROWS: u64 = 1 << 24;
+/// Limits beyond this would overflow float32, in which grids compute.
+const LARGEST_LIMIT: f64 = 1e30;
+
+/// A discretizer of the observations, with its features.
+#[derive(Clone, Debug)]
+pub(crate) enum Discretizer {
+    /// The states are numbers.
+    Identity,
+    Grid(Grid),
+    Tiles {
+        features: Box<TileCoding<f32, MAX_TILINGS>>,
+        tilings: usize,
+        limits: Vec<(f64, f64)>,
+    },
+}
+
+/// A grid, and the edges of its cells along each component.
+#[derive(Clone, Debug)]
+pub(crate) struct Grid {
+    pub(crate) features: AnyGrid<f32>,
+    pub(crate) edges: Vec<Vec<f64>>,
+}
+
+impl Discretizer {
+    pub(crate) fn parse(fields: &Fields<'_>, bounds: Option<Bounds>) -> Result<Self, SettingError> {
+        let Some(bounds) = bounds else {
+            fields.word("discretizer", &[("identity", ())])?;
+            return Ok(Self::Identity);
+        };
+        if bounds.iter().all(|(low, high)| low.is_finite() && high.is_finite()) {
+            fields.word("discretizer", &[("round", rounding as Parser), ("bins", bins), ("tiles", tiles)])?(
+                fields, bounds,
+            )
+        } else {
+            fields.word("discretizer", &[("bins", bins as Parser), ("tiles", tiles)])?(fields, bounds)
+        }
+    }
+
+    /// How many rows are active at a time.
+    pub(crate) fn n_active(&self) -> usize {
+        if let Self::Tiles { tilings, .. } = self { *tilings } else { 1 }
+    }
+}
+
+type Parser = fn(&Fields<'_>, Bounds) -> Result<Discretizer, SettingError>;
+
+fn rounding(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingError> {
+    let scale = fields.numbers("scale", bounds.len())?.unwrap_or_default();
+    if scale.len() != bounds.len() || scale.iter().any(|&scale| scale <= 0.0) {
+        return Err(fields.invalid("scale", &format!("{} positive numbers", bounds.len())));
+    }
+    let axes: Vec<Axis<f32>> =
+        bounds.iter().zip(&scale).map(|(&(low, high), &scale)| Axis::new(low, high, scale)).collect();
+    check_rows(fields, "scale", axes.iter().map(|axis| axis.size() as u64))?;
+    let edges = axes.iter().zip(bounds).zip(&scale).map(|((axis, &(low, high)), &scale)| {
+        let (low, high) = (f64::from(low), f64::from(high));
+        (0..=axis.size()).map(|edge| (low + (edge as f64 - 0.5) / scale).clamp(low, high)).collect()
+    });
+    Ok(Discretizer::Grid(Grid { edges: edges.collect(), features: AnyGrid::Rounding(Rounding::new(axes)) }))
+}
+
+fn bins(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingError> {
+    let limits = limits(fields, bounds)?;
+    let counts = fields.integers("bins", bounds.len(), 1_000_000)?;
+    check_rows(fields, "bins", counts.iter().map(|&count| count.into()))?;
+    let bins = limits.iter().zip(&counts);
+    let edges = bins.clone().map(|(&(low, high), &count)| Edges::equal_width(low as f32, high as f32, count)).collect();
+    let drawn = bins.map(|(&(low, high), &count)| {
+        (0..=count).map(|edge| low + (high - low) * f64::from(edge) / f64::from(count)).collect()
+    });
+    Ok(Discretizer::Grid(Grid { edges: drawn.collect(), features: AnyGrid::Bins(Bins::new(edges)) }))
+}
+
+fn tiles(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingError> {
+    let limits = limits(fields, bounds)?;
+    let tilings = fields.integer("tilings", 1, MAX_TILINGS as u32)?;
+    let tiles = fields.integers("tiles", bounds.len(), 1_000_000)?;
+    let along = tiles.iter().map(|&count| u64::from(count) + 1);
+    check_rows(fields, "tiles", [u64::from(tilings)].into_iter().chain(along))?;
+    let (low, high): (Vec<f64>, Vec<f64>) = limits.iter().copied().unzip();
+    let features = Box::new(TileCoding::new(&low, &high, &tiles, tilings));
+    Ok(Discretizer::Tiles { features, tilings: tilings as usize, limits })
+}
+
+/// The lower and the upper limit of each component: those that are given, or those of the observation space.
+fn limits(fields: &Fields<'_>, bounds: Bounds) -> Result<Vec<(f64, f64)>, SettingError> {
+    let (low, high) = (fields.numbers("low", bounds.len())?, fields.numbers("high", bounds.len())?);
+    let mut limits = Vec::new();
+    for (index, &(lower, upper)) in bounds.iter().enumerate() {
+        let lower = low.as_ref().map_or(f64::from(lower), |low| low[index]);
+        let upper = high.as_ref().map_or(f64::from(upper), |high| high[index]);
+        if !(lower.abs() < LARGEST_LIMIT && upper.abs() < LARGEST_LIMIT) {
+            return Err(fields.invalid("low", "given with high, as the observation space has no bounds"));
+        }
+        // As float32, in which bins compute, and apart enough for the number of tiles per unit.
+        if !((lower as f32) < upper as f32 && upper - lower > f64::from(f32::MIN_POSITIVE)) {
+            return Err(fields.invalid("low", "below high in each component"));
+        }
+        limits.push((lower, upper));
+    }
+    Ok(limits)
+}
+
+fn check_rows(
+    fields: &Fields<'_>,
+    name: &'static str,
+    mut counts: impl Iterator<Item = u64>,
+) -> Result<(), SettingError> {
+    let rows = counts.try_fold(1_u64, |rows, count| rows.checked_mul(count)).filter(|rows| *rows <= MAX_ROWS);
+    rows.map(|_| ()).ok_or_else(|| fields.invalid(name, &format!("so few that the table has at most {MAX_ROWS} rows")))
+}

@@ -1,0 +1,107 @@
+//! Typed access to the settings. Errors name the setting as Python spells it.
+
+use std::cell::RefCell;
+
+use crate::json::Json;
+
+/// What is wrong with the settings, and which one it is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SettingError {
+    pub(crate) setting: Option<String>,
+    pub(crate) message: String,
+}
+
+impl From<String> for SettingError {
+    fn from(message: String) -> Self {
+        Self { setting: None, message }
+    }
+}
+
+/// The settings of a request, and which of them were read.
+pub(crate) struct Fields<'a> {
+    settings: &'a [(String, Json)],
+    used: RefCell<Vec<&'static str>>,
+}
+
+impl<'a> Fields<'a> {
+    pub(crate) fn new(settings: &'a Json) -> Result<Self, SettingError> {
+        match settings {
+            Json::Object(settings) => Ok(Self { settings, used: RefCell::default() }),
+            _ => Err("settings must be an object".to_string().into()),
+        }
+    }
+
+    fn find(&self, name: &'static str) -> Option<&'a Json> {
+        self.used.borrow_mut().push(name);
+        self.settings.iter().find(|(known, _)| known == name).map(|(_, value)| value)
+    }
+
+    /// A setting, whatever its type.
+    pub(crate) fn any(&self, name: &'static str) -> Result<&'a Json, SettingError> {
+        let message = || SettingError { setting: Some(name.into()), message: format!("{name} must be given") };
+        self.find(name).ok_or_else(message)
+    }
+
+    /// The error of a setting that must be something else.
+    pub(crate) fn invalid(&self, name: &'static str, expected: &str) -> SettingError {
+        let got = self.find(name).map_or_else(|| "nothing".into(), Json::shown);
+        SettingError { setting: Some(name.into()), message: format!("{name} must be {expected}, got {got}") }
+    }
+
+    pub(crate) fn number(&self, name: &'static str, low: f64, high: f64) -> Result<f64, SettingError> {
+        let number = self.any(name)?.number().filter(|number| (low..=high).contains(number));
+        number.ok_or_else(|| match (low, high) {
+            (f64::MIN_POSITIVE, f64::MAX) => self.invalid(name, "a finite number above 0"),
+            (_, f64::MAX) => self.invalid(name, "a finite number that is not negative"),
+            _ => self.invalid(name, &format!("a number in [{low}, {high}]")),
+        })
+    }
+
+    pub(crate) fn integer(&self, name: &'static str, low: u32, high: u32) -> Result<u32, SettingError> {
+        let integer = self.any(name)?.integer(high).filter(|integer| *integer >= low);
+        integer.ok_or_else(|| self.invalid(name, &format!("an integer from {low} to {high}")))
+    }
+
+    /// A setting that holds one of these words: what the word stands for.
+    pub(crate) fn word<T: Copy>(&self, name: &'static str, words: &[(&str, T)]) -> Result<T, SettingError> {
+        let given = self.any(name)?.text();
+        let found = words.iter().find(|(word, _)| given == Some(word));
+        found.map(|&(_, value)| value).ok_or_else(|| {
+            let known: Vec<String> = words.iter().map(|(word, _)| format!("'{word}'")).collect();
+            self.invalid(name, &known.join(" or "))
+        })
+    }
+
+    /// A number for each of `count` components, if given.
+    pub(crate) fn numbers(&self, name: &'static str, count: usize) -> Result<Option<Vec<f64>>, SettingError> {
+        let Some(given) = self.find(name) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> = given.array().and_then(|numbers| numbers.iter().map(Json::number).collect());
+        match numbers {
+            Some(numbers) if numbers.len() == count => Ok(Some(numbers)),
+            _ => Err(self.invalid(name, &format!("an array of {count} finite numbers"))),
+        }
+    }
+
+    /// An integer for each of `count` components, given as such or as one for all.
+    pub(crate) fn integers(&self, name: &'static str, count: usize, high: u32) -> Result<Vec<u32>, SettingError> {
+        let given = self.any(name)?;
+        let single = std::slice::from_ref(given);
+        let integers: Option<Vec<u32>> = given.array().unwrap_or(single).iter().map(|i| i.integer(high)).collect();
+        match integers {
+            Some(integers) if integers.contains(&0) => {}
+            Some(integers) if integers.len() == count => return Ok(integers),
+            Some(integers) if integers.len() == 1 => return Ok(vec![integers[0]; count]),
+            _ => {}
+        }
+        Err(self.invalid(name, &format!("{count} integers from 1 to {high}, or one for all")))
+    }
+
+    /// Refuses settings that were not read: they do not apply, or do not exist.
+    pub(crate) fn check_all_used(&self) -> Result<(), SettingError> {
+        let used = self.used.borrow();
+        let unused = self.settings.iter().find(|(name, _)| !used.contains(&name.as_str()));
+        let Some((name, _)) = unused else { return Ok(()) };
+        let name: String = name.chars().take(40).collect();
+        Err(SettingError { message: format!("{name} does not apply to these settings"), setting: Some(name) })
+    }
+}

@@ -1,0 +1,248 @@
+//! An environment with its features, behind one type: what runs are made of, and what their values are asked about.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use qtab_core::checkpoint::{Checkpoint, CheckpointError};
+use qtab_core::features::{Features, Identity, OutOfBounds};
+use qtab_core::learners::{Learner, LearnerVisitor, TruncationHandling};
+use qtab_core::memory::AllocationError;
+use qtab_core::random::{AgentRng, Pcg64, SeedSequence};
+use qtab_core::tasks::{BoxedTask, NativeTask, TimedState, Transition, VisitCounter};
+use qtab_core::{Env, StopFlag, Task, Trainer, TrainingError};
+
+use crate::environment::Environment;
+use crate::episode::{Episode, greedy_action};
+use crate::run::Run;
+use crate::settings::{Discretizer, Settings};
+use crate::update_recorder::UpdateRecorder;
+use crate::updates::Watch;
+
+/// Why a run cannot be made, or cannot go on.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Failure(pub(crate) String);
+
+impl From<OutOfBounds> for Failure {
+    fn from(error: OutOfBounds) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl From<AllocationError> for Failure {
+    fn from(error: AllocationError) -> Self {
+        Self(format!("the run does not fit into memory: {error}"))
+    }
+}
+
+impl From<TrainingError<Failure>> for Failure {
+    fn from(error: TrainingError<Failure>) -> Self {
+        match error {
+            TrainingError::Task(failure) => failure,
+            TrainingError::Allocation(error) => error.into(),
+        }
+    }
+}
+
+/// Observations as numbers.
+pub(crate) trait Numbers: Sized {
+    fn numbers(&self) -> Vec<f64>;
+
+    /// `None` where there are not as many.
+    fn of(numbers: &[f64]) -> Option<Self>;
+}
+
+impl<const M: usize> Numbers for [f32; M] {
+    fn numbers(&self) -> Vec<f64> {
+        self.iter().map(|&number| number.into()).collect()
+    }
+
+    fn of(numbers: &[f64]) -> Option<Self> {
+        let numbers: Self = numbers.iter().map(|&number| number as f32).collect::<Vec<_>>().try_into().ok()?;
+        Some(numbers)
+    }
+}
+
+impl Numbers for u32 {
+    fn numbers(&self) -> Vec<f64> {
+        vec![f64::from(*self)]
+    }
+
+    fn of(numbers: &[f64]) -> Option<Self> {
+        numbers.first().map(|&number| number as u32)
+    }
+}
+
+/// A run that has not started, and the state that its environment is in.
+pub(crate) struct StartedRun {
+    pub(crate) run: Box<dyn Run>,
+    pub(crate) observation: Box<dyn Fn() -> Option<Vec<f64>>>,
+}
+
+/// An environment with its features, of any types.
+pub(crate) trait Subject {
+    fn num_actions(&self) -> usize;
+
+    fn n_rows(&self) -> usize;
+
+    /// A run with a seed. With `shown`, its visits are counted, and `watch` sees its updates.
+    fn run(&self, settings: &Settings, seed: u32, shown: bool, watch: Option<Watch>) -> Result<StartedRun, Failure>;
+
+    /// The active rows of an observation; `None` if it is outside the table.
+    fn active_rows(&self, observation: &[f64]) -> Option<Vec<u32>>;
+
+    /// An episode by the greedy policy over the sum of the tables, with the first state of the seed's first episode.
+    fn greedy_episode(&self, tables: &[&[f64]], seed: u32, max_steps: u64) -> Option<Episode>;
+}
+
+struct EnvWithFeatures<E, F> {
+    env: E,
+    features: F,
+    n_active: usize,
+}
+
+/// The subject that an environment and its discretizer make; `None` where they do not fit.
+pub(crate) fn subject(environment: &Environment, discretizer: &Discretizer) -> Option<Box<dyn Subject>> {
+    let n_active = discretizer.n_active();
+    Some(match (environment, discretizer) {
+        (Environment::Table(table), Discretizer::Identity) => {
+            let features = Identity(u32::try_from(table.mdp.num_states()).ok()?);
+            Box::new(EnvWithFeatures { env: table.mdp.clone(), features, n_active })
+        }
+        (&Environment::MountainCar(env), Discretizer::Grid(grid)) => {
+            Box::new(EnvWithFeatures { env, features: grid.features.clone(), n_active })
+        }
+        (&Environment::MountainCar(env), Discretizer::Tiles { features, .. }) => {
+            Box::new(EnvWithFeatures { env, features: (**features).clone(), n_active })
+        }
+        (&Environment::CartPole(env), Discretizer::Grid(grid)) => {
+            Box::new(EnvWithFeatures { env, features: grid.features.clone(), n_active })
+        }
+        (&Environment::CartPole(env), Discretizer::Tiles { features, .. }) => {
+            Box::new(EnvWithFeatures { env, features: (**features).clone(), n_active })
+        }
+        _ => return None,
+    })
+}
+
+impl<E, F> Subject for EnvWithFeatures<E, F>
+where
+    E: Env<Action = usize, Observation: Numbers, State: Send> + Clone + Send + 'static,
+    F: Features<E::Observation, Active: Send + 'static> + Clone + Send + 'static,
+{
+    fn num_actions(&self) -> usize {
+        self.env.num_actions()
+    }
+
+    fn n_rows(&self) -> usize {
+        self.features.len()
+    }
+
+    fn run(&self, settings: &Settings, seed: u32, shown: bool, watch: Option<Watch>) -> Result<StartedRun, Failure> {
+        let (stop, shape) = (StopFlag::new(), (self.n_rows(), self.num_actions()));
+        let env_rng = Pcg64::new(&SeedSequence::new(&[seed]));
+        let limit = Some(settings.max_episode_steps);
+        let task = NativeTask::new(self.env.clone(), self.features.clone(), limit, env_rng);
+        let last_state = Arc::new(Mutex::new(None));
+        let task: BoxedTask<F::Active, Failure> = if shown {
+            let task = ShownTask { task, last_state: Arc::clone(&last_state) };
+            BoxedTask::new(VisitCounter::new(task, shape.0, shape.1, &stop)?)
+        } else {
+            BoxedTask::new(task)
+        };
+        let mut rng = settings.rng(seed);
+        let (agent, second_table) = settings.agent(shape, self.n_active, &mut rng)?;
+        let unstarted = UnstartedRun { task, rng, terminate: settings.terminate_on_truncation, watch };
+        let run = settings.algorithm.learner::<F::Active, _>(agent, second_table, &stop, unstarted)?;
+        let run = run.ok_or_else(|| Failure("algorithm must be one without a model for several active rows".into()))?;
+        let env = self.env.clone();
+        let observation = move || {
+            let state = *last_state.lock().unwrap_or_else(PoisonError::into_inner);
+            state.map(|state| env.observe(&state).numbers())
+        };
+        Ok(StartedRun { run, observation: Box::new(observation) })
+    }
+
+    fn active_rows(&self, observation: &[f64]) -> Option<Vec<u32>> {
+        let observation = E::Observation::of(observation)?;
+        self.features.active_rows(&observation).ok().map(|rows| rows.as_ref().to_vec())
+    }
+
+    fn greedy_episode(&self, tables: &[&[f64]], seed: u32, max_steps: u64) -> Option<Episode> {
+        let mut rng = Pcg64::new(&SeedSequence::new(&[seed]));
+        let mut state = self.env.reset(&mut rng);
+        let mut episode = Episode::default();
+        for _ in 0..max_steps {
+            let observation = self.env.observe(&state);
+            let rows = self.features.active_rows(&observation).ok()?;
+            let action = greedy_action(tables, rows.as_ref(), self.num_actions())?;
+            let step = self.env.step(state, action, &mut rng);
+            episode.push(observation.numbers(), action, step.reward);
+            state = step.state;
+            if step.terminated {
+                episode.terminated = true;
+                break;
+            }
+        }
+        episode.end(self.env.observe(&state).numbers());
+        Some(episode)
+    }
+}
+
+/// All of a run but its learner.
+struct UnstartedRun<R> {
+    task: BoxedTask<R, Failure>,
+    rng: AgentRng,
+    terminate: bool,
+    watch: Option<Watch>,
+}
+
+impl<R: qtab_core::features::ActiveRows + Send + 'static> LearnerVisitor<R> for UnstartedRun<R> {
+    type Output = Box<dyn Run>;
+
+    fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
+        let learner = TruncationHandling { learner, terminate: self.terminate, bonus: None };
+        Box::new(Trainer::new(self.task, UpdateRecorder::new(learner, self.watch), self.rng))
+    }
+}
+
+/// A task that shows the state of its environment after each step.
+struct ShownTask<E: Env, F> {
+    task: NativeTask<E, F>,
+    last_state: Arc<Mutex<Option<E::State>>>,
+}
+
+impl<E: Env, F> ShownTask<E, F> {
+    fn show(&self, state: E::State) {
+        *self.last_state.lock().unwrap_or_else(PoisonError::into_inner) = Some(state);
+    }
+}
+
+impl<E: Env<Action = usize>, F: Features<E::Observation>> Task for ShownTask<E, F> {
+    type State = TimedState<E::State>;
+    type Active = F::Active;
+    type Error = OutOfBounds;
+
+    fn reset(&mut self) -> Result<(Self::State, F::Active), OutOfBounds> {
+        let (state, active) = self.task.reset()?;
+        self.show(state.state);
+        Ok((state, active))
+    }
+
+    #[inline]
+    fn step(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<F::Active>, OutOfBounds> {
+        let transition = self.task.step(state, action)?;
+        self.show(state.state);
+        Ok(transition)
+    }
+
+    fn active_rows(&self, state: &Self::State) -> Result<F::Active, OutOfBounds> {
+        self.task.active_rows(state)
+    }
+
+    fn persist(
+        &mut self,
+        state: Option<&mut Self::State>,
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        self.task.persist(state, checkpoint)
+    }
+}

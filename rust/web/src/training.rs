@@ -1,0 +1,199 @@
+//! Runs that differ in their seeds alone, advanced in turn so that all of them have about as many episodes.
+
+use crate::environment::Environment;
+use crate::json::Json;
+use crate::plane::Cells;
+use crate::run::Run;
+use crate::settings::{SettingError, Settings};
+use crate::subject::{Failure, StartedRun, Subject, subject};
+use crate::updates::Watch;
+
+const MAX_SEEDS: usize = 64;
+/// The most episodes of all seeds together: their results take 17 bytes each, and a page copies them.
+const MAX_TOTAL_EPISODES: usize = 4_000_000;
+/// The parts into which a run is divided, so that its seeds take turns.
+const TURNS: usize = 100;
+/// The most work before another run has its turn.
+const WORK_OF_A_TURN: u64 = 20_000;
+
+/// What a request started.
+pub(crate) struct Training {
+    pub(crate) environment: Environment,
+    pub(crate) settings: Settings,
+    pub(crate) subject: Box<dyn Subject>,
+    pub(crate) cells: Cells,
+    pub(crate) seeds: Vec<u32>,
+    pub(crate) runs: Vec<StartedRun>,
+    /// The cell whose updates the first run watches.
+    watched: Option<usize>,
+    /// The first run once more, on its way to the same step while it watches another cell.
+    replay: Option<Replay>,
+}
+
+struct Replay {
+    cell: usize,
+    run: StartedRun,
+}
+
+/// Where training is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum State {
+    Training,
+    Finished,
+    Diverged,
+}
+
+impl State {
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Training => "training",
+            Self::Finished => "finished",
+            Self::Diverged => "diverged",
+        }
+    }
+}
+
+/// Whether a run that is repeated has reached the step of the first one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Position {
+    Reached,
+    OnItsWay,
+}
+
+impl Training {
+    pub(crate) fn new(request: &Json) -> Result<Self, SettingError> {
+        let environment = Environment::parse(request.get("environment").unwrap_or(&Json::Null))?;
+        let settings = Settings::parse(request.get("settings").unwrap_or(&Json::Null), environment.bounds())?;
+        let seeds: Option<Vec<u32>> = match request.get("seeds").and_then(Json::array) {
+            Some(seeds) if (1..=MAX_SEEDS).contains(&seeds.len()) => {
+                seeds.iter().map(|seed| seed.integer(u32::MAX)).collect()
+            }
+            _ => None,
+        };
+        let invalid = || format!("seeds must hold 1 to {MAX_SEEDS} integers from 0 to 2**32 - 1");
+        let seeds = seeds.ok_or_else(invalid)?;
+        if settings.episodes * seeds.len() > MAX_TOTAL_EPISODES {
+            let most = MAX_TOTAL_EPISODES / seeds.len();
+            let message = format!("episodes must be at most {most} for {} seeds", seeds.len());
+            return Err(SettingError { setting: Some("episodes".into()), message });
+        }
+        let subject = subject(&environment, &settings.discretizer);
+        let subject = subject.ok_or_else(|| "the discretizer does not fit the environment".to_string())?;
+        let cells = Cells::new(&environment, &settings.discretizer, request.get("map"))?;
+        let runs: Result<Vec<StartedRun>, Failure> =
+            seeds.iter().enumerate().map(|(index, &seed)| subject.run(&settings, seed, index == 0, None)).collect();
+        let runs = runs?;
+        Ok(Self { environment, settings, subject, cells, seeds, runs, watched: None, replay: None })
+    }
+
+    /// What does not change during the run.
+    pub(crate) fn described(&self) -> String {
+        format!(
+            "{{\"actions\":{},\"tables\":{},\"tableRows\":{},\"active\":{},\"columns\":{},\"rows\":{}}}",
+            self.subject.num_actions(),
+            self.settings.algorithm.n_tables(),
+            self.subject.n_rows(),
+            self.settings.discretizer.n_active(),
+            self.cells.columns(),
+            self.cells.rows(),
+        )
+    }
+
+    /// The number of finished episodes, the least of all runs.
+    pub(crate) fn done(&self) -> usize {
+        self.runs.iter().map(|started| started.run.episodes().returns.len()).min().unwrap_or(0)
+    }
+
+    pub(crate) fn state(&self) -> State {
+        if self.runs.iter().any(|started| started.run.diverged()) {
+            State::Diverged
+        } else if self.done() == self.settings.episodes {
+            State::Finished
+        } else {
+            State::Training
+        }
+    }
+
+    /// Trains the runs in turn, up to a number of episodes or until so much work is done.
+    pub(crate) fn advance(&mut self, episodes: usize, work: u64) -> Result<(), Failure> {
+        let episodes = episodes.min(self.settings.episodes);
+        let turn = self.settings.episodes.div_ceil(TURNS);
+        let mut left = work;
+        while left > 0 && self.state() != State::Diverged {
+            let done = |started: &StartedRun| started.run.episodes().returns.len();
+            let Some(next) = self.runs.iter_mut().min_by_key(|started| done(started)) else { break };
+            let before = done(next);
+            if before >= episodes {
+                break;
+            }
+            let until = (before / turn + 1).saturating_mul(turn).min(episodes);
+            let (run, budget) = (&mut next.run, left.min(WORK_OF_A_TURN));
+            let steps_before = steps(run.as_ref(), before);
+            run.advance(until, budget)?;
+            // What the episodes took if the turn ended with them, else all of the budget.
+            let done_after = run.episodes().returns.len();
+            let used =
+                if done_after < until { budget } else { steps(run.as_ref(), before).saturating_sub(steps_before) };
+            left = left.saturating_sub(used.max(1));
+        }
+        Ok(())
+    }
+
+    /// One step of each run that is not finished.
+    pub(crate) fn step(&mut self) -> Result<(), Failure> {
+        for started in &mut self.runs {
+            step(started.run.as_mut(), self.settings.episodes)?;
+        }
+        Ok(())
+    }
+
+    /// Makes the first run watch a cell, by repeating it up to its last step. Nothing that is learned changes.
+    pub(crate) fn inspect(&mut self, cell: usize, work: u64) -> Result<Position, Failure> {
+        if self.watched == Some(cell) {
+            return Ok(Position::Reached);
+        }
+        if self.replay.as_ref().is_none_or(|replay| replay.cell != cell) {
+            let observation = self.cells.observation(cell);
+            let rows = observation.and_then(|observation| self.subject.active_rows(&observation));
+            let rows = rows.ok_or_else(|| Failure("cell must be one with action values".into()))?;
+            let watch = Watch::new(rows, self.subject.num_actions(), &self.settings);
+            let run = self.subject.run(&self.settings, self.seeds[0], true, Some(watch))?;
+            self.replay = Some(Replay { cell, run });
+        }
+        let Some(replay) = &mut self.replay else { return Ok(Position::OnItsWay) };
+        let (first, run) = (&self.runs[0].run, &mut replay.run.run);
+        let done = first.episodes().returns.len();
+        run.advance(done, work)?;
+        if run.episodes().returns.len() < done {
+            return Ok(Position::OnItsWay);
+        }
+        let goal = first.progress().map_or(0, |progress| progress.steps);
+        for _ in 0..work {
+            if run.progress().map_or(0, |progress| progress.steps) >= goal {
+                if let Some(Replay { run, .. }) = self.replay.take() {
+                    self.runs[0] = run;
+                }
+                self.watched = Some(cell);
+                return Ok(Position::Reached);
+            }
+            step(run.as_mut(), self.settings.episodes)?;
+        }
+        Ok(Position::OnItsWay)
+    }
+}
+
+/// The steps of the unfinished episode and of the finished ones from an index on.
+fn steps(run: &dyn Run, from: usize) -> u64 {
+    let finished: i64 = run.episodes().lengths[from..].iter().sum();
+    (finished + run.progress().map_or(0, |progress| progress.steps)) as u64
+}
+
+/// One step of a run. The learner may do it in parts.
+fn step(run: &mut dyn Run, episodes: usize) -> Result<(), Failure> {
+    let position = |run: &dyn Run| (run.episodes().returns.len(), run.progress().map(|progress| progress.steps));
+    let before = position(run);
+    while before.0 < episodes && position(run) == before && !run.diverged() {
+        run.advance(episodes, 1)?;
+    }
+    Ok(())
+}
