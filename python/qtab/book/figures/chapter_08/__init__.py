@@ -3,6 +3,11 @@
 from collections.abc import Sequence
 
 from qtab.book.experiment import Experiment
-from qtab.book.figures.chapter_08 import figure_8_2
+from qtab.book.figures.chapter_08 import example_8_4, figure_8_2, figure_8_4, figure_8_5
 
-EXPERIMENTS: Sequence[Experiment] = (figure_8_2.EXPERIMENT,)
+EXPERIMENTS: Sequence[Experiment] = (
+    figure_8_2.EXPERIMENT,
+    figure_8_4.EXPERIMENT,
+    figure_8_5.EXPERIMENT,
+    example_8_4.EXPERIMENT,
+)
