@@ -25,7 +25,8 @@ RATES: tuple[str, ...] = (
     "learning_rate_decay",
     "trace_decay",
 )
-RATES += ("trace_cutoff", "min_learning_rate", "temperature", "time_weight")
+RATES += ("trace_cutoff", "min_learning_rate", "temperature", "time_weight", "sigma")
+RATES += ("priority_threshold", "reward_learning_rate", "count_bonus")
 COUNTS: tuple[str, ...] = (
     "episodes",
     "max_episode_steps",

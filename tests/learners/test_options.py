@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.config.options import OPTIONS
+from qtab.config.options import AVERAGE_REWARD, OPTIONS, TABLES_ONLY
 
 TILES: dict[str, Any] = {"discretizer": "tiles"}
 VALUES: dict[str, Any] = {
@@ -15,8 +15,13 @@ VALUES: dict[str, Any] = {
     "traces": "replacing",
     "trace_cutoff": 0.0,
     "n_steps": 4,
+    "sigma": 0.5,
+    "target_policy": "greedy",
     "planning_steps": 5,
     "time_weight": 0.1,
+    "model": "deterministic",
+    "priority_threshold": 0.1,
+    "reward_learning_rate": 0.1,
     "min_learning_rate": 0.0,
     "learning_rate_decay": 0.9,
     "learning_rate_warm_up": 0,
@@ -67,11 +72,11 @@ def test_an_option_that_does_not_apply_is_refused_by_name(name: str, chosen: dic
         qtab.train("MountainCar-v0", episodes=1, **chosen, **{name: VALUES[name]})
 
 
-@pytest.mark.parametrize("algorithm", ["dyna_q", "dyna_q_plus"])
-def test_dyna_needs_a_table(algorithm: Any) -> None:
+@pytest.mark.parametrize("algorithm", TABLES_ONLY)
+def test_a_model_and_returns_need_a_table(algorithm: Any) -> None:
     with pytest.raises(
         ValueError,
-        match=r"^algorithm must be 'q_learning', .* or 'watkins_q_lambda' for discretizer 'tiles', got 'dyna_q",
+        match=rf"^algorithm must be 'q_learning', .* for discretizer 'tiles', got '{algorithm}', which works with",
     ):
         qtab.train("MountainCar-v0", algorithm=algorithm, **TILES)
 
@@ -89,6 +94,39 @@ def test_true_online_sarsa_lambda_refuses_the_visits_schedule() -> None:
         qtab.train("MountainCar-v0", algorithm="true_online_sarsa_lambda", learning_rate_schedule="visits")
 
 
+def test_off_policy_monte_carlo_needs_averages() -> None:
+    with pytest.raises(
+        ValueError,
+        match=r"^learning_rate_schedule must be 'visits' for algorithm 'off_policy_monte_carlo', got 'linear'",
+    ):
+        qtab.train("MountainCar-v0", algorithm="off_policy_monte_carlo", learning_rate_schedule="linear")
+
+
+@pytest.mark.parametrize("algorithm", AVERAGE_REWARD)
+def test_the_average_reward_is_not_discounted(algorithm: Any) -> None:
+    with pytest.raises(
+        ValueError,
+        match=rf"^discount must be 1 for algorithm '{algorithm}', which learns the average reward, got 0\.9$",
+    ):
+        qtab.train("MountainCar-v0", algorithm=algorithm, discount=0.9)
+
+
+def test_an_algorithm_brings_the_settings_of_the_book() -> None:
+    def used(**settings: Any) -> tuple[Any, ...]:
+        config = qtab.train("MountainCar-v0", episodes=1, max_episode_steps=5, **settings).config
+        return config.learning_rate, config.learning_rate_schedule, config.epsilon, config.discount
+
+    assert used(algorithm="monte_carlo") == (1.0, "visits", 0.8, 0.9)
+    assert used(algorithm="monte_carlo_es") == (1.0, "visits", 0.0, 0.9)
+    assert used(algorithm="monte_carlo", learning_rate=0.1, epsilon=0.3) == (0.1, "constant", 0.3, 0.9)
+    assert used(algorithm="off_policy_monte_carlo", learning_rate=0.5) == (0.5, "visits", 0.8, 0.9)
+    assert used(algorithm="differential_sarsa") == (0.2, "constant", 0.8, 1.0)
+    assert used() == (0.2, "constant", 0.8, 0.9)
+    # A preset's rate, which was chosen for another algorithm, yields too.
+    frozen = qtab.train("FrozenLake-v1", episodes=1, preset="solved", algorithm="monte_carlo").config
+    assert (frozen.learning_rate, frozen.learning_rate_schedule, frozen.epsilon) == (1.0, "visits", 0.0)
+
+
 @pytest.mark.parametrize(
     ("name", "value", "settings"),
     [
@@ -100,6 +138,12 @@ def test_true_online_sarsa_lambda_refuses_the_visits_schedule() -> None:
         ("n_steps", 0, {"algorithm": "n_step_sarsa"}),
         ("planning_steps", -1, {"algorithm": "dyna_q"}),
         ("time_weight", -1.0, {"algorithm": "dyna_q_plus"}),
+        ("sigma", 1.01, {"algorithm": "n_step_q_sigma"}),
+        ("target_policy", "behaviour", {"algorithm": "n_step_q_sigma"}),
+        ("model", "random", {"algorithm": "dyna_q"}),
+        ("priority_threshold", -1.0, {"algorithm": "prioritized_sweeping"}),
+        ("reward_learning_rate", 1.5, {"algorithm": "differential_sarsa"}),
+        ("count_bonus", -0.1, {}),
         ("time_weight", float("inf"), {"algorithm": "dyna_q_plus"}),
         ("temperature", 0.0, {"exploration": "softmax"}),
         ("temperature", float("nan"), {"exploration": "softmax"}),

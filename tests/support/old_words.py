@@ -277,6 +277,5 @@ VARIABLES: dict[str, dict[str, str]] = {
 }
 """Usual words, refused as the name of anything, a parameter or a local variable included."""
 
-ALLOWED: dict[tuple[str, str], str] = {
-}
+ALLOWED: dict[tuple[str, str], str] = {}
 """Exceptions, by path and word, with the reason."""

@@ -82,7 +82,7 @@ class Config:
     """α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided among the
     tilings, and may be up to 2."""
     discount: float = 0.9
-    """γ: the discount factor, in [0, 1]. It must be 1, the default there, for algorithms that learn the average reward."""
+    """γ: the discount factor, in [0, 1]. Algorithms that learn the average reward have none: it is 1."""
     learning_rate_schedule: LearningRateSchedule = "constant"
     """How the learning rate falls: linearly or exponentially over the episodes, or (visits) as learning_rate / n at the
     n-th visit of a state and action. The default of Monte Carlo methods is visits, with a learning rate of 1: averages.

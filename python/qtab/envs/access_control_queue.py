@@ -54,6 +54,8 @@ class AccessControlQueueEnv(TabularEnv):
         left = free - accepted
         busy, count = self.servers - left, len(self.priorities)
         for freed in range(busy + 1):
-            share = math.comb(busy, freed) * self.free_probability**freed * (1 - self.free_probability) ** (busy - freed)
+            share = (
+                math.comb(busy, freed) * self.free_probability**freed * (1 - self.free_probability) ** (busy - freed)
+            )
             for number in range(count):
                 yield share / count, (left + freed) * count + number, reward, False

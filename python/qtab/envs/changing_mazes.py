@@ -1,4 +1,4 @@
-"""``qtab/BlockingMaze-v0`` and ``qtab/ShortcutMaze-v0``: mazes that change (Sutton & Barto, 2nd ed., Examples 8.2, 8.3)."""
+"""``qtab/BlockingMaze-v0`` and ``qtab/ShortcutMaze-v0``: mazes that change (Sutton & Barto, Examples 8.2 and 8.3)."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -8,7 +8,7 @@ MOST_DOUBLINGS = 7
 
 
 def scaled_maze(doublings: int) -> tuple[str, ...]:
-    """Returns the map of the Dyna maze with its cells doubled so often, the columns first, then rows and columns in turn.
+    """Returns the map of the Dyna maze doubled so often: first the columns, then rows and columns in turn.
 
     All cells of the goal are goals; one cell is the start.
     """

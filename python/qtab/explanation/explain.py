@@ -26,7 +26,6 @@ from qtab.results.run import Run
 from qtab.training.extensions import repeatable
 from qtab.training.run_env import make_run_env
 
-
 EXPLAINED = (*BOOTSTRAP, "double_q_learning")
 """The algorithms whose updates can be explained."""
 
@@ -64,7 +63,9 @@ def explain(
     """
     checks.instance("run", run, Run)
     if run.config.algorithm not in EXPLAINED:
-        raise ValueError(f"run must be one of algorithm {listed(EXPLAINED)} to be explained, got {run.config.algorithm!r}")
+        raise ValueError(
+            f"run must be one of algorithm {listed(EXPLAINED)} to be explained, got {run.config.algorithm!r}"
+        )
     finished = len(run.episode_returns)
     if finished == 0:
         raise ValueError("run must have a finished episode, got one that was stopped during its first")

@@ -18,7 +18,7 @@ class AverageReward:
         self.task.update(self.Q, state, action, target)
 
     def begin_episode(self, following: float) -> None:
-        """Makes the update that waits: a reset counts as the transition from the terminal state, which takes no time."""
+        """Makes the update that waits: a reset counts as a transition from the terminal state, without a step."""
         if self.waiting is not None:
             self.learn(*self.waiting, following)
             self.waiting = None

@@ -13,7 +13,9 @@ Weight = Callable[[float, float], float]
 """From π(A | S) and the importance sampling ratio ρ to the weight of what follows A."""
 
 
-def n_step_backups(env: gym.Env, config: Config, stop_after: int | None, n: int, greedy: bool, weight: Weight) -> Result:
+def n_step_backups(
+    env: gym.Env, config: Config, stop_after: int | None, n: int, greedy: bool, weight: Weight
+) -> Result:
     """Trains towards returns over n steps. The target policy π is greedy, or else the behaviour policy."""
     task = Task(env, config, stop_after)
     Q = task.table()
@@ -22,7 +24,9 @@ def n_step_backups(env: gym.Env, config: Config, stop_after: int | None, n: int,
         """An action by the behaviour policy b, and ρ = π(A | S) / b(A | S)."""
         values = task.values(Q, state)
         action = task.policy.choose(values)
-        ratio = probability(task, Q, state, action, greedy) / task.policy.probabilities(values)[action] if greedy else 1.0
+        ratio = (
+            probability(task, Q, state, action, greedy) / task.policy.probabilities(values)[action] if greedy else 1.0
+        )
         return action, ratio
 
     for _ in task.episodes():

@@ -12,4 +12,4 @@ def n_step_tree_backup(env: gym.Env, config: Config, stop_after: int | None = No
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     options = NStepTreeBackup.of(config)
     greedy = options.target_policy == "greedy"
-    return n_step_backups(env, config, stop_after, options.n_steps, greedy, lambda share, ratio: share)
+    return n_step_backups(env, config, stop_after, options.n_steps, greedy, lambda share, _ratio: share)

@@ -39,7 +39,8 @@ def draw_blackjack(result: Result, ax: "Axes | None") -> "Axes":
     axes: Any = None
     for row, (name, values) in enumerate(result.surfaces.items()):
         sums = np.arange(_FIRST_SUM, _FIRST_SUM + values.shape[1])
-        policy = values.argmax(axis=0)
+        # There is no usable ace below 12.
+        policy = np.where((values == 0).all(axis=0), np.nan, values.argmax(axis=0))
         axes = figure.add_subplot(2, 2, 2 * row + 1)
         axes.pcolormesh(cards, sums, policy, cmap=ListedColormap(_COLORS), vmin=0, vmax=1, edgecolors="white")
         for action, word in enumerate(_NAMES):

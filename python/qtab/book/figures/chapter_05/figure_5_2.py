@@ -24,6 +24,7 @@ CONFIG: dict[str, Any] = {
     "algorithm": "monte_carlo_es",
     "discount": 1.0,
     "initial_q": 0.0,
+    "max_episode_steps": 100,  # more cards than any hand has
     "episodes": 5_000_000,
 }
 """The keyword arguments of :func:`qtab.train`."""
@@ -61,7 +62,7 @@ class ExploringStarts(Experiment):
         with ProgressBar(runs, "run", progress, self.name) as bar:
             for first in range(0, runs, threads):
                 seeds = range(seed + first, seed + min(first + threads, runs))
-                trained = train_many(**CONFIG, seeds=seeds, threads=threads, progress=False)
+                trained = train_many(**CONFIG, seeds=seeds, tables=True, threads=threads, progress=False)
                 tables += [values_of(table) for table in trained.tables]
                 bar.move_to(len(tables))
         thresholds = np.stack([lowest_stick(values) for values in tables])
@@ -81,10 +82,10 @@ EXPERIMENT = ExploringStarts(
     name="figure-5.2",
     title="the optimal policy of blackjack, by Monte Carlo with exploring starts",
     book="exploring starts, γ = 1, initial values of zero, at first a policy that sticks on 20 and 21 only; one run",
-    unspecified="the number of episodes (5,000,000 here). The book draws the first cards so that all starts have the same "
-    "probability; here they are dealt, and only the first action is drawn. The first policy sticks everywhere, as all "
-    "values are zero",
-    runs=1,
+    unspecified="the number of episodes (5,000,000 here). The figure shows the average of 10 runs. The book draws the first "
+    "cards so that all starts have the same probability; here they are dealt, and only the first action is drawn. The "
+    "first policy sticks everywhere, as all values are zero",
+    runs=10,
     x_label="dealer's card",
     y_label="lowest sum that sticks",
 )

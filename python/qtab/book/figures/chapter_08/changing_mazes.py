@@ -35,7 +35,7 @@ def settings(env: str, steps: int, episodes: int) -> tuple[Setting, ...]:
     """
     times = tuple(range(50, steps + 1, 50))
     measure, x = reward_by(times), tuple(map(float, times))
-    base = {**_DYNA, "episodes": episodes, "max_episode_steps": steps}
+    base = {**_DYNA, "episodes": episodes}
     plus = {"algorithm": "dyna_q_plus", "time_weight": TIME_WEIGHT}
     return (
         Setting("Dyna-Q+", env, {**base, **plus}, measure, x, method="dyna_q_plus"),

@@ -15,6 +15,7 @@ EXPERIMENT = TrainingExperiment(
     unspecified=UNSPECIFIED,
     settings=settings("qtab/BlockingMaze-v0", STEPS, STEPS // SHORTEST),
     runs=100,
+    max_episode_steps=STEPS,
     x_label="time steps",
     y_label="cumulative reward",
     table_x=(500, 1000, 1500, 2000, 2500, 3000),

@@ -14,6 +14,7 @@ EXPERIMENT = TrainingExperiment(
     unspecified=UNSPECIFIED,
     settings=settings("qtab/ShortcutMaze-v0", STEPS, STEPS // SHORTEST),
     runs=100,
+    max_episode_steps=STEPS,
     x_label="time steps",
     y_label="cumulative reward",
     table_x=(1000, 2000, 3000, 4000, 5000, 6000),

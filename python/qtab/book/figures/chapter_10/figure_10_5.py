@@ -52,11 +52,13 @@ def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
     upper, lower = figure.subplots(2, 1, height_ratios=(1, 2), sharex=True)
     policy = result.surfaces["policy"].T
     free, levels = np.arange(SERVERS + 1), np.arange(len(PRIORITIES))
-    upper.pcolormesh(free, levels, policy, cmap=ListedColormap(("#f3c9a6", "#d9e4f2")), vmin=0, vmax=1, edgecolors="white")
+    upper.pcolormesh(
+        free, levels, policy, cmap=ListedColormap(("#f3c9a6", "#d9e4f2")), vmin=0, vmax=1, edgecolors="white"
+    )
     for action, word in enumerate(("REJECT", "ACCEPT")):
         where = np.argwhere(policy[:, 1:] == action)
-        if len(where):
-            height, across = where.mean(axis=0)
+        if len(where):  # in the cell that is nearest to the middle
+            height, across = where[np.abs(where - where.mean(axis=0)).sum(axis=1).argmin()]
             upper.text(across + 1, height, word, ha="center", va="center", color="black")
     upper.set_yticks(levels, PRIORITIES)
     upper.invert_yaxis()
@@ -66,7 +68,9 @@ def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
         error = np.nan_to_num(line.error)
         lower.fill_between(line.x, line.mean - 2 * error, line.mean + 2 * error, color=hue, alpha=0.25, linewidth=0)
         lower.plot(line.x, line.mean, color=hue, marker="o", markersize=4)
-        lower.annotate(line.name, (line.x[-1], line.mean[-1]), (6, 0), textcoords="offset points", va="center", color=hue)
+        lower.annotate(
+            line.name, (line.x[-1], line.mean[-1]), (6, 0), textcoords="offset points", va="center", color=hue
+        )
     lower.axhline(0, color="0.6", linewidth=0.8)
     lower.set_xlim(-0.5, SERVERS + 2.2)
     lower.set_xticks(free)
@@ -115,9 +119,10 @@ class AccessControl(Experiment):
 EXPERIMENT = AccessControl(
     name="figure-10.5",
     title="differential Sarsa on the access-control queuing task",
-    book="10 servers, priorities 1, 2, 4 and 8 with equal probability, a busy server becomes free with probability 0.06; "
-    "α = β = 0.01, ε = 0.1, initial values and average reward of zero, 2,000,000 steps",
-    unspecified="whether several runs were averaged (30 here; the policy is that of the first), and how ties are broken",
+    book="10 servers, priorities 1, 2, 4 and 8 with equal probability, a busy server becomes free with probability "
+    "0.06; α = β = 0.01, ε = 0.1, initial values and average reward of zero, 2,000,000 steps",
+    unspecified="how ties are broken (at random here). The values are the average of 30 runs, the policy is that of the "
+    "first one",
     runs=30,
     x_label="number of free servers",
     y_label="differential value",
