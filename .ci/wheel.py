@@ -1,12 +1,18 @@
 """What the wheel must do in an environment that has its required dependencies only."""
 
+import sys
+import sysconfig
 from importlib.metadata import distributions
 
 import gymnasium
 import qtab
+import qtab.playground
 
 extras = {"matplotlib", "tyro", "tqdm", "moviepy", "pygame"} & {found.metadata["Name"] for found in distributions()}
 assert not extras, f"the wheel installed {extras}"
+
+if sysconfig.get_config_var("Py_GIL_DISABLED"):
+    assert not sys._is_gil_enabled(), "importing qtab turned the interpreter's lock on"
 
 run = qtab.train("MountainCar-v0", seed=0, episodes=200)
 assert qtab.verify(run, episodes=20).equal
@@ -18,6 +24,9 @@ assert verification.equal
 env = gymnasium.make("qtab/MountainCar-v0")
 env.reset(seed=0)
 env.step(env.action_space.sample())
+
+page = qtab.playground.page()
+assert "AGFzbQ" in page, "the wheel lacks the WebAssembly module of the playground"
 
 try:
     qtab.plot(run)

@@ -1,10 +1,10 @@
 """What every test relies on: no window opens, Ctrl-C arrives, and CI draws the same examples every time."""
 
+import gc
 import os
 import signal
 import sys
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
 
@@ -26,10 +26,23 @@ settings.load_profile("ci" if os.environ.get("CI") else "local")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
-    """No worker processes where only files or tests are named: starting them would take longer, and hide ``print``."""
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """One worker process more than cores, as some tests wait for other processes; none where only files are named.
+
+    For a few files, starting processes would take longer than the tests, and hide what they print.
+    """
     named = config.args_source is pytest.Config.ArgsSource.ARGS
-    return 0 if named and all(".py" in argument for argument in config.args) else None
+    if named and all(".py" in argument for argument in config.args):
+        return 0
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return cores + 1
+
+
+def pytest_collection_finish() -> None:
+    """Spares the collector of garbage the thousands of tests and modules, of which it would never collect any."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 50)
 
 
 @pytest.fixture(autouse=True)
@@ -38,27 +51,6 @@ def closed_figures() -> Iterator[None]:
     yield
     if "matplotlib.pyplot" in sys.modules:
         sys.modules["matplotlib.pyplot"].close("all")
-
-
-@pytest.fixture(scope="session", autouse=True)
-def one_search_for_each_mountain_car() -> Iterator[None]:
-    """Keeps the results of the search over MountainCar's dynamics, which takes seconds and is the same every time."""
-    from qtab import _core
-    from qtab.planning import solve
-
-    found: dict[tuple[Any, ...], Any] = {}
-    search = solve._search_mountain_car
-
-    def once(env: Any, discount: float, max_episode_steps: int, bar: Any) -> Any:
-        constants = tuple(repr(getattr(env, name)) for name in _core.parameter_names("MountainCar"))
-        task = (constants, discount, max_episode_steps)
-        if task not in found:
-            found[task] = search(env, discount, max_episode_steps, bar)
-        return found[task]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(solve, "_search_mountain_car", once)
-        yield
 
 
 @pytest.fixture

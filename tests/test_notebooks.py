@@ -1,7 +1,8 @@
 """The notebooks in examples/: how they are stored, and that they run, show pictures and print the right numbers."""
 
+import copy
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ PICTURES = {
     "chapter_6": "windy-policy cliff cliff-policies bias",
     "your_environment": "curve policy values visits difference many",
     "study": "sensitivity profile curves",
+    "playground": "picture",
 }
 """The cells that show one picture each."""
 TABLES = {
@@ -31,6 +33,7 @@ TABLES = {
     "chapter_6": "windy compare experiment",
     "your_environment": "train verify optimum",
     "study": "search confirm improvement reload",
+    "playground": "change",
 }
 """The cells that show a table."""
 PLAYERS = {"mountain_car": "play-article play-solved animation"}
@@ -47,7 +50,7 @@ def source(name: str, cell: str) -> str:
     return str(text)
 
 
-def test_there_are_four_and_the_readme_links_them() -> None:
+def test_there_are_five_and_the_readme_links_them() -> None:
     assert sorted(path.stem for path in NOTEBOOKS) == sorted(PICTURES)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert [path.name for path in NOTEBOOKS if f"(examples/{path.name})" not in readme] == []
@@ -81,8 +84,8 @@ def test_the_links_of_a_notebook_lead_to_files(name: str) -> None:
 class Executed:
     """The outputs of a notebook that ran."""
 
-    def __init__(self, notebook: Any) -> None:
-        self._cells = {cell.id: cell.outputs for cell in notebook.cells if cell.cell_type == "code"}
+    def __init__(self, cells: Sequence[Any]) -> None:
+        self._cells = {cell.id.rpartition("--")[2]: cell.outputs for cell in cells if cell.cell_type == "code"}
 
     def shown(self, cell: str, kind: str) -> list[str]:
         """What a cell shows of a MIME type; the text that it prints counts as plain."""
@@ -95,7 +98,7 @@ class Executed:
     @property
     def errors(self) -> list[str]:
         """What was printed on standard error, which a reader would see in red."""
-        return [str(output.text) for outputs in self._cells.values() for output in outputs if _is_red(output)]
+        return [str(output) for outputs in self._cells.values() for output in outputs if _is_red(output)]
 
 
 def _is_red(output: Any) -> bool:
@@ -179,32 +182,60 @@ def check_study(executed: Executed) -> None:
     assert executed.text("reload").startswith("the same means: True\n")
 
 
+def check_playground(executed: Executed) -> None:
+    """The values that were assigned to widgets reach the agent."""
+    settings: dict[str, Any] = {"learning_rate": 0.2, "discount": 1.0, "epsilon": 0.0, "episodes": 1000}
+    assert executed.text("change") == repr(qtab.train("MountainCar-v0", seed=0, **settings))
+    runs = qtab.train_many("MountainCar-v0", seeds=100, **settings)
+    assert f"episodes: {qtab.stats.mean(runs.final_returns(100))}" in executed.text("seeds")
+
+
 CHECKS: dict[str, Callable[[Executed], None]] = {
     "mountain_car": check_mountain_car,
     "chapter_6": check_chapter_6,
     "your_environment": check_your_environment,
     "study": check_study,
+    "playground": check_playground,
 }
+
+
+def between(folder: Path) -> str:
+    """What is run before each notebook: it starts with an empty namespace, in a folder of its own."""
+    return f"%reset -f\nimport os\nos.makedirs({str(folder)!r})\nos.chdir({str(folder)!r})"
+
+
+@pytest.fixture(scope="module")
+def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Executed]:
+    """All notebooks, executed one after the other in one kernel, whose start takes as long as many cells."""
+    nbclient = pytest.importorskip("nbclient")
+    pytest.importorskip("ipykernel")
+    folder = tmp_path_factory.mktemp("notebooks")
+    cells: dict[str, list[Any]] = {}
+    for name in PICTURES:
+        cells[name] = [nbformat.v4.new_code_cell(between(folder / name)), *copy.deepcopy(stored(name)).cells]
+        for cell in cells[name]:
+            cell.id = f"{name}--{cell.id}"  # two notebooks have cells of the same name
+    every = nbformat.v4.new_notebook(cells=[cell for of_one in cells.values() for cell in of_one])
+    # The kernel chooses its own backend, as it does for a reader.
+    with pytest.MonkeyPatch.context() as environment:
+        environment.delenv("MPLBACKEND", raising=False)
+        environment.setenv("IPYTHONDIR", str(folder / "ipython"))
+        # A cell that fails is reported with its notebook, and the next notebook runs.
+        client = nbclient.NotebookClient(every, timeout=300, kernel_name="python3", allow_errors=True)
+        client.execute(cwd=str(folder))
+    return {name: Executed(of_one) for name, of_one in cells.items()}
 
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of Jupyter's libraries
 @pytest.mark.parametrize("name", PICTURES)
-def test_a_notebook_runs_and_shows_what_it_says(name: str, tmp_path: Path) -> None:
-    nbclient = pytest.importorskip("nbclient")
-    pytest.importorskip("ipykernel")
-    notebook = nbformat.from_dict(stored(name))
-    # The kernel chooses its own backend, as it does for a reader.
-    with pytest.MonkeyPatch.context() as environment:
-        environment.delenv("MPLBACKEND", raising=False)
-        environment.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
-        nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3").execute(cwd=str(tmp_path))
-    executed = Executed(notebook)
-    assert executed.errors == []
-    assert {cell: len(executed.shown(cell, PNG)) for cell in PICTURES[name].split()} == dict.fromkeys(
+def test_a_notebook_runs_and_shows_what_it_says(name: str, request: pytest.FixtureRequest) -> None:
+    shown: Executed = request.getfixturevalue("executed")[name]
+    assert shown.errors == []
+    assert {cell: len(shown.shown(cell, PNG)) for cell in PICTURES[name].split()} == dict.fromkeys(
         PICTURES[name].split(), 1
     )
-    assert [cell for cell in TABLES[name].split() if "<table" not in "".join(executed.shown(cell, HTML))] == []
+    assert [cell for cell in TABLES[name].split() if "<table" not in "".join(shown.shown(cell, HTML))] == []
     for cell in PLAYERS.get(name, "").split():
-        assert re.search(r"<(video|img)[^>]* src=|data:(video|image)/", "".join(executed.shown(cell, HTML))), cell
-    CHECKS[name](executed)
+        assert re.search(r"<(video|img)[^>]* src=|data:(video|image)/", "".join(shown.shown(cell, HTML))), cell
+    CHECKS[name](shown)

@@ -24,6 +24,7 @@ _MODULES = {
     "Gap": "qtab.planning.gap",
     "Optimum": "qtab.planning.optimum",
     "Playback": "qtab.rendering.play",
+    "PolicyValues": "qtab.planning.policy_values",
     "Progress": "qtab.training.callbacks",
     "Recording": "qtab.results.run",
     "Run": "qtab.results.run",
@@ -47,9 +48,11 @@ _MODULES = {
     "load_runs": "qtab.results.runs_storage",
     "load_sweep": "qtab.sweeps.results",
     "optimum": "qtab.planning.solve",
+    "planning": "qtab.planning",
     "play": "qtab.rendering.play",
     "plot": "qtab.plots.run",
     "plots": "qtab.plots",
+    "policy_values": "qtab.planning.policy_values",
     "presets": "qtab.config.presets",
     "resume": "qtab.training.resume",
     "sb3": "qtab.sb3",
@@ -65,6 +68,7 @@ if TYPE_CHECKING:
     # The table again, in the only form that editors and type checkers read. A test compares the two.
     from qtab import book as book
     from qtab import callbacks as callbacks
+    from qtab import planning as planning
     from qtab import plots as plots
     from qtab import sb3 as sb3
     from qtab import stats as stats
@@ -78,6 +82,8 @@ if TYPE_CHECKING:
     from qtab.explanation.explanation import Explanation as Explanation
     from qtab.planning.gap import Gap as Gap
     from qtab.planning.optimum import Optimum as Optimum
+    from qtab.planning.policy_values import PolicyValues as PolicyValues
+    from qtab.planning.policy_values import policy_values as policy_values
     from qtab.planning.solve import optimum as optimum
     from qtab.plots.run import plot as plot
     from qtab.rendering.animate import Animation as Animation

@@ -11,7 +11,7 @@ import pytest
 import qtab
 from qtab.cli.command import SUBCOMMANDS
 from qtab.cli.reporting import json_text
-from support.command import qtab_here, refused
+from support.command import qtab_here, refused, with_run
 from support.repository import ROOT
 
 
@@ -31,8 +31,7 @@ def printed(*arguments: str, cwd: Path, code: int = 0) -> dict[str, Any]:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    qtab.train("FrozenLake-v1", seed=0, epsilon=0.0, episodes=300).save(tmp_path / "run.npz")
-    return tmp_path
+    return with_run(tmp_path, epsilon=0.0, episodes=300)
 
 
 def test_train_prints_what_it_trained(tmp_path: Path) -> None:

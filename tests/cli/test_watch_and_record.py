@@ -8,13 +8,12 @@ from PIL import Image
 import qtab
 from qtab.cli import watch
 from qtab.rendering import play
-from support.command import qtab_here, refused
+from support.command import qtab_here, refused, with_run
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    qtab.train("FrozenLake-v1", episodes=50, seed=0, max_episode_steps=10).save(tmp_path / "run.npz")
-    return tmp_path
+    return with_run(tmp_path, episodes=50, max_episode_steps=10)
 
 
 def test_record_writes_a_video_of_the_episodes_of_evaluate(folder: Path) -> None:

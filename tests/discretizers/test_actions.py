@@ -88,7 +88,7 @@ def test_listed_actions_are_used_unchanged() -> None:
         (gym.spaces.Box(-1, 1, (1,)), (0.0, 1.5), r"^actions must lie in the action space Box.*got \(0.0, 1.5\)"),
         (gym.spaces.Box(-1, 1, (1,)), (0.0, float("nan")), r"^actions must be finite, got nan"),
         (gym.spaces.Box(-1, 1, (1,)), ("left",), r"^actions must be a finite number, got 'left'"),
-        (gym.spaces.Box(-1, 1, (1,)), ((0.0, 1.0),), r"^actions must hold 1 numbers each for this action space"),
+        (gym.spaces.Box(-1, 1, (1,)), ((0.0, 1.0),), r"^actions must hold 1 number each for this action space"),
         (gym.spaces.Box(-1, 1, (2,)), (0.0, 1.0), r"^actions must hold 2 numbers each for this action space"),
         (gym.spaces.Box(-np.inf, np.inf, (1,)), 3, r"^actions must be the actions themselves .*no finite bounds"),
         (gym.spaces.Box(-1, 1, (20,)), 3, r"^actions must give at most 65536 actions, got 3 along each of 20"),

@@ -1,5 +1,6 @@
 """Steps of qtab's toy text equal Gymnasium's: observations, rewards, flags, info and the state of the generator."""
 
+from itertools import product
 from typing import Any
 
 import gymnasium as gym
@@ -10,7 +11,7 @@ from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 import qtab
 from support.toy_text import IDS, TABLES, LockstepToyText
 
-STEPS = 50_000
+STEPS = 15_000
 GOAL_STEPS = 15_000
 
 
@@ -25,6 +26,15 @@ def test_random_steps_equal_gymnasiums(name):
     terminated = LockstepToyText(name).run(STEPS, seed=3)
     if "FrozenLake" in name or "Blackjack" in name:  # random steps seldom reach the other goals
         assert terminated > 100
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_every_action_in_every_state_equals_gymnasiums(name):
+    pair = LockstepToyText(name)
+    pair.both(lambda env: env.reset(seed=8))
+    for state, action in product(range(pair.theirs.observation_space.n), range(pair.theirs.action_space.n)):
+        pair.set(s=state)
+        pair.both(lambda env, action=action: env.step(action))
 
 
 @pytest.mark.parametrize("name", [name for name in TABLES if "Taxi" not in name])

@@ -239,9 +239,7 @@ def test_it_prints_as_text_and_as_a_table() -> None:
 
 def test_an_algorithm_that_is_not_explained_is_named() -> None:
     run = qtab.train(CAR, algorithm="monte_carlo", **SMALL)
-    with pytest.raises(
-        ValueError, match="run must be one of algorithm 'q_learning', .* to be explained, got 'monte_carlo'"
-    ):
+    with pytest.raises(ValueError, match=r"run must be one of .* explained, got 'monte_carlo'"):
         qtab.explain(run)
 
 

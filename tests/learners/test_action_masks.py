@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import qtab
 from qtab.config.choices import Algorithm
+from qtab.config.options import TABLES_ONLY
 from support.learner_settings import explorations, learning_rates, own_options
 from support.masked import MASKS, SHORT, TILES, MaskedGraph
 from support.parity import assert_same_run
@@ -35,13 +36,13 @@ def masked_runs(draw: st.DrawFn) -> tuple[NDArray[Any], str, dict[str, Any]]:
     shown = draw(st.sampled_from(["discrete", "box"]))
     features: dict[str, Any] = {"discretizer": "identity"}
     if shown == "box":
-        features = BINS if "dyna" in algorithm else draw(st.sampled_from([BINS, TILES]))
+        features = BINS if algorithm in TABLES_ONLY else draw(st.sampled_from([BINS, TILES]))
     return (
         masks,
         shown,
         {
             **features,
-            **draw(learning_rates(0.5, by_visits=algorithm != "true_online_sarsa_lambda")),
+            **draw(learning_rates(0.5, by_visits=algorithm != "true_online_sarsa_lambda", algorithm=algorithm)),
             **draw(explorations()),
             **draw(own_options(algorithm)),
             "algorithm": algorithm,
@@ -176,6 +177,20 @@ def test_an_environment_without_masks_and_a_function_that_fails_are_named() -> N
 
     with pytest.raises(ZeroDivisionError, match="no mask for 0"):
         qtab.train("FrozenLake-v1", action_mask=fails)
+
+
+def test_an_error_of_a_function_is_raised_whichever_state_it_was_asked_for() -> None:
+    def fails_far_away(observation: Any) -> Any:
+        return [True, True, True, observation.left]
+
+    def fails_at_the_goal(observation: Any) -> Any:
+        return [True] * 4 if observation < 15 else [1 / 0] * 4
+
+    for function, error in ((fails_far_away, AttributeError), (fails_at_the_goal, ZeroDivisionError)):
+        with pytest.raises(error) as caught:  # FrozenLake's goal, state 15, is terminal and never asked for in Python
+            qtab.train("FrozenLake-v1", action_mask=function, seed=0, episodes=1)
+        notes = getattr(caught.value, "__notes__", ["in action_mask("])
+        assert notes[0].startswith("in action_mask(")
 
 
 def test_a_state_that_is_never_reached_needs_no_mask() -> None:

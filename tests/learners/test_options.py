@@ -97,7 +97,7 @@ def test_true_online_sarsa_lambda_refuses_the_visits_schedule() -> None:
 def test_off_policy_monte_carlo_needs_averages() -> None:
     with pytest.raises(
         ValueError,
-        match=r"^learning_rate_schedule must be 'visits' for algorithm 'off_policy_monte_carlo', got 'linear'",
+        match=r"^learning_rate_schedule must be 'visits' for .* 'off_policy_monte_carlo', got 'linear'",
     ):
         qtab.train("MountainCar-v0", algorithm="off_policy_monte_carlo", learning_rate_schedule="linear")
 
@@ -106,7 +106,7 @@ def test_off_policy_monte_carlo_needs_averages() -> None:
 def test_the_average_reward_is_not_discounted(algorithm: Any) -> None:
     with pytest.raises(
         ValueError,
-        match=rf"^discount must be 1 for algorithm '{algorithm}', which learns the average reward, got 0\.9$",
+        match=rf"^discount must be 1 for .* '{algorithm}', which learns the average reward, got 0\.9$",
     ):
         qtab.train("MountainCar-v0", algorithm=algorithm, discount=0.9)
 

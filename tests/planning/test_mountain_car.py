@@ -24,8 +24,9 @@ def found() -> qtab.Optimum:
 def drive(env: gym.Env, position: float, actions: Any) -> list[bool]:
     """Whether each step ended the episode, in Gymnasium's own environment."""
     env.reset()
-    env.unwrapped.state = (position, 0.0)  # type: ignore[attr-defined]
-    return [bool(env.step(int(action))[2]) for action in actions]
+    inner: Any = env.unwrapped
+    inner.state = (position, 0.0)
+    return [bool(inner.step(int(action))[2]) for action in actions]
 
 
 def test_every_route_reaches_the_goal_in_gymnasium_with_its_last_action(found):
@@ -43,6 +44,24 @@ def test_the_optimum_is_labelled_best_known_and_not_exact(found):
     assert found.expected_return >= found.search.predict_return > -98
     assert "not proven optimal" in str(found)
     assert found.reward_threshold == -110
+
+
+def test_the_same_search_is_not_made_again_and_its_results_cannot_be_changed(found, monkeypatch):
+    def refuse(*arguments: Any) -> Any:
+        raise AssertionError(f"searched again: {arguments}")
+
+    monkeypatch.setattr("qtab._core.MountainCarSearch", refuse)
+    again: Any = qtab.optimum("MountainCar-v0")
+    for name in ("values", "q_values", "policy"):
+        assert getattr(again, name).tobytes() == getattr(found, name).tobytes()
+    assert again.expected_return == found.expected_return
+    again.values[:] = 0  # its own
+    assert found.values.any()
+    for array in (again.search.starts, again.search.steps, again.search.routes[0], again.search.positions):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+    with pytest.raises(AssertionError, match="searched again"):
+        qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": -0.0})
 
 
 def test_start_positions_cover_gymnasiums_range(found):

@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 
 import qtab
 from qtab import plots
-from qtab.config.choices import CHOICES
+from qtab.config.choices import ALGORITHM_NAMES, CHOICES
 from qtab.plots.axes import new_figure
 from qtab.plots.colors import COLORS
 from qtab.plots.labels import finish
@@ -133,19 +133,11 @@ def test_an_algorithm_has_the_same_color_in_every_plot() -> None:
 
 
 @pytest.mark.parametrize(
-    ("label", "algorithm"),
-    [
-        *(("Sarsa", "sarsa"), ("Sarsa(λ)", "sarsa_lambda"), ("true online Sarsa(λ)", "true_online_sarsa_lambda")),
-        *(
-            ("Watkins's Q(λ)", "watkins_q_lambda"),
-            ("Dyna-Q+", "dyna_q_plus"),
-            ("Double Q-learning", "double_q_learning"),
-        ),
-    ],
+    ("label", "algorithm"), [*((name, key) for key, name in ALGORITHM_NAMES.items()), ("Q learning", "q_learning")]
 )
 def test_an_algorithm_is_known_by_its_name_in_the_book(label: str, algorithm: str) -> None:
     [line] = plots.profile({label: [1.0, 2.0]}).lines
-    assert line.get_color() == COLORS[CHOICES["algorithm"].index(algorithm)]
+    assert line.get_color() == COLORS[CHOICES["algorithm"].index(algorithm) % len(COLORS)]
     assert plots.profile({"mine": [1.0], label: [2.0]}).lines[1].get_color() == COLORS[1]
 
 

@@ -8,11 +8,11 @@ from PIL import Image
 
 from support.repository import ROOT
 
-PAGE = ROOT / "docs" / "gallery.md"
+PAGE = ROOT / "docs" / "gallery" / "index.md"
 
 
 def script() -> Any:
-    spec = importlib.util.spec_from_file_location("gallery", ROOT / "docs" / "gallery.py")
+    spec = importlib.util.spec_from_file_location("gallery", ROOT / "docs" / "gallery" / "pictures.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -24,12 +24,12 @@ def test_a_block_of_the_page_makes_its_picture(tmp_path: Path) -> None:
     gallery = script()
     found = gallery.blocks(PAGE)
     imports = "import qtab\n"
-    gallery.draw(imports + found["gallery/lake.png"], {}, tmp_path / "lake.png")
-    with Image.open(tmp_path / "lake.png") as drawn, Image.open(PAGE.parent / "gallery" / "lake.png") as stored:
+    gallery.draw(imports + found["lake.png"], {}, tmp_path / "lake.png")
+    with Image.open(tmp_path / "lake.png") as drawn, Image.open(PAGE.parent / "lake.png") as stored:
         assert drawn.size == stored.size
 
 
 def test_every_picture_of_the_gallery_has_its_code_and_is_small() -> None:
-    pictures = {f"gallery/{path.name}" for path in (PAGE.parent / "gallery").iterdir()}
+    pictures = {path.name for path in PAGE.parent.glob("*.png")}
     assert set(script().blocks(PAGE)) == pictures
-    assert max(path.stat().st_size for path in (PAGE.parent / "gallery").iterdir()) < 100_000
+    assert max(path.stat().st_size for path in PAGE.parent.glob("*.png")) < 100_000

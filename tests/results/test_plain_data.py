@@ -12,7 +12,7 @@ import pytest
 import qtab
 from support.repository import ROOT
 
-PAGE = (ROOT / "docs/policies.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/how_to/export.md").read_text(encoding="utf-8")
 PYTHON = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
 
 RUNS: dict[str, tuple[str, dict[str, Any]]] = {

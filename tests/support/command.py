@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
+from qtab import train
 from qtab.cli import main
 
 QTAB = [sys.executable, "-m", "qtab"]
@@ -83,6 +84,12 @@ def qtab_here(*arguments: str, cwd: Path, **variables: str) -> subprocess.Comple
     finally:
         os.chdir(before)
     return subprocess.CompletedProcess(["qtab", *arguments], code, out.getvalue(), err.getvalue())
+
+
+def with_run(folder: Path, **settings: Any) -> Path:
+    """Saves a run on FrozenLake as ``run.npz`` in a folder for commands, which is returned."""
+    train("FrozenLake-v1", seed=0, **settings).save(folder / "run.npz")
+    return folder
 
 
 def refused(*arguments: str, cwd: Path, run: Callable[..., Any] = qtab_here, **variables: str) -> str:

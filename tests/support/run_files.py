@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from hypothesis import strategies as st
 
 from qtab.results.digest import digest
 
@@ -40,3 +41,25 @@ def with_right_digest(members: Members) -> Members:
 def write_members(path: Path, members: Mapping[str, Any]) -> None:
     """Writes a run file."""
     np.savez(path, **members)
+
+
+def assert_every_part_is_refused(saved: Path, cut: Path, refused: Callable[[Path], None]) -> None:
+    """Writes beginnings of a file, more of them around its first and last bytes, each of which must be refused."""
+    whole = saved.read_bytes()
+    for length in [*range(0, 80), *range(80, len(whole), 97), *range(len(whole) - 80, len(whole))]:
+        cut.write_bytes(whole[:length])
+        refused(cut)
+
+
+def load_with_flipped_bytes(data: st.DataObject, saved: Path, path: Path, load: Callable[[Path], Any], why: str) -> Any:
+    """What a file with a few changed bytes loads as; None where it is refused, with ``why`` in the message."""
+    whole = bytearray(saved.read_bytes())
+    for _ in range(data.draw(st.integers(1, 4))):
+        whole[data.draw(st.integers(0, len(whole) - 1))] ^= data.draw(st.integers(1, 255))
+    path.write_bytes(whole)
+    try:
+        return load(path)
+    except ValueError as error:
+        if why not in str(error):
+            raise
+        return None

@@ -1,4 +1,4 @@
-"""The tables of docs/spaces.md: what they say trains and verifies equal, or is refused, and then trains as they say."""
+"""The tables of docs/how_to/spaces.md: what they say trains and verifies equal, or is refused, and then trains as they say."""
 
 import re
 import warnings
@@ -17,7 +17,7 @@ import qtab
 from support.environments import Sampled
 from support.repository import ROOT
 
-PAGE = (ROOT / "docs/spaces.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/how_to/spaces.md").read_text(encoding="utf-8")
 NAMES: dict[str, Any] = {"np": np, "gymnasium": gymnasium, **vars(spaces), **vars(wrappers)}
 SETTINGS: dict[str, Any] = {"episodes": 3, "seed": 1, "max_episode_steps": 12, "progress": False}
 IMAGES = ("AddRenderObservation", "RenderCollection")

@@ -1,6 +1,9 @@
 """A table is refused before it is made when it does not fit into what the machine has free."""
 
+import ctypes
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -25,7 +28,7 @@ def test_a_discrete_space_of_a_billion_states_is_refused(free: int) -> None:
     env = Sampled(Discrete(10**9))
     env.action_space = Discrete(2)
     with pytest.raises(
-        ValueError, match=r"^the observation space must give a table that fits into memory, got Discrete"
+        ValueError, match=r"^the observation space must give a table that fits into memory .*max_rows=.*, got Discrete"
     ) as e:
         qtab.train(env, episodes=1)
     assert str(e.value).endswith("needs 2e+09 values or 14.9 GiB, more than is free")
@@ -53,7 +56,9 @@ def test_a_table_that_does_not_fit_is_refused_by_the_setting_that_decides(
 
 def test_what_an_algorithm_keeps_beside_a_table_that_fits_is_counted_against_what_is_free(free: int) -> None:
     settings: dict[str, Any] = {"discretizer": "bins", "bins": 1700, "episodes": 1}  # 66 MiB
-    with pytest.raises(MemoryError, match=r"^1 episodes need .* more than the 95.4 MiB of memory that are free"):
+    with pytest.raises(
+        MemoryError, match=r"^1 episodes with a table .* more than the 95.4 MiB of memory that are free"
+    ):
         qtab.train("MountainCar-v0", algorithm="dyna_q", **settings)
 
 
@@ -88,3 +93,26 @@ def test_the_limit_of_a_container_counts(
     monkeypatch.setattr(memory, "_CONTROL_GROUPS", (tuple(map(str, paths)),))
     found = memory.free_memory()
     assert found == expected if expected is not None else found > min(without, 10_000)
+
+
+@pytest.mark.parametrize(
+    ("answer", "limit", "free"), [(1, 8 * 2**30, 3 * 2**30), (0, memory.DEFAULT_LIMIT, sys.maxsize)]
+)
+def test_windows_is_asked_for_the_memory_of_the_machine(
+    monkeypatch: pytest.MonkeyPatch, answer: int, limit: int, free: int
+) -> None:
+    """By a stand-in for its library; where Windows does not answer, the limit is the default."""
+
+    def global_memory_status(pointer: Any) -> int:
+        status = pointer._obj
+        assert status.length == ctypes.sizeof(status) == 64
+        if answer:
+            status.total, status.free = 16 * 2**30, 3 * 2**30
+        return answer
+
+    kernel = SimpleNamespace(GlobalMemoryStatusEx=global_memory_status)
+    monkeypatch.setattr(ctypes, "windll", SimpleNamespace(kernel32=kernel), raising=False)
+    monkeypatch.setattr(memory, "sys", SimpleNamespace(platform="win32", maxsize=sys.maxsize))
+    monkeypatch.setattr(memory, "_CONTROL_GROUPS", ())
+    monkeypatch.setattr(memory, "Path", lambda _: Path("/nowhere"))
+    assert (memory.memory_limit(None), memory.free_memory()) == (limit, free)

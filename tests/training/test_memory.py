@@ -30,7 +30,7 @@ def test_what_an_algorithm_keeps_for_each_value_counts(settings):
     table = 8 * 19 * 15 * 3
     if settings == {"schedule": "visits"}:
         settings = {"learning_rate_schedule": "visits", "learning_rate": 1.0}
-    with pytest.raises(MemoryError, match=r"^1 episodes need"):
+    with pytest.raises(MemoryError, match=r"^1 episodes with a table of 285 rows of 3 actions need"):
         qtab.train(CAR, episodes=1, memory_limit=2 * table + 100, **settings)
     assert qtab.train(CAR, episodes=1, memory_limit=2 * table + 100, algorithm="sarsa").completed
     shared: dict[str, Any] = {"grid": {"discount": [0.9]}, "seeds": 1, "episodes": 1, "memory_limit": table + 1000}

@@ -155,6 +155,16 @@ def test_a_resumed_run_may_be_stopped_and_resumed_again():
     assert_resumed(qtab.resume(part), qtab.train("MountainCar-v0", **config))
 
 
+def test_a_run_that_does_not_fit_into_memory_is_refused_before_anything_is_logged(caplog):
+    run = qtab.train("MountainCar-v0", seed=0, episodes=5)
+    for call in (lambda: qtab.resume(run, 10**12), lambda: qtab.train(resume=run, episodes=10**12)):
+        with pytest.raises(MemoryError, match="1000000000000 episodes need"):
+            call()
+    assert caplog.messages == []
+    qtab.resume(run, 6)
+    assert "epsilon now falls linearly over 6 episodes instead of 5" in caplog.text
+
+
 def test_what_cannot_be_resumed_is_refused_by_name(tmp_path):
     run = qtab.train("MountainCar-v0", seed=0, episodes=5)
     for call, message in {

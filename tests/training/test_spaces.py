@@ -213,7 +213,7 @@ def test_a_mapping_is_checked_before_a_preset_is_fitted_to_it(
 @pytest.mark.parametrize(
     ("shown", "text"),
     [
-        ({"a": np.array([1, 9])}, r"observation\[1\] is 9, outside the observation space"),
+        ({"a": np.array([1, 9])}, r"observation\['a'\]\[1\] is 9, outside the observation space"),
         ({"a": np.array([1])}, r"observation\['a'\] must have shape \(2,\), the space's, got \(1,\)"),
         ({"b": np.array([1])}, r"must have a part observation\['a'\]"),
         ({"a": np.array([1.0, 0.5])}, r"observation\['a'\] must hold integers"),

@@ -176,3 +176,17 @@ def test_a_verification_prints_a_readable_report():
     assert "lengths  DIFFERENT" in text
     assert "they differ from episode 7, step 59 on" in text
     assert f"numpy {np.__version__}" in text
+
+
+def test_a_difference_of_a_run_from_another_machine_names_the_machine():
+    run = qtab.train("MountainCar-v0", seed=0, episodes=3)
+    versions = {**run.versions, "platform": "Linux aarch64 musl 1.2"}
+    other = dataclasses.replace(run, versions=versions, episode_returns=run.episode_returns - 1)
+    verification = qtab.verify(other)
+    assert verification.trained_with == {"platform": "Linux aarch64 musl 1.2"}
+    assert "the run was trained with platform Linux aarch64 musl 1.2: other libraries" in str(verification)
+    assert "trained with" in verification._repr_html_()
+    assert qtab.verify(dataclasses.replace(run, versions=versions)).trained_with is None
+    same = qtab.verify(dataclasses.replace(run, episode_returns=run.episode_returns - 1))
+    assert same.trained_with == {}
+    assert "trained with" not in str(same)

@@ -9,12 +9,15 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import BinaryIO
 
 try:
     import fcntl
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
+_LOCKS_BY_OPENING = os.name == "nt"
+"""Whether an open file can be neither removed nor renamed, as on Windows: then that takes the place of a lock."""
 _KINDS = {stat.S_IFIFO: "FIFO", stat.S_IFSOCK: "socket", stat.S_IFCHR: "device", stat.S_IFBLK: "device"}
 _MAX_STEM, _MAX_SUFFIX = 30, 20
 """The characters of a name that its temporary name repeats at most: file systems allow 255 bytes."""
@@ -34,12 +37,14 @@ def replacing(path: Path) -> Iterator[Path]:
         OSError: if the file cannot be written, or if something is there that is not a regular file.
     """
     target = check_writable("path", path)
-    with _temporary_file(target) as temporary:
+    with _temporary_file(target) as (temporary, lock):
         yield temporary
         with temporary.open("rb+") as written:
             os.fsync(written.fileno())
         with suppress(FileNotFoundError):
             temporary.chmod(stat.S_IMODE(target.stat().st_mode))
+        if _LOCKS_BY_OPENING:
+            lock.close()
         temporary.replace(target)
         _sync_folder(target.parent)
 
@@ -80,8 +85,8 @@ def _check_regular(name: str, path: Path) -> None:
 
 
 @contextmanager
-def _temporary_file(target: Path) -> Iterator[Path]:
-    """Yields the path of a new file beside the target, which is removed afterwards if it is still there.
+def _temporary_file(target: Path) -> Iterator[tuple[Path, BinaryIO]]:
+    """Yields the path of a new file beside the target, and its lock. It is removed afterwards if it is still there.
 
     The file is locked while it is in use. A killed process leaves it, but not its lock: so the next one can tell.
     """
@@ -92,24 +97,24 @@ def _temporary_file(target: Path) -> Iterator[Path]:
     while lock is None:
         temporary = target.with_name(f"{before}{secrets.token_hex(8)}{after}")
         lock = _create_locked(temporary)
-    if os.name == "nt":
-        os.close(lock)  # an open file could not be renamed
     try:
-        yield temporary
+        yield temporary, lock
     finally:
+        if _LOCKS_BY_OPENING:
+            lock.close()
         temporary.unlink(missing_ok=True)
-        if os.name != "nt":
-            os.close(lock)
+        lock.close()
 
 
-def _create_locked(temporary: Path) -> int | None:
-    """Creates and locks a file; returns its handle, or None if it was removed before it was locked."""
-    handle = os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o666)  # less the umask
-    with suppress(OSError):  # a file system without locks, on which nothing is taken for abandoned
-        if not _lock(handle) or not temporary.exists():
-            os.close(handle)
-            return None
-    return handle
+def _create_locked(temporary: Path) -> BinaryIO | None:
+    """Creates and locks a file; returns it open, or None if it was removed before it was locked."""
+    file = temporary.open("xb+")
+    if not _LOCKS_BY_OPENING:
+        with suppress(OSError):  # a file system without locks, on which nothing is taken for abandoned
+            if not _lock(file.fileno()) or not temporary.exists():
+                file.close()
+                return None
+    return file
 
 
 def _remove_abandoned(folder: Path, name: "re.Pattern[str]") -> None:
@@ -117,7 +122,10 @@ def _remove_abandoned(folder: Path, name: "re.Pattern[str]") -> None:
     with suppress(OSError), os.scandir(folder) as entries:
         found = [Path(entry.path) for entry in entries if name.fullmatch(entry.name)]
         for temporary in found:
-            with suppress(OSError):  # another process may have removed it
+            with suppress(OSError):  # another process may have removed it, or on Windows have it open
+                if _LOCKS_BY_OPENING:
+                    temporary.unlink()
+                    continue
                 handle = os.open(temporary, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0))
                 try:
                     if _lock(handle):
@@ -143,7 +151,7 @@ def _lock(handle: int) -> bool:
 
 def _sync_folder(folder: Path) -> None:
     """Makes a new name in a folder last."""
-    if os.name == "nt":
+    if _LOCKS_BY_OPENING:
         return  # folders cannot be opened there
     handle = os.open(folder, os.O_RDONLY)
     try:

@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from qtab._utils import checks
+from qtab._utils.windows_memory import windows_memory
 
 DEFAULT_LIMIT = 4 * 2**30
 """The limit in bytes where the memory of the machine is unknown."""
@@ -32,6 +33,8 @@ def memory_limit(value: int | None) -> int:
     """
     if value is not None:
         return checks.integer("memory_limit", value, least=1)
+    if sys.platform == "win32":
+        return windows_memory()[0] // 2 or DEFAULT_LIMIT
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
     except (AttributeError, OSError, ValueError):
@@ -45,36 +48,41 @@ def free_memory() -> int:
     known, this is a number that no table reaches.
     """
     free = [sys.maxsize]
+    if sys.platform == "win32":
+        free.append(windows_memory()[1] or sys.maxsize)
     with suppress(OSError, ValueError, StopIteration):
-        lines = Path("/proc/meminfo").read_text().splitlines()
+        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
         available = next(line for line in lines if line.startswith("MemAvailable:"))
         free.append(1024 * int(available.split()[1]))
     for limit, usage in _CONTROL_GROUPS:
         # "max" stands for no limit.
         with suppress(OSError, ValueError):
-            free.append(int(Path(limit).read_text()) - int(Path(usage).read_text()))
+            free.append(int(Path(limit).read_text(encoding="ascii")) - int(Path(usage).read_text(encoding="ascii")))
     return max(min(free), 0)
 
 
-def check_memory(what: str, needed: int, limit: int) -> None:
+def check_memory(what: str, needed: int, limit: int, instead: str = "") -> None:
     """Checks that something fits into the memory limit, and where that is the default, into what is free.
 
     Args:
         what: What needs the memory, for the message.
         needed: The bytes it needs.
         limit: The limit in bytes.
+        instead: Which setting would help, to be added to the message.
 
     Raises:
         MemoryError: if it does not fit.
     """
     if needed > limit:
+        default = ", by default half of the machine's memory" if limit == memory_limit(None) else ""
         raise MemoryError(
-            f"{what} need {readable(needed)}, more than memory_limit={limit} ({readable(limit)}); "
-            "request less, or increase memory_limit"
+            f"{what} need {readable(needed)}, more than memory_limit={limit} ({readable(limit)}{default}); "
+            f"request less, or increase memory_limit{instead}"
         )
     if needed > ALWAYS_FREE and limit == memory_limit(None) and needed > (free := free_memory()):
         raise MemoryError(
-            f"{what} need {readable(needed)}, more than the {readable(free)} of memory that are free; request less"
+            f"{what} need {readable(needed)}, more than the {readable(free)} of memory that are free; "
+            f"request less{instead}"
         )
 
 

@@ -17,3 +17,8 @@ def shown(value: Any) -> str:
         return text
     half = LONGEST // 2
     return f"{text[:half]} ... {text[-half:]}"
+
+
+def counted(count: int, noun: str) -> str:
+    """Returns a count with its noun: ``"1 number"``, ``"2 numbers"``."""
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"

@@ -2,11 +2,15 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from typing import ClassVar
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Description:
     """An experiment in words, with the layout of its table and figure."""
+
+    counts_failures: ClassVar[bool] = False
+    """Whether the table says how many episodes were truncated and how many runs diverged."""
 
     name: str
     """Its kind and its number in the book: ``"figure-10.4"``."""

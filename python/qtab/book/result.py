@@ -75,6 +75,8 @@ class Result:
     """Draws the figure."""
     surfaces: Mapping[str, FloatArray] = field(default_factory=dict, repr=False)
     """The surfaces of a figure that has them, by title."""
+    table: str = field(default="", repr=False)
+    """The table as text, where it is not one of the points of the lines."""
 
     def __repr__(self) -> str:
         """One line: ``str(result)`` shows the table."""
@@ -114,7 +116,7 @@ class Result:
         return data_frame(columns)
 
     def __str__(self) -> str:
-        return "\n".join([*_head(self), "", *_rows(self)])
+        return "\n".join([*_head(self), "", *([self.table] if self.table else _rows(self))])
 
     def save(self, path: Path | str) -> None:
         """Writes all points of all lines to a CSV file, completely or not at all.
@@ -163,20 +165,25 @@ def _wrapped(text: str) -> list[str]:
 
 def _rows(result: Result) -> list[str]:
     experiment = result.experiment
-    rows = [("", experiment.x_label, experiment.y_label, "std. error", "truncated", "diverged")]
+    has_errors = not all(np.isnan(line.error).all() for line in result.lines)
+    head = ["", experiment.x_label, experiment.y_label]
+    if has_errors or experiment.counts_failures:
+        head.append("std. error")
+    if experiment.counts_failures:
+        head += ["truncated", "diverged"]
+    rows = [head]
     for line in result.lines:
         for index in _table_points(result, line):
             error = line.error[index]
-            rows.append(
-                (
-                    line.name,
-                    f"{line.x[index]:g}",
-                    _rounded(line.mean[index], error),
-                    "-" if math.isnan(error) else _rounded(error, error),
-                    str(line.truncated[index]),
-                    str(line.diverged[index]),
-                )
-            )
+            row = [
+                line.name,
+                f"{line.x[index]:g}",
+                _rounded(line.mean[index], error),
+                "-" if math.isnan(error) else _rounded(error, error),
+                str(line.truncated[index]),
+                str(line.diverged[index]),
+            ]
+            rows.append(row[: len(head)])
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
 

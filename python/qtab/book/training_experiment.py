@@ -27,12 +27,14 @@ BATCH_RUNS = 5_000
 class TrainingExperiment(Experiment):
     """An experiment that trains settings with many seeds."""
 
+    counts_failures = True
+
     settings: Sequence[Setting]
     max_episode_steps: int = MAX_EPISODE_STEPS
     """Episodes are truncated after this many steps. The book has no time limit."""
 
     def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:
-        """Returns how a result was made, in words; see :meth:`Description.conditions`."""
+        """Returns how a result was made, in words; see ``Description.conditions``."""
         limit = f"episodes are truncated at {self.max_episode_steps:,} steps"
         return f"{super().conditions(counts, runs, seed)}; {limit}"
 

@@ -15,6 +15,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # closed by the shell (>&-), or a program without a console on Windows
             setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115 - until the process ends
+    from qtab.cli.encoding import write_names_of_letters
+
+    write_names_of_letters()
     try:
         import tyro  # noqa: F401 - all subcommands need it
 

@@ -21,6 +21,7 @@ SUBCOMMANDS = {
     "sweep": "train many settings with many seeds, as a study file describes; resumes if called again",
     "report": "turn the store of a sweep into tables, plots and one HTML page",
     "book": "run an experiment of Sutton & Barto's book: its settings, a table, a figure",
+    "playground": "open a page that trains agents in the browser",
     "bench": "compare the speed of this package with Gymnasium and the article's loop",
     "completion": "print the script with which bash or zsh completes commands, flags and choices",
 }

@@ -23,6 +23,20 @@ Algorithm: TypeAlias = Literal[
     "differential_sarsa",
     "differential_q_learning",
 ]
+ALGORITHM_NAMES: Mapping[str, str] = {
+    "q_learning": "Q-learning",
+    "sarsa": "Sarsa",
+    "expected_sarsa": "Expected Sarsa",
+    "double_q_learning": "Double Q-learning",
+    "n_step_sarsa": "n-step Sarsa",
+    "sarsa_lambda": "Sarsa(λ)",
+    "true_online_sarsa_lambda": "true online Sarsa(λ)",
+    "watkins_q_lambda": "Watkins's Q(λ)",
+    "dyna_q": "Dyna-Q",
+    "dyna_q_plus": "Dyna-Q+",
+}
+"""How Sutton & Barto write the names of the algorithms, for titles and tables."""
+
 LearningRateSchedule: TypeAlias = Literal["constant", "linear", "exponential", "visits"]
 Exploration: TypeAlias = Literal["epsilon_greedy", "softmax"]
 EpsilonSchedule: TypeAlias = Literal["constant", "linear", "exponential"]

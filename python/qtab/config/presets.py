@@ -148,7 +148,7 @@ _TILES: SharedSettings = {
     "initial_q": 0.0,
     "episodes": 2000,
 }
-# Chosen on the seeds 20,000 to 20,199; docs/environments.md reports others.
+# Chosen on the seeds 20,000 to 20,199; docs/reference/environments.md reports others.
 _SOLVED_MOUNTAIN_CAR: SharedSettings = {
     **_TILES,
     "algorithm": "true_online_sarsa_lambda",

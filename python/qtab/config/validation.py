@@ -121,7 +121,12 @@ def _counts(least: int, most: int | None) -> Callable[[str, Any], tuple[int, ...
     def checked(name: str, value: Any) -> tuple[int, ...]:
         counts = _each(_integer(least, most))(name, value if hasattr(value, "__iter__") else (value,))
         if not counts:
-            raise ValueError(f"{name} must hold a number for each component of the observation, or one for all, got ()")
+            fitting = (
+                "the number of cells along each axis of the table, such as (19, 15)"
+                if name == "shape"
+                else "a number for each component of the observation, or one for all"
+            )
+            raise ValueError(f"{name} must hold {fitting}, got ()")
         return counts
 
     return checked

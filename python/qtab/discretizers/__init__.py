@@ -30,9 +30,20 @@ DISCRETIZERS: Mapping[DiscretizerName, type[Discretizer]] = {
 """The class of each value of the setting ``discretizer``, for the spaces that the extension reads by itself."""
 
 
+MAX_AXES = 62
+"""A table of many runs also has an axis for the runs and one for the actions, and an array of NumPy at most 64."""
+
+
 def build(space: Any, config: Config, n_actions: int) -> Discretizer:
     """Returns the discretizer of a config over an observation space; see :meth:`Discretizer.build`."""
-    return _class_of(config, plain=is_plain(space)).build(space, config, n_actions)
+    built = _class_of(config, plain=is_plain(space)).build(space, config, n_actions)
+    if n_actions and len(built.shape) > MAX_AXES:
+        owner = "shape" if isinstance(built, Function) else "the observation space"
+        raise ValueError(
+            f"{owner} must give the table at most {MAX_AXES} axes, as many as NumPy's arrays have beside those of runs "
+            f"and actions; max_rows= gives rows only to the observations that are met, got {len(built.shape)}"
+        )
+    return built
 
 
 def restore(config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> Discretizer:

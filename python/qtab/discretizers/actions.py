@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.config import Config
 from qtab.config.validation import MAX_ACTIONS
 from qtab.discretizers.composite_actions import Composite
@@ -193,7 +193,9 @@ def _equal_steps(space: spaces.Box, count: int) -> NDArray[Any]:
 def _listed(space: spaces.Box, wanted: Any) -> NDArray[Any]:
     components = math.prod(space.shape)
     if any((len(action) if isinstance(action, tuple) else 1) != components for action in wanted):
-        raise ValueError(f"actions must hold {components} numbers each for this action space, got {shown(wanted)}")
+        raise ValueError(
+            f"actions must hold {counted(components, 'number')} each for this action space, got {shown(wanted)}"
+        )
     if len(wanted) > MAX_ACTIONS:
         raise ValueError(f"actions must be at most {MAX_ACTIONS}, got {len(wanted)}")
     exact = np.array(wanted, np.float64).reshape(-1, components)

@@ -131,6 +131,10 @@ class Discretizer(ABC):
         """Returns (d,): where an observation lies along each axis of :meth:`cell_edges`."""
         return np.ravel(observation)
 
+    def in_terms_of_space(self, message: str) -> str:
+        """Returns a message of the extension about an observation, with the names of the observation space."""
+        return message
+
     def with_function(self, function: Callable[[Any], Any]) -> "Discretizer":  # noqa: ARG002
         """Returns the discretizer with another function, where it has one."""
         return self

@@ -7,7 +7,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.discretizers.actions import FLOATS
 from qtab.discretizers.base import Discretizer
 
@@ -48,7 +48,8 @@ def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] |
     for name, given, bound in zip(("low", "high"), (low, high), (space.low, space.high), strict=True):
         limit = bound.astype(np.float64) if given is None else np.array(given)
         if limit.shape != bound.shape:
-            raise ValueError(f"{name} must hold {len(bound)} numbers for this observation space, got {shown(given)}")
+            held = counted(len(bound), "number")
+            raise ValueError(f"{name} must hold {held} for this observation space, got {shown(given)}")
         if not np.isfinite(limit).all():
             raise ValueError(
                 f"{name} must be given, a number for each component, where the observation space has no finite bounds: "
@@ -69,9 +70,8 @@ def per_dimension(name: str, given: tuple[int, ...], space: spaces.Box) -> tuple
     dimensions = space.shape[0]
     numbers = given * dimensions if len(given) == 1 else given
     if len(numbers) != dimensions:
-        raise ValueError(
-            f"{name} must hold {dimensions} numbers for this observation space, or one, got {shown(given)}"
-        )
+        held = counted(dimensions, "number") + " for this observation space" + (", or one" if dimensions > 1 else "")
+        raise ValueError(f"{name} must hold {held}, got {shown(given)}")
     return numbers
 
 

@@ -1,6 +1,7 @@
 """Observations of any nesting of spaces: discrete components index the table, continuous ones are discretized."""
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +17,9 @@ from qtab.discretizers.base import Discretizer, check_table_size
 from qtab.discretizers.groups import Group, choose_groups
 from qtab.discretizers.layout import Layout
 from qtab.discretizers.refusals import too_large
+
+_NUMBERED = re.compile(r"^(observation|observations\[\d+\])\[(\d+)\] is ([^,]+),")
+"""How the extension, which is given one row of numbers, names a component."""
 
 MAX_RESTORED_BINS = 10**7
 """A file with more bins than this along all components would take much more memory than its size."""
@@ -219,7 +223,21 @@ class Composite(Discretizer):
             TypeError: if the observation does not hold numbers (integers for what is discrete).
             ValueError: if it has another shape than the space, or has no row.
         """
-        return self._compiled.active_rows(self.flat(observation))
+        try:
+            return self._compiled.active_rows(self.flat(observation))
+        except ValueError as error:
+            raise ValueError(self.in_terms_of_space(str(error))) from None
+
+    def in_terms_of_space(self, message: str) -> str:
+        """Returns a message of the extension with the keys of a component, and with the number that was given."""
+
+        def as_given(found: re.Match[str]) -> str:
+            which, component, number = found[1], int(found[2]), found[3]
+            if self._indices[0][component] and number.lstrip("-").isdecimal():
+                number = str(int(number) + self._bounds[component][0])
+            return f"{which}{self.layout.name_of(component).removeprefix('observation')} is {number},"
+
+        return _NUMBERED.sub(as_given, message)
 
     def cells(self, observation: Any) -> NDArray[np.int64]:
         """Returns (d,): the index of one observation along each component, however many cells there are.
@@ -256,7 +274,7 @@ class Composite(Discretizer):
         if outside.any():
             component = int(np.argmax(outside))
             value = int(cells[component]) + self._bounds[component][0]
-            raise ValueError(f"{self.component_names[component]} is {value}, outside the observation space")
+            raise ValueError(f"{self.layout.name_of(component)} is {value}, outside the observation space")
         return cells
 
     def same_space(self, other: Discretizer) -> bool:

@@ -146,6 +146,13 @@ def _group(layout: Layout, parts: list[Part], config: Config, n_actions: int, ke
     bounds: Any = [
         np.array([bound for part in parts for bound in getattr(part, name)], dtype) for name in ("low", "high")
     ]
+    many = next((part for part in parts if part.kind == "integer" and not part.is_small), None)
+    if many is not None and config.discretizer == "round" and not config.scale:
+        found = f"integers from {min(many.low)} to {max(many.high)}" if many.is_bounded else "integers without bounds"
+        raise ValueError(
+            f"{many.name} holds {found}, too many for a row each: max_rows= gives rows only to the observations that "
+            "are met, and discretizer='bins' or 'tiles' with low= and high= divides a range of them"
+        )
     box = spaces.Box(*bounds, dtype=dtype)
     discretizer = OF_BOXES[str(config.discretizer)].build(box, config, n_actions)
     assert isinstance(discretizer, BoxDiscretizer)  # noqa: S101 - for type checkers

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from qtab._discretizer_spec import IdentitySpec
 from qtab.config import Config
 from qtab.discretizers.base import Discretizer, check_table_size
+from qtab.discretizers.refusals import too_large
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -39,7 +40,7 @@ class Identity(Discretizer):
         if not low.size:
             raise ValueError(f"the observation space must have at least one component, got {space}")
         values = float(np.prod((high - low + 1).astype(np.float64))) * n_actions
-        check_table_size("the observation space", space, values)
+        check_table_size("the observation space", space, values, too_large(()))
         return cls(low, high)
 
     @classmethod

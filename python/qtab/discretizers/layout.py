@@ -138,6 +138,15 @@ class Layout:
             first += part.size
         return indices
 
+    def name_of(self, component: int) -> str:
+        """Returns how messages name a component: ``observation['agent'][0]``."""
+        for part in self.parts:
+            if component < part.size:
+                index = [str(number) for number in np.unravel_index(component, part.shape)] if part.shape else []
+                return part.name + (f"[{', '.join(index)}]" if index else "")
+            component -= part.size
+        raise IndexError(component)
+
     def batch_size(self, observation: Any) -> int | None:
         """Returns how many observations there are, batched as in Gymnasium's vector environments; None for one.
 

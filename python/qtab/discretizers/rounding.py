@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._discretizer_spec import RoundSpec
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.config import Config
 from qtab.discretizers.base import check_table_size
 from qtab.discretizers.box import BoxDiscretizer, box_of, check_stored_bounds
@@ -37,7 +37,7 @@ class Rounding(BoxDiscretizer):
         if not (box.low <= box.high).all():
             raise ValueError(f"the observation space must have low <= high, got {box}")
         if len(scale) != len(box.low):
-            numbers = "1 number" if len(box.low) == 1 else f"{len(box.low)} numbers"
+            numbers = counted(len(box.low), "number")
             held = f"hold {numbers} for this observation space, the cells per unit of each component"
             if not scale:
                 raise ValueError(f"scale must be given and {held}, or discretizer='bins' or 'tiles' without it")

@@ -91,6 +91,8 @@ def grid_world(
     if len(wind) != columns:
         raise ValueError(f"wind must hold {columns} integers, one for each column, got {shown(wind)}")
     shifts = [checks.integer("wind", shift, least=0) for shift in wind]
+    step_reward = checks.finite("step_reward", step_reward)
+    goal_reward = checks.finite("goal_reward", goal_reward)
     cells = [(row, column) for row in range(rows) for column in range(columns)]
     starts = [cell for cell in cells if layout[cell[0]][cell[1]] == START]
     if not starts:

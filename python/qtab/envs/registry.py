@@ -52,6 +52,11 @@ def _toy_text(class_name: str, gymnasium_class: str, name: str = _TABLE) -> EnvE
     )
 
 
+def _table(entry_point: str) -> EnvEntry:
+    """Returns the entry of a function that makes a :class:`qtab.TabularEnv`."""
+    return EnvEntry(_TABLE, "", entry_point, has_table=True)
+
+
 _CART_POLE = _classic_control(
     "CartPole",
     "cartpole:CartPoleEnv",
@@ -94,6 +99,11 @@ EXTRA: Mapping[str, EnvEntry] = {
     f"{PREFIX}MaximizationBias-v0": EnvEntry(
         "MaximizationBias", "", "qtab.envs.maximization_bias:MaximizationBiasEnv", has_table=True
     ),
+    f"{PREFIX}GridWorld5x5-v0": _table("qtab.envs.small_grid_worlds:grid_world_5x5"),
+    f"{PREFIX}GridWorld4x4-v0": _table("qtab.envs.small_grid_worlds:grid_world_4x4"),
+    f"{PREFIX}GamblersProblem-v0": _table("qtab.envs.gamblers_problem:gamblers_problem"),
+    f"{PREFIX}JacksCarRental-v0": _table("qtab.envs.jacks_car_rental:jacks_car_rental"),
+    f"{PREFIX}RandomMdp-v0": _table("qtab.envs.random_mdp:random_mdp"),
 }
 """Environments that Gymnasium does not have, by their id."""
 

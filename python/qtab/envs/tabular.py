@@ -49,9 +49,9 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
         checked = _core.TransitionTable(P, self.initial_state_distrib)
         states, actions = checked.states, checked.actions
         # Copied, so that later changes to the argument do not change the environment.
+        copies = _Copies()
         self.P: dict[int, dict[int, list[Transition]]] = {
-            state: {action: [_copy(transition) for transition in P[state][action]] for action in range(actions)}
-            for state in range(states)
+            state: {action: copies.of(P[state][action]) for action in range(actions)} for state in range(states)
         }
         self.observation_space = gym.spaces.Discrete(states)
         self.action_space = gym.spaces.Discrete(actions)
@@ -82,7 +82,24 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
         return step(self, action)
 
 
+class _Copies:
+    """Copies of lists of transitions: one copy of a list that stands for several actions, and no copies of tuples."""
+
+    def __init__(self) -> None:
+        self._copies: dict[int, tuple[Sequence[Transition], list[Transition]]] = {}
+        """For the id of a list the list, so that no other gets this id, and its copy."""
+
+    def of(self, transitions: Sequence[Transition]) -> list[Transition]:
+        """Returns the copy of a list."""
+        found = self._copies.get(id(transitions))
+        if found is None:
+            found = self._copies[id(transitions)] = transitions, [_copy(transition) for transition in transitions]
+        return found[1]
+
+
 def _copy(transition: Transition) -> Transition:
+    if type(transition) is tuple and type(transition[0]) is float:
+        return transition
     probability, next_state, reward, terminated = transition
     return float(probability), next_state, reward, terminated
 

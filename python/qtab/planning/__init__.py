@@ -1,7 +1,25 @@
-"""The best policy of an environment, exact or the best known, and how far a run falls short of it."""
+"""The best policy of an environment, exact or the best known; the values of policies; dynamic programming by steps."""
 
+from qtab.planning.expected_updates import ExpectedUpdates
 from qtab.planning.gap import Gap
 from qtab.planning.optimum import Optimum
+from qtab.planning.policy_values import PolicyValues, policy_values
 from qtab.planning.solve import optimum
+from qtab.planning.sweeps import Improvement, policy_evaluation, policy_iteration, value_iteration
 
-__all__ = ["Gap", "Optimum", "optimum"]
+__all__ = [
+    "ExpectedUpdates",
+    "Gap",
+    "Improvement",
+    "Optimum",
+    "PolicyValues",
+    "optimum",
+    "policy_evaluation",
+    "policy_iteration",
+    "policy_values",
+    "value_iteration",
+]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, *(name for name in globals() if name.startswith("__"))]

@@ -1,6 +1,8 @@
 """The best known policy of MountainCar-v0, found by a search over the exact dynamics."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,12 +33,43 @@ class Search:
     """(velocities,): the second axis of the grid of values."""
 
 
-def search_routes(searched: _core.MountainCarSearch, max_episode_steps: int) -> Search:
+KEPT_SEARCHES = 2
+"""The results of so many searches are kept, about 50 MB each: ``gap`` after ``optimum`` need not search again."""
+
+
+def search_mountain_car(
+    constants: tuple[float, ...], max_episode_steps: int, on_values: Callable[[], None]
+) -> tuple[_core.MountainCarSearch, Search]:
+    """Searches the best policy of a MountainCar, or returns what the same search found before.
+
+    Args:
+        constants: The environment's, in the order of ``_core.parameter_names("MountainCar")``.
+        max_episode_steps: The time limit in steps.
+        on_values: Called between the two stages, when the values on the grid are known.
+    """
+    key = np.array(constants, np.float64).tobytes()  # -0.0 is not 0.0
+    searched = _values(key, max_episode_steps)
+    on_values()
+    return searched, _routes(searched, max_episode_steps)
+
+
+@lru_cache(KEPT_SEARCHES)
+def _values(constants: bytes, max_episode_steps: int) -> _core.MountainCarSearch:
+    numbers = np.frombuffer(constants).tolist()
+    names = _core.parameter_names("MountainCar")
+    return _core.MountainCarSearch(list(zip(names, numbers, strict=True)), max_episode_steps)
+
+
+@lru_cache(KEPT_SEARCHES)
+def _routes(searched: _core.MountainCarSearch, max_episode_steps: int) -> Search:
     """Searches a route from each start position."""
     starts, routes = searched.routes()
     steps = np.array([max_episode_steps if route is None else len(route) for route in routes], dtype=np.int64)
     predict_return = -float(searched.rollout_lengths().mean())
-    return Search(starts, steps, tuple(routes), predict_return, *searched.axes())
+    found = Search(starts, steps, tuple(routes), predict_return, *searched.axes())
+    for array in (starts, steps, found.positions, found.velocities, *(route for route in routes if route is not None)):
+        array.flags.writeable = False  # several optima share them
+    return found
 
 
 class MountainCarSolver:

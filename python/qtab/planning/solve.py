@@ -9,7 +9,6 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.envs.classic_control.mountain_car import MountainCarEnv
 from gymnasium.envs.registration import EnvSpec
-from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 from numpy.typing import NDArray
 
 from qtab import _core
@@ -24,8 +23,9 @@ from qtab.envs.matching import time_limit, unknown_wrapper
 from qtab.envs.native import table_env
 from qtab.envs.registry import spec_of, versioned
 from qtab.envs.stored import spec_of_run
-from qtab.planning.mountain_car import MountainCarSolver, Search, search_routes
+from qtab.planning.mountain_car import MountainCarSolver, Search, search_mountain_car
 from qtab.planning.optimum import Optimum, Solver
+from qtab.planning.table import has_transition_table
 from qtab.planning.tabular import METHODS, TabularSolver, solve_table
 from qtab.results.run import Run
 from qtab.results.runs import Runs
@@ -138,7 +138,7 @@ def _optimum_for_env(
         raise ValueError(f"env must have no wrapper that may change observations or rewards, got {wrapper}")
     discount = 1.0 if discount is None else checks.real("discount", discount, 0.0, 1.0)
     is_mountain_car = type(unwrapped) in (MountainCarEnv, RustMountainCarEnv)
-    if not is_mountain_car and not _has_transition_table(unwrapped):
+    if not is_mountain_car and not has_transition_table(unwrapped):
         raise ValueError(
             "env must have a transition table P and an initial_state_distrib, or be Blackjack or MountainCar-v0: the "
             f"optimum of {name} is not known"
@@ -168,10 +168,6 @@ def _optimum_for_env(
         search=best.search,
         solver=best.solver,
     )
-
-
-def _has_transition_table(env: Any) -> bool:
-    return isinstance(env, BlackjackEnv) or (hasattr(env, "P") and hasattr(env, "initial_state_distrib"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,12 +204,8 @@ def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int)
 def _search_mountain_car(env: Any, discount: float, max_episode_steps: int, bar: ProgressBar) -> _Best:
     if discount != 1.0:
         raise ValueError(f"discount must be 1 for method 'search', which counts steps, got {shown(discount)}")
-    names = _core.parameter_names("MountainCar")
-    searched = _core.MountainCarSearch(
-        [(name, checks.finite(name, getattr(env, name))) for name in names], max_episode_steps
-    )
-    bar.move_to(1)
-    search = search_routes(searched, max_episode_steps)
+    constants = tuple(checks.finite(name, getattr(env, name)) for name in _core.parameter_names("MountainCar"))
+    searched, search = search_mountain_car(constants, max_episode_steps, on_values=lambda: bar.move_to(1))
     bar.move_to(SEARCH_STAGES)
     cost_to_go, action_costs_to_go = searched.steps()
     shape = (len(search.positions), len(search.velocities))

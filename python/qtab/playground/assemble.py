@@ -10,9 +10,10 @@ from typing import Any
 from qtab.playground.bundle import bundle
 from qtab.playground.definitions import definitions
 
-BUILD_COMMAND = "rustup target add wasm32-unknown-unknown && python rust/web/build.py"
+BUILD_COMMAND = "rustup target add wasm32-unknown-unknown && python rust/web/build_backend.py"
 """What builds the WebAssembly module in a checkout."""
 
+MODULE = "qtab.wasm"
 STYLE = '<link rel="stylesheet" href="style.css">'
 SCRIPT = '<script type="module" src="main.js"></script>'
 # No request can leave the page: not for scripts, styles, pictures or data.
@@ -59,11 +60,13 @@ def write_site(folder: Path) -> None:
     """
     module = wasm()
     folder.mkdir(parents=True, exist_ok=True)
-    for name in ("index.html", "style.css"):
-        (folder / name).write_text(_text(name), encoding="utf-8")
+    data = '<script src="definitions.js"></script>'
+    (folder / "index.html").write_text(_text("index.html").replace(SCRIPT, f"{data}\n{SCRIPT}"), encoding="utf-8")
+    (folder / "style.css").write_text(_text("style.css"), encoding="utf-8")
     for name, source in _sources().items():
         (folder / name).write_text(source, encoding="utf-8")
-    (folder / "definitions.json").write_text(_json(definitions()), encoding="utf-8")
+    known = f"globalThis.QTAB_PLAYGROUND = {_json({'definitions': definitions()})};\n"
+    (folder / "definitions.js").write_text(known, encoding="utf-8")
     (folder / "qtab.wasm").write_bytes(module)
 
 
@@ -74,7 +77,7 @@ def wasm() -> bytes:
         FileNotFoundError: if it was not built; the message says how to build it.
     """
     try:
-        return (_folder() / "qtab.wasm").read_bytes()
+        return (_folder() / MODULE).read_bytes()
     except FileNotFoundError:
         raise FileNotFoundError(
             "this installation has no WebAssembly module, because Rust's target wasm32-unknown-unknown was not there "

@@ -9,9 +9,12 @@ import gymnasium as gym
 import numpy as np
 
 from qtab._utils.versions import versions
+from qtab.config.algorithms import ALGORITHMS
+from qtab.config.options import n_tables
 from qtab.config.presets import presets
 from qtab.envs.descriptions import describe
 from qtab.envs.grid_worlds import ACTION_NAMES
+from qtab.explanation.equations import bootstrap_symbol
 from qtab.playground.environments import ENVIRONMENTS, Entry
 from qtab.playground.settings import LEFT_OUT, rules, settings
 
@@ -35,6 +38,7 @@ def definitions() -> dict[str, Any]:
         "environments": {key: _environment(key, entry) for key, entry in ENVIRONMENTS.items()},
         "settings": _plain(settings()),
         "rules": rules(),
+        "bootstraps": {name: [bootstrap_symbol(name, table) for table in range(n_tables(name))] for name in ALGORITHMS},
     }
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from qtab.config.choices import CHOICES
 from qtab.config.config import DEFAULTS
 from qtab.config.explanations import default, explanations, groups
-from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, OPTIONS, defaults, is_set, mismatch
+from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, OPTIONS, mismatch
 
 LEFT_OUT = frozenset(
     ("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows", "edges")
@@ -122,14 +122,3 @@ def rules() -> list[dict[str, Any]]:
                     if reason := mismatch(name, value, {**DEFAULTS, other: chosen}):
                         found.append({"setting": name, "value": value, "unless": {other: chosen}, "reason": reason})
     return found
-
-
-def completed(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the settings of a run in which those of ``given`` are set: all that apply, with their defaults."""
-    fields = {**DEFAULTS, **given}
-    fields |= defaults(fields)
-    return {
-        name: value
-        for name, value in fields.items()
-        if name not in LEFT_OUT and is_set(value) and (name not in OPTIONS or not mismatch(name, value, fields))
-    }

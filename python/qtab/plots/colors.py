@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.config.choices import CHOICES
+from qtab.config.choices import ALGORITHM_NAMES, CHOICES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,9 +103,16 @@ def algorithm_color(key: Any) -> str:
 
 def algorithm(key: Any) -> str | None:
     """Returns the algorithm that a label names, such as ``"sarsa"`` or ``"True online Sarsa(λ)"``; None for others."""
-    words = str(key).lower().replace("(λ)", " lambda").replace("+", " plus").replace("-", " ").split()
-    name = "_".join(words).replace("'s", "")
-    return name if name in CHOICES["algorithm"] else None
+    return _BY_NAME.get(_plain(str(key)))
+
+
+def _plain(name: str) -> str:
+    """Returns a name without the differences between ``"Q-learning"``, ``"q learning"`` and ``"q_learning"``."""
+    return name.lower().replace("-", " ").replace("_", " ")
+
+
+_BY_NAME = {_plain(name): key for key, written in ALGORITHM_NAMES.items() for name in (key, written)}
+"""The algorithms by their names in the settings and in the book."""
 
 
 def sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from qtab._utils.checks import load_hint
 from qtab._utils.shown import shown
 from qtab.config import Config
+from qtab.config.choices import ALGORITHM_NAMES
 from qtab.discretizers import Discretizer, Identity
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.edges import Edges
@@ -113,7 +114,6 @@ def subject_of(name: str, source: Any) -> Subject:
 def _of_runs(
     source: Run | Runs, config: Config, tables: NDArray[np.float64], names: tuple[str, ...], which: str
 ) -> Subject:
-    algorithm = config.algorithm.replace("_", " ")
     summed = tables[:, 0] if tables.shape[1] == 1 else (tables[:, 0] + tables[:, 1]) / 2
     if source.action_masks is not None:
         summed = np.where(source.action_masks.reshape(summed.shape), summed, -np.inf)
@@ -121,7 +121,7 @@ def _of_runs(
         source,
         config.env,
         config.env_kwargs,
-        f"{config.env}: {algorithm}, {which}",
+        f"{config.env}: {ALGORITHM_NAMES[config.algorithm]}, {which}",
         source.discretizer,
         summed,
         _known(source, config, tables),

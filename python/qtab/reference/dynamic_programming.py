@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from gymnasium.envs.toy_text.utils import categorical_sample
 from numpy.typing import NDArray
 
 LAST_BITS = 4 * sys.float_info.epsilon
@@ -54,3 +55,45 @@ def policy_return(P: Any, initial_state_distrib: Any, policy: Any, steps: int) -
     for probability, v in zip(initial_state_distrib, V, strict=True):
         expected += probability * v
     return float(expected)
+
+
+def sweep(P: Any, V: Sequence[float], discount: float, policy: Any, in_place: bool) -> list[float]:
+    """One sweep: V(s) ← Σ π(a|s) q(s, a) (eq. 4.5), or without a policy max_a q(s, a) (eq. 4.10)."""
+    new = list(V)
+    for s in range(len(P)):
+        old = new if in_place else V
+        q = [action_value(P, old, s, a, discount) for a in range(len(P[s]))]
+        if policy is None:
+            new[s] = max(q)
+        else:
+            new[s] = 0.0
+            for a, value in enumerate(q):
+                if policy[s][a] > 0.0:
+                    new[s] += policy[s][a] * value
+    return new
+
+
+def expected_updates(
+    P: Any, initial_state_distrib: Any, discount: float, epsilon: float | None, seed: int, updates: int
+) -> NDArray[np.float64]:
+    """Q(s, a) ← Σ p (r + γ max_a' Q(s', a')) for pair after pair (eq. 8.1): in turn, or with ε in episodes."""
+    rng = np.random.default_rng(seed)
+    Q = np.zeros((len(P), len(P[0])))
+    s = None
+    for update in range(updates):
+        if epsilon is None:
+            s, a = divmod(update % Q.size, Q.shape[1])
+        else:
+            if s is None:
+                s = int(categorical_sample(initial_state_distrib, rng))
+            best = np.flatnonzero(Q[s] == Q[s].max())
+            if rng.random() < 1.0 - epsilon:
+                a = int(best[0] if len(best) == 1 else best[rng.integers(0, len(best))])
+            else:
+                a = int(rng.integers(0, Q.shape[1]))
+            chosen = categorical_sample([p for p, _, _, _ in P[s][a]], rng)
+            _, s_next, _, terminated = P[s][a][chosen]
+        Q[s, a] = action_value(P, Q.max(axis=1), s, a, discount)
+        if epsilon is not None:
+            s = None if terminated else s_next
+    return Q

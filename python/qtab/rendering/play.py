@@ -136,15 +136,19 @@ def play(
         window = checks.boolean("window", window)
     scene = Scene(agent, env, env_kwargs, limit, episodes, seed, fps)
     film = Film(scene)
-    played = scene.show() if _opens_window(env, window) else film.record()
+    opens, problem = _opens_window(env, window)
+    played = scene.show() if opens else film.record()
+    if problem is not None:  # now that there are pictures to save
+        _LOGGER.warning("no window is shown (%s); .save('agent.mp4') writes the video", problem)
     return Playback(agent.env, played.returns, played.lengths, played.terminated, seed, film)
 
 
-def _opens_window(env: Any, window: bool | None) -> bool:
+def _opens_window(env: Any, window: bool | None) -> tuple[bool, str | None]:
+    """Returns whether to open a window, and why none can be opened where nobody asked for one."""
     if isinstance(env, gym.Env) and window is None:
-        return env.render_mode == "human"
+        return env.render_mode == "human", None
     if window is False or (window is None and in_notebook()):
-        return False
+        return False, None
     try:
         problem = display_problem()
     except ModuleNotFoundError as error:  # pygame, which not every environment needs for its pictures
@@ -152,8 +156,7 @@ def _opens_window(env: Any, window: bool | None) -> bool:
             raise
         problem = str(error)
     if problem is None:
-        return True
+        return True, None
     if window:
         raise ValueError(f"window needs a display ({problem}); without one, play(..., window=False).save(path) works")
-    _LOGGER.warning("no window is shown (%s); .save('agent.mp4') writes the video", problem)
-    return False
+    return False, problem

@@ -15,6 +15,7 @@ from qtab._utils.files import check_writable, replacing
 from qtab._utils.page import page, paragraph, picture, section, table
 from qtab._utils.shown import shown
 from qtab.config import Config
+from qtab.config.choices import ALGORITHM_NAMES
 from qtab.diagnosis.diagnose import diagnose
 from qtab.diagnosis.diagnosis import Diagnosis
 from qtab.planning.optimum import Optimum
@@ -85,7 +86,7 @@ def _summary(run: Run) -> list[tuple[str, Any]]:
     returns = run.episode_returns
     finished = f"{len(returns):,}" + ("" if run.completed else f" of {run.config.episodes:,}")
     rows: list[tuple[str, Any]] = [
-        ("algorithm", run.config.algorithm.replace("_", " ")),
+        ("algorithm", ALGORITHM_NAMES[run.config.algorithm]),
         ("seed", run.config.seed),
         ("episodes", f"{finished}, {int(run.episode_lengths.sum()):,} steps"),
         ("table", " × ".join(f"{size:,}" for size in run.tables.shape)),

@@ -1,4 +1,4 @@
-"""A run's policy as JSON that any language can read; ``docs/policies.md`` describes it and uses it."""
+"""A run's policy as JSON that any language can read; ``docs/how_to/export.md`` describes it and uses it."""
 
 import json
 from pathlib import Path

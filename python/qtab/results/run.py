@@ -228,7 +228,7 @@ class Run(WithPage):
         return episode_frame(self.episode_returns, self.episode_lengths, self.terminated)
 
     def to_json(self, path: "str | os.PathLike[str]") -> None:
-        """Writes the greedy policy as plain data: tables, discretizer, actions. ``docs/policies.md`` has its keys.
+        """Writes the greedy policy as plain data: tables, discretizer, actions. ``docs/how_to/export.md`` has its keys.
 
         It raises what :meth:`save` does.
         """

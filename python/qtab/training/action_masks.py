@@ -38,17 +38,20 @@ NO_MASKS = ActionMasks({"type": "none"})
 """Every state has all actions."""
 
 
-def observed_masks(action_mask: Mask, env: gym.Env) -> ActionMasks:
-    """Returns the masks of an environment that is stepped in Python, by the setting ``action_mask``.
+def asks_for_masks(action_mask: Mask) -> bool:
+    """Returns whether a run with the setting ``action_mask`` has masks.
 
     Raises:
         ValueError: for the setting of a saved run whose function is not given.
     """
-    if action_mask is False:
-        return NO_MASKS
     if isinstance(action_mask, str):
         raise ValueError(FORGOTTEN)
-    function = mask_method(env) if action_mask is True else action_mask
+    return action_mask is not False
+
+
+def observed_masks(action_mask: Mask, env: gym.Env) -> ActionMasks:
+    """Returns the masks of an environment that is stepped in Python, by a setting that asks for masks."""
+    function = action_mask if callable(action_mask) else mask_method(env)
     return ActionMasks({"type": "info"} if function is None else {"type": "function", "function": function})
 
 
@@ -65,23 +68,35 @@ def known_masks(action_mask: Mask, env: gym.Env, discretizer: Discretizer, n_act
     """Returns the masks of every state of an environment that Rust steps; None where they cannot be known.
 
     They are known where observations are discrete, and the environment has Taxi's method ``action_mask(state)`` or the
-    setting is a function that gives each of them a mask.
+    setting is a function that gives each of them a mask. A state that is never reached needs none: a function may raise
+    a ``LookupError`` for it, or return what is no mask. Python then steps the environment, and the first such state
+    that is reached is refused.
+
+    Args:
+        action_mask: The setting, which asks for masks.
+        env: The environment.
+        discretizer: Maps its observations to rows.
+        n_actions: The length of a mask.
 
     Raises:
-        ValueError: for the setting of a saved run whose function is not given.
+        Exception: whatever else the function raises, with a note of the observation where Python has notes.
     """
-    if action_mask is False:
-        return NO_MASKS
-    if isinstance(action_mask, str):
-        raise ValueError(FORGOTTEN)
-    function = getattr(env.unwrapped, "action_mask", None) if action_mask is True else action_mask
+    function = action_mask if callable(action_mask) else getattr(env.unwrapped, "action_mask", None)
     if function is None or not isinstance(discretizer, Identity) or discretizer.n_rows > MAX_KNOWN_STATES:
         return None
     known = np.empty((discretizer.n_rows, n_actions), np.bool_)
     for row, observation in enumerate(_observations(discretizer)):
         try:
-            known[row] = checked_mask("action_mask", function(observation), n_actions)
-        except Exception:
+            mask = function(observation)
+        except LookupError:
+            return None
+        except Exception as error:
+            if hasattr(error, "add_note"):
+                error.add_note(f"in action_mask({observation!r}), asked before the first episode")
+            raise
+        try:
+            known[row] = checked_mask("action_mask", mask, n_actions)
+        except (TypeError, ValueError):
             return None
     return ActionMasks({"type": "info"}, known)
 

@@ -57,7 +57,7 @@ def earlier_run(name: str, run: Any, action_mask: Any = None) -> Run:
 
 
 def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> ResolvedRun:
-    """Resolves the whole run of which an earlier part is given, and logs where its numbers may differ.
+    """Resolves the whole run of which an earlier part is given.
 
     Args:
         name: The argument that gives the earlier part, for messages.
@@ -74,7 +74,6 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
     if env is None:
         spec_of_run(config.env)  # the name of a class without an id is not taken for one
     resolved = continued(resolve(config.env if env is None else env, over(_without_kwargs(config, env), {})), run)
-    _log_what_differs(run, config)
     return replace(resolved, extensions=extensions(run, config))
 
 
@@ -185,8 +184,8 @@ def _config(name: str, run: Run, episodes: Any) -> Config:
     return run.config if count == run.config.episodes else run.config.replace(episodes=count)
 
 
-def _log_what_differs(run: Run, config: Config) -> None:
-    """Says where the result is not that of an uninterrupted run, or may not be."""
+def log_what_differs(run: Run, config: Config) -> None:
+    """Logs where the result is not that of an uninterrupted run, or may not be."""
     falling = falling_rates(config)
     if config.episodes != run.config.episodes and falling:
         _LOGGER.warning(

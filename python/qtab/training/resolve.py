@@ -25,7 +25,7 @@ from qtab.discretizers.actions import Actions, choose_actions
 from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import native_env
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
-from qtab.training.action_masks import known_masks, observed_masks
+from qtab.training.action_masks import NO_MASKS, asks_for_masks, known_masks, observed_masks
 from qtab.training.preset_fit import infer_discretizer, set_aside
 from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun
 
@@ -148,16 +148,17 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     of_preset = {name: value for name, value in of_preset.items() if getattr(config, name) is not DEFAULTS[name]}
     with naming_preset(config.preset, of_preset, request.asked):
         discretizer = discretizers.build(env.observation_space, config, len(actions))
-    masks = None
-    if isinstance(environment, NativeEnvironment):
-        if not discretizer.reads_space:
-            masks = known_masks(config.action_mask, env, discretizer, len(actions))
-        if masks is None:
-            python_reason = READ_IN_PYTHON if discretizer.reads_space else MASKS_BY_STEP
-            if config.backend == "rust":
-                raise rust_unavailable(python_reason)
+    masks = None if asks_for_masks(config.action_mask) else NO_MASKS
+    in_rust = isinstance(environment, NativeEnvironment)
+    if in_rust and masks is None and not discretizer.reads_space:
+        masks = known_masks(config.action_mask, env, discretizer, len(actions))
+    if in_rust and (masks is None or discretizer.reads_space):
+        in_rust, python_reason = False, READ_IN_PYTHON if discretizer.reads_space else MASKS_BY_STEP
+        if config.backend == "rust":
+            raise rust_unavailable(python_reason)
     if masks is None:
         masks = observed_masks(config.action_mask, env)
+    if not in_rust:
         environment = PythonEnvironment(env, actions, owns_env, masks)
     own_limit = config.max_episode_steps or request.time_limit
     max_episode_steps = own_limit or UNLIMITED_MAX_EPISODE_STEPS
@@ -168,7 +169,7 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         initial_q=_fit_initial_q(config, discretizer, len(actions)),
         max_episode_steps=max_episode_steps,
         seed=seed,
-        backend="rust" if isinstance(environment, NativeEnvironment) else "gymnasium",
+        backend="rust" if in_rust else "gymnasium",
     )
     return ResolvedRun(
         config=config,

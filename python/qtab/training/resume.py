@@ -52,7 +52,7 @@ def resume(
         memory_limit: As for :func:`qtab.train`.
 
     Returns:
-        The whole run: its first episodes are those of ``run``, which stays as it is. Visits are counted on if they were
+        The whole run. Its first episodes are those of ``run``, which stays as it is. Visits are counted on if they were
         counted, and snapshots are added to those of ``run``.
 
     Raises:

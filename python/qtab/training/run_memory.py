@@ -4,10 +4,11 @@ import math
 
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
 from qtab._utils.memory import memory_limit as bytes_limit
+from qtab._utils.shown import shown
 from qtab.config.options import n_tables
 from qtab.training.action_masks import mask_bytes
 from qtab.training.options import TrainingOptions
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.resolved_run import PythonEnvironment, ResolvedRun
 
 BYTES_PER_VALUE = {
     "sarsa_lambda": 24,
@@ -43,6 +44,23 @@ def bytes_in_progress(resolved: ResolvedRun) -> int:
     return resolved.config.episodes * BYTES_PER_EPISODE + values * per_value + masks
 
 
+def table_words(resolved: ResolvedRun, needed: int) -> tuple[str, str]:
+    """Returns words for messages about too little memory: the table, if episodes take less, and what would help.
+
+    Args:
+        resolved: The run.
+        needed: How many bytes are needed.
+    """
+    if 2 * resolved.config.episodes * (BYTES_PER_EPISODE + BYTES_PER_RECORDING) > needed:
+        return "", ""
+    *_, rows, actions = tables_shape(resolved, 1)
+    environment = resolved.environment
+    space = f" for {shown(environment.env.observation_space)}" if isinstance(environment, PythonEnvironment) else ""
+    no_cells = resolved.config.max_rows is not None or not resolved.discretizer.has_cells
+    instead = "" if no_cells else "; max_rows= gives rows only to the observations that are met"
+    return f" with a table of {rows:,} rows of {actions} actions{space}", instead
+
+
 def check_run(resolved: ResolvedRun, options: TrainingOptions, snapshots: int) -> int:
     """Checks that one run fits into the memory limit.
 
@@ -64,5 +82,6 @@ def check_run(resolved: ResolvedRun, options: TrainingOptions, snapshots: int) -
     needed = bytes_in_progress(resolved) + copies + recordings * BYTES_PER_RECORDING
     extras = [f"{recordings} recordings"] * bool(recordings) + [f"{snapshots} snapshots"] * bool(snapshots)
     what = f"{episodes} episodes" + (f" with {' and '.join(extras)}" if extras else "")
-    check_memory(what, needed, limit)
+    table, instead = table_words(resolved, needed)
+    check_memory(what + table, needed, limit, instead)
     return (limit - needed) // BYTES_PER_RECORDED_ACTION

@@ -29,6 +29,7 @@ from qtab.training.earlier_run import (
     check_agrees,
     counts_visits,
     earlier_run,
+    log_what_differs,
     resolve_again,
     snapshots_of,
     with_function,
@@ -125,6 +126,8 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
     total, record = resolved.config.episodes, int(options.record)
     copied_at = snapshots_of(options, total, earlier)
     room = check_run(resolved, options, len(copied_at))
+    if earlier is not None:
+        log_what_differs(earlier, resolved.config)
     began = time.perf_counter()
     trainer = _core.Trainer(
         resolved.spec(), resolved.seed, record, min(room, checks.LARGEST_COUNT), bool(options.visits)
@@ -155,6 +158,8 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
                 if callbacks and not callbacks(reader.read()):
                     break
     except BaseException as error:
+        if isinstance(error, ValueError) and error.args:
+            error.args = (resolved.discretizer.in_terms_of_space(str(error)), *error.args[1:])
         with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
             _attach(error, _run(resolved, trainer, began, collector))
         raise

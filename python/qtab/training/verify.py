@@ -50,6 +50,8 @@ class Verification:
     """Whether the environment gave the same results twice for the same seed and actions; None where nothing differs."""
     wrapper: str | None = None
     """The class name of a wrapper of ``env`` with statistics of its own; None where nothing differs, or without one."""
+    trained_with: dict[str, str] | None = None
+    """The platform and the versions of the run that are not those of this comparison; None where nothing differs."""
 
     @property
     def equal(self) -> bool:
@@ -67,7 +69,7 @@ class Verification:
         lines = [self._heading, *(f"  {name:7}  {word}" for name, word in self._words().items())]
         if self.episode is not None:
             lines.append(f"  they differ from {self._place} on (counted from 0)")
-        lines += [f"  {sentence}" for sentence in self._about_the_environment()]
+        lines += [f"  {sentence}" for sentence in self._about_the_environment() + self._about_the_machine()]
         lines.append("  " + ", ".join(f"{name} {value}" for name, value in self.versions.items()))
         return "\n".join(lines)
 
@@ -78,6 +80,8 @@ class Verification:
             facts["they differ from"] = f"{self._place} on (counted from 0)"
         if self.repeats is not None:
             facts["environment"] = " ".join(self._about_the_environment())
+        if self.trained_with:
+            facts["trained with"] = " ".join(self._about_the_machine())
         return html.summary(f"Verification of {self.env}, seed {self.seed}", {**facts, **self.versions})
 
     def _about_the_environment(self) -> list[str]:
@@ -92,6 +96,15 @@ class Verification:
             lines.append(f"its wrapper {self.wrapper} keeps statistics, which start where the last call left them:")
             lines.append("train and verify need a new environment each, and verify no episodes=")
         return lines
+
+    def _about_the_machine(self) -> list[str]:
+        """What other libraries have to do with a difference, in lines of a report."""
+        if not self.trained_with:
+            return []
+        trained_with = ", ".join(f"{name} {value}" for name, value in self.trained_with.items())
+        return [
+            f"the run was trained with {trained_with}: other libraries may round a sine or a cosine in another way",
+        ]
 
     @property
     def _heading(self) -> str:
@@ -191,6 +204,11 @@ def verify(
         verification,
         repeats=repeats_itself(make, verification.seed, actions, returns[: len(actions)].tolist()),
         wrapper=None if env is None else wrapper_with_statistics(env),
+        trained_with={
+            name: value
+            for name, value in run.versions.items()
+            if name in ("platform", "numpy", "gymnasium") and value != verification.versions[name]
+        },
     )
 
 

@@ -16,7 +16,8 @@ mod vector;
 
 use pyo3::prelude::*;
 
-#[pymodule]
+// The module needs no interpreter's lock: docs/explanation/free_threading.md lists what threads share, and what guards it.
+#[pymodule(gil_used = false)]
 mod _core {
     use pyo3::types::PyTuple;
 
@@ -31,7 +32,7 @@ mod _core {
         numpy_uses_libm, parameter_names, step_cart_poles,
     };
     #[pymodule_export]
-    use super::planning::{PyMdpSolver, PyMountainCarSearch};
+    use super::planning::{PyExpectedUpdates, PyMdpSolver, PyMountainCarSearch};
     #[pymodule_export]
     use super::rng::PyAgentRng;
     #[pymodule_export]

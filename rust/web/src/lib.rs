@@ -19,4 +19,7 @@ mod training;
 mod update_recorder;
 mod updates;
 
+#[cfg(test)]
+mod tests;
+
 pub use playground::Playground;

@@ -1,7 +1,9 @@
 """Colors of the lines of the book's figures: one for each method, sequential ones for an ordered parameter."""
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 from qtab.book.result import Line
@@ -19,6 +21,8 @@ METHOD_COLORS: Mapping[str, str] = {
     "UCB": _ORANGE,
     "gradient bandit": _PURPLE,
     "optimistic greedy": _TEAL,
+    # chapter 4
+    "final values": _GREY,
     # chapters 5 to 9, 12
     "TD": _BLUE,
     "Monte Carlo": _RED,
@@ -39,7 +43,8 @@ METHOD_COLORS: Mapping[str, str] = {
 }
 """The color of each method that is not an algorithm of :func:`qtab.train`; those have the colors of all plots."""
 
-_PARAMETER = re.compile(r"(.+) = (-?[\d.]+)")
+_PARAMETER = re.compile(r"(.+?)(?: =)? (-?[\d.,]+)")
+"""A parameter and its value: ``"n = 4"``, ``"sweep 32"``."""
 
 
 def line_colors(lines: Sequence[Line], ax: "Axes") -> list[Any]:
@@ -48,14 +53,24 @@ def line_colors(lines: Sequence[Line], ax: "Axes") -> list[Any]:
     Three or more values of one parameter, such as ``"n = 4"``, have sequential colors in their order. Methods have a
     color each, the same in every figure. Other lines have the colors that are left.
     """
-    names = [line.method or line.name for line in lines]
-    parameters = [_PARAMETER.fullmatch(name) for name in names]
-    if len(set(names)) > 2 and len({match and match[1] for match in parameters}) == 1 and parameters[0] is not None:
-        values = [float(match[2]) for match in parameters if match is not None]
-        colors = dict(zip(sorted(set(values)), sequential(sorted(set(values)), ax), strict=True))
-        return [colors[value] for value in values]
-    chosen = {name: METHOD_COLORS.get(name) or algorithm_color(name) for name in names}
-    free = iter(hue for hue in COLORS * (len(names) // len(COLORS) + 2) if hue not in chosen.values())
-    for name, hue in chosen.items():
-        chosen[name] = hue or next(free)
-    return [readable(str(chosen[name]), ax) for name in names]
+    names = list(dict.fromkeys(line.method or line.name for line in lines))
+    chosen: dict[str, Any] = _of_parameter(names, ax)
+    for name in names:
+        if name not in chosen and (hue := METHOD_COLORS.get(name) or algorithm_color(name)):
+            chosen[name] = readable(hue, ax)
+    taken = {METHOD_COLORS.get(name) or algorithm_color(name) for name in names}
+    free = cycle([hue for hue in COLORS if hue not in taken] or COLORS)
+    for name in names:
+        if name not in chosen:
+            chosen[name] = readable(next(free), ax)
+    return [chosen[line.method or line.name] for line in lines]
+
+
+def _of_parameter(names: Sequence[str], ax: "Axes") -> dict[str, Any]:
+    """Returns the colors of the values of a parameter, if there are at least three of one."""
+    found = {name: match for name in names if (match := _PARAMETER.fullmatch(name))}
+    common = Counter(match[1] for match in found.values()).most_common(1)
+    if not common or common[0][1] < 3:
+        return {}
+    values = {name: float(match[2].replace(",", "")) for name, match in found.items() if match[1] == common[0][0]}
+    return dict(zip(values, sequential(list(values.values()), ax), strict=True))

@@ -34,6 +34,24 @@ pub(super) fn best_value(mdp: &TabularMdp, state: usize, discount: f64, values: 
         .fold(f64::NEG_INFINITY, f64::max)
 }
 
+/// Σ π(a|s) q(s, a), summed from left to right (Sutton & Barto, equation 4.4). `policy` holds π(a|s), the actions of
+/// state 0 first. Actions that it never takes are left out.
+#[inline]
+pub(super) fn expected_value(mdp: &TabularMdp, policy: &[f64], state: usize, discount: f64, values: &[f64]) -> f64 {
+    choices(mdp, policy, state)
+        .fold(0.0, |sum, (action, probability)| sum + probability * action_value(mdp, state, action, discount, values))
+}
+
+/// The actions that a policy takes in a state, and their probabilities.
+pub(super) fn choices<'a>(
+    mdp: &TabularMdp,
+    policy: &'a [f64],
+    state: usize,
+) -> impl Iterator<Item = (usize, f64)> + use<'a> {
+    let row = &policy[state * mdp.num_actions()..][..mdp.num_actions()];
+    row.iter().copied().enumerate().filter(|&(_, probability)| probability > 0.0)
+}
+
 /// q(s, a) of all states and actions, the actions of state 0 first.
 pub(super) fn action_values(
     mdp: &TabularMdp,

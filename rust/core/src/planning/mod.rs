@@ -3,13 +3,16 @@
 mod beam_search;
 mod bellman;
 mod cost_to_go;
+mod expected_updates;
 mod finite_horizon;
 mod mdp;
 mod planning_error;
+mod policy_evaluation;
 mod policy_iteration;
 mod proper_policy;
 mod solution;
 mod stop_checks;
+mod sweep;
 #[cfg(test)]
 mod tests;
 mod value_iteration;
@@ -17,9 +20,12 @@ mod value_iteration;
 pub use beam_search::{BEAM, STARTS, beam_search, greedy_rollout, starts};
 
 pub use cost_to_go::CostToGo;
+pub use expected_updates::{ExpectedUpdates, UpdateDistribution};
 pub use finite_horizon::{FiniteHorizon, PolicyChange, finite_horizon, policy_return};
 pub use mdp::Mdp;
 pub use planning_error::{MAX_SWEEPS, PlanningError};
+pub use policy_evaluation::{PolicyEvaluation, expected_visits, policy_evaluation};
 pub use policy_iteration::policy_iteration;
 pub use solution::Solution;
+pub use sweep::sweep;
 pub use value_iteration::value_iteration;

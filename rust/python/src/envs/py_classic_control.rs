@@ -1,7 +1,8 @@
 //! `ClassicControl`: the base of the Gymnasium-facing classes of classic control. The step runs in Rust, everything else is
 //! Gymnasium's.
 
-use std::sync::Arc;
+use std::mem::replace;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use numpy::PyArray1;
 use pyo3::exceptions::PyAttributeError;
@@ -35,10 +36,18 @@ pub(crate) fn matches_numpy(py: Python<'_>, name: &str) -> PyResult<bool> {
 /// Gymnasium has them, in attributes of the instance or the class. They are read at the first step after a reset and after
 /// any assignment. What Rust does not compute with (a float32 state where Gymnasium keeps float64, a parameter of another
 /// width) steps in Python, in Gymnasium's own code, and so does every step that overflows.
-#[pyclass(subclass, name = "ClassicControl", module = "qtab._core")]
-pub(crate) struct PyClassicControl {
+///
+/// Several threads may use an environment at once, with or without the interpreter's lock: steps then overwrite each
+/// other's state, as in Gymnasium, but a thread that only reads changes nothing. Python is never called, and no object
+/// dropped, while the mutex is locked.
+#[pyclass(subclass, frozen, name = "ClassicControl", module = "qtab._core")]
+pub(crate) struct PyClassicControl(Mutex<Contents>);
+
+struct Contents {
     env: Arc<dyn DynClassicEnv>,
     parameters: Parameters,
+    /// How often an attribute was assigned: what was read of the attributes before the last time is out of date.
+    assignments: u64,
     state: StoredState,
 }
 
@@ -67,14 +76,16 @@ impl PyClassicControl {
         _kwargs: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let model: String = class.getattr(intern!(class.py(), "model"))?.extract()?;
-        Ok(Self { env: classic_control(&model)?, parameters: Parameters::Stale, state: StoredState::Unset })
+        let env = classic_control(&model)?;
+        let (parameters, state) = (Parameters::Stale, StoredState::Unset);
+        Ok(Self(Mutex::new(Contents { env, parameters, assignments: 0, state })))
     }
 
     /// Draws the initial state from the environment's generator. Returns what `reset` returns; None, and nothing drawn,
     /// where Gymnasium's own code must do it.
     fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let py = slf.py();
-        let (generator, env) = (generator(slf)?, Arc::clone(&slf.borrow().env));
+        let (generator, env) = (generator(slf)?, Arc::clone(&slf.get().lock().env));
         let layout = env.layout();
         if !is_numpy_generator(&generator) || (layout.calls_numpy_trigonometry && !numpy_uses_libm(py)?) {
             return Ok(None);
@@ -85,11 +96,8 @@ impl PyClassicControl {
         for name in layout.terminal_counter.iter().chain(&layout.last_action) {
             attributes.set_item(name, py.None())?;
         }
-        {
-            let mut this = slf.borrow_mut();
-            this.state = StoredState::Python(result.state.unbind());
-            this.parameters = Parameters::Stale;
-        }
+        slf.get().store(StoredState::Python(result.state.unbind()));
+        slf.get().invalidate();
         render_if_human(slf)?;
         Ok(Some((result.observation, PyDict::new(py)).into_pyobject(py)?.into_any()))
     }
@@ -100,7 +108,7 @@ impl PyClassicControl {
         let Some((result, human)) = Self::native_step(slf, action)? else {
             return slf.call_method1(intern!(py, "step_in_python"), (action,));
         };
-        slf.borrow_mut().state = result.state;
+        slf.get().store(result.state);
         if human {
             slf.call_method0(intern!(py, "render"))?;
         }
@@ -109,81 +117,103 @@ impl PyClassicControl {
     }
 
     /// Must be called after any attribute was assigned.
-    fn invalidate(&mut self) {
-        self.parameters = Parameters::Stale;
+    fn invalidate(&self) {
+        let mut contents = self.lock();
+        contents.parameters = Parameters::Stale;
+        contents.assignments += 1;
     }
 
     /// The state as Gymnasium keeps it.
     #[getter]
     fn state<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
-        let (numbers, layout) = {
-            let this = slf.borrow();
-            let numbers = match &this.state {
-                StoredState::Python(state) => return Ok(state.bind(py).clone()),
-                StoredState::Native(numbers) => Some(*numbers),
-                StoredState::Unset => None,
-            };
-            (numbers, this.env.layout())
+        let (stored, layout) = {
+            let contents = slf.get().lock();
+            (contents.state.clone_ref(py), contents.env.layout())
         };
-        let Some(numbers) = numbers else {
-            let class = slf.get_type();
-            return Err(PyAttributeError::new_err(format!("'{}' object has no attribute 'state'", class.name()?)));
+        let numbers = match stored {
+            StoredState::Python(state) => return Ok(state.into_bound(py)),
+            StoredState::Native(numbers) => numbers,
+            StoredState::Unset => {
+                let class = slf.get_type();
+                return Err(PyAttributeError::new_err(format!("'{}' object has no attribute 'state'", class.name()?)));
+            }
         };
         let mut state = PyArray1::from_slice(py, &numbers[..layout.state_len]).into_any();
         if layout.state_is_tuple {
             state = PyTuple::new(py, state.try_iter()?.collect::<PyResult<Vec<_>>>()?)?.into_any();
         }
-        slf.borrow_mut().state = StoredState::Python(state.clone().unbind());
+        // Unless another thread has taken a step in the meantime, which must not be undone.
+        let mut contents = slf.get().lock();
+        if matches!(&contents.state, StoredState::Native(now) if now.map(f64::to_bits) == numbers.map(f64::to_bits)) {
+            contents.state = StoredState::Python(state.clone().unbind());
+        }
         Ok(state)
     }
 
     #[setter]
-    fn set_state(&mut self, value: &Bound<'_, PyAny>) {
-        self.state = StoredState::Python(value.clone().unbind());
+    fn set_state(&self, value: &Bound<'_, PyAny>) {
+        self.store(StoredState::Python(value.clone().unbind()));
     }
 }
 
 impl PyClassicControl {
+    fn lock(&self) -> MutexGuard<'_, Contents> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn store(&self, state: StoredState) {
+        let before = replace(&mut self.lock().state, state);
+        // An array of a subclass may run Python code when it is dropped.
+        drop(before);
+    }
+
     /// The step, and whether `render_mode` is "human"; None where Gymnasium's own code must take the step.
     fn native_step<'py>(
         slf: &Bound<'py, Self>,
         action: &Bound<'py, PyAny>,
     ) -> PyResult<Option<(StepResult<'py>, bool)>> {
         let py = slf.py();
-        let parameters = slf.borrow().parameters;
+        let (mut env, parameters, stored) = {
+            let contents = slf.get().lock();
+            (Arc::clone(&contents.env), contents.parameters, contents.state.clone_ref(py))
+        };
         let human = match parameters {
             Parameters::Loaded { human } => human,
             Parameters::Unsupported => return Ok(None),
-            Parameters::Stale => match Self::load_parameters(slf)? {
-                Some(human) => human,
-                None => return Ok(None),
-            },
+            Parameters::Stale => {
+                let Some(loaded) = Self::load_parameters(slf)? else { return Ok(None) };
+                env = loaded.0;
+                loaded.1
+            }
         };
-        let (env, state) = {
-            let this = slf.borrow();
-            let state = match &this.state {
-                StoredState::Native(numbers) => Some(StateArray::new(*numbers)),
-                StoredState::Python(state) => StateArray::read(state.bind(py), this.env.layout().state_len),
-                StoredState::Unset => None,
-            };
-            (Arc::clone(&this.env), state)
+        let state = match stored {
+            StoredState::Native(numbers) => Some(StateArray::new(numbers)),
+            StoredState::Python(state) => StateArray::read(state.bind(py), env.layout().state_len),
+            StoredState::Unset => None,
         };
         let Some(state) = state else { return Ok(None) };
         Ok(env.step_python(slf, &state, action)?.map(|result| (result, human)))
     }
 
-    /// Reads the attributes. Returns whether `render_mode` is "human"; None where Rust cannot take over all of them.
-    fn load_parameters(slf: &Bound<'_, Self>) -> PyResult<Option<bool>> {
-        let env = Arc::clone(&slf.borrow().env);
+    /// Reads the attributes. Returns the environment with them, and whether `render_mode` is "human"; None where Rust
+    /// cannot take over all of them.
+    fn load_parameters(slf: &Bound<'_, Self>) -> PyResult<Option<(Arc<dyn DynClassicEnv>, bool)>> {
+        let (env, assignments) = {
+            let contents = slf.get().lock();
+            (Arc::clone(&contents.env), contents.assignments)
+        };
         let loaded = Self::supported(slf, &*env)?;
-        let mut this = slf.borrow_mut();
-        this.parameters = Parameters::Unsupported;
-        Ok(loaded.map(|(env, human)| {
-            this.env = env;
-            this.parameters = Parameters::Loaded { human };
-            human
-        }))
+        let mut contents = slf.get().lock();
+        // Otherwise the attributes changed while they were read: the next step reads them again.
+        if contents.assignments == assignments {
+            contents.parameters = Parameters::Unsupported;
+            if let Some((env, human)) = &loaded {
+                contents.env = Arc::clone(env);
+                contents.parameters = Parameters::Loaded { human: *human };
+            }
+        }
+        Ok(loaded)
     }
 
     /// The environment with its parameters, and whether `render_mode` is "human"; None where Rust cannot step it.

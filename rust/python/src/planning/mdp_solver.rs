@@ -5,7 +5,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::envs::tabular::TabularMdp;
 use qtab_core::planning::{
-    FiniteHorizon, Mdp, PlanningError, Solution, finite_horizon, policy_iteration, policy_return, value_iteration,
+    FiniteHorizon, Mdp, PlanningError, PolicyEvaluation, Solution, expected_visits, finite_horizon, policy_evaluation,
+    policy_iteration, policy_return, sweep, value_iteration,
 };
 use qtab_core::{Env, StopFlag};
 
@@ -16,6 +17,8 @@ use crate::interrupt::run_interruptible;
 type Array<'py, T> = Bound<'py, PyArray1<T>>;
 /// State values, action values, the policy.
 type PySolution<'py> = (Array<'py, f64>, Array<'py, f64>, Array<'py, i64>);
+/// State values, action values, a bound of the error.
+type PyPolicyValues<'py> = (Array<'py, f64>, Array<'py, f64>, f64);
 /// From how many remaining steps on, in which state, which action is best.
 type PyPolicyChanges<'py> = (Array<'py, i64>, Array<'py, i64>, Array<'py, i64>);
 
@@ -37,6 +40,18 @@ impl PyMdpSolver {
     #[getter]
     fn rows<'py>(&self, py: Python<'py>) -> Array<'py, i64> {
         indices(py, &self.0.rows)
+    }
+
+    /// The number of actions.
+    #[getter]
+    fn n_actions(&self) -> usize {
+        self.0.table.num_actions()
+    }
+
+    /// The probability that an episode starts in each state.
+    #[getter]
+    fn initial_distribution<'py>(&self, py: Python<'py>) -> Array<'py, f64> {
+        PyArray1::from_slice(py, self.0.table.initial_distribution())
     }
 
     fn value_iteration<'py>(&self, py: Python<'py>, discount: f64) -> PyResult<PySolution<'py>> {
@@ -79,13 +94,73 @@ impl PyMdpSolver {
         let expected = run_interruptible(py, |stop| policy_return(&self.0.table, &policy, steps, stop))?;
         expected.map_err(|error| to_py_err(error, 1.0))
     }
+
+    /// The values of a policy, which has a probability for each row and action, the actions of row 0 first.
+    fn policy_evaluation<'py>(
+        &self,
+        py: Python<'py>,
+        policy: PyReadonlyArray1<'py, f64>,
+        discount: f64,
+    ) -> PyResult<PyPolicyValues<'py>> {
+        let policy = self.by_state(policy.as_slice()?)?;
+        let found = run_interruptible(py, |stop| policy_evaluation(&self.0.table, &policy, discount, stop))?;
+        let PolicyEvaluation { values, q_values, error, .. } = found.map_err(endless)?;
+        Ok((PyArray1::from_vec(py, values), PyArray1::from_vec(py, q_values), error))
+    }
+
+    /// The values after one more sweep: with a policy those of policy evaluation, otherwise those of value iteration.
+    fn sweep<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+        discount: f64,
+        policy: Option<PyReadonlyArray1<'py, f64>>,
+        in_place: bool,
+    ) -> PyResult<Array<'py, f64>> {
+        let mut values = values.as_slice()?.to_vec();
+        if values.len() != self.0.table.num_states() {
+            return Err(PyValueError::new_err("values must have a number for each state"));
+        }
+        let policy = policy.map(|policy| self.by_state(policy.as_slice()?)).transpose()?;
+        let swept = run_interruptible(py, |stop| {
+            sweep(&self.0.table, policy.as_deref(), discount, &mut values, in_place, stop)
+        })?;
+        swept.map_err(|error| to_py_err(error, discount))?;
+        Ok(PyArray1::from_vec(py, values))
+    }
+
+    /// The expected number of visits of each state in an episode under such a policy.
+    fn expected_visits<'py>(&self, py: Python<'py>, policy: PyReadonlyArray1<'py, f64>) -> PyResult<Array<'py, f64>> {
+        let policy = self.by_state(policy.as_slice()?)?;
+        let visits = run_interruptible(py, |stop| expected_visits(&self.0.table, &policy, stop))?;
+        Ok(PyArray1::from_vec(py, visits.map_err(endless)?))
+    }
 }
 
 impl PyMdpSolver {
+    /// The probabilities of a policy over rows, for each state instead.
+    fn by_state(&self, policy: &[f64]) -> PyResult<Vec<f64>> {
+        let num_actions = self.0.table.num_actions();
+        let rows = self.0.rows.iter().map(|&row| policy.get(row * num_actions..(row + 1) * num_actions));
+        let by_state: Option<Vec<&[f64]>> = rows.collect();
+        let by_state = by_state.ok_or_else(|| PyValueError::new_err("policy must have probabilities for each row"))?;
+        Ok(by_state.concat())
+    }
+
     fn solve<'py>(&self, py: Python<'py>, discount: f64, method: Method) -> PyResult<PySolution<'py>> {
         let solution = run_interruptible(py, |stop| method(&self.0.table, discount, stop))?;
         let Solution { values, q_values, policy, .. } = solution.map_err(|error| to_py_err(error, discount))?;
         Ok(to_python(py, values, q_values, &policy))
+    }
+}
+
+/// Why a policy could not be evaluated.
+fn endless(error: PlanningError) -> PyErr {
+    match error {
+        PlanningError::NoProperPolicy(_) | PlanningError::NotConverged => PyValueError::new_err(format!(
+            "policy must end every episode here: {error}; with a discount below 1 it has values all the same"
+        )),
+        _ => to_py_err(error, 1.0),
     }
 }
 

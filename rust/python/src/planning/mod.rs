@@ -1,5 +1,6 @@
 //! Optimal policies: dynamic programming on a transition table, and the search over `MountainCar`'s dynamics.
 
+mod expected_updates;
 mod mdp_solver;
 mod mountain_car_search;
 
@@ -9,6 +10,7 @@ use qtab_core::planning::PlanningError;
 
 use crate::error::out_of_memory;
 
+pub(crate) use expected_updates::PyExpectedUpdates;
 pub(crate) use mdp_solver::PyMdpSolver;
 pub(crate) use mountain_car_search::PyMountainCarSearch;
 

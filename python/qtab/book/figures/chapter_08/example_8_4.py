@@ -74,7 +74,7 @@ class Maze:
 
 
 def updates_to_optimum(maze: Maze, algorithm: str, seed: int) -> int:
-    """Returns the number of updates, to within 2 %, after which the greedy policy is optimal at the end of an episode."""
+    """Returns the number of updates, to within 2 %, after which the greedy policy is first seen to be optimal."""
     with_options = {**CONFIG, "algorithm": algorithm, "env_kwargs": {"doublings": maze.doublings}}
     resolved = resolve(ENV, {**with_options, "seed": seed})
     trainer = _core.Trainer(resolved.spec(), seed)
@@ -130,9 +130,9 @@ EXPERIMENT = UpdatesToOptimum(
     name="example-8.4",
     title="prioritized sweeping and Dyna-Q on mazes",
     book=f"mazes of the same structure and of more and more cells; at most n = {PLANNING_STEPS} updates per step",
-    unspecified="all other settings: here α = 1, ε = 0.1, γ = 0.95, θ = 0.0001, ties are broken at random, and there are "
-    "10 runs. The greedy policy is looked at between episodes, with every 2 % of updates; it is optimal if it takes a "
-    "shortest way. The update that Dyna-Q makes from each real step counts",
+    unspecified="all other settings: here α = 1, ε = 0.1, γ = 0.95, θ = 0.0001, ties are broken at random, and there "
+    "are 10 runs. The greedy policy is looked at between episodes, with every 2 % of updates; it is optimal if it takes "
+    "a shortest way. The update that Dyna-Q makes from each real step counts",
     runs=10,
     x_label="number of states",
     y_label="updates until the policy is optimal",

@@ -16,6 +16,17 @@ pub(crate) enum StoredState {
     Python(Py<PyAny>),
 }
 
+impl StoredState {
+    /// The same state; an array is shared.
+    pub(crate) fn clone_ref(&self, py: Python<'_>) -> Self {
+        match self {
+            Self::Unset => Self::Unset,
+            Self::Native(numbers) => Self::Native(*numbers),
+            Self::Python(state) => Self::Python(state.clone_ref(py)),
+        }
+    }
+}
+
 /// What a step returns, and the state after it.
 pub(crate) struct StepResult<'py> {
     pub(crate) state: StoredState,

@@ -1,0 +1,31 @@
+"""Makes the links of the README absolute, so that pictures show on PyPI and pages are found from there.
+
+    python .ci/links.py https://github.com/OWNER/NAME v1.2.3
+
+The README has links within the repository, whose address nobody has to write down: a release knows where it was made.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+README = Path(__file__).parents[1] / "README.md"
+LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!https?:|#)([^)\s]+)\)")
+
+
+def main(repository: str, tag: str) -> None:
+    """Rewrites the README."""
+    if not re.fullmatch(r"https://[\w.-]+/[\w.-]+/[\w.-]+", repository):
+        sys.exit(f"the repository must be like https://github.com/OWNER/NAME, got {repository!r}")
+
+    def absolute(link: "re.Match[str]") -> str:
+        picture, text, target = link.groups()
+        return f"{picture}[{text}]({repository}/{'raw' if picture else 'blob'}/{tag}/{target})"
+
+    text, count = LINK.subn(absolute, README.read_text(encoding="utf-8"))
+    README.write_text(text, encoding="utf-8", newline="\n")
+    print(f"{count} links of README.md lead to {repository}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,77 @@
+"""Opens every page of the built site in Chromium: nothing is loaded from elsewhere, and the console shows no error.
+
+A page that looks local may still load things by its scripts, which only a browser tells.
+"""
+
+import functools
+import http.server
+import os
+import shutil
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
+
+
+NO_NETWORK = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
+
+
+class Quiet(http.server.SimpleHTTPRequestHandler):
+    """Serves files without a line for each."""
+
+    def log_message(self, format: str, *arguments: Any) -> None:  # noqa: A002 - the name in the standard library
+        """Prints nothing."""
+
+
+class Server(http.server.ThreadingHTTPServer):
+    """Does not mind a browser that leaves a page before all of it was sent."""
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Prints nothing."""
+
+
+@contextmanager
+def served(site: Path) -> Iterator[str]:
+    """Serves a folder on this machine, as the site will be; yields its address."""
+    handler = functools.partial(Quiet, directory=str(site))
+    with Server(("127.0.0.1", 0), handler) as server:
+        thread = threading.Thread(target=server.serve_forever, daemon=True)
+        thread.start()
+        try:
+            yield f"http://127.0.0.1:{server.server_port}/"
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+def problems(site: Path) -> list[str]:
+    """Returns a line for each foreign request, failed request and error on the console."""
+    if CHROMIUM is None:
+        return ["no browser: install Chromium, or set CHROMIUM to its path"]
+    from playwright.sync_api import sync_playwright
+
+    found: list[str] = []
+    with served(site) as address, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", NO_NETWORK])
+        page = browser.new_page()
+        opened = ""
+
+        def note(text: str) -> None:
+            found.append(f"{opened}: {text}")
+
+        page.on("request", lambda request: _is_ours(request.url, address) or note(f"asks {request.url}"))
+        page.on("response", lambda response: response.status < 400 or note(f"{response.status} {response.url}"))
+        page.on("console", lambda message: message.type == "error" and note(f"console: {message.text}"))
+        page.on("pageerror", lambda error: note(f"error: {error}"))
+        for path in sorted(site.rglob("*.html")):
+            opened = path.relative_to(site).as_posix()
+            page.goto(address + opened, wait_until="load")
+        browser.close()
+    return list(dict.fromkeys(found))
+
+
+def _is_ours(url: str, address: str) -> bool:
+    return url.startswith((address, "data:", "blob:", "about:"))

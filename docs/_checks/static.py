@@ -1,0 +1,105 @@
+"""What can be said of a built page without opening it: its pictures, and where it loads things from."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import urlsplit
+
+LOADED = {
+    "audio": ("src",),
+    "embed": ("src",),
+    "iframe": ("src",),
+    "img": ("src", "srcset"),
+    "input": ("src",),
+    "object": ("data",),
+    "script": ("src",),
+    "source": ("src", "srcset"),
+    "track": ("src",),
+    "use": ("href", "xlink:href"),
+    "video": ("src", "poster"),
+}
+"""The attributes from which a browser loads something when it opens a page; those of `link` depend on its `rel`."""
+LOADING_RELS = {"stylesheet", "icon", "preload", "prefetch", "modulepreload", "manifest", "preconnect", "dns-prefetch"}
+CSS_URL = re.compile(r"url\(\s*['\"]?([^'\")]+)|@import\s+['\"]([^'\"]+)")
+
+
+@dataclass
+class Page(HTMLParser):
+    """What a page loads, and its pictures without a description."""
+
+    path: Path
+    loaded: list[str] = field(default_factory=list)
+    undescribed: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        super().__init__()
+        self._in_style = False
+        self.feed(self.path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Takes note of an element."""
+        given = {name: value or "" for name, value in attrs}
+        self._in_style = tag == "style"
+        if tag == "link" and LOADING_RELS & set(given.get("rel", "").split()):
+            self.loaded.append(given.get("href", ""))
+        for name in LOADED.get(tag, ()):
+            if given.get(name):
+                self.loaded += (
+                    [part.split()[0] for part in given[name].split(",")] if name == "srcset" else [given[name]]
+                )
+        self.loaded += css_urls(given.get("style", ""))
+        if needs_description(tag, given) and not description(given):
+            self.undescribed.append(self.get_starttag_text() or tag)
+
+    def handle_data(self, data: str) -> None:
+        """Takes note of what a style sheet in the page loads."""
+        if self._in_style:
+            self.loaded += css_urls(data)
+
+
+def css_urls(text: str) -> list[str]:
+    """Returns the addresses in a style sheet."""
+    return [first or second for first, second in CSS_URL.findall(text)]
+
+
+def needs_description(tag: str, given: dict[str, str]) -> bool:
+    """Whether an element is a picture that means something: not the logo, beside which its name is written."""
+    if given.get("aria-hidden") == "true" or "logo__image" in given.get("class", ""):
+        return False
+    return tag in ("img", "iframe", "video", "object") or (tag == "svg" and given.get("role") == "img")
+
+
+def description(given: dict[str, str]) -> str:
+    """Returns the words for those who do not see a picture; Sphinx writes its path where there are none."""
+    words = next((given[name] for name in ("alt", "aria-label", "aria-labelledby", "title") if given.get(name)), "")
+    return "" if re.fullmatch(r"\S+\.(png|jpe?g|gif|svg|webp)", words.strip()) else words.strip()
+
+
+def is_foreign(address: str) -> bool:
+    """Whether loading an address asks another server."""
+    parts = urlsplit(address)
+    return bool(parts.netloc) or parts.scheme not in ("", "data", "blob")
+
+
+def problems(site: Path) -> list[str]:
+    """Returns a line for each undescribed picture and foreign address of a built site."""
+    return [*_page_problems(site), *_css_problems(site)]
+
+
+def _page_problems(site: Path) -> Iterator[str]:
+    for path in sorted(site.rglob("*.html")):
+        name, page = path.relative_to(site), Page(path)
+        for address in page.loaded:
+            if is_foreign(address):
+                yield f"{name}: loads {address}"
+        for element in page.undescribed:
+            yield f"{name}: no description: {element[:120]}"
+
+
+def _css_problems(site: Path) -> Iterator[str]:
+    for path in sorted(site.rglob("*.css")):
+        for address in css_urls(path.read_text(encoding="utf-8", errors="replace")):
+            if is_foreign(address):
+                yield f"{path.relative_to(site)}: loads {address}"

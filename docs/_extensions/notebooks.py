@@ -1,0 +1,39 @@
+"""The notebooks of ``examples/`` as pages: copied to ``docs/notebooks`` before the build, and run by myst-nb.
+
+The stored notebooks have no outputs, and no descriptions of their pictures. ``notebook_pictures.json`` has these: for
+each notebook, the ids of the cells that show a picture.
+"""
+
+import json
+from pathlib import Path
+
+from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
+
+ROOT = Path(__file__).parents[2]
+DESCRIPTIONS = Path(__file__).with_name("notebook_pictures.json")
+
+
+def copy_notebooks(app: Sphinx) -> None:
+    """Writes each notebook with the descriptions of its pictures, if it changed."""
+    folder = Path(app.srcdir) / "notebooks"
+    folder.mkdir(exist_ok=True)
+    descriptions = json.loads(DESCRIPTIONS.read_text(encoding="utf-8"))
+    for path in sorted((ROOT / "examples").glob("*.ipynb")):
+        notebook = json.loads(path.read_text(encoding="utf-8"))
+        described = dict(descriptions.get(path.stem, {}))
+        for cell in notebook["cells"]:
+            if alt := described.pop(cell["id"], None):
+                cell["metadata"]["mystnb"] = {"image": {"alt": alt}}
+        if described:
+            raise ExtensionError(f"{path.name} has no cells {sorted(described)}, of {DESCRIPTIONS.name}")
+        text = json.dumps(notebook, indent=1, ensure_ascii=False)
+        target = folder / path.name
+        if not target.exists() or target.read_text(encoding="utf-8") != text:
+            target.write_text(text, encoding="utf-8")
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Registers the copy, before Sphinx looks for pages."""
+    app.connect("builder-inited", copy_notebooks, priority=100)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

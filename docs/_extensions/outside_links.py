@@ -1,0 +1,93 @@
+"""Links that leave ``docs/``: they lead to files on GitHub, and to the pages that the site has instead of them.
+
+``[a notebook](../../examples/study.ipynb)`` becomes the page of that notebook, ``[README](../../README.md#install)`` the
+page with the same text, and any other file a download. So each page reads well in both places.
+"""
+
+import json
+import os
+import re
+from pathlib import Path
+
+from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
+
+ROOT = Path(__file__).parents[2]
+PAGES = {
+    "CHANGELOG.md": "docs/reference/changelog.md",
+    "CONTRIBUTING.md": "docs/reference/contributing.md",
+    "SECURITY.md": "docs/reference/security.md",
+    "README.md": "docs/index.md",
+    "README.md#install": "docs/install.md",
+    "README.md#how-fast": "docs/explanation/speed.md",
+    "README.md#learners-discretizers-actions": "docs/reference/choices.md",
+    "README.md#parts": "docs/install.md#parts",
+}
+"""What the site shows instead of a file outside of ``docs/``, or of one of its sections."""
+
+LINK = re.compile(r"(?<!!)(\[(?:[^\[\]]|\[[^\]]*\])*\]\()([^)\s#:]+)(#[^)\s]*)?(\))")
+
+
+def on_the_site(path: str, fragment: str) -> str | None:
+    """Returns the page for a path from the root of the repository; None for a file without a page.
+
+    Raises:
+        ExtensionError: if the path does not exist, or is a folder.
+    """
+    if path.startswith("examples/") and path.endswith(".ipynb"):
+        return f"docs/notebooks/{Path(path).name}"
+    if page := PAGES.get(path + fragment, PAGES.get(path)):
+        return page
+    if not (ROOT / path).is_file():
+        raise ExtensionError(f"a page links to {path}, which is not a file of the repository")
+    return None
+
+
+def rewrite(text: str, folder: str) -> str:
+    """Returns the text of a page in a folder, such as ``docs/how_to``, with the links of the site."""
+
+    def replace(found: re.Match[str]) -> str:
+        before, target, fragment, after = found.group(1), found.group(2), found.group(3) or "", found.group(4)
+        path = os.path.normpath(f"{folder}/{target}").replace(os.sep, "/")
+        if path.startswith("docs/"):
+            return found.group()
+        page = on_the_site(path, fragment)
+        if page is None:
+            return found.group()
+        page, _, anchor = page.partition("#")
+        relative = os.path.relpath(page, folder).replace(os.sep, "/")
+        return f"{before}{relative}{f'#{anchor}' if anchor else ''}{after}"
+
+    return LINK.sub(replace, text)
+
+
+def rewrite_page(app: Sphinx, docname: str, content: list[str]) -> None:
+    """Rewrites the links of a page, or of the Markdown cells of a notebook, as it is read."""
+    path = Path(app.env.doc2path(docname))
+    if path.suffix == ".md":
+        folder = path.parent.relative_to(ROOT).as_posix()
+        content[0] = rewrite(content[0], folder)
+    elif path.suffix == ".ipynb":
+        notebook = json.loads(content[0])
+        for cell in notebook["cells"]:
+            if cell["cell_type"] == "markdown":
+                cell["source"] = rewrite_notebook("".join(cell["source"]))
+        content[0] = json.dumps(notebook)
+
+
+def rewrite_notebook(text: str) -> str:
+    """Returns a cell of a notebook of ``examples/`` with links as from ``docs/notebooks``."""
+
+    def replace(found: re.Match[str]) -> str:
+        path = os.path.normpath(f"examples/{found.group(2)}").replace(os.sep, "/")
+        page = path if path.startswith("docs/") else on_the_site(path, found.group(3) or "") or path
+        relative = os.path.relpath(page, "docs/notebooks").replace(os.sep, "/")
+        return f"{found.group(1)}{relative}{found.group(3) or ''}{found.group(4)}"
+
+    return LINK.sub(replace, text)
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Registers the rewriting."""
+    app.connect("source-read", rewrite_page)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,54 @@
+"""The playground on the site: its files in ``playground/``, and the directive ``{playground}``, a frame that shows it.
+
+``.ci/run docs`` builds its WebAssembly first. Without it the site is built all the same, and says what is missing.
+"""
+
+from pathlib import Path
+
+from docutils import nodes
+from docutils.parsers.rst import Directive
+from sphinx.application import Sphinx
+from sphinx.util import logging
+
+from qtab.playground import assemble, write_site
+
+MISSING = "This build of the site has no playground: its WebAssembly was not built."
+
+
+def is_built() -> bool:
+    """Whether the WebAssembly is there."""
+    try:
+        return bool(assemble.wasm())
+    except FileNotFoundError:
+        return False
+
+
+class Playground(Directive):
+    """Shows the playground in a frame, or says that it is missing."""
+
+    def run(self) -> list[nodes.Node]:
+        """Returns the frame."""
+        if not is_built():
+            return [nodes.note("", nodes.paragraph(text=MISSING))]
+        env = self.state.document.settings.env
+        path = "../" * env.docname.count("/") + "playground/index.html"
+        link = f'<p><a href="{path}">Open the playground in a page of its own</a></p>'
+        frame = f'<iframe class="playground" src="{path}" title="The playground" loading="lazy"></iframe>'
+        return [nodes.raw("", link + frame, format="html")]
+
+
+def copy_playground(app: Sphinx, error: Exception | None) -> None:
+    """Writes the page, its scripts and its WebAssembly."""
+    if error is not None or app.builder.format != "html":
+        return
+    if is_built():
+        write_site(Path(app.outdir) / "playground")
+    else:
+        logging.getLogger(__name__).info(MISSING)
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Registers the directive and the copy."""
+    app.add_directive("playground", Playground)
+    app.connect("build-finished", copy_playground)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,67 @@
+"""Builds the site into docs/_build/html and checks it.
+
+python docs/build.py                # everything, as `.ci/run docs` does
+python docs/build.py --quick        # without running the notebooks, and without the browser
+
+The checks: no warning of Sphinx, no broken link or anchor, no picture without a description, nothing from the network.
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+SITE = HERE / "_build" / "html"
+TOOLS = HERE.parent / "target" / "tools" / "bin"
+GENERATED = (HERE / "_build", HERE / "notebooks", HERE / "reference" / "api" / "generated")
+
+
+def sphinx(quick: bool) -> int:
+    """Builds the site from scratch; every warning is an error, and all of them are shown."""
+    for folder in GENERATED:
+        shutil.rmtree(folder, ignore_errors=True)
+    options = ["-b", "html", "-j", "2", "-W", "--keep-going", "-n", "-q"]
+    if quick:
+        options += ["-D", "nb_execution_mode=off"]
+    returncode = subprocess.run([sys.executable, "-m", "sphinx", *options, str(HERE), str(SITE)], check=False).returncode  # noqa: S603
+    # The theme's template, which it keeps among its static files, is no page.
+    (SITE / "_static" / "webpack-macros.html").unlink(missing_ok=True)
+    return returncode
+
+
+def links() -> int:
+    """Checks every link and anchor within the site with hyperlink, a program in Rust that takes a moment."""
+    program = shutil.which("hyperlink", path=f"{TOOLS}{os.pathsep}{os.environ.get('PATH', '')}")
+    if program is None:
+        print("no link checker: cargo install hyperlink --version 0.3.2 --locked --root target/tools")
+        return 1
+    return subprocess.run([program, "--check-anchors", str(SITE)], check=False).returncode  # noqa: S603
+
+
+def main() -> None:
+    """Runs the steps; the exit code is 1 if any of them finds something."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--quick", action="store_true", help="without notebooks and browser")
+    quick = parser.parse_args().quick
+    sys.path.insert(0, str(HERE / "_checks"))
+    import browser
+    import static
+
+    began = time.perf_counter()
+    failed = sphinx(quick) != 0
+    print(f"built in {time.perf_counter() - began:.0f} s", flush=True)
+    failed |= links() != 0
+    problems = static.problems(SITE)
+    if not quick:
+        problems += browser.problems(SITE)
+    print(*problems, sep="\n")
+    print(f"{len(list(SITE.rglob('*.html')))} pages, {len(problems)} problems, {time.perf_counter() - began:.0f} s")
+    sys.exit(failed or bool(problems))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,54 @@
+"""An experiment that computes its figure, without random numbers."""
+
+import time
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from qtab._utils.progress import check_progress
+from qtab.book.experiment import Experiment
+from qtab.book.result import Draw, Line, Result
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class ExactExperiment(Experiment):
+    """An experiment whose numbers follow from the settings: the number of runs and the seed change nothing."""
+
+    compute: Callable[[], Sequence[Line]]
+    """Returns the lines."""
+    draw: Draw = field(repr=False)
+    """Draws the figure."""
+    names: Sequence[str]
+    """The names of the lines."""
+    text: Callable[[Sequence[Line]], str] | None = None
+    """Returns the table as text; None lists the points of the lines."""
+    runs: int = 1
+
+    @property
+    def line_names(self) -> Sequence[str]:
+        """The names of the lines, each once."""
+        return self.names
+
+    def run(
+        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
+    ) -> Result:
+        """Computes the lines; see :func:`qtab.book.run`."""
+        _, seed, _ = self.check_arguments(runs, seed, threads)
+        check_progress(progress)
+        started = time.perf_counter()
+        lines = tuple(self.compute())
+        text = "" if self.text is None else self.text(lines)
+        return Result(self, lines, 1, seed, time.perf_counter() - started, self.draw, table=text)
+
+    def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:  # noqa: ARG002
+        """Returns how a result was made, in words."""
+        return "computed, without random numbers"
+
+
+def exact_line(name: str, x: ArrayLike, values: ArrayLike) -> Line:
+    """Returns a line without standard errors."""
+    points, numbers = np.asarray(x, np.float64), np.asarray(values, np.float64)
+    none = np.zeros(len(points), np.int64)
+    return Line(name, points, numbers, np.full(len(points), np.nan), 1, none, none)

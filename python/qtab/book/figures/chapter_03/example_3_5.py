@@ -1,0 +1,39 @@
+"""Example 3.5: the values of the random policy in a grid world."""
+
+from typing import TYPE_CHECKING
+
+from qtab.book.drawing import CellMap, draw_grids
+from qtab.book.exact_experiment import ExactExperiment, exact_line
+from qtab.book.figures.chapter_03.grid import DISCOUNT, as_grid, grid_text
+from qtab.book.result import Line, Result
+from qtab.envs.small_grid_worlds import grid_world_5x5
+from qtab.planning.policy_values import policy_values
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def _compute() -> list[Line]:
+    values = policy_values(grid_world_5x5(), "random", DISCOUNT).values
+    return [exact_line("random policy", range(len(values)), values)]
+
+
+def _draw(result: Result, ax: "Axes | None") -> "Axes":
+    if ax is not None:
+        raise ValueError("ax must be None for example-3.5, which creates its own axes")
+    return draw_grids(result.experiment.heading, [CellMap("values of the random policy", as_grid(result.lines[0]))], 1)
+
+
+EXPERIMENT = ExactExperiment(
+    name="example-3.5",
+    title="values of the random policy",
+    book="5 rows and 5 columns, γ = 0.9; from A to A' with a reward of 10, from B to B' with a reward of 5; a move off "
+    "the grid has a reward of -1",
+    unspecified="",
+    compute=_compute,
+    draw=_draw,
+    names=("random policy",),
+    text=grid_text,
+    x_label="cell",
+    y_label="value",
+)

@@ -1,0 +1,152 @@
+"""Figure 8.8: updates distributed uniformly and on-policy."""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from qtab._utils.progress import ProgressBar
+from qtab.book.drawing import line_colors
+from qtab.book.experiment import Experiment
+from qtab.book.result import Line, Result
+from qtab.book.runner import FloatArray
+from qtab.envs.random_mdp import random_mdp
+from qtab.planning.expected_updates import ExpectedUpdates
+from qtab.plots.axes import shown_figure
+from qtab.plots.labels import finish
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+T = TypeVar("T")
+DISTRIBUTIONS = {"on-policy": "on_policy", "uniform": "uniform"}
+STYLES = {1: "-", 3: "--", 10: ":"}
+"""How the lines of each number of next states are drawn."""
+
+
+@dataclass(frozen=True)
+class Tasks:
+    """Random tasks of one size."""
+
+    states: int
+    branching: int
+    updates: int
+    """How many updates are made."""
+
+    def line_name(self, distribution: str) -> str:
+        """Returns the name of the line of a distribution."""
+        return f"{distribution}, b = {self.branching}, {self.states:,} states"
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class UpdateDistributions(Experiment):
+    """The value of the greedy policy as the updates go on, for two distributions of the updates."""
+
+    tasks: Sequence[Tasks]
+    points: int
+    """The number of points of a line."""
+
+    @property
+    def line_names(self) -> Sequence[str]:
+        """The names of the lines, each once."""
+        return [one.line_name(distribution) for one in self.tasks for distribution in DISTRIBUTIONS]
+
+    def run(
+        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
+    ) -> Result:
+        """Plans in ``runs`` random tasks of each size; see :func:`qtab.book.run`."""
+        runs, seed, threads = self.check_arguments(runs, seed, threads)
+        started = time.perf_counter()
+        lines: list[Line] = []
+        with ProgressBar(runs * len(self.tasks), "task", progress, self.name) as bar:
+            for index, size in enumerate(self.tasks):
+                measured: list[dict[str, FloatArray]] = []
+                for one in _in_threads(threads, partial(self._measure, size), range(seed, seed + runs)):
+                    measured.append(one)
+                    bar.move_to(index * runs + len(measured))
+                for name in DISTRIBUTIONS:
+                    lines.append(self._line(size, name, np.array([one[name] for one in measured])))
+        return Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_two_sizes)
+
+    def _measure(self, size: Tasks, seed: int) -> dict[str, FloatArray]:
+        env = random_mdp(size.states, size.branching, seed)
+        values = {}
+        for name, distribution in DISTRIBUTIONS.items():
+            planning = ExpectedUpdates(env, distribution, seed=seed)
+            measured = [planning.greedy_return()]
+            for before, after in pairwise(self._times(size)):
+                planning.advance(after - before)
+                measured.append(planning.greedy_return())
+            values[name] = np.array(measured)
+        return values
+
+    def _times(self, size: Tasks) -> list[int]:
+        return [int(number) for number in np.linspace(0, size.updates, self.points)]
+
+    def _line(self, size: Tasks, distribution: str, samples: FloatArray) -> Line:
+        runs, points = samples.shape
+        error = samples.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(points, np.nan)
+        none = np.zeros(points, np.int64)
+        x = np.array(self._times(size), np.float64)
+        return Line(size.line_name(distribution), x, samples.mean(axis=0), error, runs, none, none, method=distribution)
+
+
+def _in_threads(threads: int, measure: Callable[[int], T], seeds: range) -> Iterator[T]:
+    """Yields what a function returns for each seed, in their order. After Ctrl-C nothing more is begun."""
+    with ThreadPoolExecutor(threads) as pool:
+        try:
+            yield from pool.map(measure, seeds)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def draw_two_sizes(result: Result, ax: "Axes | None") -> "Axes":
+    """Draws the tasks of each number of states on axes of their own; returns the last.
+
+    Raises:
+        ValueError: if ``ax`` is not None.
+    """
+    if ax is not None:
+        raise ValueError("ax must be None for figure-8.8, which creates two axes")
+    experiment: Any = result.experiment
+    sizes = list(dict.fromkeys(one.states for one in experiment.tasks))
+    figure = shown_figure(8, 4.5 * len(sizes))
+    panels: Any = figure.subplots(len(sizes), squeeze=False)[:, 0]
+    lines = dict(zip(experiment.line_names, result.lines, strict=True))
+    for panel, states in zip(panels, sizes, strict=True):
+        shown = [(one, name) for one in experiment.tasks if one.states == states for name in DISTRIBUTIONS]
+        chosen = [lines[one.line_name(name)] for one, name in shown]
+        for line, hue, (one, name) in zip(chosen, line_colors(chosen, panel), shown, strict=True):
+            error = 2 * np.nan_to_num(line.error)
+            panel.fill_between(line.x, line.mean - error, line.mean + error, color=hue, alpha=0.2, linewidth=0)
+            style = STYLES.get(one.branching, "-")
+            panel.plot(line.x, line.mean, style, color=hue, label=f"{name}, b = {one.branching}")
+        panel.xaxis.set_major_formatter("{x:,.0f}")
+        title = experiment.heading if panel is panels[0] else ""
+        finish(panel, experiment.x_label, experiment.y_label, title, note=f"{states:,} states")
+    last: Axes = panels[-1]
+    return last
+
+
+EXPERIMENT = UpdateDistributions(
+    name="figure-8.8",
+    title="updates distributed uniformly and on-policy",
+    book="two actions, each with b next states, equally likely; rewards from a normal distribution of mean 0 and "
+    "variance 1; every transition ends the episode with a probability of 0.1; undiscounted; on-policy with ε = 0.1; "
+    "200 random tasks",
+    unspecified="whether the b next states are different (drawn with replacement here), the initial values (zero "
+    "here), the order of the uniform updates (by state and action here), and how ties are broken (at random in "
+    "episodes, the first in the greedy policy that is measured)",
+    tasks=(Tasks(1000, 1, 20_000), Tasks(1000, 3, 20_000), Tasks(1000, 10, 20_000), Tasks(10_000, 1, 200_000)),
+    points=41,
+    runs=200,
+    x_label="expected updates",
+    y_label="value of the start state",
+    table_x=(0, 500, 1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 200_000),
+)

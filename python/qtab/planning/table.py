@@ -1,0 +1,85 @@
+"""The transition table of an environment, as planning takes it."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+from gymnasium.envs.registration import EnvSpec
+from gymnasium.envs.toy_text.blackjack import BlackjackEnv
+
+from qtab import _core
+from qtab._utils.shown import shown
+from qtab.discretizers import Identity
+from qtab.discretizers.actions import Actions, choose_actions
+from qtab.envs.matching import unknown_wrapper
+from qtab.envs.native import table_env
+from qtab.envs.registry import spec_of, versioned
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """An environment with a transition table."""
+
+    name: str
+    """The environment's id, or the name of its class."""
+    env: gym.Env
+    cells: Identity
+    """From observations to rows."""
+    actions: Actions
+    native: _core.NativeEnv
+    """The environment as Rust steps it."""
+    solver: _core.MdpSolver
+    """The Markov decision process. Its first states are those that observations show; where an observation hides part
+    of the state, the hidden variants follow."""
+
+
+@contextmanager
+def opened_table(env: str | EnvSpec | gym.Env, env_kwargs: Mapping[str, Any] | None) -> Iterator[Table]:
+    """Gives the table of an environment. One that is made here, from an id or a spec, is closed afterwards.
+
+    Raises:
+        gymnasium.error.Error: from Gymnasium, for an unknown id.
+        TypeError: for an argument of the wrong type.
+        ValueError: for an environment without a table, with a wrapper that may change numbers, or with a table of other
+            states or actions than its spaces.
+    """
+    if isinstance(env, gym.Env):
+        if env_kwargs is not None:
+            raise ValueError(f"env_kwargs must be None if env is an environment object, got {shown(env_kwargs)}")
+        yield _table(env)
+        return
+    if not isinstance(env, str | EnvSpec):
+        raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
+    if env_kwargs is not None and not isinstance(env_kwargs, Mapping):
+        raise TypeError(f"env_kwargs must map names to values, got {shown(env_kwargs)}")
+    made = gym.make(env if isinstance(env, EnvSpec) else spec_of(versioned(env)), **(env_kwargs or {}))
+    try:
+        yield _table(made)
+    finally:
+        made.close()
+
+
+def has_transition_table(env: Any) -> bool:
+    """Returns whether the transitions of an unwrapped environment are known."""
+    return isinstance(env, BlackjackEnv) or (hasattr(env, "P") and hasattr(env, "initial_state_distrib"))
+
+
+def _table(env: gym.Env) -> Table:
+    name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
+    wrapper = unknown_wrapper(env)
+    if wrapper is not None:
+        raise ValueError(f"env must have no wrapper that may change observations or rewards, got {wrapper}")
+    if not has_transition_table(env.unwrapped):
+        raise ValueError(
+            f"env must have a transition table P and an initial_state_distrib, or be Blackjack: the values of {name} "
+            "cannot be computed"
+        )
+    actions = choose_actions(env.action_space, None)
+    cells = Identity.of_space(env.observation_space, len(actions))
+    native = table_env(env.unwrapped)
+    solver = _core.MdpSolver(native)
+    if len(solver.rows) < cells.n_rows or solver.n_actions != len(actions):
+        raise ValueError(f"P must have {cells.n_rows} states of {len(actions)} actions, as the spaces of env have")
+    return Table(name, env, cells, actions, native, solver)

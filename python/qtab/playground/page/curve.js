@@ -1,0 +1,190 @@
+// The learning curve: the return of each episode, its moving mean, the threshold and the optimum.
+
+import { count, counted, number } from "./format.js";
+import { meanAndInterval, movingMeans, quantile, windowEnds, windowOf } from "./statistics.js";
+import { axes, onResize, scale, surface, ticks } from "./surface.js";
+import { onThemeChange, themeColors } from "./theme.js";
+
+const POINTS = 400;
+const MAX_DOTS = 6000;
+
+/** Shows learning curves on a canvas, a summary below it, and the numbers under the pointer. */
+export class LearningCurve {
+  constructor(canvas, summary) {
+    this.canvas = canvas;
+    this.summary = summary;
+    this.shown = null;
+    this.pointer = null;
+    onResize([canvas], () => this.draw());
+    onThemeChange(() => this.draw());
+    canvas.addEventListener("pointermove", (event) => this.point(event.offsetX));
+    canvas.addEventListener("pointerleave", () => this.point(null));
+  }
+
+  /** Shows `returns`, an array for each seed; `episodes`: the length of the run; `marks`: {value, name} to compare with. */
+  show(returns, episodes, marks) {
+    const finished = Math.min(...returns.map((each) => each.length));
+    const width = windowOf(episodes);
+    const ends = windowEnds(finished, POINTS);
+    const means = returns.map((each) => movingMeans(each, width, ends));
+    const over = finished ? meanAndInterval(means) : { mean: [], half: [] };
+    this.shown = { returns, episodes, marks, finished, width, ends, means, over };
+    this.describe();
+    this.draw();
+  }
+
+  describe() {
+    const { returns, episodes, marks, finished, width, over } = this.shown;
+    const seeds = returns.length;
+    let text = "No episode is finished yet.";
+    if (finished) {
+      const last = over.mean.at(-1);
+      const half = over.half.at(-1);
+      const first = over.mean.find((_, index) => this.shown.ends[index] >= Math.min(width, finished));
+      const interval = seeds > 1 ? ` ± ${number(half, 3)} (95 % interval of the mean of ${seeds} seeds)` : "";
+      const covered = Math.min(width, finished);
+      text = `Mean return of the last ${counted(covered, "episode")}: ${number(last)}${interval}.`;
+      this.canvas.setAttribute(
+        "aria-label",
+        `Learning curve of ${count(finished)} of ${counted(episodes, "episode")}, ${counted(seeds, "seed")}. ` +
+          `Mean return at first ${number(first)}, at last ${number(last)}. ` +
+          marks.map(({ name, value }) => `${name}: ${number(value)}.`).join(" "),
+      );
+    } else {
+      this.canvas.setAttribute("aria-label", "Learning curve: no episode is finished yet.");
+    }
+    this.summary.textContent = text;
+  }
+
+  point(x) {
+    this.pointer = x;
+    if (this.shown) this.draw();
+  }
+
+  /** The range of returns to show. Rare and very low returns, as of early falls from a cliff, are cut off. */
+  range() {
+    const { returns, marks, over, means } = this.shown;
+    const lowest = Math.min(...returns.map((each) => quantile(each, 0.03)));
+    const drawn = [...(returns.length === 1 ? [lowest] : means.map((each) => quantile(each, 0.03)))];
+    for (const value of over.mean) if (Number.isFinite(value) && value >= lowest) drawn.push(value);
+    drawn.push(...returns.map((each) => quantile(each, 0.999)), ...marks.map(({ value }) => value));
+    const finite = drawn.filter(Number.isFinite);
+    if (!finite.length) return [0, 1];
+    const low = Math.min(...finite);
+    const high = Math.max(...finite);
+    const margin = (high - low || Math.abs(high) || 1) * 0.06;
+    return [low - margin, high + margin];
+  }
+
+  draw() {
+    if (!this.shown) return;
+    const { g, width, height } = surface(this.canvas);
+    const { returns, episodes, marks, means, over, ends } = this.shown;
+    const [low, high] = this.range();
+    const box = { left: 52, right: width - 14, top: 22, bottom: height - 42 };
+    const x = scale(0, episodes, box.left, box.right);
+    const y = scale(low, high, box.bottom, box.top);
+    axes(g, box, x, y, ticks(0, episodes, width < 420 ? 4 : 5), ticks(low, high, 6), { x: "episode", y: "return" });
+    g.save();
+    g.beginPath();
+    g.rect(box.left, box.top - 4, box.right - box.left, box.bottom - box.top + 8);
+    g.clip();
+    const colors = themeColors();
+    if (returns.length === 1) drawDots(g, returns[0], x, y, colors);
+    else for (const each of means) drawLine(g, ends, each, x, y, colors.accent, 1, 0.28);
+    if (returns.length > 1) drawBand(g, ends, over, x, y, colors.warm);
+    drawLine(g, ends, over.mean, x, y, colors.warm, 2.5, 1);
+    g.restore();
+    drawMarks(g, box, marks, y, colors);
+    this.drawPointer(g, box, x, y, colors);
+  }
+
+  drawPointer(g, box, x, y, colors) {
+    const { ends, over, episodes } = this.shown;
+    if (this.pointer === null || !ends.length || this.pointer < box.left) return;
+    const episode = ((this.pointer - box.left) / (box.right - box.left)) * episodes;
+    const index = ends.findIndex((end) => end >= episode);
+    const at = index < 0 ? ends.length - 1 : index;
+    g.strokeStyle = colors.muted;
+    g.lineWidth = 1;
+    g.beginPath();
+    g.moveTo(x(ends[at]), box.top);
+    g.lineTo(x(ends[at]), box.bottom);
+    g.stroke();
+    g.fillStyle = colors.warm;
+    g.beginPath();
+    g.arc(x(ends[at]), y(over.mean[at]), 4, 0, 2 * Math.PI);
+    g.fill();
+    const label = `episode ${count(ends[at])}: ${number(over.mean[at])}`;
+    const right = x(ends[at]) > (box.left + box.right) / 2;
+    g.textAlign = right ? "right" : "left";
+    const wide = g.measureText(label).width;
+    const from = x(ends[at]) + (right ? -8 - wide : 8);
+    g.fillStyle = colors.card;
+    g.globalAlpha = 0.9;
+    g.fillRect(from - 4, box.bottom - 24, wide + 8, 18);
+    g.globalAlpha = 1;
+    g.fillStyle = colors.ink;
+    g.textAlign = "left";
+    g.fillText(label, from, box.bottom - 15);
+  }
+}
+
+function drawDots(g, returns, x, y, colors) {
+  const step = Math.max(returns.length / MAX_DOTS, 1);
+  const size = returns.length > 1500 ? 1.6 : returns.length > 300 ? 2.4 : 3.4;
+  g.fillStyle = colors.accent;
+  g.globalAlpha = returns.length > 1500 ? 0.3 : 0.5;
+  for (let place = 0; place < returns.length; place += step) {
+    const index = Math.floor(place);
+    g.fillRect(x(index + 1) - size / 2, y(returns[index]) - size / 2, size, size);
+  }
+  g.globalAlpha = 1;
+}
+
+function drawLine(g, ends, values, x, y, color, width, alpha) {
+  g.strokeStyle = color;
+  g.lineWidth = width;
+  g.globalAlpha = alpha;
+  g.beginPath();
+  values.forEach((value, index) => (index ? g.lineTo(x(ends[index]), y(value)) : g.moveTo(x(ends[index]), y(value))));
+  g.stroke();
+  g.globalAlpha = 1;
+}
+
+function drawBand(g, ends, { mean, half }, x, y, color) {
+  g.fillStyle = color;
+  g.globalAlpha = 0.22;
+  g.beginPath();
+  mean.forEach((value, index) => g.lineTo(x(ends[index]), y(value + half[index])));
+  for (let index = mean.length - 1; index >= 0; index--) g.lineTo(x(ends[index]), y(mean[index] - half[index]));
+  g.fill();
+  g.globalAlpha = 1;
+}
+
+/** Draws the lines to compare with, their labels apart from each other. */
+function drawMarks(g, box, marks, y, colors) {
+  let above = Infinity;
+  for (const { name, value, dash } of [...marks].sort((left, right) => left.value - right.value)) {
+    if (!Number.isFinite(value)) continue;
+    g.strokeStyle = colors.good;
+    g.lineWidth = 1.5;
+    g.setLineDash(dash);
+    g.beginPath();
+    g.moveTo(box.left, y(value));
+    g.lineTo(box.right, y(value));
+    g.stroke();
+    g.setLineDash([]);
+    const at = Math.min(y(value) - 9, above - 14);
+    above = at;
+    const label = `${name} ${number(value)}`;
+    const wide = g.measureText(label).width;
+    g.fillStyle = colors.card;
+    g.globalAlpha = 0.82;
+    g.fillRect(box.right - wide - 3, at - 7, wide + 6, 14);
+    g.globalAlpha = 1;
+    g.fillStyle = colors.good;
+    g.textAlign = "right";
+    g.fillText(label, box.right, at);
+  }
+}

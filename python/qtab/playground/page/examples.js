@@ -1,0 +1,191 @@
+// Examples: settings that fail and settings that learn, each with a sentence that says what to look at.
+
+import { copyGrid } from "./store.js";
+
+/**
+ * For each environment its examples: `preset` names settings of the package, `settings` change some of them, `grid` names
+ * a grid world to begin with.
+ */
+export const EXAMPLES = {
+  "MountainCar-v0": [
+    {
+      preset: "article",
+      title: "The article: fails",
+      look: "Settings of a well-known article. Until ε has fallen, nearly every episode takes all 200 steps, and the mean return stays far below the threshold: the cells are coarse, and γ = 0.9 hides a goal that is 100 steps away.",
+    },
+    {
+      preset: "article",
+      settings: { scale: [20, 200], discount: 1, initial_q: 0, epsilon: 0, learning_rate: 0.5, learning_rate_schedule: "linear" },
+      title: "Optimistic: better",
+      look: "Still Q-learning on a grid, now with γ = 1, smaller cells, a falling α, and initial values of 0. As each step costs 1, these are optimistic: the agent explores without ε, and soon reaches the flag in nearly every episode. The threshold stays out of reach.",
+    },
+    {
+      preset: "solved",
+      title: "Solved: tile coding",
+      look: "True online Sarsa(λ) with 32 tilings. The curve passes the threshold within a few hundred episodes, and the values form a smooth spiral: the path swings out and climbs to the flag.",
+    },
+  ],
+  "CartPole-v1": [
+    {
+      preset: "tuned",
+      settings: { bins: [1, 1, 2, 1] },
+      title: "Too coarse: fails",
+      look: "The agent sees only to which side the pole leans, not how fast it falls. No table with two states can balance the pole, however long it learns.",
+    },
+    {
+      preset: "tuned",
+      title: "Bins",
+      look: "The map shows pole angle and angular velocity with the cart at rest in the middle. The border between the two pushes is what the agent has learned.",
+    },
+    {
+      preset: "solved",
+      title: "Solved: tile coding",
+      look: "Sarsa(λ) with 16 tilings. The curve rises to 500, the time limit, and the greedy agent keeps the pole up to the end.",
+    },
+  ],
+  "FrozenLake-v1": [
+    {
+      preset: "solved",
+      settings: { initial_q: 0 },
+      title: "No exploration: fails",
+      look: "With ε = 0 and initial values of 0 all actions look alike, and the agent always takes the first. It never sees the goal, so there is nothing to learn from: the map stays empty.",
+    },
+    {
+      preset: "solved",
+      title: "Optimistic: solved",
+      look: "The only change: initial values of 1. Whatever has been tried looks worse than what has not, so the agent tries everything. Compare its policy with the optimal one.",
+    },
+    {
+      preset: "tuned",
+      title: "Exploring with ε",
+      look: "Here ε falls from 1 to 0. Returns stay low while the agent explores, and rise at the end; the greedy agent was good long before.",
+    },
+  ],
+  "FrozenLake-v1 (not slippery)": [
+    {
+      preset: "solved",
+      settings: { initial_q: 0 },
+      title: "No exploration: fails",
+      look: "All values are 0, and the agent pushes against the left edge in every step. Without exploration or optimism it never learns that there is a goal.",
+    },
+    {
+      preset: "solved",
+      title: "Optimistic: solved",
+      look: "With initial values of 1 the agent tries everything. Without slipping, the values fall by γ with each step from the goal.",
+    },
+    { preset: "tuned", title: "Exploring with ε", look: "Values spread backwards from the goal, one step in each episode that reaches it." },
+  ],
+  "FrozenLake8x8-v1": [
+    {
+      preset: "solved",
+      settings: { initial_q: 0 },
+      title: "No exploration: fails",
+      look: "Without exploration or optimism the goal is never reached, and all values stay 0.",
+    },
+    { preset: "solved", title: "Optimistic: solved", look: "The arrows often point away from a hole rather than to the goal: on slippery ice the safe move matters more." },
+    { preset: "tuned", title: "Exploring with ε", look: "The larger the lake, the longer it takes until chance finds the goal. Look at the visits." },
+  ],
+  "FrozenLake8x8-v1 (not slippery)": [
+    {
+      preset: "solved",
+      settings: { initial_q: 0 },
+      title: "No exploration: fails",
+      look: "Without exploration or optimism the goal is never reached, and all values stay 0.",
+    },
+    { preset: "solved", title: "Optimistic: solved", look: "The agent tries everything once, then takes a shortest path around the holes." },
+    { preset: "tuned", title: "Exploring with ε", look: "The visits show where a random walk goes: most of the time it stays near the start." },
+  ],
+  "CliffWalking-v1": [
+    {
+      preset: "book",
+      title: "Q-learning on the edge",
+      look: "Example 6.6 of Sutton & Barto. Q-learning learns the shortest path, along the edge; but while it explores, it often falls. Compare the mean return with Sarsa's.",
+    },
+    {
+      preset: "book",
+      settings: { algorithm: "sarsa" },
+      title: "Sarsa keeps away",
+      look: "Sarsa learns the values of the policy that it follows, exploration included, and so takes the safer path higher up. Its mean return is better, although its path is longer.",
+    },
+    {
+      preset: "solved",
+      title: "Solved",
+      look: "Nothing here is random, so α = 1 and no exploration are enough: the greedy path takes 13 steps.",
+    },
+    { preset: "tuned", title: "ε falls to 0", look: "As ε falls, the falls from the cliff cease, and the return rises to the optimum." },
+  ],
+  WindyGridWorld: [
+    {
+      preset: "learns",
+      settings: { algorithm: "sarsa" },
+      title: "Sarsa",
+      look: "Example 6.5 of Sutton & Barto. The wind blows upwards: the path goes past the goal, lets itself be carried up, and returns from the right.",
+    },
+    { preset: "learns", title: "Q-learning", look: "The values fall by 1 with each step from the goal, and the greedy path takes 15 steps." },
+    {
+      preset: "learns",
+      settings: { exploration: "softmax", temperature: 20 },
+      title: "Too random: slow",
+      look: "With a high temperature all actions are nearly equally likely. The agent learns the values all the same, but its own returns stay low.",
+    },
+  ],
+  grid: [
+    {
+      preset: "learns",
+      grid: "Open field",
+      title: "Open field",
+      look: "Choose Wall above the maps and draw a barrier between start and goal: the agent finds another way at once.",
+    },
+    {
+      preset: "learns",
+      grid: "Dyna maze",
+      settings: { discount: 0.95, learning_rate: 0.1, episodes: 30, ties: "random" },
+      title: "Maze, Q-learning",
+      look: "Example 8.1 of Sutton & Barto. Without planning, each episode carries the values only a little further back from the goal.",
+    },
+    {
+      preset: "learns",
+      grid: "Dyna maze",
+      settings: { algorithm: "dyna_q", planning_steps: 50, discount: 0.95, learning_rate: 0.1, episodes: 30, ties: "random" },
+      title: "Maze, Dyna-Q",
+      look: "The same 30 episodes, with 50 updates from a learned model after each step: the whole maze has values after a few episodes.",
+    },
+    {
+      preset: "learns",
+      grid: "Four rooms",
+      title: "Four rooms",
+      look: "The doors are bottlenecks. Paint a wall into one, or a negative reward, and the path goes through the other.",
+    },
+  ],
+};
+
+/** The state of an example. */
+export function exampleState(store, environment, index) {
+  const { preset, settings, grid } = EXAMPLES[environment][index];
+  const state = store.initial(environment, preset);
+  const entry = store.definitions.environments[environment];
+  if (grid) state.grid = copyGrid(entry.grids[grid]);
+  return { ...state, settings: { ...state.settings, ...settings }, example: index, seed: store.state.seed, seeds: store.state.seeds };
+}
+
+/** Shows the examples of the environment as buttons, and the sentence of the one that is chosen. */
+export function setUpExamples(store, buttons, look) {
+  const show = ({ environment, example }) => {
+    const examples = EXAMPLES[environment] ?? [];
+    if (buttons.dataset.environment !== environment) {
+      buttons.dataset.environment = environment;
+      buttons.replaceChildren(
+        ...examples.map(({ title }, index) => {
+          const button = Object.assign(document.createElement("button"), { type: "button", textContent: title });
+          button.addEventListener("click", () => store.update(exampleState(store, environment, index)));
+          return button;
+        }),
+      );
+    }
+    [...buttons.children].forEach((button, index) => button.setAttribute("aria-pressed", index === example));
+    const chosen = examples[example]?.look ?? "You have changed the settings. Choose an example to return to it.";
+    if (look.textContent !== chosen) look.textContent = chosen;
+  };
+  store.subscribe((state) => show(state));
+  show(store.state);
+}

@@ -1,0 +1,31 @@
+// Numbers as text.
+
+/** A number with up to so many significant digits, a true minus sign, and words for what is not finite. */
+export function number(value, digits = 4) {
+  if (Number.isNaN(value)) return "not a number";
+  if (!Number.isFinite(value)) return value > 0 ? "infinity" : "−infinity";
+  if (value === 0) return "0";
+  const magnitude = Math.abs(value);
+  const text =
+    magnitude >= 1e6 || magnitude < 1e-4
+      ? value.toExponential(Math.max(digits - 2, 1)).replace(/\.?0+e/, "e").replace("e+", "e")
+      : magnitude >= 10 ** digits
+        ? value.toLocaleString("en-US", { maximumFractionDigits: 0 })
+        : String(Number(value.toPrecision(digits)));
+  return text.replace(/-/g, "−");
+}
+
+/** A whole number with separators. */
+export function count(value) {
+  return value.toLocaleString("en-US").replace("-", "−");
+}
+
+/** A count with its noun: 1 step, 2 steps. */
+export function counted(value, noun) {
+  return `${count(value)} ${noun}${value === 1 ? "" : "s"}`;
+}
+
+/** A factor inside an equation: a negative one in parentheses. */
+export function term(value, digits = 4) {
+  return value < 0 ? `(${number(value, digits)})` : number(value, digits);
+}

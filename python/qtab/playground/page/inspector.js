@@ -1,0 +1,65 @@
+// A selected state: its action values and visits, and its last updates with their numbers.
+
+import { numberEquation, symbolEquation } from "./equation.js";
+import { count, number } from "./format.js";
+
+const SHOWN_UPDATES = 5;
+const HINT =
+  "Select a cell of the first map, with the pointer or with the arrow keys and Enter. Here you then see how much each " +
+  "action is worth, how often it was taken, and the last updates with their numbers.";
+const ENDS = { terminal: "a terminal state follows", truncated: "the time limit ends the episode", continues: "" };
+
+function make(tag, properties = {}, ...children) {
+  const element = Object.assign(document.createElement(tag), properties);
+  element.append(...children);
+  return element;
+}
+
+/** Shows an inspection below a title; null shows how to select a state. */
+export function showInspection(title, place, inspection, { actions, bootstraps, unvisitedText }) {
+  if (!inspection) {
+    title.textContent = "A state and its numbers";
+    place.replaceChildren(make("p", { className: "hint", textContent: HINT }));
+    return;
+  }
+  title.textContent = `State: ${inspection.state}`;
+  const values = make("div", {}, make("h4", { textContent: "Action values Q(s, a) and visits" }), valueTable(inspection, actions));
+  const updates = make("div", {}, make("h4", { textContent: "Last updates, newest first" }));
+  const newest = [...inspection.updates].reverse().slice(0, SHOWN_UPDATES);
+  if (newest.length) {
+    updates.append(make("p", { className: "equation symbols", textContent: symbolEquation(newest[0], bootstraps) }));
+    updates.append(make("ol", { className: "updates" }, ...newest.map((update) => updateItem(update, actions, newest[0], bootstraps))));
+  } else {
+    updates.append(make("p", { className: "hint", textContent: unvisitedText }));
+  }
+  place.replaceChildren(make("div", { className: "inspected" }, values, updates));
+}
+
+function valueTable({ actionValues, visits }, actions) {
+  const largest = Math.max(...actionValues);
+  const widest = Math.max(...Array.from(actionValues, Math.abs), 1e-300);
+  const head = make("tr", {}, ...["Action", "Value", "Visits", "Size"].map((textContent) => make("th", { scope: "col", textContent })));
+  const rows = actions.map((action, index) => {
+    const bar = make("span", { className: "bar" });
+    const share = Math.abs(actionValues[index]) / widest;
+    bar.style.width = `${Number.isFinite(share) ? 100 * share : 0}%`;
+    const name = make("th", { scope: "row", textContent: action });
+    const cells = [number(actionValues[index]), count(visits[index])].map((text) => make("td", { textContent: text }));
+    const row = make("tr", {}, name, ...cells, make("td", { className: "bar-cell" }, bar));
+    if (actionValues[index] === largest) row.className = "greedy";
+    return row;
+  });
+  return make("table", { className: "action-values" }, make("thead", {}, head), make("tbody", {}, ...rows));
+}
+
+function updateItem(update, actions, first, bootstraps) {
+  const end = ENDS[update.next];
+  const reward = update.reward === null ? "" : `, reward ${number(update.reward)}`;
+  const when = `Episode ${count(update.episode + 1)}, step ${count(update.step + 1)}: ${actions[update.action]}${reward}`;
+  const parts = numberEquation(update);
+  const equation = make("p", { className: "equation" }, parts[0], make("b", { textContent: parts[1] }));
+  const item = make("li", {}, make("p", { className: "when", textContent: end ? `${when}; ${end}` : when }));
+  if (update.kind !== first.kind || update.table !== first.table) item.append(make("p", { className: "equation symbols", textContent: symbolEquation(update, bootstraps) }));
+  item.append(equation);
+  return item;
+}

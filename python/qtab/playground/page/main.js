@@ -1,0 +1,104 @@
+// Brings the parts of the page together: the reader's choices, the engine that trains, and what shows its results.
+
+import { Controls } from "./controls.js";
+import { definitions, Engine } from "./engine.js";
+import { setUpEnvironments } from "./environments.js";
+import { EXAMPLES, exampleState, setUpExamples } from "./examples.js";
+import { setUpDialog, setUpShortcuts } from "./shortcuts.js";
+import { copyText, pythonProgram } from "./python_code.js";
+import { fragment, restore } from "./share.js";
+import { seedControls } from "./seeds.js";
+import { Store } from "./store.js";
+import { setUpTheme } from "./theme.js";
+import { Training } from "./training.js";
+import { View } from "./view.js";
+
+const ADDRESS_DELAY = 400;
+const SPOKEN_DELAY = 700;
+const element = (id) => document.getElementById(id);
+
+function start() {
+  let spoken = 0;
+  const announce = (text, delay = 0) => {
+    clearTimeout(spoken);
+    const say = () => { element("live").textContent = typeof text === "function" ? text() : text; };
+    if (delay) spoken = setTimeout(say, delay);
+    else say();
+  };
+  setUpTheme(element("theme"));
+  const store = new Store(definitions);
+  store.state = exampleState(store, store.state.environment, 0);
+  const left = restore(store, `${location.search.slice(1)}&${location.hash.slice(1)}`);
+  const view = new View(store, announce, (cell) => training.inspect(cell));
+  const training = new Training(store, Engine, {
+    onStart: () => view.expectAnother(),
+    onResult: (result) => {
+      view.show(result);
+      if (["paused", "finished", "diverged"].includes(result.state)) announce(() => view.spoken(result), SPOKEN_DELAY);
+    },
+    onProblem: (message) => view.showProblem(message),
+  });
+  setUpEnvironments(store, element("environments"), element("environment-title"), element("environment-sentence"));
+  setUpExamples(store, element("examples"), element("look"));
+  new Controls(element("settings"), store, seedControls(store));
+  setUpPage(store, training, view, announce);
+  store.subscribe(() => training.start());
+  training.start();
+  const note = (names) => {
+    if (names.length) view.showNote(`Parts of the address do not fit and were left out: ${[...new Set(names)].join(", ")}.`);
+  };
+  note(left);
+  addEventListener("hashchange", () => note(restore(store, location.hash.slice(1))));
+  if (matchMedia("(max-width: 860px)").matches) element("settings-fold").open = false;
+  globalThis.playground = { engine: training.engine, store, training, view, fragment, restore, pythonProgram, EXAMPLES };
+}
+
+function setUpPage(store, training, view, announce) {
+  const press = {
+    run: () => training.run(),
+    stop: () => training.stop(),
+    step: () => training.advance("step"),
+    "one-episode": () => training.advance("episode"),
+    reset: () => training.reset(),
+  };
+  for (const [id, action] of Object.entries(press)) element(id).addEventListener("click", action);
+  const program = () => { element("python-code").textContent = pythonProgram(store); };
+  const openPython = setUpDialog(element("python-dialog"), element("python-open"), program);
+  const openShortcuts = setUpDialog(element("shortcuts-dialog"), element("shortcuts-open"));
+  const copied = async (text, button, what) => {
+    const done = await copyText(text);
+    const label = button.dataset.label ?? button.textContent;
+    button.dataset.label = label;
+    button.textContent = done ? "Copied" : "Not allowed to copy";
+    setTimeout(() => { button.textContent = label; }, 1600);
+    announce(done ? `${what} copied.` : "The browser does not allow copying.");
+  };
+  element("python-copy").addEventListener("click", () => copied(pythonProgram(store), element("python-copy"), "Program"));
+  const address = () => `${location.href.split(/[?#]/)[0]}#${fragment(store)}`;
+  element("copy-link").addEventListener("click", () => copied(address(), element("copy-link"), "Link"));
+  let waiting = 0;
+  store.subscribe(() => {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => history.replaceState(null, "", `#${fragment(store)}`), ADDRESS_DELAY);
+  });
+  setUpShortcuts(
+    [
+      ["r", "run to the end", press.run],
+      ["x", "stop", press.stop],
+      ["s", "one step", press.step],
+      ["e", "one episode", press["one-episode"]],
+      ["0", "reset to the untrained agent", press.reset],
+      ["m", "play or pause the motion", () => view.motion.setPlaying(!view.motion.playing)],
+      ["v", "go to the map of values", () => view.values.cell.focus()],
+      ["c", "copy as Python", openPython],
+      ["?", "these shortcuts", openShortcuts],
+    ],
+    {
+      table: element("shortcuts-table"),
+      isOn: () => element("shortcuts-on").checked,
+      isBlocked: () => document.querySelector("dialog[open]") !== null,
+    },
+  );
+}
+
+start();

@@ -1,0 +1,147 @@
+// What lies on a map's cells: colors, arrows of the policy, letters of a grid world, paths, marks.
+
+import { css, inkOn, shade } from "./colormap.js";
+import { FONT } from "./surface.js";
+import { themeColors } from "./theme.js";
+
+const DIRECTIONS = { left: [-1, 0], right: [1, 0], up: [0, -1], down: [0, 1] };
+const NO_ACTION = 255;
+const MIN_ARROW_CELL = 13;
+const UNVISITED_ALPHA = 0.28;
+
+/** The direction of an action by the last word of its name; null for one without, such as "no push". */
+export function direction(action) {
+  const words = action.split(" ");
+  return words.includes("no") ? null : (DIRECTIONS[words.at(-1)] ?? null);
+}
+
+/** Whether the agent never chooses an action in a cell: the goal, a hole, the cliff, from which it is set back. */
+export function isEnd(layout, cell) {
+  const columns = layout?.[0].length;
+  return columns !== undefined && "GHC".includes(layout[Math.floor(cell / columns)][cell % columns]);
+}
+
+/** Fills the cells: `share` gives a number from 0 to 1, NaN for a wall; those with `isFaint` are pale, `isBlank` empty. */
+export function drawCells(g, frame, cells, palette, { share, isFaint, layout }) {
+  const colors = themeColors();
+  for (let index = 0; index < cells; index++) {
+    const { x, y, width, height } = frame.cell(index);
+    const part = share(index);
+    const isBlank = isEnd(layout, index);
+    g.globalAlpha = !Number.isNaN(part) && !isBlank && isFaint(index) ? UNVISITED_ALPHA : 1;
+    g.fillStyle = isBlank ? colors.line : Number.isNaN(part) ? colors.wall : css(shade(palette, part));
+    const gap = frame.plane ? 0 : 1;
+    const [left, top] = frame.plane ? [Math.floor(x), Math.floor(y)] : [x, y];
+    const wide = frame.plane ? Math.ceil(x + width) - left : width - gap;
+    const tall = frame.plane ? Math.ceil(y + height) - top : height - gap;
+    g.clearRect(left, top, wide, tall);
+    g.fillRect(left, top, wide, tall);
+  }
+  g.globalAlpha = 1;
+}
+
+/** Draws the greedy actions as arrows, a dot for an action without a direction; of small cells only some. */
+export function drawPolicy(g, frame, map, palette, { actions, greedy, share, isFaint, layout }) {
+  const sample = frame.cell(0);
+  const everyColumn = Math.max(Math.ceil(MIN_ARROW_CELL / sample.width), 1);
+  const everyRow = Math.max(Math.ceil(MIN_ARROW_CELL / sample.height), 1);
+  const directions = actions.map(direction);
+  g.lineWidth = 1.4;
+  for (let row = Math.floor(everyRow / 2); row < map.rows; row += everyRow) {
+    for (let column = Math.floor(everyColumn / 2); column < map.columns; column += everyColumn) {
+      const index = row * map.columns + column;
+      if (greedy[index] === NO_ACTION || Number.isNaN(share(index)) || isEnd(layout, index)) continue;
+      const { x, y, width, height } = frame.cell(index);
+      const size = Math.min(width * everyColumn, height * everyRow, 40) * 0.3;
+      const faint = isFaint(index);
+      const ink = faint ? themeColors().ink : inkOn(shade(palette, share(index)));
+      g.strokeStyle = ink;
+      g.fillStyle = ink;
+      g.globalAlpha = faint ? 0.3 : 0.9;
+      drawArrow(g, x + width / 2, y + height / 2, size, directions[greedy[index]]);
+    }
+  }
+  g.globalAlpha = 1;
+}
+
+export function drawArrow(g, x, y, size, towards) {
+  g.beginPath();
+  if (!towards) {
+    g.arc(x, y, Math.max(size * 0.3, 1.2), 0, 2 * Math.PI);
+    g.fill();
+    return;
+  }
+  const [right, down] = towards;
+  const [tipX, tipY] = [x + right * size, y + down * size];
+  const head = size * 0.75;
+  g.moveTo(x - right * size, y - down * size);
+  g.lineTo(tipX, tipY);
+  g.moveTo(tipX - right * head - down * head * 0.8, tipY - down * head - right * head * 0.8);
+  g.lineTo(tipX, tipY);
+  g.lineTo(tipX - right * head + down * head * 0.8, tipY - down * head + right * head * 0.8);
+  g.stroke();
+}
+
+/** Writes the letters of a grid world: S start, in its corner, and G goal, H hole, C cliff, which have no value. */
+export function drawLetters(g, frame, layout) {
+  layout.join("").split("").forEach((letter, index) => {
+    if (!"SGHC".includes(letter)) return;
+    const { x, y, width } = frame.cell(index);
+    const isLarge = letter !== "S";
+    const size = isLarge ? Math.max(Math.min(width * 0.42, 17), 9) : Math.max(Math.min(width * 0.3, 13), 8);
+    g.font = `700 ${size}px ${FONT}`;
+    g.textAlign = "center";
+    if (isLarge) {
+      g.fillStyle = letter === "G" ? themeColors().good : themeColors().muted;
+      g.fillText(letter, x + width / 2, y + width / 2);
+      return;
+    }
+    g.fillStyle = "rgba(255, 255, 255, 0.88)";
+    g.beginPath();
+    g.arc(x + size * 0.9, y + size * 0.9, size * 0.75, 0, 2 * Math.PI);
+    g.fill();
+    g.fillStyle = "#1f4f8f";
+    g.fillText(letter, x + size * 0.9, y + size * 0.95);
+  });
+  g.font = `12px ${FONT}`;
+}
+
+/** Draws a path through points with a light edge, so that it is seen on every color, and a dot at its start. */
+export function drawPath(g, frame, points) {
+  if (!points.length) return;
+  const { warm } = themeColors();
+  g.save();
+  g.beginPath();
+  g.rect(frame.box.left, frame.box.top, frame.box.right - frame.box.left, frame.box.bottom - frame.box.top);
+  g.clip();
+  for (const [color, width] of [["rgba(255, 255, 255, 0.85)", 3.6], [warm, 1.8]]) {
+    g.strokeStyle = color;
+    g.lineWidth = width;
+    g.beginPath();
+    points.forEach(([x, y], index) => (index ? g.lineTo(x, y) : g.moveTo(x, y)));
+    g.stroke();
+  }
+  drawDot(g, points[0], 4, warm);
+  g.restore();
+}
+
+/** Draws a dot with a light edge, such as the agent on a map. */
+export function drawDot(g, [x, y], radius, color) {
+  g.beginPath();
+  g.arc(x, y, radius, 0, 2 * Math.PI);
+  g.fillStyle = color;
+  g.fill();
+  g.lineWidth = 1.5;
+  g.strokeStyle = "#ffffff";
+  g.stroke();
+}
+
+/** Outlines a cell. */
+export function drawOutline(g, { x, y, width, height }) {
+  const pad = width < 12 ? 1.5 : -1;
+  for (const [color, line] of [["#ffffff", 4], ["#10151d", 2]]) {
+    g.strokeStyle = color;
+    g.lineWidth = line;
+    g.strokeRect(x - pad, y - pad, width + 2 * pad - 1, height + 2 * pad - 1);
+  }
+}

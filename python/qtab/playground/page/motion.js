@@ -1,0 +1,127 @@
+// The greedy agent in motion: an episode on a canvas, with a button to pause and a slider of its steps.
+
+import { counted, number } from "./format.js";
+import { cartPole } from "./scene_cart_pole.js";
+import { gridWorld } from "./scene_grid.js";
+import { mountainCar } from "./scene_mountain_car.js";
+import { onResize, surface } from "./surface.js";
+import { onThemeChange } from "./theme.js";
+
+const SCENES = { mountain_car: mountainCar, cart_pole: cartPole };
+const PAUSE_AT_END = 1.2;
+const MAX_TRAIL = 60;
+
+/** Plays episodes. `onStep(step)` is called with the step that is shown, null when nothing is. */
+export class Motion {
+  constructor({ canvas, button, slider, caption, onStep }) {
+    Object.assign(this, { canvas, button, slider, caption, onStep });
+    this.episode = null;
+    this.world = null;
+    this.time = 0;
+    this.last = 0;
+    this.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.frame = null;
+    button.addEventListener("click", () => this.setPlaying(!this.playing));
+    slider.addEventListener("input", () => {
+      this.setPlaying(false);
+      this.time = Number(slider.value);
+      this.draw();
+    });
+    onResize([canvas], () => this.draw());
+    onThemeChange(() => this.draw());
+    this.setPlaying(this.playing);
+  }
+
+  /** Sets the environment: {drawing, layout, wind, rewards, actions}. */
+  setWorld(world) {
+    this.world = world;
+    this.episode = null;
+    this.time = 0;
+    this.scene = SCENES[world.drawing] ?? gridWorld;
+    this.draw();
+  }
+
+  /** Shows a greedy episode from its start, unless it is the one that is being shown. */
+  show(episode) {
+    const same = this.episode && !this.episode.current && sameEpisode(this.episode, episode);
+    this.episode = episode;
+    this.slider.disabled = false;
+    this.slider.max = episode.actions.length;
+    if (!same) this.time = 0;
+    const steps = counted(episode.actions.length, "step");
+    const end = episode.terminated ? "it ends in a terminal state" : "the time limit ends it";
+    this.caption.textContent = `Greedy episode: return ${number(episode.return)} in ${steps}; ${end}.`;
+    this.draw();
+  }
+
+  /** Shows a single moment of the episode in training. */
+  showCurrent(current, text) {
+    const { observation, cell, action } = current;
+    this.episode = { current: true, observations: observation, components: observation.length, cells: [cell] };
+    this.episode.actions = action === null ? [] : [action];
+    this.time = 0;
+    this.slider.max = 0;
+    this.slider.disabled = true;
+    this.caption.textContent = text;
+    this.draw();
+  }
+
+  setPlaying(playing) {
+    this.playing = playing;
+    this.button.textContent = playing ? "Pause" : "Play";
+    this.button.setAttribute("aria-label", playing ? "Pause the motion" : "Play the motion");
+    if (playing && this.frame === null) {
+      this.last = performance.now();
+      this.frame = requestAnimationFrame((now) => this.tick(now));
+    }
+  }
+
+  tick(now) {
+    this.frame = null;
+    if (!this.playing) return;
+    const seconds = Math.min((now - this.last) / 1000, 0.1);
+    this.last = now;
+    if (this.episode && !this.episode.current) {
+      const steps = this.episode.actions.length;
+      this.time += seconds * this.scene.stepsPerSecond;
+      if (this.time > steps + PAUSE_AT_END * this.scene.stepsPerSecond) this.time = 0;
+      this.draw();
+    }
+    this.frame = requestAnimationFrame((next) => this.tick(next));
+  }
+
+  draw() {
+    if (!this.world) return;
+    const { g, width, height } = surface(this.canvas);
+    const moment = this.moment();
+    if (!moment) return;
+    this.scene.draw(g, width, height, moment);
+    this.canvas.setAttribute("aria-label", `The agent: ${this.scene.alternative(moment)}.`);
+    if (!this.episode || this.episode.current) return;
+    const step = Math.floor(Math.min(this.time, this.episode.actions.length));
+    this.slider.value = step;
+    this.slider.setAttribute("aria-valuetext", `step ${step} of ${this.episode.actions.length}`);
+    this.onStep(step);
+  }
+
+  /** What the scene shows at this time: an observation and the action there, and the cells on a grid. */
+  moment() {
+    const { layout, wind, rewards, drawing } = this.world;
+    if (!this.episode) return layout ? { layout, wind, rewards, drawing, cell: null, from: null, share: 1, trail: [] } : null;
+    const { observations, components, actions, cells } = this.episode;
+    const time = Math.min(this.time, actions.length);
+    const step = this.episode.current ? 0 : Math.floor(time);
+    const action = step < actions.length ? actions[step] : null;
+    const observation = observations.slice(step * components, (step + 1) * components);
+    if (!layout) return { observation, action };
+    const share = time - step;
+    const next = this.episode.current ? cells[0] : cells[Math.min(step + 1, cells.length - 1)];
+    const trail = this.episode.current ? [] : Array.from(cells.slice(Math.max(step - MAX_TRAIL, 0), step + 1));
+    return { layout, wind, rewards, drawing, observation, action, cell: next, from: cells[step], share, trail };
+  }
+}
+
+function sameEpisode(left, right) {
+  if (left.actions.length !== right.actions.length || left.cells[0] !== right.cells[0]) return false;
+  return left.cells.every((cell, step) => cell === right.cells[step]);
+}

@@ -1,0 +1,86 @@
+// What the maps show of a result: colors, policies and paths, in one scale for the learned and the optimal values.
+
+import { gradient } from "./colormap.js";
+import { count, number } from "./format.js";
+import { isEnd } from "./map_drawing.js";
+import { themeColors } from "./theme.js";
+
+/** The range of the values to show: of the states that were visited, and of the optimal ones. */
+export function valueRange({ values, visits }, best, layout) {
+  let [low, high] = [Infinity, -Infinity];
+  const include = (value) => {
+    if (!Number.isFinite(value)) return;
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  };
+  values.forEach((value, cell) => visits[cell] > 0 && include(value));
+  best?.values.forEach((value, cell) => isEnd(layout, cell) || include(value));
+  if (low > high) values.forEach(include);
+  return low > high ? [0, 1] : [low, high];
+}
+
+/** The content of the map of learned values. */
+export function learnedContent(result, frame, path) {
+  const { map } = result;
+  const [low, high] = valueRange(map, result.best, frame.layout);
+  const share = shareOf(map.values, low, high);
+  const isFaint = frame.hasCells ? (cell) => !(map.visits[cell] > 0) : () => false;
+  const visited = map.visits.reduce((sum, visits) => sum + (visits > 0), 0);
+  const label = `Map of the learned values, ${describeSize(map)}: values from ${number(low)} to ${number(high)}; ${count(visited)} cells visited.`;
+  return { ...frame, map, greedy: map.greedy, palette: "values", share, isFaint, path, label };
+}
+
+/** The content of the map of visits. */
+export function visitsContent(result, frame) {
+  const { map } = result;
+  const most = map.visits.reduce((largest, visits) => Math.max(largest, visits), 0);
+  const top = Math.log1p(most) || 1;
+  const share = (cell) => (isWall(map.values, cell) ? NaN : Math.log1p(map.visits[cell]) / top);
+  const palette = themeColors().isDark ? "darkVisits" : "visits";
+  const label = `Map of the visits, ${describeSize(map)}: at most ${count(most)} visits of a cell.`;
+  return { ...frame, map, greedy: null, palette, share, isFaint: () => false, path: null, label, most };
+}
+
+/** The content of the map of the optimal or best known values. */
+export function bestContent(result, frame) {
+  const { map, best } = result;
+  const [low, high] = valueRange(map, best, frame.layout);
+  const share = shareOf(best.values, low, high);
+  const label = `Map of the ${best.kind} values, in the same colors as the learned ones.`;
+  return { ...frame, map, greedy: best.greedy, palette: "values", share, isFaint: () => false, path: null, label };
+}
+
+function isWall(values, cell) {
+  return Number.isNaN(values[cell]);
+}
+
+function shareOf(values, low, high) {
+  return (cell) => (isWall(values, cell) ? NaN : high > low ? (values[cell] - low) / (high - low) : 0.5);
+}
+
+function describeSize({ columns, rows }) {
+  return `${rows} rows and ${columns} columns`;
+}
+
+/** Shows the bar of colors with its ends, and what pale cells mean. */
+export function showLegend(place, palette, low, high, unvisited = false) {
+  const bar = Object.assign(document.createElement("span"), { className: "bar" });
+  bar.style.background = gradient(palette);
+  const parts = [low, bar, high];
+  if (unvisited) {
+    parts.push(Object.assign(document.createElement("span"), { className: "unvisited" }), "pale: never visited");
+  }
+  place.replaceChildren(...parts);
+}
+
+/** The greedy episode as a path on a map: places on a plane, or cells. */
+export function pathOf(episode, plane) {
+  if (!episode) return null;
+  if (!plane) return Array.from(episode.cells);
+  const { observations, components } = episode;
+  const places = [];
+  for (let at = 0; at < observations.length; at += components) {
+    places.push([observations[at + plane.xIndex], observations[at + plane.yIndex]]);
+  }
+  return places;
+}

@@ -1,0 +1,153 @@
+// The state in the fragment of the address. What an address holds is only ever taken as values of controls, each checked.
+
+import { EXAMPLES, exampleState } from "./examples.js";
+import { readNumber } from "./numbers.js";
+import { MANY_SEEDS, PAINTED } from "./store.js";
+
+const MAX_SIDE = 20;
+const MAX_LENGTH = 8000;
+const LARGEST_SEED = 2 ** 32 - 1 - MANY_SEEDS;
+
+/** The fragment of a state, without "#". */
+export function fragment({ state, definitions }) {
+  const base = new URLSearchParams();
+  base.set("env", state.environment);
+  if (state.example !== null) base.set("example", String(state.example));
+  else for (const [name, value] of Object.entries(state.settings)) if (definitions.settings[name]) base.set(name, String(value));
+  if (state.seed) base.set("seed", String(state.seed));
+  if (state.seeds > 1) base.set("seeds", String(state.seeds));
+  if (state.environment === PAINTED && state.example === null) {
+    const { layout, wind, step_reward, goal_reward, rewards } = state.grid;
+    base.set("layout", layout.join("/").replaceAll("#", "W"));
+    if (wind.some(Boolean)) base.set("wind", wind.join(","));
+    base.set("step_reward", String(step_reward));
+    base.set("goal_reward", String(goal_reward));
+    if (rewards.length) base.set("rewards", rewards.map((each) => each.join(",")).join("/"));
+  }
+  return base.toString();
+}
+
+/** Sets a store to what an address holds; returns the names of the parts that were left out because they do not fit. */
+export function restore(store, text) {
+  const given = new URLSearchParams(text.length > MAX_LENGTH ? "" : text);
+  const left = text.length > MAX_LENGTH ? ["the whole address, which is too long"] : [];
+  const { environments } = store.definitions;
+  let environment = store.state.environment;
+  const asked = given.get("env");
+  if (asked !== null && Object.hasOwn(environments, asked)) environment = asked;
+  else if (asked !== null) left.push("env");
+  let state = { ...store.initial(environment), example: null };
+  const { value: example } = whole(given.get("example") ?? "", 0, (EXAMPLES[environment]?.length ?? 0) - 1);
+  if (example !== undefined) state = exampleState(store, environment, example);
+  else if (given.has("example")) left.push("example");
+  else if (![...given.keys()].some((name) => Object.hasOwn(store.definitions.settings, name))) state = exampleState(store, environment, 0);
+  readSeeds(given, state, left);
+  readSettings(store, given, state, left);
+  if (environment === PAINTED && given.has("layout")) readGrid(given, state, left);
+  store.update(state);
+  return left;
+}
+
+function whole(text, low, high) {
+  return readNumber("", text, { low, high, integer: true });
+}
+
+function readSeeds(given, state, left) {
+  if (given.has("seed")) {
+    const { value } = whole(given.get("seed"), 0, LARGEST_SEED);
+    if (value === undefined) left.push("seed");
+    else state.seed = value;
+  }
+  if (given.has("seeds")) {
+    if (given.get("seeds") === String(MANY_SEEDS)) state.seeds = MANY_SEEDS;
+    else if (given.get("seeds") !== "1") left.push("seeds");
+    else state.seeds = 1;
+  }
+}
+
+function readSettings(store, given, state, left) {
+  const { settings: known, rules } = store.definitions;
+  const { discretizers, observations } = store.definitions.environments[state.environment];
+  const settings = { ...state.settings };
+  for (const [name, text] of given) {
+    if (!Object.hasOwn(known, name)) continue;
+    const value = readSetting(name, text, known[name], observations?.length ?? 1);
+    const impossible = value === undefined || (name === "discretizer" && !discretizers.includes(value));
+    if (impossible) left.push(name);
+    else {
+      settings[name] = value;
+      state.example = null;
+    }
+  }
+  for (const { setting, value, unless } of rules) {
+    const [[other, chosen]] = Object.entries(unless);
+    if (settings[setting] === value && settings[other] === chosen) settings[setting] = known[setting].default;
+  }
+  if (settings.discretizer !== "tiles") settings.learning_rate = Math.min(settings.learning_rate, 1);
+  for (const rate of ["epsilon", "learning_rate"]) {
+    settings[`min_${rate}`] = Math.min(settings[`min_${rate}`] ?? 0, settings[rate] ?? 0);
+    settings[`${rate}_warm_up`] = Math.min(settings[`${rate}_warm_up`] ?? 0, settings.episodes - 1);
+  }
+  if (settings.low?.some((low, index) => low >= settings.high?.[index])) {
+    left.push("low");
+    settings.low = state.settings.low;
+    settings.high = state.settings.high;
+  }
+  state.settings = settings;
+}
+
+/** The value of a setting; undefined for one that does not fit. */
+function readSetting(name, text, definition, components) {
+  const integer = ["integer", "integers"].includes(definition.type);
+  const high = name === "learning_rate" ? 2 : definition.high;
+  const read = (part) => readNumber(name, part, { low: definition.low, high, integer }).value;
+  if (definition.type === "choice") return definition.choices.find(({ value }) => value === text)?.value;
+  if (["number", "integer"].includes(definition.type)) return read(text);
+  const parts = text.split(",").map(read);
+  if (parts.includes(undefined)) return undefined;
+  if (definition.type === "initial_q") {
+    if (parts.length === 1) return parts[0];
+    return parts.length === 2 && parts[0] <= parts[1] ? parts : undefined;
+  }
+  return parts.length === components || parts.length === 1 ? parts : undefined;
+}
+
+function readGrid(given, state, left) {
+  const layout = given.get("layout").replaceAll("W", "#").split("/");
+  const columns = layout[0].length;
+  const fits =
+    layout.length <= MAX_SIDE && columns >= 1 && columns <= MAX_SIDE && layout.join("").includes("S") &&
+    layout.every((line) => line.length === columns && /^[.#SG]+$/.test(line));
+  if (!fits) {
+    left.push("layout");
+    return;
+  }
+  const grid = { layout, wind: Array(columns).fill(0), step_reward: -1, goal_reward: 0, rewards: [] };
+  for (const name of ["step_reward", "goal_reward"]) {
+    const { value } = readNumber(name, given.get(name) ?? "", { low: -1000, high: 1000, integer: false });
+    if (value !== undefined) grid[name] = value;
+    else if (given.has(name)) left.push(name);
+  }
+  if (given.has("wind")) {
+    const wind = given.get("wind").split(",").map((part) => whole(part, 0, MAX_SIDE).value);
+    if (wind.length === columns && !wind.includes(undefined)) grid.wind = wind;
+    else left.push("wind");
+  }
+  if (given.has("rewards")) readRewards(given.get("rewards"), grid, columns, left);
+  state.grid = grid;
+  state.example = null;
+}
+
+function readRewards(text, grid, columns, left) {
+  for (const part of text.split("/")) {
+    const [row, column, reward, ...others] = part.split(",");
+    const { value: down } = whole(row ?? "", 0, grid.layout.length - 1);
+    const { value: right } = whole(column ?? "", 0, columns - 1);
+    const { value } = readNumber("rewards", reward ?? "", { low: -1000, high: 1000, integer: false });
+    if (others.length || [down, right, value].includes(undefined)) {
+      left.push("rewards");
+      return;
+    }
+    grid.rewards.push([down, right, value]);
+  }
+}

@@ -1,0 +1,38 @@
+// Shortcuts of single keys, which can be turned off, and the dialog that lists them.
+
+/** Lists `shortcuts`, [key, what it does, function], in a table and listens for them. */
+export function setUpShortcuts(shortcuts, { table, isOn, isBlocked }) {
+  const rows = [
+    ...shortcuts.map(([key, text]) => [[key], text]),
+    [["←", "→", "↑", "↓"], "on a map: move between states; on sliders and choices: change them"],
+    [["Enter"], "on the first map: select the state, or paint it"],
+  ];
+  for (const [keys, text] of rows) {
+    const row = table.insertRow();
+    const cell = row.insertCell();
+    for (const key of keys) cell.append(Object.assign(document.createElement("kbd"), { textContent: key }), " ");
+    row.insertCell().textContent = text;
+  }
+  document.addEventListener("keydown", (event) => {
+    if (!isOn() || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented || isBlocked()) return;
+    if (event.target.closest?.("input:not([type=range]):not([type=checkbox]), select, textarea, pre, [contenteditable]")) return;
+    const found = shortcuts.find(([key]) => key.toLowerCase() === event.key.toLowerCase());
+    if (!found) return;
+    event.preventDefault();
+    found[2]();
+  });
+}
+
+/** Opens a dialog with a button, and closes it with its buttons that are marked so, and by a press beside it. */
+export function setUpDialog(dialog, opener, onOpen = () => {}) {
+  const open = () => {
+    onOpen();
+    dialog.showModal();
+  };
+  opener.addEventListener("click", open);
+  for (const button of dialog.querySelectorAll("[data-close]")) button.addEventListener("click", () => dialog.close());
+  dialog.addEventListener("click", (event) => {
+    if (event.target === dialog) dialog.close();
+  });
+  return open;
+}

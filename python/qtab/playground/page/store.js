@@ -1,0 +1,112 @@
+// What the reader chose: environment, settings, seeds, the painted grid. Everything else follows from it.
+
+import { complete } from "./engine.js";
+
+export const MANY_SEEDS = 16;
+export const PAINTED = "grid";
+
+/** The choices, their checks, and those who want to know of changes. */
+export class Store {
+  constructor(definitions) {
+    this.definitions = definitions;
+    this.listeners = new Set();
+    this.changedAt = performance.now();
+    this.state = this.initial(Object.keys(definitions.environments)[0]);
+  }
+
+  /** The state of an environment as its first preset gives it. */
+  initial(environment, preset = null) {
+    const entry = this.definitions.environments[environment];
+    const name = preset ?? Object.keys(entry.presets)[0];
+    return {
+      environment,
+      example: null,
+      settings: complete(environment, entry.presets[name]),
+      seed: 0,
+      seeds: 1,
+      grid: copyGrid(Object.values(entry.grids ?? {})[0]),
+    };
+  }
+
+  get entry() {
+    return this.definitions.environments[this.state.environment];
+  }
+
+  /** Calls a function with the state after each change, and the names of what changed. */
+  subscribe(listener) {
+    this.listeners.add(listener);
+  }
+
+  /** Changes parts of the state. Settings are completed: what no longer applies is dropped. */
+  update(changes) {
+    const state = { ...this.state, ...changes };
+    if (changes.settings) state.settings = complete(state.environment, changes.settings);
+    this.state = state;
+    this.changedAt = performance.now();
+    for (const listener of this.listeners) listener(state, Object.keys(changes));
+  }
+
+  /** Changes one setting. */
+  set(name, value) {
+    this.update({ settings: this.withChoice(name, value), example: null });
+  }
+
+  /** The settings with one changed; those that the change makes impossible go back to their defaults. */
+  withChoice(name, value) {
+    const settings = { ...this.state.settings, [name]: value };
+    for (const rule of this.definitions.rules) {
+      const [[other, chosen]] = Object.entries(rule.unless);
+      if (settings[rule.setting] === rule.value && settings[other] === chosen) {
+        settings[rule.setting] = this.definitions.settings[rule.setting].default;
+      }
+    }
+    if (name === "discretizer" && value !== "tiles") settings.learning_rate = Math.min(settings.learning_rate, 1);
+    for (const low of ["epsilon", "learning_rate"]) {
+      const least = `min_${low}`;
+      if (settings[least] > settings[low]) settings[least] = settings[low];
+      const warmUp = `${low}_warm_up`;
+      if (settings[warmUp] >= settings.episodes) settings[warmUp] = settings.episodes - 1;
+    }
+    return settings;
+  }
+
+  /** Why a choice is impossible beside the others; null if it is possible. */
+  impossible(name, value) {
+    if (name === "discretizer" && !this.entry.discretizers.includes(value)) {
+      return this.entry.states === null
+        ? `not for ${this.entry.title.toLowerCase()}, whose observations ${value === "identity" ? "are not states by number" : "have no bounds"}`
+        : "the states are numbered and need none";
+    }
+    const { rules, settings: known } = this.definitions;
+    for (const rule of rules) {
+      const [[other, chosen]] = Object.entries(rule.unless);
+      if (rule.setting === name && rule.value === value && this.state.settings[other] === chosen) {
+        const title = known[other].choices.find((choice) => choice.value === chosen).title;
+        return `not with ${title}`;
+      }
+      if (other === name && chosen === value && rule.setting === "algorithm" && this.state.settings.algorithm === rule.value) {
+        return `not with ${known.algorithm.choices.find((choice) => choice.value === rule.value).title}`;
+      }
+    }
+    return null;
+  }
+
+  /** Changes the environment; its first preset begins. */
+  choose(environment) {
+    const { seed, seeds } = this.state;
+    this.update({ ...this.initial(environment), seed, seeds });
+  }
+
+  /** What the engine is asked for. */
+  request() {
+    const { environment, settings, seed, seeds, grid } = this.state;
+    const asked = environment === PAINTED ? { id: environment, ...grid } : { id: environment };
+    return { environment: asked, settings, seeds: Array.from({ length: seeds }, (_, index) => seed + index) };
+  }
+}
+
+/** A copy of a grid world that can be changed. */
+export function copyGrid(grid) {
+  if (!grid) return null;
+  return { ...grid, layout: [...grid.layout], wind: [...grid.wind], rewards: grid.rewards.map((each) => [...each]) };
+}

@@ -1,0 +1,73 @@
+// Canvases that are sharp on every screen, and the axes of a chart.
+
+import { number } from "./format.js";
+import { themeColors } from "./theme.js";
+
+export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', sans-serif";
+
+/** Clears a canvas and returns its context, scaled so that a unit is a CSS pixel, and its size in such pixels. */
+export function surface(canvas) {
+  const ratio = Math.min(globalThis.devicePixelRatio || 1, 3);
+  const width = Math.max(canvas.clientWidth, 1);
+  const height = Math.max(canvas.clientHeight, 1);
+  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+  }
+  const g = canvas.getContext("2d");
+  g.setTransform(ratio, 0, 0, ratio, 0, 0);
+  g.clearRect(0, 0, width, height);
+  g.lineJoin = "round";
+  g.lineCap = "round";
+  g.textBaseline = "middle";
+  g.font = `12px ${FONT}`;
+  return { g, width, height };
+}
+
+/** Draws again whenever one of the canvases has another size. */
+export function onResize(canvases, draw) {
+  const observer = new ResizeObserver(() => requestAnimationFrame(draw));
+  for (const canvas of canvases) observer.observe(canvas);
+}
+
+/** Round numbers that divide a range into about so many parts. */
+export function ticks(low, high, parts) {
+  const span = high - low;
+  if (!(span > 0)) return [low];
+  const power = 10 ** Math.floor(Math.log10(span / parts));
+  const step = [1, 2, 5, 10].map((factor) => factor * power).find((size) => span / size <= parts);
+  const first = Math.ceil(low / step - 1e-9);
+  const last = Math.floor(high / step + 1e-9);
+  return Array.from({ length: last - first + 1 }, (_, index) => Number(((first + index) * step).toPrecision(12)));
+}
+
+/** A linear map from numbers to pixels. */
+export function scale(low, high, from, to) {
+  const width = high - low || 1;
+  return (value) => from + ((value - low) / width) * (to - from);
+}
+
+/** Draws the grid lines and labels of a chart. */
+export function axes(g, box, x, y, xTicks, yTicks, names) {
+  const colors = themeColors();
+  g.lineWidth = 1;
+  g.strokeStyle = colors.line;
+  g.fillStyle = colors.muted;
+  g.textAlign = "right";
+  for (const tick of yTicks) {
+    const at = Math.round(y(tick)) + 0.5;
+    g.beginPath();
+    g.moveTo(box.left, at);
+    g.lineTo(box.right, at);
+    g.stroke();
+    g.fillText(number(tick), box.left - 8, at);
+  }
+  for (const tick of xTicks) {
+    g.textAlign = x(tick) > box.right - 12 ? "right" : x(tick) < box.left + 12 ? "left" : "center";
+    g.fillText(number(tick, 6), x(tick), box.bottom + 14);
+  }
+  g.textAlign = "right";
+  if (names.x) g.fillText(names.x, box.right, box.bottom + 31);
+  g.textAlign = "left";
+  if (names.y) g.fillText(names.y, 4, 9);
+}

@@ -1,0 +1,76 @@
+// The run that the engine trains: what the buttons do with it, and what its messages mean.
+
+/** Starts, pauses and continues runs of a store's state. */
+export class Training {
+  constructor(store, Engine, { onStart, onResult, onProblem }) {
+    Object.assign(this, { store, onStart, onResult, onProblem });
+    this.state = "loading";
+    this.id = null;
+    this.cell = null;
+    this.at = null;
+    this.environment = null;
+    this.asked = 0;
+    this.engine = new Engine({ onMessage: (message) => this.receive(message) });
+  }
+
+  /** Trains with the store's settings from the start; the newest request wins. */
+  start(run = true) {
+    const { environment, grid } = this.store.state;
+    const cells = `${environment} ${grid?.layout[0].length}x${grid?.layout.length} ${this.store.state.settings.discretizer}`;
+    if (cells !== this.environment) this.cell = null;
+    this.environment = cells;
+    this.asked = performance.now();
+    this.state = run ? "training" : "paused";
+    this.at = null;
+    this.onStart();
+    this.id = this.engine.start({ ...this.store.request(), run });
+    if (this.cell !== null) this.engine.inspect(this.cell);
+  }
+
+  receive(message) {
+    if (message.type === "error") {
+      this.state = "refused";
+      this.onProblem(message.message);
+    } else if (message.type === "result") {
+      this.state = message.state;
+      this.at = message.current?.cell ?? null;
+      const start = message.episode?.cells[0];
+      if (this.cell === null && message.state !== "training" && start !== undefined) this.inspect(start);
+      this.onResult({ ...message, milliseconds: performance.now() - this.asked });
+    } else if (message.type === "inspection") {
+      this.onResult({ type: "inspection", inspection: message });
+    }
+  }
+
+  /** Continues to the end; a finished run begins anew. */
+  run() {
+    if (this.state === "paused") {
+      this.state = "training";
+      this.engine.run();
+    } else if (this.state !== "training") this.start();
+  }
+
+  stop() {
+    if (this.state === "training") this.engine.stop();
+  }
+
+  /** A single step or episode; of a run that is finished, the first one. The state of a step is then selected. */
+  advance(unit) {
+    if (this.state === "training") this.engine.stop();
+    else if (this.state !== "paused") this.start(false);
+    if (unit === "step" && this.at !== null) this.inspect(this.at);
+    this.state = "training";
+    this.engine.advance(unit);
+  }
+
+  /** The agent before its first step. */
+  reset() {
+    this.start(false);
+  }
+
+  /** Shows the numbers of a cell, now and in later results. */
+  inspect(cell) {
+    this.cell = cell;
+    this.engine.inspect(cell);
+  }
+}

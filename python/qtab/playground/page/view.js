@@ -1,0 +1,241 @@
+// What one sees of a result: status, learning curve, motion, maps and the selected state.
+
+import { LearningCurve } from "./curve.js";
+import { count, counted, number } from "./format.js";
+import { showInspection } from "./inspector.js";
+import { Motion } from "./motion.js";
+import { Painter } from "./painter.js";
+import { bestContent, learnedContent, pathOf, showLegend, valueRange, visitsContent } from "./results.js";
+import { DIVERGED, spokenResult, statusText } from "./status.js";
+import { PAINTED } from "./store.js";
+import { onThemeChange } from "./theme.js";
+import { StateMap } from "./value_map.js";
+import { Marks } from "./marks.js";
+
+const element = (id) => document.getElementById(id);
+
+/** Shows results; the newest one is drawn, once for each frame of the screen. */
+export class View {
+  constructor(store, announce, inspect) {
+    Object.assign(this, { store, announce, inspect });
+    this.result = null;
+    this.episode = null;
+    this.waiting = false;
+    this.world = "";
+    this.isStale = true;
+    this.curve = new LearningCurve(element("curve"), element("curve-summary"));
+    this.motion = new Motion({
+      canvas: element("motion"),
+      button: element("motion-play"),
+      slider: element("motion-step"),
+      caption: element("motion-caption"),
+      onStep: (step) => this.showAgent(step),
+    });
+    const describe = (cell) => this.describe(cell);
+    this.painter = new Painter(element("painter"), store, announce);
+    this.values = new StateMap(element("values"), { name: "Map of the values", describe, onPick: (cell, how) => this.pick(cell, how) });
+    this.visits = new StateMap(element("visits"), { name: "Map of the visits", describe });
+    this.best = new StateMap(element("best"), { name: "Map of the optimum", describe });
+    this.marks = new Marks(element("curve-key"));
+    showInspection(element("inspector-title"), element("inspection"), null, {});
+    onThemeChange(() => this.isStale || this.draw());
+  }
+
+  /** Keeps what is shown, but draws none of it again: it belongs to choices that have changed since. */
+  expectAnother() {
+    this.isStale = true;
+  }
+
+  /** Shows a result, or an inspection alone. */
+  show(message) {
+    if (message.type === "inspection") {
+      if (this.isStale) return;
+      this.result.inspection = message.inspection;
+      this.showState();
+      return;
+    }
+    if (message.episode) this.episode = message.episode;
+    else if (this.result && this.world !== this.worldOf()) this.episode = null;
+    this.result = message;
+    this.isStale = false;
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      if (!this.isStale) this.draw();
+    });
+  }
+
+  showProblem(message) {
+    element("problem").hidden = false;
+    element("problem").textContent = message;
+    element("status").textContent = "Not trained: see the message below.";
+  }
+
+  showNote(message) {
+    element("problem").hidden = false;
+    element("problem").textContent = message;
+    this.keepNote = true;
+  }
+
+  spoken(result) {
+    return spokenResult(result, element("curve-summary").textContent, this.marks.of(this.store, result));
+  }
+
+  worldOf() {
+    const { environment, grid } = this.store.state;
+    return `${environment} ${JSON.stringify(grid)}`;
+  }
+
+  draw() {
+    const { result } = this;
+    this.showStatus(result);
+    const marks = this.marks.of(this.store, result);
+    const { returns, seeds, done, episodes } = result;
+    const bySeed = seeds.map((_, index) => returns.subarray(index * done, (index + 1) * done));
+    this.marks.showKey(seeds.length, episodes, marks);
+    this.curve.show(bySeed, episodes, marks);
+    this.showMaps(result);
+    this.showMotion(result);
+    this.showState();
+    element("results").dataset.drawn = `${result.id} ${result.state}`;
+    element("results").dataset.milliseconds = Math.round(performance.now() - this.store.changedAt);
+  }
+
+  showStatus(result) {
+    const { state, done, episodes } = result;
+    element("status").textContent = statusText(result);
+    element("progress").max = episodes;
+    element("progress").value = done;
+    element("stop").disabled = state !== "training";
+    element("run").textContent = state === "finished" || state === "diverged" ? "Run again" : state === "paused" && done ? "Continue" : "Run";
+    element("run").disabled = state === "training";
+    if (state === "diverged") {
+      element("problem").hidden = false;
+      element("problem").textContent = DIVERGED;
+    } else if (!this.keepNote) element("problem").hidden = true;
+    this.keepNote = false;
+  }
+
+  showMotion(result) {
+    const { environment, grid } = this.store.state;
+    const { entry } = this.store;
+    const world = this.worldOf();
+    if (world !== this.world) {
+      const painted = environment === PAINTED;
+      const fixed = Object.values(entry.grids)[0];
+      const { wind, rewards } = (painted ? grid : fixed) ?? { wind: null, rewards: null };
+      this.motion.setWorld({ drawing: entry.drawing, layout: painted ? grid.layout : entry.layout, wind, rewards });
+      this.world = world;
+    }
+    const inTraining = result.state === "paused" && result.current;
+    element("motion-title").textContent = inTraining ? "The agent in training" : "The greedy agent in motion";
+    if (inTraining) this.motion.showCurrent(result.current, this.currentText(result));
+    else if (this.episode) this.motion.show(this.episode);
+  }
+
+  currentText({ current, done }) {
+    const action = current.action === null || current.action === undefined ? "" : `, last action: ${this.store.entry.actions[current.action]}`;
+    const so = current.step ? `; return so far ${number(current.episodeReturn)}` : "";
+    return `Training, episode ${count(done + 1)}, after ${counted(current.step, "step")}${action}${so}. Training explores: it is not the greedy policy alone.`;
+  }
+
+  /** The plane, the layout and the names that all maps share. */
+  frame() {
+    const { environment, grid, settings } = this.store.state;
+    const { entry } = this.store;
+    const layout = environment === PAINTED ? grid.layout : entry.layout;
+    const { observations, map, actions } = entry;
+    const plane = map && { x: observations[map.x], y: observations[map.y], xIndex: map.x, yIndex: map.y };
+    return { plane, layout, actions, hasCells: settings.discretizer !== "tiles" };
+  }
+
+  showMaps(result) {
+    const frame = this.frame();
+    const { map } = result;
+    if (frame.layout && (frame.layout.length !== map.rows || frame.layout[0].length !== map.columns)) return;
+    const aspect = frame.plane ? 1.08 : map.columns / map.rows;
+    document.querySelector(".three").style.setProperty("--aspect", String(Math.min(Math.max(aspect, 0.6), 5)));
+    document.querySelector(".three").classList.toggle("large-first", this.store.state.environment === PAINTED);
+    const path = result.current && result.state === "paused" ? null : pathOf(this.episode, frame.plane);
+    this.values.show(learnedContent(result, frame, path));
+    const visits = visitsContent(result, frame);
+    this.visits.show(visits);
+    const [low, high] = valueRange(map, result.best, frame.layout).map((value) => number(value, 3));
+    showLegend(element("values-legend"), "values", low, high, frame.hasCells);
+    showLegend(element("visits-legend"), visits.palette, "0", count(visits.most));
+    this.showBest(result, frame, low, high);
+    if (result.current && result.state === "paused") this.values.showAgent(this.placeOf(result.current.observation, result.current.cell));
+  }
+
+  showBest(result, frame, low, high) {
+    const { best } = result;
+    const { discount } = this.store.state.settings;
+    element("best-title").textContent = best?.kind === "optimal" ? "The optimum" : "The best known";
+    element("best-panel").hidden = !best;
+    document.querySelector(".three").classList.toggle("only-two", !best);
+    if (!best) return;
+    this.best.show(bestContent(result, frame));
+    showLegend(element("best-legend"), "values", low, high);
+    const word = best.kind === "optimal" ? "optimal" : "best known";
+    const expected = best.return === null ? "" : ` Its expected return is ${number(best.return)}.`;
+    element("best-caption").textContent = `The ${word} values for γ = ${number(discount)} and an ${word} policy, in the same colors.${expected}`.replace("an best", "the best");
+  }
+
+  placeOf(observation, cell) {
+    const { plane } = this.values.content;
+    return plane ? [observation[plane.xIndex], observation[plane.yIndex]] : cell;
+  }
+
+  showAgent(step) {
+    if (this.isStale || !this.values.content) return;
+    const { observations, components, cells } = this.motion.episode;
+    const at = Math.min(step, cells.length - 1);
+    const place = this.placeOf(observations.subarray(at * components, (at + 1) * components), cells[at]);
+    if (JSON.stringify(place) !== JSON.stringify(this.values.agent)) this.values.showAgent(place);
+  }
+
+  /** A cell in words, for screen readers. */
+  describe(cell) {
+    if (this.isStale) return "no result yet";
+    const { map } = this.result;
+    const { layout, actions } = this.frame();
+    const [row, column] = [Math.floor(cell / map.columns), cell % map.columns];
+    const place = `Row ${row + 1}, column ${column + 1}`;
+    if (Number.isNaN(map.values[cell])) return `${place}: wall.`;
+    const kind = { S: ", start", G: ", goal", H: ", hole", C: ", cliff" }[layout?.[row]?.[column]] ?? "";
+    const greedy = actions[map.greedy[cell]];
+    const policy = greedy ? `, greedy action ${greedy}` : "";
+    return `${place}${kind}: value ${number(map.values[cell])}${policy}, visited ${counted(map.visits[cell], "time")}.`;
+  }
+
+  /** The state of an inspected cell: its observation, or its place on the grid. */
+  stateText({ cell, observation }) {
+    const { observations } = this.store.entry;
+    const { columns } = this.result.map;
+    if (!observations) return `row ${Math.floor(cell / columns) + 1}, column ${(cell % columns) + 1}`;
+    const parts = observations.map(({ name, unit }, index) => `${name} ${number(Number(observation[index].toFixed(6)), 3)}${unit ? ` ${unit}` : ""}`);
+    return parts.join(", ");
+  }
+
+  pick(cell, how) {
+    if (this.painter.isPainting) {
+      this.painter.paint(cell, how);
+      return;
+    }
+    if (how === "drag") return;
+    this.values.select(cell);
+    this.inspect(cell);
+    if (how === "key") this.announce(`Selected. ${this.describe(cell)} Its numbers are below the maps.`);
+  }
+
+  showState() {
+    const { inspection } = this.result;
+    if (this.values.selected !== (inspection?.cell ?? null) && inspection) this.values.select(inspection.cell);
+    const { actions } = this.store.entry;
+    const bootstraps = this.store.definitions.bootstraps[this.store.state.settings.algorithm];
+    const unvisitedText = "No update yet: the agent has not left this state by a step.";
+    const named = inspection && { ...inspection, state: this.stateText(inspection) };
+    showInspection(element("inspector-title"), element("inspection"), named, { actions, bootstraps, unvisitedText });
+  }
+}

@@ -1,0 +1,227 @@
+// The worker: trains in WebAssembly, in slices, so that a newer request stops an older one within a few milliseconds.
+
+const SLICE = 10; // milliseconds of training between two looks at the messages
+const REPORT_EVERY = 45; // milliseconds between two results while training
+const EPISODE_EVERY = 250; // milliseconds between two greedy episodes while training
+
+let source = null; // the bytes of the module, or its address
+let wasm = null; // its exports
+let pending = null; // the newest request that was not begun
+let run = null; // what is trained
+let scheduled = false;
+const channel = new MessageChannel();
+
+/** Lets the messages that wait be handled first. */
+function pause() {
+  return new Promise((resolve) => {
+    channel.port1.onmessage = resolve;
+    channel.port2.postMessage(null);
+  });
+}
+
+async function load() {
+  const imports = {};
+  const module = typeof source === "string" ? await fetch(source).then((answer) => answer.arrayBuffer()) : source;
+  const { instance } = await WebAssembly.instantiate(module, imports);
+  wasm = instance.exports;
+}
+
+/** Calls the module. Throws an Error with `setting` where it refuses the request. */
+function call(request) {
+  const text = new TextEncoder().encode(JSON.stringify(request));
+  const address = wasm.request(text.length);
+  new Uint8Array(wasm.memory.buffer, address, text.length).set(text);
+  const response = wasm.call();
+  const bytes = new Uint8Array(wasm.memory.buffer, response, wasm.response_length());
+  const answer = JSON.parse(new TextDecoder().decode(bytes));
+  if (answer.error !== undefined) throw Object.assign(new Error(answer.error), { setting: answer.setting ?? null });
+  return answer;
+}
+
+const TYPES = { f64: Float64Array, i32: Int32Array, u8: Uint8Array };
+
+/** Copies the arrays of an answer out of the module's memory. */
+function arraysOf(answer) {
+  const copied = {};
+  for (const [name, [type, address, length]] of Object.entries(answer.arrays ?? {})) {
+    copied[name] = new TYPES[type](wasm.memory.buffer, address, length).slice();
+  }
+  return copied;
+}
+
+function send(message) {
+  const buffers = [];
+  const collect = (value) => {
+    if (ArrayBuffer.isView(value)) buffers.push(value.buffer);
+    else if (value && typeof value === "object") Object.values(value).forEach(collect);
+  };
+  collect(message);
+  postMessage(message, buffers);
+}
+
+/** Begins the newest request. */
+function begin({ id, request, inspected, later }) {
+  run = null;
+  const { environment, settings, seeds, map } = request;
+  const described = call({ call: "start", environment, settings, seeds, ...(map ? { map } : {}) });
+  const now = performance.now();
+  run = {
+    ...described, id, seeds, episodes: settings.episodes, goal: request.run === false ? 0 : Infinity,
+    state: request.run === false ? "paused" : "training", work: 20000, seconds: 0, begun: now, reported: now,
+    episodeReported: -Infinity, bestSent: false, inspected: null,
+  };
+  if (run.state === "paused") report();
+  if (inspected !== null) run.inspected = inspected;
+  for (const message of later) handlers[message.type](message);
+}
+
+/** Trains for a slice. */
+function advance() {
+  const begun = performance.now();
+  let elapsed = 0;
+  let answer;
+  do {
+    answer = call({ call: "advance", work: run.work, ...(run.goal === Infinity ? {} : { episodes: run.goal }) });
+    const taken = performance.now() - begun - elapsed;
+    elapsed += taken;
+    // Calls of 2 to 5 milliseconds.
+    if (taken < 2) run.work = Math.min(run.work * 2, 2_000_000);
+    else if (taken > 5) run.work = Math.max(run.work >> 1, 500);
+  } while (answer.state === "training" && answer.done < run.goal && elapsed < SLICE);
+  run.seconds += elapsed / 1000;
+  if (answer.state !== "training") run.state = answer.state;
+  else if (answer.done >= run.goal) run.state = "paused";
+}
+
+function report() {
+  const now = performance.now();
+  const last = run.state !== "training";
+  const withEpisode = last || now - run.episodeReported > EPISODE_EVERY;
+  // Computing the best known values of MountainCar takes as long as a run, once.
+  const withBest = !run.bestSent && (last || now - run.begun > EPISODE_EVERY);
+  const answer = call({ call: "report", returns: true, map: true, episode: withEpisode, best: withBest });
+  const arrays = arraysOf(answer);
+  run.reported = performance.now();
+  if (withEpisode) run.episodeReported = run.reported;
+  run.bestSent ||= withBest;
+  const { returns, lengths, terminated, actionValues, visits, greedy, values, xEdges = null, yEdges = null } = arrays;
+  send({
+    type: "result", id: run.id, state: run.state, episodes: run.episodes, done: answer.done, seeds: run.seeds,
+    returns, lengths, terminated, actions: run.actions, seconds: run.seconds,
+    map: { columns: answer.columns, rows: answer.rows, xEdges, yEdges, actionValues, visits, greedy, values },
+    best: answer.best ? { ...answer.best, values: arrays.bestValues, greedy: arrays.bestGreedy } : null,
+    hasBest: withBest,
+    episode: answer.episode
+      ? { ...answer.episode, observations: arrays.observations, actions: arrays.episodeActions, cells: arrays.episodeCells }
+      : null,
+    current: answer.current ? { ...answer.current, observation: arrays.observation } : null,
+  });
+}
+
+/** Finds the last updates of the inspected cell, unless a newer message comes first. */
+async function inspect() {
+  const { id, inspected: cell } = run;
+  let answer;
+  for (;;) {
+    const begun = performance.now();
+    do answer = call({ call: "inspect", cell, work: 20000 });
+    while (answer.state === "replaying" && performance.now() - begun < SLICE);
+    if (answer.state !== "replaying") break;
+    await pause();
+    if (pending || run?.id !== id || run.inspected !== cell) return;
+  }
+  const { actionValues, visits, activeRows, observation } = arraysOf(answer);
+  const rows = new Uint32Array(activeRows);
+  send({ type: "inspection", id, cell, observation, rows, actionValues, visits, updates: answer.updates });
+  if (run?.id === id) run.inspectedAt = performance.now();
+}
+
+function fail(id, error) {
+  send({ type: "error", id, message: error.message, setting: error.setting ?? null });
+}
+
+/** Works until nothing is left to do. */
+async function work() {
+  if (scheduled) return;
+  scheduled = true;
+  for (;;) {
+    await pause();
+    const id = pending?.id ?? run?.id;
+    try {
+      if (!wasm) await load().then(() => send({ type: "ready", memory: wasm.memory.buffer.byteLength }));
+      if (pending) {
+        const request = pending;
+        pending = null;
+        begin(request);
+      } else if (run?.state === "training") {
+        advance();
+        if (run.state !== "training" || performance.now() - run.reported > REPORT_EVERY) report();
+      } else if (run && run.inspected !== null && !(run.inspectedAt >= run.reported)) {
+        await inspect();
+      } else {
+        break;
+      }
+    } catch (error) {
+      run = null;
+      // A fault of the module leaves it in no state to go on.
+      if (error instanceof WebAssembly.RuntimeError) wasm = null;
+      fail(id, error instanceof WebAssembly.RuntimeError ? new Error(`training stopped: ${error.message}`) : error);
+    }
+  }
+  scheduled = false;
+}
+
+const handlers = {
+  load(message) {
+    source = message.bytes ?? message.url;
+  },
+  start(message) {
+    pending = { ...message, later: [] };
+  },
+  advance({ unit, count }) {
+    if (!run || run.state === "finished" || run.state === "diverged") return;
+    if (unit === "step") {
+      for (let step = 0; step < count; step++) call({ call: "step" });
+      const { state, done } = call({ call: "advance", work: 0 });
+      run.state = state === "training" ? "paused" : state;
+      run.goal = done;
+      report();
+    } else {
+      const { done } = call({ call: "advance", work: 0 });
+      Object.assign(run, { goal: done + count, state: "training" });
+    }
+  },
+  run() {
+    if (run?.state === "paused") Object.assign(run, { goal: Infinity, state: "training", reported: performance.now() });
+  },
+  stop() {
+    if (run?.state !== "training") return;
+    run.state = "paused";
+    report();
+  },
+  inspect({ cell }) {
+    if (run) Object.assign(run, { inspected: cell, inspectedAt: -Infinity });
+    if (pending) pending.inspected = cell;
+  },
+  table({ token, seed }) {
+    let table = null;
+    try {
+      table = run && arraysOf(call({ call: "table", seed })).table;
+    } finally {
+      send({ type: "table", token, table });
+    }
+  },
+};
+
+// These act on the run that was asked for last, even if it has not begun.
+const ACTS_ON_RUN = ["advance", "run", "stop"];
+
+onmessage = ({ data }) => {
+  try {
+    if (pending && ACTS_ON_RUN.includes(data.type)) pending.later.push(data);
+    else handlers[data.type]?.(data);
+  } catch (error) {
+    fail(run?.id, error);
+  }
+  work();
+};

@@ -1,0 +1,1 @@
+"""Prediction: the values of a given policy, estimated from episodes."""

@@ -1,0 +1,152 @@
+"""A given policy as a table of probabilities: from an array, a function, a run, an optimum, or its name."""
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qtab._utils.shown import shown
+from qtab._utils.suggestions import did_you_mean
+from qtab.discretizers import Discretizer
+from qtab.discretizers.actions import Actions
+from qtab.planning.optimum import Optimum
+from qtab.results.run import Run
+
+RANDOM = "random"
+"""The name of the policy that takes every action with the same probability."""
+SUM_TOLERANCE = 1e-9
+"""How far the probabilities of a state may be from a sum of 1, as in transition tables."""
+
+GivenPolicy: TypeAlias = ArrayLike | Callable[[Any], Any] | Run | Optimum | str
+"""What a policy may be given as; see :func:`probabilities`."""
+
+
+def probabilities(
+    name: str, policy: GivenPolicy, space: gym.Space[Any], cells: Discretizer, actions: Actions
+) -> NDArray[np.float64]:
+    """Returns (rows, actions) float64: the probability of each action in each cell of the observations.
+
+    Args:
+        name: The name of the argument, for messages.
+        policy: ``"random"`` for equal probabilities; an array (*cells,) of actions or (*cells, actions) of
+            probabilities, where a single axis may take the place of those of the cells; a function from an observation
+            to an action or to (actions,) probabilities; a run, for its greedy policy; or an optimum that does not
+            depend on the steps left.
+        space: The observation space.
+        cells: The cells of the observations.
+        actions: The actions.
+
+    Raises:
+        TypeError: if it is none of these.
+        ValueError: if it has the wrong shape, an action that does not exist, a negative probability, or probabilities
+            that do not sum to 1.
+    """
+    if isinstance(policy, str):
+        if policy != RANDOM:
+            raise ValueError(
+                f"{name} must be 'random' or a policy, got {shown(policy)}{did_you_mean(policy, [RANDOM])}"
+            )
+        return np.full((cells.n_rows, len(actions)), 1.0 / len(actions))
+    if isinstance(policy, Run):
+        return _of_run(name, policy, cells, actions)
+    if isinstance(policy, Optimum):
+        if policy.solver.needs_step_count:
+            raise ValueError(
+                f"{name} must not depend on the steps left, got an optimum by {policy.method!r}; method "
+                "'policy_iteration' gives one that does not"
+            )
+        return of_array(name, policy.policy, cells, actions)
+    if callable(policy):
+        return _of_function(name, policy, space, cells, actions)
+    return of_array(name, policy, cells, actions)
+
+
+def of_array(name: str, policy: ArrayLike, cells: Discretizer, actions: Actions) -> NDArray[np.float64]:
+    """Returns (rows, actions): the probabilities of an array of actions or of probabilities.
+
+    Raises:
+        TypeError: if it does not hold numbers.
+        ValueError: as :func:`probabilities` does.
+    """
+    try:
+        array = np.asarray(policy)
+    except ValueError:  # rows of different lengths
+        array = np.asarray(None)
+    if array.dtype.kind not in "iuf":
+        raise TypeError(
+            f"{name} must be an array of actions or of probabilities, a function, a run, an optimum or 'random', "
+            f"got {shown(policy)}"
+        )
+    shape, count = cells.shape, len(actions)
+    if array.shape in (shape, (cells.n_rows,)):
+        return _of_actions(name, array.ravel(), actions)
+    if array.shape not in ((*shape, count), (cells.n_rows, count)):
+        raise ValueError(
+            f"{name} must have the shape {shape} of actions or {(*shape, count)} of probabilities, got {array.shape}"
+        )
+    table = array.astype(np.float64).reshape(cells.n_rows, count)
+    _check(name, table)
+    return table
+
+
+def _of_actions(name: str, chosen: NDArray[Any], actions: Actions) -> NDArray[np.float64]:
+    """The probabilities of a deterministic policy, given by the actions as the environment numbers them."""
+    if chosen.dtype.kind not in "iu":
+        raise TypeError(f"{name} must hold integers if it has an action for each state, got dtype {chosen.dtype}")
+    columns = chosen.astype(np.int64) - actions.first
+    wrong = (columns < 0) | (columns >= len(actions))
+    if wrong.any():
+        last = actions.first + len(actions) - 1
+        raise ValueError(f"{name} must hold actions from {actions.first} to {last}, got {chosen[wrong][0]}")
+    table = np.zeros((len(columns), len(actions)))
+    table[np.arange(len(columns)), columns] = 1.0
+    return table
+
+
+def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> NDArray[np.float64]:
+    expected, found = (*cells.shape, len(actions)), (*run.discretizer.shape, len(run.actions))
+    if not run.discretizer.has_cells or found != expected:
+        raise ValueError(f"{name} must be a run with a table of shape {expected}, got {found}")
+    best = np.argmax(run.q_table, axis=-1).ravel() + actions.first
+    return _of_actions(name, best, actions)
+
+
+def _of_function(
+    name: str, policy: Callable[[Any], Any], space: gym.Space[Any], cells: Discretizer, actions: Actions
+) -> NDArray[np.float64]:
+    if not isinstance(space, gym.spaces.Discrete | gym.spaces.MultiDiscrete | gym.spaces.Tuple):
+        raise ValueError(f"{name} must be an array for observations that are not discrete, got a function")
+    table = np.empty((cells.n_rows, len(actions)))
+    first = cells.low.reshape(-1)
+    for row in range(cells.n_rows):
+        numbers = np.array(np.unravel_index(row, cells.shape)) + first
+        observation: Any = int(numbers[0])
+        if isinstance(space, gym.spaces.Tuple):
+            observation = tuple(numbers.tolist())
+        elif isinstance(space, gym.spaces.MultiDiscrete):
+            observation = numbers.astype(space.dtype)
+        answer = np.asarray(policy(observation))
+        if answer.shape == ():
+            table[row] = _of_actions(name, answer.reshape(1), actions)[0]
+        elif answer.shape == (len(actions),) and answer.dtype.kind in "iuf":
+            table[row] = answer
+        else:
+            raise ValueError(
+                f"{name} must return an action or {len(actions)} probabilities, got {shown(answer.tolist())} for "
+                f"the observation {observation!r}"
+            )
+    _check(name, table)
+    return table
+
+
+def _check(name: str, table: NDArray[np.float64]) -> None:
+    """Refuses what is not a distribution over the actions in every row."""
+    if not (table >= 0.0).all():
+        row = int(np.flatnonzero(~(table >= 0.0).all(axis=1))[0])
+        raise ValueError(f"{name} must hold probabilities of at least 0, got {shown(table[row].tolist())} in row {row}")
+    sums = table.sum(axis=1)
+    wrong = np.flatnonzero(~(np.abs(sums - 1.0) <= SUM_TOLERANCE))
+    if len(wrong):
+        raise ValueError(f"{name} must sum to 1 in every state, got {sums[wrong[0]]:.6g} in row {wrong[0]}")

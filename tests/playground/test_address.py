@@ -1,0 +1,109 @@
+"""The state in the address: round trips, and addresses that are wrong or hostile."""
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from qtab.playground import definitions
+from support.playground import Playground
+
+pytestmark = pytest.mark.browser
+
+FRAGMENT = "() => { history.replaceState(null, '', location.pathname); return playground.fragment(playground.store); }"
+
+
+@pytest.mark.parametrize(
+    "fragment",
+    [
+        "#env=MountainCar-v0&example=1",
+        "#env=MountainCar-v0&discretizer=tiles&tilings=4&tiles=5,7&algorithm=true_online_sarsa_lambda&episodes=30&learning_rate=1.5",
+        "#env=CartPole-v1&bins=1,2,3,4&episodes=30&seed=7&seeds=16",
+        "#env=grid&layout=S..W/.WG./....&step_reward=-0.5&goal_reward=3&rewards=2,1,-4/0,1,2.5&wind=0,1,0,0&episodes=20",
+        "#env=FrozenLake-v1&exploration=softmax&temperature=0.5&initial_q=-0.25,0.75&episodes=20",
+    ],
+)
+def test_an_address_restores_the_state(playground: Playground, fragment: str) -> None:
+    playground.open(fragment)
+    state, result = playground.state(), playground.result()
+    again = playground.page.evaluate(FRAGMENT)
+    playground.open(f"#{again}")
+    assert playground.state() == state
+    assert playground.result() == result
+    for part in fragment[1:].split("&"):
+        name, value = part.split("=")
+        if name in state["settings"]:
+            kept = state["settings"][name]
+            numbers = kept if isinstance(kept, list) else [kept]
+            assert ",".join(map(str, numbers)) == value
+
+
+def test_the_address_follows_the_settings(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1")
+    playground.type_number("learning_rate", "0.25")
+    playground.page.wait_for_function("() => location.hash.includes('learning_rate=0.25')")
+
+
+HOSTILE = (
+    "#env=__proto__",
+    "#env=constructor&learning_rate=1e999&discount=NaN&epsilon=-1",
+    "#env=<img src=x onerror=alert(1)>&algorithm=<script>alert(1)</script>",
+    "#env=grid&layout=" + "/".join(["S" * 400] * 400),
+    "#env=grid&layout=S.</../..&rewards=99,99,1e999&wind=9e9",
+    "#env=grid&layout=.../...",
+    "#env=MountainCar-v0&scale=1e-300,1e300&tiles=99999999,99999999&bins=0,0&discretizer=bins",
+    "#env=MountainCar-v0&discretizer=identity&algorithm=dyna_q&seeds=1000000&seed=-1",
+    "#env=MountainCar-v0&discretizer=tiles&algorithm=dyna_q&terminal_update=assign&episodes=10",
+    "#env=CartPole-v1&low=1,1,1,1&high=0,0,0,0&episodes=10",
+    "#env=CartPole-v1&discretizer=round&scale=1,1,1,1&episodes=10",
+    "?env=CliffWalking-v1&example=999999999999&__proto__=1&toString=2#hasOwnProperty=3",
+    "#" + "a=1&" * 20_000,
+    "#%E0%A4%A&%%%",
+)
+
+
+@pytest.mark.parametrize("fragment", HOSTILE, ids=range(len(HOSTILE)))
+def test_a_hostile_address_only_sets_controls(playground: Playground, fragment: str) -> None:
+    playground.page.on("dialog", lambda dialog: playground.problems.append(dialog.message))
+    playground.open(fragment)
+    _assert_allowed(playground)
+    assert playground.page.locator("img, script[src], iframe, object, embed").count() == 0
+
+
+NAMES = ["env", "seed", "seeds", "example", "layout", "wind", "rewards", *definitions()["settings"]]
+WORDS = st.one_of(
+    st.sampled_from([*definitions()["environments"], "tiles", "bins", "round", "dyna_q", "softmax", "assign", "visits"]),
+    st.floats().map(str),
+    st.lists(st.floats(), min_size=1, max_size=4).map(lambda numbers: ",".join(map(str, numbers))),
+    st.text(max_size=12),
+)
+
+
+@settings(max_examples=settings.default.max_examples // 4, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@given(st.lists(st.tuples(st.sampled_from(NAMES), WORDS), max_size=8))
+def test_any_address_only_sets_controls(playground: Playground, parts: list[tuple[str, str]]) -> None:
+    if not playground.requests:
+        playground.open("#env=CliffWalking-v1")
+    text = playground.page.evaluate("parts => new URLSearchParams(parts).toString()", parts)
+    playground.page.evaluate("text => { playground.restore(playground.store, text + '&episodes=3'); }", text)
+    _assert_allowed(playground)
+
+
+def _assert_allowed(playground: Playground) -> None:
+    """Every setting has a value that its control could give it."""
+    known, state = definitions(), playground.state()
+    assert state["environment"] in known["environments"]
+    assert state["seeds"] in (1, 16)
+    assert isinstance(state["seed"], int)
+    for name, value in state["settings"].items():
+        definition = known["settings"][name]
+        if definition["type"] == "choice":
+            assert value in [choice["value"] for choice in definition["choices"]]
+            continue
+        high = 2 if name == "learning_rate" else definition["high"]
+        for number in value if isinstance(value, list) else [value]:
+            assert isinstance(number, int | float)
+            assert definition["low"] is None or number >= definition["low"]
+            assert high is None or number <= high
+    if state["grid"]:
+        assert len(state["grid"]["layout"]) <= 20
+        assert all(set(row) <= set(".#SG") for row in state["grid"]["layout"])

@@ -1,0 +1,105 @@
+"""``qtab playground`` and the files that it writes."""
+
+import json
+import webbrowser
+from pathlib import Path
+
+import pytest
+
+import qtab.playground.assemble
+from qtab import playground
+from qtab.cli import main
+from qtab.playground.bundle import bundle
+
+MODULE = Path(qtab.playground.assemble.__file__).parent / "page/qtab.wasm"
+needs_module = pytest.mark.skipif(not MODULE.exists(), reason="needs qtab.wasm: python rust/web/build_backend.py")
+
+
+@pytest.fixture
+def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The addresses that a browser was asked to open."""
+    addresses: list[str] = []
+
+    def record(address: str) -> bool:
+        addresses.append(address)
+        return True
+
+    monkeypatch.setattr(webbrowser, "open", record)
+    return addresses
+
+
+@needs_module
+def test_the_command_writes_one_file_and_opens_it(tmp_path, opened, capsys):
+    path = tmp_path / "page.html"
+    assert main(["playground", "--out", str(path)]) == 0
+    assert opened == [path.as_uri()]
+    assert capsys.readouterr().out == f"Saved the playground to {path}\n"
+    html = path.read_text(encoding="utf-8")
+    assert html == playground.page()
+    assert "AGFzbQ" in html, "the WebAssembly module is not inside"
+    assert not [line for line in html.splitlines() if 'src="' in line or '<link rel="stylesheet' in line]
+
+
+@needs_module
+def test_without_opening_nothing_is_opened(tmp_path, opened):
+    assert main(["playground", "--out", str(tmp_path / "page.html"), "--no-open"]) == 0
+    assert opened == []
+
+
+@needs_module
+def test_a_folder_that_does_not_exist_is_an_error_in_one_line(tmp_path, opened, capsys):
+    assert main(["playground", "--out", str(tmp_path / "none/page.html")]) == 1
+    assert capsys.readouterr().err.count("\n") == 1
+    assert opened == []
+
+
+def test_without_the_module_the_error_says_how_to_build_it(tmp_path, opened, capsys, monkeypatch):
+    monkeypatch.setattr(qtab.playground.assemble, "MODULE", "missing.wasm")
+    assert main(["playground", "--out", str(tmp_path / "page.html")]) == 1
+    message = capsys.readouterr().err
+    assert "rustup target add wasm32-unknown-unknown && python rust/web/build_backend.py" in message
+    assert message.count("\n") == 1
+    assert not (tmp_path / "page.html").exists()
+
+
+@needs_module
+def test_a_site_holds_the_modules_and_the_definitions_as_files(tmp_path):
+    playground.write_site(tmp_path / "site")
+    written = {file.name for file in (tmp_path / "site").iterdir()}
+    assert {"index.html", "style.css", "main.js", "engine.js", "worker.js", "definitions.js", "qtab.wasm"} <= written
+    text = (tmp_path / "site/definitions.js").read_text(encoding="utf-8")
+    data = json.loads(text.removeprefix("globalThis.QTAB_PLAYGROUND = ").removesuffix(";\n"))
+    assert data == {"definitions": json.loads(json.dumps(playground.definitions()))}
+    html = (tmp_path / "site/index.html").read_text(encoding="utf-8")
+    assert html.index("definitions.js") < html.index("main.js")
+
+
+SOURCES = {
+    "main.js": 'import { a, b as c } from "./part.js";\nimport "./side.js";\nexport const d = a + c;\n',
+    "part.js": "export const a = 1;\nexport function b() {}\nclass Hidden {}\n",
+    "side.js": "globalThis.seen = true;\n",
+    "unused.js": "export default 1;\n",
+}
+
+
+def test_modules_become_one_script_in_the_order_of_their_imports():
+    script = bundle(SOURCES, "main.js")
+    assert script.index("const a = 1;") < script.index("const { a, b: c } = modules['part.js'];")
+    assert script.index("globalThis.seen") < script.index("const d = a + c;")
+    assert "return { a, b };" in script
+    assert "import" not in script
+    assert "export" not in script
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"part.js": 'import { d } from "./main.js";\n'}, "modules import each other in a circle"),
+        ({"side.js": "export default 1;\n"}, "side.js: 'export default 1;' is not a form of import or export"),
+        ({"side.js": 'import x from "./part.js";\n'}, "is not a form of import or export that can be bundled"),
+        ({"main.js": 'import { a } from "./parts.js";\n'}, "the module parts.js is missing"),
+    ],
+)
+def test_modules_that_cannot_be_bundled_are_refused(changed, message):
+    with pytest.raises(ValueError, match=message):
+        bundle({**SOURCES, **changed}, "main.js")

@@ -1,0 +1,151 @@
+"""Every control changes what it should, and nothing else."""
+
+import json
+from typing import Any
+
+import pytest
+
+from qtab.playground import definitions
+from support.playground import Playground
+
+pytestmark = pytest.mark.browser
+
+KNOWN: dict[str, Any] = definitions()
+ALL = {
+    "MountainCar-v0": [
+        {},
+        {"algorithm": "sarsa_lambda"},
+        {"algorithm": "n_step_sarsa"},
+        {"algorithm": "dyna_q_plus"},
+        {"learning_rate_schedule": "exponential"},
+        {"epsilon_schedule": "exponential"},
+        {"exploration": "softmax"},
+        {"discretizer": "bins"},
+        {"discretizer": "tiles"},
+    ]
+}
+SHORT = {"episodes": "20", "max_episode_steps": "30"}
+NUMBERS = {"number", "integer"}
+
+
+def open_short(playground: Playground, environment: str, settings: dict[str, Any]) -> None:
+    given = {"env": environment, **SHORT, **settings}
+    playground.open("#" + "&".join(f"{name}={value}" for name, value in given.items()))
+    playground.page.locator("details.more > summary").click()
+
+
+@pytest.mark.parametrize("settings", ALL["MountainCar-v0"], ids=json.dumps)
+def test_every_control_changes_its_setting_and_trains_again(playground: Playground, settings: dict[str, Any]) -> None:
+    open_short(playground, "MountainCar-v0", settings)
+    names = playground.page.locator("[data-setting]").evaluate_all("all => all.map((each) => each.dataset.setting)")
+    assert set(names) == set(playground.state()["settings"]), "a setting has no control"
+    for name in names:
+        settings_before = playground.state()["settings"]
+        trained = playground.page.evaluate("() => playground.training.id")
+        if (changed := _change(playground, name, settings_before[name])) is None:
+            continue
+        assert playground.state()["settings"][name] == changed, name
+        assert playground.page.evaluate("() => playground.training.id") > trained, name
+        playground.settled()
+        playground.page.evaluate("(settings) => playground.store.update({ settings })", settings_before)
+        playground.settled()
+
+
+def _change(playground: Playground, name: str, before: Any) -> Any:
+    """Operates the control of a setting as a reader would; returns the value that it should now have.
+
+    None for a choice whose other names are all disabled.
+    """
+    page, definition = playground.page, KNOWN["settings"][name]
+    if definition["type"] == "choice":
+        select = page.locator(f"#set-{name}")
+        others = select.locator("option:not([disabled])").evaluate_all("all => all.map((each) => each.value)")
+        other: str | None = next((value for value in others if value != before), None)
+        if other is not None:
+            select.select_option(other)
+        return other
+    if definition["type"] in NUMBERS:
+        slider = page.locator(f"#slide-{name}")
+        moved = int(slider.input_value())
+        slider.press("ArrowLeft" if moved > 500 else "ArrowRight")
+        after = playground.state()["settings"][name]
+        assert after != before, name
+        return after
+    field = page.locator(f"#set-{name}-0")
+    value = float(field.input_value())
+    first = value - 0.01 if name == "low" else value + (1 if definition["type"] == "integers" else 0.25)
+    field.fill(f"{first:g}")
+    field.press("Enter")
+    if definition["type"] == "initial_q":
+        low, high = before if isinstance(before, list) else (before, before)
+        return [first, high] if first < high else first
+    assert isinstance(before, list)
+    count = len(KNOWN["environments"]["MountainCar-v0"]["observations"])
+    spread = before if len(before) == count else before * count
+    return [first, *spread[1:]]
+
+
+def test_a_setting_changes_what_is_learned(playground: Playground) -> None:
+    open_short(playground, "MountainCar-v0", {"initial_q": "0"})
+    before = playground.result()
+    playground.type_number("discount", "0.5")
+    after = playground.settled().result()
+    assert after["returns"] != before["returns"] or after["values"] != before["values"]
+    playground.type_number("episodes", "35")
+    assert playground.settled().result()["done"] == 35
+
+
+def test_a_burst_of_slider_events_ends_in_the_result_of_the_last(playground: Playground) -> None:
+    playground.open("#env=MountainCar-v0&example=0")
+    playground.page.evaluate(
+        """() => {
+          const slider = document.querySelector("#slide-learning_rate");
+          for (let index = 1; index <= 20; index++) {
+            slider.value = 40 * index;
+            slider.dispatchEvent(new Event("input", { bubbles: true }));
+          }
+        }"""
+    )
+    burst = playground.settled().result()
+    rate = playground.state()["settings"]["learning_rate"]
+    assert rate == 0.8
+    playground.open("#env=MountainCar-v0&example=0")
+    playground.type_number("learning_rate", str(rate))
+    assert playground.settled().result() == burst
+
+
+@pytest.mark.parametrize(
+    ("setting", "typed", "message"),
+    [
+        ("learning_rate", "1e999", "learning_rate must be finite"),
+        ("learning_rate", "nan", "learning_rate must be a number"),
+        ("learning_rate", "1.5", "learning_rate must be in [0, 1]"),
+        ("discount", "-0.1", "discount must be in [0, 1]"),
+        ("episodes", "2.5", "episodes must be an integer"),
+        ("episodes", "", "episodes must be an integer"),
+        ("initial_q-0", "Infinity", "initial_q (from) must be a number"),
+    ],
+)
+def test_bad_numbers_are_refused_by_name(playground: Playground, setting: str, typed: str, message: str) -> None:
+    open_short(playground, "MountainCar-v0", {})
+    before = playground.state()["settings"]
+    playground.type_number(setting, typed)
+    refused = playground.page.locator(f"#refused-{setting.removesuffix('-0')}")
+    assert message in refused.inner_text()
+    assert playground.page.locator(f"#set-{setting}").get_attribute("aria-invalid") == "true"
+    assert playground.state()["settings"] == before
+
+
+def test_impossible_combinations_are_disabled_with_the_reason(playground: Playground) -> None:
+    open_short(playground, "MountainCar-v0", {"discretizer": "tiles"})
+    option = playground.page.locator('#set-algorithm option[value="dyna_q"]')
+    assert option.is_disabled()
+    assert "not with Tile coding" in option.inner_text()
+    playground.page.locator("#set-discretizer").select_option("bins")
+    playground.settled()
+    assert not option.is_disabled()
+    playground.page.locator("#set-algorithm").select_option("dyna_q")
+    playground.settled()
+    tiles = playground.page.locator('#set-discretizer option[value="tiles"]')
+    assert tiles.is_disabled()
+    assert "not with Dyna-Q" in tiles.inner_text()

@@ -1,0 +1,69 @@
+"""What the page knows of environments and settings agrees with the package."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from qtab.config.config import DEFAULTS
+from qtab.config.options import OPTIONS
+from qtab.playground import definitions
+from qtab.playground.settings import LEFT_OUT
+
+ENVIRONMENTS = definitions()["environments"]
+SETTINGS = definitions()["settings"]
+
+
+def test_every_setting_is_shown_or_left_out_on_purpose():
+    assert SETTINGS.keys() | LEFT_OUT == DEFAULTS.keys()
+    assert not SETTINGS.keys() & LEFT_OUT
+
+
+def test_every_setting_has_a_sentence_and_a_default():
+    for name, setting in SETTINGS.items():
+        assert setting["sentence"], name
+        assert setting["default"] is not None or name in ("max_episode_steps", "low", "high"), name
+
+
+@pytest.mark.parametrize("name", [name for name, setting in SETTINGS.items() if setting["type"] in ("number", "integer")])
+def test_the_ends_of_a_range_are_valid_settings(name):
+    setting = SETTINGS[name]
+    option = OPTIONS.get(name)
+    beside = {"episodes": 100_000} if name.endswith("warm_up") else {}
+    while option is not None:
+        beside[option.choice] = option.values[0]
+        option = OPTIONS.get(option.choice)
+    if name == "min_learning_rate":
+        beside["learning_rate"] = 1.0
+    if name == "min_epsilon":
+        beside["epsilon"] = 1.0
+    for value in (setting["low"], setting["high"]):
+        assert getattr(qtab.Config(**{**beside, name: value}), name) == value
+
+
+@pytest.mark.parametrize("key", ENVIRONMENTS)
+def test_presets_are_valid(key):
+    for preset in ENVIRONMENTS[key]["presets"].values():
+        qtab.Config(**{name: tuple(value) if isinstance(value, list) else value for name, value in preset.items()})
+        assert preset["discretizer"] in ENVIRONMENTS[key]["discretizers"]
+        assert preset.keys() <= SETTINGS.keys()
+
+
+@pytest.mark.parametrize("key", [key for key, environment in ENVIRONMENTS.items() if environment["table"]])
+def test_tables_are_gymnasiums(key):
+    known = ENVIRONMENTS[key]
+    env = gym.make(known["python"], **known["env_kwargs"]).unwrapped
+    table = known["table"]
+    for state, actions in enumerate(table["outcomes"]):
+        for action, outcomes in enumerate(actions):
+            expected = [(p, int(s), float(r), bool(end)) for p, s, r, end in env.P[state][action]]
+            assert [(table["probabilities"][p], s, r, bool(end)) for p, s, r, end in outcomes] == expected
+    assert table["initial"] == np.asarray(env.initial_state_distrib).tolist()
+    assert len("".join(known["layout"])) == known["states"] == env.observation_space.n
+
+
+@pytest.mark.parametrize("rule", definitions()["rules"], ids=lambda rule: f"{rule['setting']}={rule['value']}")
+def test_python_refuses_what_a_rule_excludes(rule):
+    beside = {"scale": (10.0, 100.0)} if rule["unless"].get("discretizer") != "tiles" else {}
+    with pytest.raises(ValueError, match=rule["setting"]):
+        qtab.Config(**{**beside, rule["setting"]: rule["value"], **rule["unless"]})

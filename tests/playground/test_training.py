@@ -1,0 +1,97 @@
+"""Run, stop, step, episode and reset; what a finished run shows."""
+
+import pytest
+
+from qtab.playground import definitions
+from support.playground import Playground
+
+pytestmark = pytest.mark.browser
+
+CANVASES = ("curve", "motion", "values", "visits")
+
+
+@pytest.mark.parametrize("environment", list(definitions()["environments"]))
+def test_nothing_is_blank(playground: Playground, environment: str) -> None:
+    playground.open(f"#env={environment.replace(' ', '%20')}&episodes=50")
+    canvases = [*CANVASES, *(["best"] if playground.page.locator("#best-panel").is_visible() else [])]
+    for canvas in canvases:
+        assert playground.colors(canvas) > 3, canvas
+        alternative = playground.page.locator(f"#{canvas}").get_attribute("aria-label")
+        assert alternative is not None
+        assert len(alternative) > 20
+
+
+def test_steps_and_episodes_show_the_updates(playground: Playground) -> None:
+    playground.open("#env=grid&example=0")
+    playground.page.locator("#reset").click()
+    assert playground.settled().result()["done"] == 0
+    playground.page.locator("#step").click()
+    playground.settled()
+    assert sum(playground.result()["visits"]) == 1
+    assert "Episode 1, step 1" in playground.text("inspection")
+    assert "Q(S, A)" in playground.text("inspection")
+    playground.page.locator("#step").click()
+    playground.settled()
+    assert sum(playground.result()["visits"]) == 2
+    playground.page.locator("#one-episode").click()
+    assert playground.settled().result()["done"] == 1
+    playground.page.locator("#run").click()
+    result = playground.settled().result()
+    assert (result["state"], result["done"]) == ("finished", 500)
+
+
+def test_stepping_to_the_end_learns_what_running_does(playground: Playground) -> None:
+    playground.open("#env=grid&episodes=5")
+    ran = playground.result()
+    playground.page.locator("#reset").click()
+    playground.settled()
+    playground.page.locator("#step").click()
+    playground.settled()
+    for _ in range(5):
+        playground.page.locator("#one-episode").click()
+        playground.settled()
+    stepped = playground.result()
+    assert stepped == ran
+
+
+def test_a_long_run_can_be_stopped_and_continued(playground: Playground) -> None:
+    playground.open("#env=MountainCar-v0&episodes=100")
+    playground.type_number("episodes", "50000")
+    playground.page.wait_for_function("() => playground.training.state === 'training' && playground.view.result.done > 0")
+    playground.page.locator("#stop").click()
+    stopped = playground.settled().result()
+    assert stopped["state"] == "paused"
+    assert 0 < stopped["done"] < 50_000
+    assert "Paused" in playground.text("status")
+    playground.page.locator("#one-episode").click()
+    assert playground.settled().result()["done"] in (stopped["done"] + 1, stopped["done"])
+
+
+def test_sixteen_seeds_are_sixteen_runs(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&seeds=16&seed=3")
+    many = playground.result()
+    assert many["seeds"] == list(range(3, 19))
+    playground.open("#env=CliffWalking-v1&seed=3")
+    one = playground.result()
+    assert many["returns"][: one["done"]] == one["returns"]
+    assert many["values"] == one["values"]
+
+
+def test_divergence_is_said(playground: Playground) -> None:
+    playground.open(
+        "#env=MountainCar-v0&algorithm=sarsa_lambda&discretizer=tiles&learning_rate=2&trace_decay=1&discount=1"
+        "&traces=accumulating&episodes=500&epsilon=1&epsilon_schedule=constant"
+    )
+    assert playground.result()["state"] == "diverged"
+    assert "diverged" in playground.text("problem")
+    assert "α" in playground.text("problem")
+
+
+def test_examples_show_failure_and_cure(playground: Playground) -> None:
+    playground.open("#env=FrozenLake-v1")
+    failed = playground.result()
+    assert max(failed["returns"]) == 0
+    playground.page.locator("#examples button").nth(1).click()
+    cured = playground.settled().result()
+    assert sum(cured["returns"][-1000:]) > 500
+    assert "initial values of 1" in playground.text("look")
