@@ -34,6 +34,14 @@ ALGORITHM_NAMES: Mapping[str, str] = {
     "watkins_q_lambda": "Watkins's Q(λ)",
     "dyna_q": "Dyna-Q",
     "dyna_q_plus": "Dyna-Q+",
+    "monte_carlo": "Monte Carlo control",
+    "monte_carlo_es": "Monte Carlo ES",
+    "off_policy_monte_carlo": "off-policy Monte Carlo control",
+    "n_step_tree_backup": "n-step tree backup",
+    "n_step_q_sigma": "n-step Q(σ)",
+    "prioritized_sweeping": "prioritized sweeping",
+    "differential_sarsa": "differential Sarsa",
+    "differential_q_learning": "differential Q-learning",
 }
 """How Sutton & Barto write the names of the algorithms, for titles and tables."""
 

@@ -58,8 +58,9 @@ def explain(
     Raises:
         RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range. Of a run that was resumed with more episodes while a rate fell, only
-            the episodes before can be explained.
+        ValueError: for an argument out of range, and for a run of an algorithm that is not explained: Monte Carlo
+            control, prioritized sweeping, differential Sarsa and Q-learning. Of a run that was resumed with more
+            episodes while a rate fell, only the episodes before can be explained.
     """
     checks.instance("run", run, Run)
     if run.config.algorithm not in EXPLAINED:

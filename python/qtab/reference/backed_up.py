@@ -50,16 +50,16 @@ def n_step_backups(
             tau = t - n + 1
             if tau >= 0:
                 end = tau + n if last_step is None else min(tau + n, last_step)
-                G = 0.0
+                G, following = 0.0, None
                 for k in range(end, tau, -1):
-                    if k == end:
-                        # Nothing follows a terminal state.
-                        ends = terminal and end == last_step
-                        G = rewards[k] if ends else rewards[k] + task.discount * expected(task, Q, states[k], greedy)
-                        continue
-                    share = probability(task, Q, states[k], actions[k], greedy)
-                    correction = weight(share, ratios[k]) * (G - value(Q, states[k], actions[k]))
-                    G = rewards[k] + task.discount * (expected(task, Q, states[k], greedy) + correction)
+                    if k < end:
+                        share = probability(task, Q, states[k], actions[k], greedy)
+                        correction = weight(share, ratios[k]) * (G - value(Q, states[k], actions[k]))
+                        following = expected(task, Q, states[k], greedy) + correction
+                    elif not (terminal and end == last_step):  # nothing follows a terminal state
+                        following = expected(task, Q, states[k], greedy)
+                    G = rewards[k] if following is None else rewards[k] + task.discount * following
+                task.observer.target(tau, rewards[tau + 1], following)
                 task.update(Q, states[tau], actions[tau], G)
             t += 1
             tau += 1

@@ -83,8 +83,8 @@ EXPERIMENT = ExploringStarts(
     title="the optimal policy of blackjack, by Monte Carlo with exploring starts",
     book="exploring starts, γ = 1, initial values of zero, at first a policy that sticks on 20 and 21 only; one run",
     unspecified="the number of episodes (5,000,000 here). The figure shows the average of 10 runs. The book draws the "
-    "first cards so that all starts have the same probability; here they are dealt, and only the first action is drawn. "
-    "The first policy sticks everywhere, as all values are zero",
+    "first cards so that all starts have the same probability; here they are dealt, and only the first action is "
+    "drawn. The first policy sticks everywhere, as all values are zero",
     runs=10,
     x_label="dealer's card",
     y_label="lowest sum that sticks",

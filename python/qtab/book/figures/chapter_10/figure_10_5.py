@@ -37,7 +37,7 @@ CONFIG: dict[str, Any] = {
 
 
 def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
-    """Draws the policy that is greedy for the average of the runs, and the values below, in a new figure; returns the lower axes.
+    """Draws the greedy policy for the average of the runs, and its values below; returns the lower axes.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
