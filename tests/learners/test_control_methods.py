@@ -90,18 +90,16 @@ def test_a_stochastic_model_plans_with_all_that_followed() -> None:
     assert errors["stochastic"] < 0.2 < errors["deterministic"]
 
 
-def test_a_count_bonus_finds_a_distant_reward() -> None:
-    chain = {
-        state: {0: [(1.0, 0, 0.1, False)], 1: [(1.0, min(state + 1, 9), float(state == 9), False)]}
-        for state in range(10)
-    }
-    settings: dict[str, Any] = {"epsilon": 0.0, "initial_q": 0.0, "episodes": 40, "max_episode_steps": 50, "seed": 0}
-    settings |= {"discount": 0.95}
-    env = qtab.TabularEnv(chain, [1.0] + [0.0] * 9)
-    plain, bonus = (qtab.train(env, **settings, count_bonus=weight) for weight in (0.0, 2.0))
-    assert bonus.episode_returns.max() > 30 > plain.episode_returns.max()
-    assert bonus.episode_returns.max() <= 41  # the bonus is not part of it
-    assert qtab.verify(bonus, env=env).equal
+def test_a_count_bonus_falls_with_the_visits_and_is_no_part_of_the_returns() -> None:
+    table = {state: {action: [(1.0, 1, float(action), True)] for action in range(2)} for state in range(2)}
+    env = qtab.TabularEnv(table, [1.0, 0.0])
+    settings: dict[str, Any] = {"learning_rate": 1.0, "epsilon": 1.0, "episodes": 30, "seed": 0}
+    run = qtab.train(env, **settings, count_bonus=3.0, visits=True)
+    counts = run.visits[0]
+    assert counts.min() > 5
+    assert run.q_table[0].tolist() == [action + 3.0 / np.sqrt(count) for action, count in enumerate(counts)]
+    assert set(run.episode_returns) == {0.0, 1.0}
+    assert qtab.verify(run, env=env).equal
 
 
 def test_tree_backup_of_q_sigma_is_tree_backup() -> None:
@@ -111,12 +109,10 @@ def test_tree_backup_of_q_sigma_is_tree_backup() -> None:
     assert sigma.tables.tobytes() == tree.tables.tobytes()
 
 
-def test_q_sigma_with_full_sampling_of_its_own_policy_is_n_step_sarsa() -> None:
-    settings: dict[str, Any] = {"episodes": 5, "seed": 1, "epsilon": 0.3, "n_steps": 3, "max_episode_steps": 50}
-    sigma = qtab.train("CliffWalking-v1", algorithm="n_step_q_sigma", sigma=1.0, target_policy="behavior", **settings)
-    sarsa = qtab.train("CliffWalking-v1", algorithm="n_step_sarsa", **settings)
-    assert sigma.episode_lengths.tolist() == sarsa.episode_lengths.tolist()
-    assert np.allclose(sigma.tables, sarsa.tables, rtol=0, atol=1e-9)
+def test_the_degree_of_sampling_does_not_matter_for_one_step() -> None:
+    settings: dict[str, Any] = {"episodes": 5, "seed": 1, "epsilon": 0.3, "n_steps": 1, "algorithm": "n_step_q_sigma"}
+    none, full = (qtab.train("CliffWalking-v1", sigma=sigma, **settings) for sigma in (0.0, 1.0))
+    assert none.tables.tobytes() == full.tables.tobytes()
 
 
 def test_prioritized_sweeping_solves_a_maze_in_few_updates() -> None:

@@ -103,7 +103,7 @@ class Config:
     n_steps: int | None = None
     """n: the number of rewards in a target."""
     sigma: float | None = None
-    """σ: the degree of sampling of Q(σ), from 0 (tree backup: expected values) to 1 (Sarsa: sampled actions)."""
+    """σ: the degree of sampling of Q(σ), from 0 (tree backup: expected values) to 1 (sampled actions)."""
     target_policy: TargetPolicy | None = None
     """The policy whose values are learned: the greedy one (greedy), or the one that acts (behavior)."""
     planning_steps: int | None = None

@@ -9,7 +9,8 @@ use crate::features::ActiveRows;
 /// Gₜ = Rₜ₊₁ + γ [Σₐ π(a|Sₜ₊₁) Q(Sₜ₊₁, a) + (σ ρ + (1 - σ) π(Aₜ₊₁|Sₜ₊₁)) (Gₜ₊₁ - Q(Sₜ₊₁, Aₜ₊₁))].
 ///
 /// π is the target policy, and ρ = π(Aₜ₊₁|Sₜ₊₁) / b(Aₜ₊₁|Sₜ₊₁) the importance sampling ratio when Aₜ₊₁ was chosen by the
-/// behaviour policy b. With σ = 0 this is tree backup; with σ = 1 the actions are sampled, as in Sarsa.
+/// behaviour policy b. With σ = 0 this is tree backup; with σ = 1 it is Sarsa with importance sampling and control
+/// variates.
 pub type NStepQSigma<R> = NStep<R, QSigma>;
 
 /// The return of Q(σ).
