@@ -27,7 +27,9 @@ def sphinx(quick: bool) -> int:
     options = ["-b", "html", "-j", "2", "-W", "--keep-going", "-n", "-q"]
     if quick:
         options += ["-D", "nb_execution_mode=off"]
-    returncode = subprocess.run([sys.executable, "-m", "sphinx", *options, str(HERE), str(SITE)], check=False).returncode  # noqa: S603
+    returncode = subprocess.run(
+        [sys.executable, "-m", "sphinx", *options, str(HERE), str(SITE)], check=False
+    ).returncode  # noqa: S603
     # The theme's template, which it keeps among its static files, is no page.
     (SITE / "_static" / "webpack-macros.html").unlink(missing_ok=True)
     return returncode

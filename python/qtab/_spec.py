@@ -111,7 +111,15 @@ class SoftmaxSpec(TypedDict):
     temperature: float
 
 
-PolicySpec: TypeAlias = EpsilonGreedySpec | SoftmaxSpec
+class UcbSpec(TypedDict):
+    """Chooses the action with the largest upper confidence bound of its value."""
+
+    type: Literal["ucb"]
+    confidence: float
+    ties: Ties
+
+
+PolicySpec: TypeAlias = EpsilonGreedySpec | SoftmaxSpec | UcbSpec
 
 
 class TableSpec(TypedDict):
@@ -143,6 +151,7 @@ class PlainSpec(TypedDict):
         "monte_carlo",
         "monte_carlo_es",
         "off_policy_monte_carlo",
+        "reinforce",
     ]
 
 
@@ -218,6 +227,28 @@ class DifferentialSpec(TypedDict):
     reward_learning_rate: float
 
 
+class GradientBanditSpec(TypedDict):
+    """The gradient bandit algorithm."""
+
+    type: Literal["gradient_bandit"]
+    baseline: bool
+
+
+class StateValuesSpec(TypedDict):
+    """A policy gradient method that learns state values beside the policy."""
+
+    type: Literal["reinforce_with_baseline", "actor_critic"]
+    value_learning_rate: float
+
+
+class ActorCriticLambdaSpec(TypedDict):
+    """Actor-critic with eligibility traces."""
+
+    type: Literal["actor_critic_lambda"]
+    value_learning_rate: float
+    trace_decay: float
+
+
 AlgorithmSpec: TypeAlias = (
     PlainSpec
     | NStepSarsaSpec
@@ -229,6 +260,9 @@ AlgorithmSpec: TypeAlias = (
     | NStepQSigmaSpec
     | PrioritizedSweepingSpec
     | DifferentialSpec
+    | GradientBanditSpec
+    | StateValuesSpec
+    | ActorCriticLambdaSpec
 )
 
 

@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.config.choices import Algorithm
-from support.learner_settings import explorations, learning_rates, own_options
+from qtab.config.options import PREFERENCES
+from support.learner_settings import BY_EPISODE, explorations, learning_rates, own_options, possible_explorations
 
 BIAS = "qtab/MaximizationBias-v0"
-ALGORITHMS = get_args(Algorithm)
+ALGORITHMS = [name for name in get_args(Algorithm) if name not in PREFERENCES]
 
 
 def some_of_a(missing=8):
@@ -32,11 +33,11 @@ def settings(draw):
     for row in rows:
         row[draw(st.integers(0, 9))] = draw(values)
     return {
-        **draw(learning_rates(1.0, by_visits=algorithm != "true_online_sarsa_lambda", algorithm=algorithm)),
+        **draw(learning_rates(1.0, by_visits=algorithm not in BY_EPISODE, algorithm=algorithm)),
         **draw(own_options(algorithm)),
         "algorithm": algorithm,
         "initial_q": np.array(rows),
-        **draw(explorations()),
+        **draw(explorations(possible_explorations(algorithm, {}))),
         "seed": draw(st.integers(0, 2**32 - 1)),
         "episodes": 30,
     }

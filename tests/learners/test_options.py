@@ -22,6 +22,8 @@ VALUES: dict[str, Any] = {
     "model": "deterministic",
     "priority_threshold": 0.1,
     "reward_learning_rate": 0.1,
+    "baseline": True,
+    "value_learning_rate": 0.1,
     "min_learning_rate": 0.0,
     "learning_rate_decay": 0.9,
     "learning_rate_warm_up": 0,
@@ -32,6 +34,7 @@ VALUES: dict[str, Any] = {
     "epsilon_decay": 0.9,
     "epsilon_warm_up": 0,
     "temperature": 1.0,
+    "confidence": 2.0,
     "scale": (10, 100),
     "tilings": 8,
     "tiles": (8, 8),
@@ -50,7 +53,7 @@ def strangers() -> list[tuple[str, dict[str, Any]]]:
     choices = {
         "algorithm": ["q_learning", "sarsa_lambda", "n_step_sarsa", "dyna_q", "true_online_sarsa_lambda"],
         "learning_rate_schedule": ["constant", "linear", "visits"],
-        "exploration": ["epsilon_greedy", "softmax"],
+        "exploration": ["epsilon_greedy", "softmax", "ucb"],
         "epsilon_schedule": ["constant", "linear"],
         "discretizer": ["round", "bins", "edges", "tiles"],
     }

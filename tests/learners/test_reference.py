@@ -9,7 +9,7 @@ from hypothesis import given, settings
 
 import qtab
 from qtab.config.choices import Algorithm
-from qtab.config.options import TABLES_ONLY
+from qtab.config.options import PREFERENCES, TABLES_ONLY
 from qtab.reference import LEARNERS
 from support.learner_settings import CAR, TRAINED, run_settings
 
@@ -49,8 +49,8 @@ def test_a_long_episode_gives_the_identical_table(algorithm: Any, seed: int) -> 
         max_episode_steps=1000,
         learning_rate=0.3,
         discount=1.0,
-        epsilon=0.1,
         initial_q=0.0,
+        **({} if algorithm in PREFERENCES else {"epsilon": 0.1}),
         **({"scale": (10, 100)} if algorithm in TABLES_ONLY else {"discretizer": "tiles"}),
     )
     assert qtab.verify(run).equal

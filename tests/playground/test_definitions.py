@@ -25,7 +25,9 @@ def test_every_setting_has_a_sentence_and_a_default():
         assert setting["default"] is not None or name in ("max_episode_steps", "low", "high"), name
 
 
-@pytest.mark.parametrize("name", [name for name, setting in SETTINGS.items() if setting["type"] in ("number", "integer")])
+@pytest.mark.parametrize(
+    "name", [name for name, setting in SETTINGS.items() if setting["type"] in ("number", "integer")]
+)
 def test_the_ends_of_a_range_are_valid_settings(name):
     setting = SETTINGS[name]
     option = OPTIONS.get(name)

@@ -104,7 +104,7 @@ def completed(given: dict[str, Any]) -> dict[str, Any]:
         if fields[option.choice] not in option.values:
             fields[name] = None
         elif fields[name] is None:
-            fields |= {name: default for name, default in defaults({**fields}).items()}
+            fields |= defaults(fields)
     plain = {name: list(value) if isinstance(value, tuple) else value for name, value in fields.items()}
     return {name: value for name, value in plain.items() if name not in LEFT_OUT and is_set(fields[name])}
 
@@ -152,7 +152,7 @@ def test_two_hundred_seeds_of_the_article_equal_python(engine):
 @pytest.mark.parametrize("environment", definitions()["environments"])
 @pytest.mark.parametrize("algorithm", CHOICES["algorithm"])
 def test_random_settings_equal_python(engine, environment, algorithm):
-    rng = random.Random(f"{environment} {algorithm}")
+    rng = random.Random(f"{environment} {algorithm}")  # noqa: S311 - settings, not secrets
     for _ in range(3):
         given = random_settings(rng, environment, algorithm)
         check(engine, {"id": environment}, given, [rng.randrange(2**32)])
@@ -165,7 +165,7 @@ def test_presets_equal_python(engine, environment):
 
 
 def test_painted_grid_worlds_equal_python(engine):
-    rng = random.Random(4)
+    rng = random.Random(4)  # noqa: S311
     for seed in range(20):
         rows, columns = rng.randint(1, 7), rng.randint(2, 7)
         cells = [[rng.choice("....#") for _ in range(columns)] for _ in range(rows)]
@@ -187,7 +187,7 @@ def test_painted_grid_worlds_equal_python(engine):
 
 @pytest.mark.parametrize("environment", definitions()["environments"])
 def test_the_page_completes_settings_as_python_does(engine, environment):
-    rng = random.Random(environment)
+    rng = random.Random(environment)  # noqa: S311
     known = definitions()["environments"][environment]
     for algorithm in CHOICES["algorithm"]:
         given = random_settings(rng, environment, algorithm)

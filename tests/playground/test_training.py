@@ -57,7 +57,9 @@ def test_stepping_to_the_end_learns_what_running_does(playground: Playground) ->
 def test_a_long_run_can_be_stopped_and_continued(playground: Playground) -> None:
     playground.open("#env=MountainCar-v0&episodes=100")
     playground.type_number("episodes", "50000")
-    playground.page.wait_for_function("() => playground.training.state === 'training' && playground.view.result.done > 0")
+    playground.page.wait_for_function(
+        "() => playground.training.state === 'training' && playground.view.result.done > 0"
+    )
     playground.page.locator("#stop").click()
     stopped = playground.settled().result()
     assert stopped["state"] == "paused"

@@ -106,6 +106,28 @@ class Differential(AlgorithmSettings):
     reward_learning_rate: float
 
 
+@dataclass(frozen=True)
+class GradientBandit(AlgorithmSettings):
+    """The gradient bandit algorithm."""
+
+    baseline: bool
+
+
+@dataclass(frozen=True)
+class WithStateValues(AlgorithmSettings):
+    """REINFORCE with baseline, or one-step actor-critic."""
+
+    value_learning_rate: float
+
+
+@dataclass(frozen=True)
+class ActorCriticLambda(AlgorithmSettings):
+    """Actor-critic with eligibility traces."""
+
+    value_learning_rate: float
+    trace_decay: float
+
+
 ALGORITHMS: Mapping[Algorithm, type[AlgorithmSettings]] = {
     "q_learning": AlgorithmSettings,
     "sarsa": AlgorithmSettings,
@@ -125,6 +147,11 @@ ALGORITHMS: Mapping[Algorithm, type[AlgorithmSettings]] = {
     "prioritized_sweeping": PrioritizedSweeping,
     "differential_sarsa": Differential,
     "differential_q_learning": Differential,
+    "gradient_bandit": GradientBandit,
+    "reinforce": AlgorithmSettings,
+    "reinforce_with_baseline": WithStateValues,
+    "actor_critic": WithStateValues,
+    "actor_critic_lambda": ActorCriticLambda,
 }
 """The settings of each algorithm."""
 

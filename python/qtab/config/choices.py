@@ -22,6 +22,11 @@ Algorithm: TypeAlias = Literal[
     "prioritized_sweeping",
     "differential_sarsa",
     "differential_q_learning",
+    "gradient_bandit",
+    "reinforce",
+    "reinforce_with_baseline",
+    "actor_critic",
+    "actor_critic_lambda",
 ]
 ALGORITHM_NAMES: Mapping[str, str] = {
     "q_learning": "Q-learning",
@@ -46,7 +51,7 @@ ALGORITHM_NAMES: Mapping[str, str] = {
 """How Sutton & Barto write the names of the algorithms, for titles and tables."""
 
 LearningRateSchedule: TypeAlias = Literal["constant", "linear", "exponential", "visits"]
-Exploration: TypeAlias = Literal["epsilon_greedy", "softmax"]
+Exploration: TypeAlias = Literal["epsilon_greedy", "softmax", "ucb"]
 EpsilonSchedule: TypeAlias = Literal["constant", "linear", "exponential"]
 Ties: TypeAlias = Literal["first", "random"]
 Traces: TypeAlias = Literal["accumulating", "replacing", "clearing"]

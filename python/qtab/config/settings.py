@@ -70,6 +70,8 @@ class SharedSettings(EnvironmentSettings, total=False):
     model: Model | None
     priority_threshold: Real | None
     reward_learning_rate: Real | None
+    baseline: bool | None
+    value_learning_rate: Real | None
     initial_q: Real | tuple[Real, Real] | list[Any] | Array
     terminal_update: TerminalUpdate
     on_truncation: OnTruncation
@@ -82,6 +84,7 @@ class SharedSettings(EnvironmentSettings, total=False):
     ties: Ties | None
     temperature: Real | None
     count_bonus: Real
+    confidence: Real | None
     action_mask: bool | Callable[[Any], Any]
     discretizer: DiscretizerName | Callable[[Any], Any] | Mapping[str, Any]
     shape: Integer | Integers | None

@@ -8,8 +8,8 @@ from qtab.config.config import DEFAULTS, Config
 from qtab.config.options import OPTIONS
 
 ADDED = (
-    *("action_mask", "shape", "max_rows", "sigma", "target_policy", "model", "priority_threshold"),
-    *("reward_learning_rate", "count_bonus"),
+    *("action_mask", "shape", "max_rows", "baseline", "value_learning_rate", "confidence"),
+    *("sigma", "target_policy", "model", "priority_threshold", "reward_learning_rate", "count_bonus"),
 )
 """Settings that earlier versions do not have: files hold them only where they differ from their defaults."""
 

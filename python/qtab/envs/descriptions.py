@@ -124,6 +124,7 @@ DESCRIPTIONS: Mapping[str, Description] = {
     "qtab/DynaMaze": Description(_STATE, ("up", "right", "down", "left")),
     "qtab/Racetrack": Description(_STATE),
     "qtab/ShortcutMaze": Description(_STATE, ("up", "right", "down", "left")),
+    "qtab/ShortCorridor": Description((Quantity("state", values=("corridor",)),), ("left", "right")),
     "qtab/MaximizationBias": Description((Quantity("state", values=("A", "B", "end")),), ("right", "left")),
 }
 """The environments by their id, without its version."""

@@ -96,8 +96,14 @@ EXTRA: Mapping[str, EnvEntry] = {
         f"{PREFIX}{name}": EnvEntry(of_extension, "", f"qtab.envs.{entry_point}", has_table=True)
         for name, (of_extension, entry_point) in _BOOK.items()
     },
+    f"{PREFIX}KArmedBandit-v0": EnvEntry(
+        "KArmedBandit", "", "qtab.envs.k_armed_bandit:KArmedBanditEnv", has_table=True
+    ),
     f"{PREFIX}MaximizationBias-v0": EnvEntry(
         "MaximizationBias", "", "qtab.envs.maximization_bias:MaximizationBiasEnv", has_table=True
+    ),
+    f"{PREFIX}ShortCorridor-v0": EnvEntry(
+        "ShortCorridor", "", "qtab.envs.short_corridor:ShortCorridorEnv", has_table=True
     ),
     f"{PREFIX}GridWorld5x5-v0": _table("qtab.envs.small_grid_worlds:grid_world_5x5"),
     f"{PREFIX}GridWorld4x4-v0": _table("qtab.envs.small_grid_worlds:grid_world_4x4"),

@@ -7,16 +7,23 @@ from typing import Any
 from qtab.config.choices import CHOICES
 from qtab.config.config import DEFAULTS
 from qtab.config.explanations import default, explanations, groups
-from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, OPTIONS, mismatch
+from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, OPTIONS, PREFERENCES, mismatch
 
 LEFT_OUT = frozenset(
-    ("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows", "edges")
-) | {"actions", "sigma", "target_policy", "model", "priority_threshold", "reward_learning_rate", "count_bonus"}
+    (
+        *("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows"),
+        *("edges", "actions", "sigma", "target_policy", "model", "priority_threshold", "reward_learning_rate"),
+        *("count_bonus", "baseline", "value_learning_rate", "confidence"),
+    )
+)
 """What the page does not offer: settings of Python environments, those too long for a control, and those of algorithms
 that it does not train."""
 
 WORDS_LEFT_OUT = frozenset(
-    ("edges", *MONTE_CARLO, *AVERAGE_REWARD, "n_step_tree_backup", "n_step_q_sigma", "prioritized_sweeping")
+    (
+        *("edges", "ucb", "n_step_tree_backup", "n_step_q_sigma", "prioritized_sweeping"),
+        *(*MONTE_CARLO, *AVERAGE_REWARD, *PREFERENCES),
+    )
 )
 """The choices that the page does not offer."""
 

@@ -23,9 +23,11 @@ def n_step_backups(
     def chosen(state: Rows) -> tuple[int, float]:
         """An action by the behaviour policy b, and ρ = π(A | S) / b(A | S)."""
         values = task.values(Q, state)
-        action = task.policy.choose(values)
+        action = task.policy.choose(values, state)
         ratio = (
-            probability(task, Q, state, action, greedy) / task.policy.probabilities(values)[action] if greedy else 1.0
+            probability(task, Q, state, action, greedy) / task.policy.probabilities(values, state)[action]
+            if greedy
+            else 1.0
         )
         return action, ratio
 
@@ -75,4 +77,4 @@ def expected(task: Task, Q: Table, state: Rows, greedy: bool) -> float:
 def probability(task: Task, Q: Table, state: Rows, action: int, greedy: bool) -> float:
     """π(A | S). An action that ties for the maximum is greedy."""
     values = task.values(Q, state)
-    return float(values[action] == np.max(values)) if greedy else task.policy.probabilities(values)[action]
+    return float(values[action] == np.max(values)) if greedy else task.policy.probabilities(values, state)[action]

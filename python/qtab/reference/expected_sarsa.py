@@ -34,7 +34,7 @@ def expected_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) 
 def expected_value(task: Task, Q: Table, state: Rows) -> float:
     """Returns Σ π(a | S) Q(S, a), added from left to right."""
     values = task.values(Q, state)
-    shares = zip(task.policy.probabilities(values), values, strict=True)
+    shares = zip(task.policy.probabilities(values, state), values, strict=True)
     first, *others = [p * float(q) for p, q in shares if (p, q) != (0.0, -math.inf)]
     for term in others:
         first += term

@@ -42,5 +42,5 @@ def off_policy_monte_carlo(env: gym.Env, config: Config, stop_after: int | None 
 def choose(task: Task, Q: Table, state: Rows) -> tuple[int, float]:
     """Returns an action by the behaviour policy b, and b(A | S)."""
     values = task.values(Q, state)
-    action = task.policy.choose(values)
-    return action, task.policy.probabilities(values)[action]
+    action = task.policy.choose(values, state)
+    return action, task.policy.probabilities(values, state)[action]

@@ -141,7 +141,7 @@ export const EXAMPLES = {
       grid: "Dyna maze",
       settings: { discount: 0.95, learning_rate: 0.1, episodes: 30, ties: "random" },
       title: "Maze, Q-learning",
-      look: "Example 8.1 of Sutton & Barto. Without planning, each episode carries the values only a little further back from the goal.",
+      look: "Example 8.1 of Sutton & Barto. Without planning, each episode carries the values only a little further back from the goal. Compare the steps of an episode with those of Dyna-Q.",
     },
     {
       preset: "learns",

@@ -44,7 +44,7 @@ function valueTable({ actionValues, visits }, actions) {
     const share = Math.abs(actionValues[index]) / widest;
     bar.style.width = `${Number.isFinite(share) ? 100 * share : 0}%`;
     const name = make("th", { scope: "row", textContent: action });
-    const cells = [number(actionValues[index]), count(visits[index])].map((text) => make("td", { textContent: text }));
+    const cells = [number(actionValues[index]), count(Math.round(visits[index]))].map((text) => make("td", { textContent: text }));
     const row = make("tr", {}, name, ...cells, make("td", { className: "bar-cell" }, bar));
     if (actionValues[index] === largest) row.className = "greedy";
     return row;

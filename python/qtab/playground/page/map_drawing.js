@@ -114,7 +114,8 @@ export function drawPath(g, frame, points) {
   g.beginPath();
   g.rect(frame.box.left, frame.box.top, frame.box.right - frame.box.left, frame.box.bottom - frame.box.top);
   g.clip();
-  for (const [color, width] of [["rgba(255, 255, 255, 0.85)", 3.6], [warm, 1.8]]) {
+  const thin = points.length > 250 ? 0.5 : 1;
+  for (const [color, width] of [["rgba(255, 255, 255, 0.85)", 3.6 * thin], [warm, 1.8 * thin]]) {
     g.strokeStyle = color;
     g.lineWidth = width;
     g.beginPath();

@@ -4,6 +4,8 @@ import { complete } from "./engine.js";
 
 export const MANY_SEEDS = 16;
 export const PAINTED = "grid";
+/** How many rows and columns a map has where the table has no cells of two components. */
+const RASTER = 48;
 
 /** The choices, their checks, and those who want to know of changes. */
 export class Store {
@@ -101,7 +103,9 @@ export class Store {
   request() {
     const { environment, settings, seed, seeds, grid } = this.state;
     const asked = environment === PAINTED ? { id: environment, ...grid } : { id: environment };
-    return { environment: asked, settings, seeds: Array.from({ length: seeds }, (_, index) => seed + index) };
+    const { map: plane, observations } = this.entry;
+    const map = plane ? { map: { ...plane, at: observations.map(() => 0), columns: RASTER, rows: RASTER } } : {};
+    return { environment: asked, settings, seeds: Array.from({ length: seeds }, (_, index) => seed + index), ...map };
   }
 }
 

@@ -10,9 +10,10 @@ use qtab_core::tasks::ChangingTask;
 
 use super::native_env::NativeEnv;
 use super::toy_text::table_of;
+use crate::convert::Seed;
 use crate::error::invalid;
 use crate::rng::environment_rng;
-use crate::runs::{RunFactory, task_runs};
+use crate::runs::{AnyRecordings, RunFactory, boxed_factory};
 use crate::spec::RunSpec;
 
 pub(crate) struct ChangingMazeEnv {
@@ -38,8 +39,10 @@ impl NativeEnv for ChangingMazeEnv {
         let (tables, change_after, limit) = (self.tables.clone(), self.change_after, spec.max_episode_steps);
         spec.discretizer.check_identity(tables[0].num_states())?;
         let (num_actions, num_states) = (tables[0].num_actions(), tables[0].num_states());
-        task_runs(num_actions, num_states, spec, record, move |seed| {
-            ChangingTask::new(tables.clone(), change_after, limit, environment_rng(seed))
-        })
+        if spec.num_actions != num_actions {
+            return Err(invalid("num_actions", format!("{num_actions}, the environment's"), spec.num_actions));
+        }
+        let new_task = move |seed: &Seed| ChangingTask::new(tables.clone(), change_after, limit, environment_rng(seed));
+        Ok(boxed_factory(new_task, (num_states, 1), spec, record, AnyRecordings::Native))
     }
 }

@@ -6,6 +6,7 @@
 mod changing_maze;
 mod classic_control;
 mod gymnasium;
+mod k_armed_bandit;
 mod maximization_bias;
 mod native_env;
 mod py_classic_control;
@@ -13,6 +14,7 @@ mod py_native_env;
 mod py_vector_env;
 mod racetrack;
 mod registry;
+mod short_corridor;
 mod toy_text;
 
 pub(crate) use classic_control::{numpy_uses_libm, step_cart_poles};

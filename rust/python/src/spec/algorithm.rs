@@ -55,6 +55,18 @@ pub(crate) const ALGORITHMS: &[Variant<AnyAlgorithm>] = &[
     ("differential_q_learning", |fields| {
         Ok(AnyAlgorithm::DifferentialQLearning { reward_learning_rate: fields.get("reward_learning_rate")? })
     }),
+    ("gradient_bandit", |fields| Ok(AnyAlgorithm::GradientBandit { baseline: fields.get("baseline")? })),
+    ("reinforce", |_| Ok(AnyAlgorithm::Reinforce)),
+    ("reinforce_with_baseline", |fields| {
+        Ok(AnyAlgorithm::ReinforceWithBaseline { value_learning_rate: fields.get("value_learning_rate")? })
+    }),
+    ("actor_critic", |fields| {
+        Ok(AnyAlgorithm::ActorCritic { value_learning_rate: fields.get("value_learning_rate")? })
+    }),
+    ("actor_critic_lambda", |fields| {
+        let (value_learning_rate, trace_decay) = (fields.get("value_learning_rate")?, fields.get("trace_decay")?);
+        Ok(AnyAlgorithm::ActorCriticLambda { value_learning_rate, trace_decay })
+    }),
 ];
 
 fn n_steps(fields: &Fields<'_>) -> PyResult<usize> {
