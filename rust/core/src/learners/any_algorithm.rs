@@ -4,8 +4,8 @@ use super::{
     ActorCritic, ActorCriticLambda, Agent, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
     DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarlo, MonteCarloEs, NStepQSigma, NStepSarsa,
     NStepTreeBackup, OffPolicyMonteCarlo, PolicyGradientLearner, PolicyGradientRule, PrioritizedSweeping, QLearning,
-    Reinforce, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda,
-    UpdateRule, WatkinsQLambda,
+    Reinforce, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceOptions, Traces,
+    TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
 };
 use crate::features::ActiveRows;
 use crate::memory::AllocationError;
@@ -131,17 +131,6 @@ pub enum AnyAlgorithm {
         /// The trace decay λ.
         trace_decay: f64,
     },
-}
-
-/// The options of an algorithm whose eligibility traces are of a kind.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TraceOptions {
-    /// What a visit does to a trace.
-    pub kind: TraceKind,
-    /// The trace decay λ.
-    pub decay: f64,
-    /// Traces at or below this are dropped.
-    pub cutoff: f64,
 }
 
 /// What is done with the learner that [`AnyAlgorithm::learner`] makes, whichever its type.

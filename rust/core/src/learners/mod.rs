@@ -22,12 +22,13 @@ mod q_learning;
 mod reinforce;
 mod sarsa;
 mod sarsa_lambda;
+mod trace_options;
 mod true_online_sarsa_lambda;
 mod watkins_q_lambda;
 
 pub use actor_critic::ActorCritic;
 pub use actor_critic_lambda::ActorCriticLambda;
-pub use any_algorithm::{AnyAlgorithm, LearnerVisitor, TraceOptions};
+pub use any_algorithm::{AnyAlgorithm, LearnerVisitor};
 pub use common::{
     ActionMasks, Agent, CountBonus, Critic, DynaModel, Learner, Model, ModelEntry, NStep, NStepMethod,
     PlanningProgress, PolicyGradientLearner, PolicyGradientRule, StochasticModel, TargetPolicy, TdLearner, TraceKind,
@@ -51,5 +52,6 @@ pub use q_learning::QLearning;
 pub use reinforce::Reinforce;
 pub use sarsa::Sarsa;
 pub use sarsa_lambda::SarsaLambda;
+pub use trace_options::TraceOptions;
 pub use true_online_sarsa_lambda::TrueOnlineSarsaLambda;
 pub use watkins_q_lambda::WatkinsQLambda;
