@@ -1,18 +1,21 @@
 """The settings that the playground shows: their sentences, symbols and defaults are those of :class:`qtab.Config`."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from qtab.config.choices import CHOICES
 from qtab.config.config import DEFAULTS
 from qtab.config.explanations import default, explanations, groups
-from qtab.config.options import OPTIONS, mismatch
+from qtab.config.options import OPTIONS, PREFERENCES, mismatch
 
 LEFT_OUT = frozenset(
     ("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows", "edges")
-) | {"actions"}
-"""What the page does not offer: settings of Python environments, and those too long for a control."""
+) | {"actions", "baseline", "value_learning_rate", "confidence"}
+"""What the page does not offer: settings of Python environments, those too long for a control, and those of choices
+that it does not offer."""
+CHOICES_LEFT_OUT = frozenset(("edges", "ucb", *PREFERENCES))
+"""The choices that the page does not offer: it shows how action values change, by policies that count nothing."""
 
 # Types and ranges of the controls. A range is inside the one that the config allows, which a test checks.
 _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
@@ -64,6 +67,9 @@ _TITLES = {
 # Where the config's sentence speaks of what the page does not offer.
 _SENTENCES = {
     "max_episode_steps": "The time limit of an episode, in steps.",
+    "learning_rate": "α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided "
+    "among the tilings, and may be up to 2.",
+    "exploration": "How the agent chooses actions: a random one at times, or by the softmax of the values.",
     "initial_q": "The initial Q table: drawn uniformly from a range (low, high), or one number everywhere.",
     "discretizer": "How observations index the Q table: rounded to a grid, by bins of equal width, or by tile coding.",
 }
@@ -88,13 +94,17 @@ def setting(name: str, group: str) -> dict[str, Any]:
         "group": group,
         "sentence": sentence[:1].upper() + sentence[1:],
         "type": kind,
-        "choices": choices and [{"value": word, "title": title(word)} for word in choices if word != "edges"],
+        "choices": choices and [{"value": word, "title": title(word)} for word in _offered(choices)],
         "default": default(name),
         "low": low,
         "high": high,
         "log": log,
-        "applies": None if option is None else {"choice": option.choice, "values": list(option.values)},
+        "applies": None if option is None else {"choice": option.choice, "values": _offered(option.values)},
     }
+
+
+def _offered(words: Iterable[str]) -> list[str]:
+    return [word for word in words if word not in CHOICES_LEFT_OUT]
 
 
 def settings() -> dict[str, dict[str, Any]]:
@@ -110,7 +120,7 @@ def rules() -> list[dict[str, Any]]:
         for value in CHOICES[name]:
             for other in ("algorithm", "discretizer"):
                 for chosen in CHOICES[other]:
-                    if other == name or chosen == "edges":
+                    if other == name or not CHOICES_LEFT_OUT.isdisjoint((value, chosen)):
                         continue
                     if reason := mismatch(name, value, {**DEFAULTS, other: chosen}):
                         found.append({"setting": name, "value": value, "unless": {other: chosen}, "reason": reason})
