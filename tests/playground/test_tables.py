@@ -11,14 +11,18 @@ import pytest
 from numpy.typing import NDArray
 
 import qtab
-from qtab.config.choices import CHOICES
+from qtab.config import choices
 from qtab.config.config import DEFAULTS
 from qtab.config.options import OPTIONS, defaults, is_set
 from qtab.playground import definitions
 from qtab.playground.assemble import data_script
 from qtab.playground.bundle import bundle
-from qtab.playground.settings import LEFT_OUT
+from qtab.playground.settings import CHOICES_LEFT_OUT, LEFT_OUT
 
+CHOICES = {
+    name: tuple(word for word in words if word not in CHOICES_LEFT_OUT) for name, words in choices.CHOICES.items()
+}
+"""The choices that the page offers."""
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 ENGINE = (Path(qtab.__file__).parent / "playground/page/engine.js").read_text(encoding="utf-8")
