@@ -7,12 +7,25 @@ from typing import Any
 from qtab.config.choices import CHOICES
 from qtab.config.config import DEFAULTS
 from qtab.config.explanations import default, explanations, groups
-from qtab.config.options import OPTIONS, mismatch
+from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, OPTIONS, PREFERENCES, mismatch
 
 LEFT_OUT = frozenset(
-    ("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows", "edges")
-) | {"actions"}
-"""What the page does not offer: settings of Python environments, and those too long for a control."""
+    (
+        *("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows"),
+        *("edges", "actions", "sigma", "target_policy", "model", "priority_threshold", "reward_learning_rate"),
+        *("count_bonus", "baseline", "value_learning_rate", "confidence"),
+    )
+)
+"""What the page does not offer: settings of Python environments, those too long for a control, and those of algorithms
+that it does not train."""
+
+WORDS_LEFT_OUT = frozenset(
+    (
+        *("edges", "ucb", "n_step_tree_backup", "n_step_q_sigma", "prioritized_sweeping"),
+        *(*MONTE_CARLO, *AVERAGE_REWARD, *PREFERENCES),
+    )
+)
+"""The choices that the page does not offer."""
 
 # Types and ranges of the controls. A range is inside the one that the config allows, which a test checks.
 _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
@@ -88,7 +101,8 @@ def setting(name: str, group: str) -> dict[str, Any]:
         "group": group,
         "sentence": sentence[:1].upper() + sentence[1:],
         "type": kind,
-        "choices": choices and [{"value": word, "title": title(word)} for word in choices if word != "edges"],
+        "choices": choices
+        and [{"value": word, "title": title(word)} for word in choices if word not in WORDS_LEFT_OUT],
         "default": default(name),
         "low": low,
         "high": high,
@@ -107,10 +121,10 @@ def rules() -> list[dict[str, Any]]:
     """Returns the pairs of choices that exclude each other, with the reason in words."""
     found = []
     for name in ("terminal_update", "learning_rate_schedule", "algorithm"):
-        for value in CHOICES[name]:
+        for value in (word for word in CHOICES[name] if word not in WORDS_LEFT_OUT):
             for other in ("algorithm", "discretizer"):
                 for chosen in CHOICES[other]:
-                    if other == name or chosen == "edges":
+                    if other == name or chosen in WORDS_LEFT_OUT:
                         continue
                     if reason := mismatch(name, value, {**DEFAULTS, other: chosen}):
                         found.append({"setting": name, "value": value, "unless": {other: chosen}, "reason": reason})
