@@ -8,7 +8,7 @@ import qtab
 from support.repository import ROOT
 
 PAGES = sorted((ROOT / "docs/reference/api").glob("*.md"))
-MODULES = ("book", "callbacks", "designs", "planning", "plots", "sb3", "stats")
+MODULES = ("book", "callbacks", "designs", "planning", "playground", "plots", "sb3", "stats")
 LISTED = re.compile(r"^(?:   |\.\. py:data:: )(qtab\.[\w.]+)$", re.MULTILINE)
 
 

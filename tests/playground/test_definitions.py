@@ -1,5 +1,7 @@
 """What the page knows of environments and settings agrees with the package."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -31,7 +33,7 @@ def test_every_setting_has_a_sentence_and_a_default():
 def test_the_ends_of_a_range_are_valid_settings(name):
     setting = SETTINGS[name]
     option = OPTIONS.get(name)
-    beside = {"episodes": 100_000} if name.endswith("warm_up") else {}
+    beside: dict[str, Any] = {"episodes": 100_000} if name.endswith("warm_up") else {}
     while option is not None:
         beside[option.choice] = option.values[0]
         option = OPTIONS.get(option.choice)
@@ -46,7 +48,8 @@ def test_the_ends_of_a_range_are_valid_settings(name):
 @pytest.mark.parametrize("key", ENVIRONMENTS)
 def test_presets_are_valid(key):
     for preset in ENVIRONMENTS[key]["presets"].values():
-        qtab.Config(**{name: tuple(value) if isinstance(value, list) else value for name, value in preset.items()})
+        config: Any = {name: tuple(value) if isinstance(value, list) else value for name, value in preset.items()}
+        qtab.Config(**config)
         assert preset["discretizer"] in ENVIRONMENTS[key]["discretizers"]
         assert preset.keys() <= SETTINGS.keys()
 
@@ -54,7 +57,7 @@ def test_presets_are_valid(key):
 @pytest.mark.parametrize("key", [key for key, environment in ENVIRONMENTS.items() if environment["table"]])
 def test_tables_are_gymnasiums(key):
     known = ENVIRONMENTS[key]
-    env = gym.make(known["python"], **known["env_kwargs"]).unwrapped
+    env: Any = gym.make(known["python"], **known["env_kwargs"]).unwrapped
     table = known["table"]
     for state, actions in enumerate(table["outcomes"]):
         for action, outcomes in enumerate(actions):

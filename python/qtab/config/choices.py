@@ -31,6 +31,11 @@ ALGORITHM_NAMES: Mapping[str, str] = {
     "watkins_q_lambda": "Watkins's Q(λ)",
     "dyna_q": "Dyna-Q",
     "dyna_q_plus": "Dyna-Q+",
+    "gradient_bandit": "gradient bandit",
+    "reinforce": "REINFORCE",
+    "reinforce_with_baseline": "REINFORCE with baseline",
+    "actor_critic": "one-step actor-critic",
+    "actor_critic_lambda": "actor-critic with eligibility traces",
 }
 """How Sutton & Barto write the names of the algorithms, for titles and tables."""
 

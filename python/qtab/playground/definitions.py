@@ -79,7 +79,8 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
     spec, unwrapped = env.spec, env.unwrapped
     assert spec is not None  # noqa: S101 - made by its id
     description = describe(entry.env)
-    tabular = isinstance(env.observation_space, gym.spaces.Discrete)
+    space: Any = env.observation_space
+    tabular = isinstance(space, gym.spaces.Discrete)
     given = {
         name: {setting: value for setting, value in preset.items() if setting not in LEFT_OUT}
         for name, preset in presets(entry.env).items()
@@ -100,7 +101,7 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
     env.close()
     if tabular:
         made |= {
-            "states": int(env.observation_space.n),
+            "states": int(space.n),
             "layout": _layout(unwrapped),
             "table": _table(unwrapped),
             "discretizers": ["identity"],
@@ -108,7 +109,7 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
             "map": None,
         }
         return made
-    low, high = env.observation_space.low, env.observation_space.high
+    low, high = space.low, space.high
     bounded = bool(np.isfinite([low, high]).all()) and bool((np.abs([low, high]) < 1e6).all())
     components = [quantity.name for quantity in description.observation]
     plane = description.plane or components[:2]
