@@ -7,16 +7,25 @@ from typing import Any
 from qtab.config.choices import CHOICES
 from qtab.config.config import DEFAULTS
 from qtab.config.explanations import default, explanations, groups
-from qtab.config.options import OPTIONS, PREFERENCES, mismatch
+from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, OPTIONS, PREFERENCES, mismatch
 
 LEFT_OUT = frozenset(
-    ("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows", "edges")
-) | {"actions", "baseline", "value_learning_rate", "confidence"}
+    (
+        *("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows"),
+        *("edges", "actions", "sigma", "target_policy", "model", "priority_threshold", "reward_learning_rate"),
+        *("count_bonus", "baseline", "value_learning_rate", "confidence"),
+    )
+)
 """What the page does not offer: settings of Python environments, those too long for a control, and options of choices
 that it does not offer."""
 
-NOT_OFFERED = frozenset(("edges", "ucb", *PREFERENCES))
-"""The choices that the page does not offer: it is about algorithms that learn action values."""
+NOT_OFFERED = frozenset(
+    (
+        *("edges", "ucb", "n_step_tree_backup", "n_step_q_sigma", "prioritized_sweeping"),
+        *(*MONTE_CARLO, *AVERAGE_REWARD, *PREFERENCES),
+    )
+)
+"""The choices that the page does not offer: it shows one-step methods, traces and planning with action values."""
 
 # Types and ranges of the controls. A range is inside the one that the config allows, which a test checks.
 _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
