@@ -4,10 +4,35 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from qtab.config.choices import CHOICES
+from qtab.config.choices import ALGORITHM_NAMES
 from qtab.config.config import DEFAULTS
 from qtab.config.explanations import default, explanations, groups
 from qtab.config.options import OPTIONS, mismatch
+
+OFFERED: Mapping[str, tuple[str, ...]] = {
+    "algorithm": (
+        "q_learning",
+        "sarsa",
+        "expected_sarsa",
+        "double_q_learning",
+        "n_step_sarsa",
+        "sarsa_lambda",
+        "true_online_sarsa_lambda",
+        "watkins_q_lambda",
+        "dyna_q",
+        "dyna_q_plus",
+    ),
+    "learning_rate_schedule": ("constant", "linear", "exponential", "visits"),
+    "traces": ("accumulating", "replacing", "clearing"),
+    "terminal_update": ("target", "assign"),
+    "on_truncation": ("bootstrap", "terminate"),
+    "exploration": ("epsilon_greedy", "softmax"),
+    "epsilon_schedule": ("constant", "linear", "exponential"),
+    "ties": ("first", "random"),
+    "discretizer": ("round", "bins", "tiles", "identity"),
+    "bit_generator": ("PCG64", "MT19937"),
+}
+"""What the page offers of each choice: what rust/web/src/settings makes. The rest is for Python."""
 
 LEFT_OUT = frozenset(
     ("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows", "edges")
@@ -43,17 +68,7 @@ _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
 }
 
 _TITLES = {
-    "q_learning": "Q-learning",
-    "expected_sarsa": "Expected Sarsa",
-    "double_q_learning": "Double Q-learning",
-    "n_step_sarsa": "n-step Sarsa",
-    "sarsa_lambda": "Sarsa(λ)",
-    "true_online_sarsa_lambda": "True online Sarsa(λ)",
-    "watkins_q_lambda": "Watkins's Q(λ)",
-    "dyna_q": "Dyna-Q",
-    "dyna_q_plus": "Dyna-Q+",
     "round": "Rounding",
-    "bins": "Bins",
     "tiles": "Tile coding",
     "identity": "None: states are numbers",
     "epsilon_greedy": "ε-greedy",
@@ -72,7 +87,8 @@ _SYMBOL = re.compile(r"(\w): ")
 
 def title(word: str) -> str:
     """Returns the name of a choice as people write it."""
-    return _TITLES.get(word) or word.replace("_", " ").capitalize()
+    name = ALGORITHM_NAMES.get(word) or _TITLES.get(word) or word.replace("_", " ").capitalize()
+    return name if name.startswith(("n-", "ε")) else name[:1].upper() + name[1:]
 
 
 def setting(name: str, group: str) -> dict[str, Any]:
@@ -80,7 +96,7 @@ def setting(name: str, group: str) -> dict[str, Any]:
     text = _SENTENCES.get(name) or explanations().get(name, "")
     symbol = _SYMBOL.match(text)
     sentence = text[symbol.end() :] if symbol else text
-    choices = CHOICES.get(name)
+    choices = OFFERED.get(name)
     kind, low, high, log = ("choice", None, None, False) if choices else _CONTROLS[name]
     option = OPTIONS.get(name)
     return {
@@ -88,7 +104,7 @@ def setting(name: str, group: str) -> dict[str, Any]:
         "group": group,
         "sentence": sentence[:1].upper() + sentence[1:],
         "type": kind,
-        "choices": choices and [{"value": word, "title": title(word)} for word in choices if word != "edges"],
+        "choices": choices and [{"value": word, "title": title(word)} for word in choices],
         "default": default(name),
         "low": low,
         "high": high,
@@ -97,9 +113,17 @@ def setting(name: str, group: str) -> dict[str, Any]:
     }
 
 
+def is_offered(name: str) -> bool:
+    """Returns whether the page shows a setting: not if it applies to what it does not offer alone."""
+    if name in LEFT_OUT or (name not in OFFERED and name not in _CONTROLS):
+        return False
+    option = OPTIONS.get(name)
+    return option is None or not set(option.values).isdisjoint(OFFERED[option.choice])
+
+
 def settings() -> dict[str, dict[str, Any]]:
     """Returns every setting of the page by its name; the groups in the config's order."""
-    grouped = groups(name for name in DEFAULTS if name not in LEFT_OUT)
+    grouped = groups(name for name in DEFAULTS if is_offered(name))
     return {name: setting(name, group) for group, names in grouped.items() for name in names}
 
 
@@ -107,10 +131,10 @@ def rules() -> list[dict[str, Any]]:
     """Returns the pairs of choices that exclude each other, with the reason in words."""
     found = []
     for name in ("terminal_update", "learning_rate_schedule", "algorithm"):
-        for value in CHOICES[name]:
+        for value in OFFERED[name]:
             for other in ("algorithm", "discretizer"):
-                for chosen in CHOICES[other]:
-                    if other == name or chosen == "edges":
+                for chosen in OFFERED[other]:
+                    if other == name:
                         continue
                     if reason := mismatch(name, value, {**DEFAULTS, other: chosen}):
                         found.append({"setting": name, "value": value, "unless": {other: chosen}, "reason": reason})
