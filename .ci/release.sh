@@ -8,6 +8,14 @@ sdist() {
     cp "$work"/dist/qtab-*.tar.gz dist/
 }
 
+# The WebAssembly module of the playground, which sdist and wheels hold.
+wasm() {
+    if command -v rustup >/dev/null; then
+        rustup target add wasm32-unknown-unknown
+    fi
+    "$host_python" rust/web/build_backend.py
+}
+
 # The wheels of $TARGET, or of this machine, in dist/: one for the stable ABI, and one for each free-threaded interpreter
 # of $FREE_THREADED. From 3.15 on, free-threaded Pythons have a stable ABI too. Zig links those for Linux, so that they
 # run with old C libraries; it also builds for aarch64 on x86_64, and then needs no interpreter.

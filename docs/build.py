@@ -27,7 +27,8 @@ def sphinx(quick: bool) -> int:
     options = ["-b", "html", "-j", "2", "-W", "--keep-going", "-n", "-q"]
     if quick:
         options += ["-D", "nb_execution_mode=off"]
-    returncode = subprocess.run([sys.executable, "-m", "sphinx", *options, str(HERE), str(SITE)], check=False).returncode  # noqa: S603
+    command = [sys.executable, "-m", "sphinx", *options, str(HERE), str(SITE)]
+    returncode = subprocess.run(command, check=False).returncode  # noqa: S603 - our own words
     # The theme's template, which it keeps among its static files, is no page.
     (SITE / "_static" / "webpack-macros.html").unlink(missing_ok=True)
     return returncode

@@ -64,7 +64,9 @@ def public() -> dict[str, str]:
     """Returns the public name of each object by the name under which it is defined."""
     names = {f"qtab.{name}": getattr(qtab, name) for name in qtab.__all__ if name != "sb3"}
     for module in MODULES:
-        names |= {f"qtab.{module}.{name}": getattr(names[f"qtab.{module}"], name) for name in names[f"qtab.{module}"].__all__}
+        names |= {
+            f"qtab.{module}.{name}": getattr(names[f"qtab.{module}"], name) for name in names[f"qtab.{module}"].__all__
+        }
     found: dict[str, str] = {}
     for name, value in names.items():
         if hasattr(value, "__qualname__"):

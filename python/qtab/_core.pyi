@@ -30,6 +30,7 @@ __all__ = [
     "matches_numpy",
     "numpy_uses_libm",
     "parameter_names",
+    "run_testbeds",
     "step_cart_poles",
     "train_many",
 ]
@@ -42,6 +43,9 @@ SCHEDULES: tuple[str, ...]
 def matches_numpy(name: str) -> bool: ...
 def numpy_uses_libm() -> bool: ...
 def parameter_names(name: str) -> list[str]: ...
+def run_testbeds(
+    spec: RunSpec, seeds: Sequence[int], rewards: NDArray[np.float64], optimal: NDArray[np.bool_], threads: int
+) -> None: ...
 def step_cart_poles(env: Any, state: Any, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_]] | None: ...
 def train_many(
     spec: RunSpec, seeds: Sequence[int], results: Results, threads: int, keep_going: bool

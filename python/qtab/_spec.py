@@ -111,7 +111,15 @@ class SoftmaxSpec(TypedDict):
     temperature: float
 
 
-PolicySpec: TypeAlias = EpsilonGreedySpec | SoftmaxSpec
+class UcbSpec(TypedDict):
+    """Chooses the action with the largest upper confidence bound of its value."""
+
+    type: Literal["ucb"]
+    confidence: float
+    ties: Ties
+
+
+PolicySpec: TypeAlias = EpsilonGreedySpec | SoftmaxSpec | UcbSpec
 
 
 class TableSpec(TypedDict):
@@ -135,7 +143,7 @@ InitialQSpec: TypeAlias = TableSpec | UniformSpec | ConstantSpec
 class OneStepSpec(TypedDict):
     """An algorithm without options."""
 
-    type: Literal["q_learning", "sarsa", "expected_sarsa", "double_q_learning"]
+    type: Literal["q_learning", "sarsa", "expected_sarsa", "double_q_learning", "reinforce"]
 
 
 class NStepSarsaSpec(TypedDict):
@@ -177,8 +185,38 @@ class DynaQPlusSpec(TypedDict):
     time_weight: float
 
 
+class GradientBanditSpec(TypedDict):
+    """The gradient bandit algorithm."""
+
+    type: Literal["gradient_bandit"]
+    baseline: bool
+
+
+class StateValuesSpec(TypedDict):
+    """A policy gradient method that learns state values beside the policy."""
+
+    type: Literal["reinforce_with_baseline", "actor_critic"]
+    value_learning_rate: float
+
+
+class ActorCriticLambdaSpec(TypedDict):
+    """Actor-critic with eligibility traces."""
+
+    type: Literal["actor_critic_lambda"]
+    value_learning_rate: float
+    trace_decay: float
+
+
 AlgorithmSpec: TypeAlias = (
-    OneStepSpec | NStepSarsaSpec | TraceSpec | TrueOnlineSarsaLambdaSpec | DynaQSpec | DynaQPlusSpec
+    OneStepSpec
+    | NStepSarsaSpec
+    | TraceSpec
+    | TrueOnlineSarsaLambdaSpec
+    | DynaQSpec
+    | DynaQPlusSpec
+    | GradientBanditSpec
+    | StateValuesSpec
+    | ActorCriticLambdaSpec
 )
 
 

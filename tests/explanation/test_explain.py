@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 import qtab
 from qtab.config.choices import Algorithm
+from qtab.config.options import PREFERENCES
 from qtab.explanation.records import ExplainedStep, Update
 from support.gridworld import Room
 from support.learner_settings import run_settings
 
 CAR = "MountainCar-v0"
-ALGORITHMS = get_args(Algorithm)
+ALGORITHMS = [name for name in get_args(Algorithm) if name not in PREFERENCES]
 EXAMPLES = max(1, (settings.default or settings()).max_examples // 20)
 TRACED = "sarsa_lambda", "true_online_sarsa_lambda", "watkins_q_lambda"
 SMALL: dict[str, Any] = {"seed": 3, "episodes": 6, "max_episode_steps": 60, "epsilon": 0.5}

@@ -8,12 +8,13 @@ from hypothesis import given, settings
 
 import qtab
 from qtab.config.choices import Algorithm
+from qtab.config.options import PREFERENCES
 from qtab.explanation import explain as module
 from qtab.explanation.fast_forward import Start, start_of
 from support.learner_settings import run_settings
 
 CAR = "MountainCar-v0"
-ALGORITHMS = get_args(Algorithm)
+ALGORITHMS = [name for name in get_args(Algorithm) if name not in PREFERENCES]
 EXAMPLES = max(1, (settings.default or settings()).max_examples // 20)
 
 

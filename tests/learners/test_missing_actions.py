@@ -36,7 +36,7 @@ def settings(draw):
         **draw(own_options(algorithm)),
         "algorithm": algorithm,
         "initial_q": np.array(rows),
-        **draw(explorations()),
+        **draw(explorations(["epsilon_greedy", "softmax", "ucb"])),
         "seed": draw(st.integers(0, 2**32 - 1)),
         "episodes": 30,
     }

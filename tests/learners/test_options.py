@@ -17,6 +17,8 @@ VALUES: dict[str, Any] = {
     "n_steps": 4,
     "planning_steps": 5,
     "time_weight": 0.1,
+    "baseline": True,
+    "value_learning_rate": 0.1,
     "min_learning_rate": 0.0,
     "learning_rate_decay": 0.9,
     "learning_rate_warm_up": 0,
@@ -27,6 +29,7 @@ VALUES: dict[str, Any] = {
     "epsilon_decay": 0.9,
     "epsilon_warm_up": 0,
     "temperature": 1.0,
+    "confidence": 2.0,
     "scale": (10, 100),
     "tilings": 8,
     "tiles": (8, 8),
@@ -45,7 +48,7 @@ def strangers() -> list[tuple[str, dict[str, Any]]]:
     choices = {
         "algorithm": ["q_learning", "sarsa_lambda", "n_step_sarsa", "dyna_q", "true_online_sarsa_lambda"],
         "learning_rate_schedule": ["constant", "linear", "visits"],
-        "exploration": ["epsilon_greedy", "softmax"],
+        "exploration": ["epsilon_greedy", "softmax", "ucb"],
         "epsilon_schedule": ["constant", "linear"],
         "discretizer": ["round", "bins", "edges", "tiles"],
     }
@@ -71,7 +74,7 @@ def test_an_option_that_does_not_apply_is_refused_by_name(name: str, chosen: dic
 def test_dyna_needs_a_table(algorithm: Any) -> None:
     with pytest.raises(
         ValueError,
-        match=r"^algorithm must be 'q_learning', .* or 'watkins_q_lambda' for discretizer 'tiles', got 'dyna_q",
+        match=r"^algorithm must be 'q_learning', .* or 'actor_critic_lambda' for discretizer 'tiles', got 'dyna_q",
     ):
         qtab.train("MountainCar-v0", algorithm=algorithm, **TILES)
 

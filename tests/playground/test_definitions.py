@@ -80,3 +80,13 @@ def test_python_refuses_what_a_rule_excludes(rule):
     beside = {"scale": (10.0, 100.0)} if rule["unless"].get("discretizer") != "tiles" else {}
     with pytest.raises(ValueError, match=rule["setting"]):
         qtab.Config(**{**beside, rule["setting"]: rule["value"], **rule["unless"]})
+
+
+def test_nothing_is_said_of_what_is_not_offered():
+    for name, setting in SETTINGS.items():
+        assert "preference" not in setting["sentence"], name
+        assert "ucb" not in setting["sentence"], name
+        if setting["choices"]:
+            assert {choice["value"] for choice in setting["choices"]} <= {*OFFERED[name]}, name
+        if applies := setting["applies"]:
+            assert {*applies["values"]} <= {*OFFERED[applies["choice"]]}, name

@@ -1,12 +1,13 @@
 """Random settings of every algorithm, for the tests that compare Rust with NumPy."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
 from hypothesis import strategies as st
 
 from qtab import _core
-from qtab.config.options import ONE_STEP, TABLES_ONLY
+from qtab.config.options import ONE_STEP, PREFERENCES, TABLES_ONLY
 from qtab.envs.registry import ENTRIES
 from support.machine import MACHINE
 
@@ -41,6 +42,8 @@ TRAINED = [
     for env in LIMITS
 ]
 """The environments that train in Rust on this machine."""
+BY_EPISODE = ("true_online_sarsa_lambda", *PREFERENCES)
+"""The algorithms whose learning rate cannot fall with the visits."""
 share = st.floats(0, 1)
 falling = st.sampled_from(["linear", "exponential"])
 
@@ -60,10 +63,21 @@ def learning_rates(draw: st.DrawFn, most: float, by_visits: bool) -> dict[str, A
     return settings
 
 
+def possible_explorations(algorithm: str, features: dict[str, Any]) -> list[str]:
+    """The ways to explore that an algorithm can use with a discretizer."""
+    if algorithm in PREFERENCES:
+        return ["softmax"]
+    return ["epsilon_greedy", "softmax"] + ["ucb"] * (features.get("discretizer") != "tiles")
+
+
 @st.composite
-def explorations(draw: st.DrawFn) -> dict[str, Any]:
-    if draw(st.booleans()):
-        return {"exploration": "softmax", "temperature": draw(st.floats(0.01, 100))}
+def explorations(draw: st.DrawFn, choices: Sequence[str]) -> dict[str, Any]:
+    chosen = draw(st.sampled_from(choices))
+    if chosen == "softmax":
+        return {"exploration": chosen, "temperature": draw(st.floats(0.01, 100))}
+    if chosen == "ucb":
+        ties = draw(st.sampled_from(["first", "random"]))
+        return {"exploration": chosen, "confidence": draw(st.floats(0, 100)), "ties": ties}
     epsilon = draw(share)
     kind = draw(st.sampled_from(["constant", "linear", "exponential"]))
     settings: dict[str, Any] = {"epsilon": epsilon, "epsilon_schedule": kind}
@@ -129,6 +143,10 @@ def own_options(algorithm: str) -> st.SearchStrategy[dict[str, Any]]:
         "true_online_sarsa_lambda": traced,
         "dyna_q": {"planning_steps": st.integers(0, 5)},
         "dyna_q_plus": {"planning_steps": st.integers(0, 5), "time_weight": st.floats(0, 1)},
+        "gradient_bandit": {"baseline": st.booleans()},
+        "reinforce_with_baseline": {"value_learning_rate": share},
+        "actor_critic": {"value_learning_rate": share},
+        "actor_critic_lambda": {"value_learning_rate": share, "trace_decay": share},
     }
     return st.fixed_dictionaries(options.get(algorithm, {}))
 
@@ -141,8 +159,8 @@ def run_settings(draw: st.DrawFn, algorithm: str, env: str = CAR) -> dict[str, A
     most = 0.5 if "tiles" in settings else 1.0
     return {
         **settings,
-        **draw(learning_rates(most, by_visits=algorithm != "true_online_sarsa_lambda")),
-        **draw(explorations()),
+        **draw(learning_rates(most, by_visits=algorithm not in BY_EPISODE)),
+        **draw(explorations(possible_explorations(algorithm, settings))),
         **draw(own_options(algorithm)),
         "algorithm": algorithm,
         "discount": draw(st.floats(0, 1)),

@@ -73,6 +73,28 @@ class DynaQPlus(AlgorithmSettings):
     time_weight: float
 
 
+@dataclass(frozen=True)
+class GradientBandit(AlgorithmSettings):
+    """The gradient bandit algorithm."""
+
+    baseline: bool
+
+
+@dataclass(frozen=True)
+class WithStateValues(AlgorithmSettings):
+    """REINFORCE with baseline, or one-step actor-critic."""
+
+    value_learning_rate: float
+
+
+@dataclass(frozen=True)
+class ActorCriticLambda(AlgorithmSettings):
+    """Actor-critic with eligibility traces."""
+
+    value_learning_rate: float
+    trace_decay: float
+
+
 ALGORITHMS: Mapping[Algorithm, type[AlgorithmSettings]] = {
     "q_learning": AlgorithmSettings,
     "sarsa": AlgorithmSettings,
@@ -84,6 +106,11 @@ ALGORITHMS: Mapping[Algorithm, type[AlgorithmSettings]] = {
     "watkins_q_lambda": EligibilityTraces,
     "dyna_q": DynaQ,
     "dyna_q_plus": DynaQPlus,
+    "gradient_bandit": GradientBandit,
+    "reinforce": AlgorithmSettings,
+    "reinforce_with_baseline": WithStateValues,
+    "actor_critic": WithStateValues,
+    "actor_critic_lambda": ActorCriticLambda,
 }
 """The settings of each algorithm."""
 

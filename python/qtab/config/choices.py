@@ -14,6 +14,11 @@ Algorithm: TypeAlias = Literal[
     "watkins_q_lambda",
     "dyna_q",
     "dyna_q_plus",
+    "gradient_bandit",
+    "reinforce",
+    "reinforce_with_baseline",
+    "actor_critic",
+    "actor_critic_lambda",
 ]
 ALGORITHM_NAMES: Mapping[str, str] = {
     "q_learning": "Q-learning",
@@ -26,11 +31,16 @@ ALGORITHM_NAMES: Mapping[str, str] = {
     "watkins_q_lambda": "Watkins's Q(λ)",
     "dyna_q": "Dyna-Q",
     "dyna_q_plus": "Dyna-Q+",
+    "gradient_bandit": "gradient bandit",
+    "reinforce": "REINFORCE",
+    "reinforce_with_baseline": "REINFORCE with baseline",
+    "actor_critic": "one-step actor-critic",
+    "actor_critic_lambda": "actor-critic with eligibility traces",
 }
 """How Sutton & Barto write the names of the algorithms, for titles and tables."""
 
 LearningRateSchedule: TypeAlias = Literal["constant", "linear", "exponential", "visits"]
-Exploration: TypeAlias = Literal["epsilon_greedy", "softmax"]
+Exploration: TypeAlias = Literal["epsilon_greedy", "softmax", "ucb"]
 EpsilonSchedule: TypeAlias = Literal["constant", "linear", "exponential"]
 Ties: TypeAlias = Literal["first", "random"]
 Traces: TypeAlias = Literal["accumulating", "replacing", "clearing"]

@@ -28,6 +28,7 @@ from qtab.config.choices import (
     Ties,
     Traces,
 )
+from qtab.config.options import PREFERENCES
 from qtab.config.unknown import check_names
 from qtab.config.validation import validated
 
@@ -78,7 +79,7 @@ class Config:
     """The learning algorithm."""
     learning_rate: float = 0.2
     """α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided among the
-    tilings, and may be up to 2."""
+    tilings, and may be up to 2. For preferences any step size that is not negative."""
     discount: float = 0.9
     """γ: the discount factor, in [0, 1]."""
     learning_rate_schedule: LearningRateSchedule = "constant"
@@ -103,9 +104,13 @@ class Config:
     """The number of updates from the model after each step."""
     time_weight: float | None = None
     """κ: Dyna-Q+ plans with a bonus of κ √τ on the reward of an action not tried for τ steps."""
+    baseline: bool | None = None
+    """Whether the gradient bandit algorithm compares rewards with their average in the state, or with 0."""
+    value_learning_rate: float | None = None
+    """α of the state values that are learned beside a policy: the baseline of REINFORCE, the critic of actor-critic."""
     initial_q: float | tuple[float, float] | NDArray[np.float64] = (-1.0, 1.0)
-    """The initial Q table: drawn uniformly from a range (low, high), one number everywhere, or an array to continue
-    from. In an array, -inf marks an action that a state does not have and that is never chosen."""
+    """The initial Q table, or preferences: drawn uniformly from a range (low, high), one number everywhere, or an array
+    to continue from. In an array, -inf marks an action that a state does not have and that is never chosen."""
     terminal_update: TerminalUpdate = "target"
     """The update at a terminal state: move the value towards the reward (target, as in the textbook), or set it to the
     reward (assign, as in the well-known article)."""
@@ -116,7 +121,8 @@ class Config:
     # Exploration
 
     exploration: Exploration = "epsilon_greedy"
-    """How the agent chooses actions."""
+    """How the agent chooses actions: a random one at times (epsilon_greedy), by the softmax of the values, or by their
+    upper confidence bounds (ucb). Algorithms that learn preferences need softmax, which is their default."""
     epsilon: float | None = None
     """ε: the probability of a random action in the first episode, in [0, 1]."""
     epsilon_schedule: EpsilonSchedule | None = None
@@ -131,6 +137,8 @@ class Config:
     """Which of several greedy actions to take: the first, as np.argmax does, or a random one."""
     temperature: float | None = None
     """τ: softmax chooses an action with probability proportional to exp(Q / τ); above 0."""
+    confidence: float | None = None
+    """c: ucb chooses the action with the largest Q + c √(ln t / N) after N of t choices in a state; not negative."""
 
     action_mask: Mask = False
     """Which actions each observation has: those of the environment's masks (True), by its method action_masks() or else
@@ -240,6 +248,8 @@ def _suggesting(init: Callable[..., None]) -> Callable[..., None]:
     @wraps(init)
     def checked(self: Config, *args: Any, **settings: Any) -> None:
         check_names(settings, DEFAULTS, "Config")
+        if settings.get("algorithm") in PREFERENCES:
+            settings.setdefault("exploration", "softmax")
         init(self, *args, **settings)
 
     return checked

@@ -23,25 +23,32 @@ class Option:
 
 _WITH_TRACES = ("sarsa_lambda", "watkins_q_lambda")
 _FALLING = ("linear", "exponential")
+WITH_STATE_VALUES = ("reinforce_with_baseline", "actor_critic", "actor_critic_lambda")
+"""The algorithms that learn state values beside a policy: a second table, with the value of a row in every column."""
+PREFERENCES = ("gradient_bandit", "reinforce", *WITH_STATE_VALUES)
+"""The algorithms whose table holds preferences, of which the policy is the softmax, instead of action values."""
 
 # A choice comes before the options that depend on it.
 OPTIONS: Mapping[str, Option] = {
-    "trace_decay": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda"), 0.9),
+    "trace_decay": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda", "actor_critic_lambda"), 0.9),
     "traces": Option("algorithm", _WITH_TRACES, "replacing"),
     "trace_cutoff": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda"), 0.0),
     "n_steps": Option("algorithm", ("n_step_sarsa",), 4),
     "planning_steps": Option("algorithm", ("dyna_q", "dyna_q_plus"), 10),
     "time_weight": Option("algorithm", ("dyna_q_plus",), 1e-3),
+    "baseline": Option("algorithm", ("gradient_bandit",), True),
+    "value_learning_rate": Option("algorithm", WITH_STATE_VALUES, 0.1),
     "min_learning_rate": Option("learning_rate_schedule", (*_FALLING, "visits"), 0.0),
     "learning_rate_decay": Option("learning_rate_schedule", ("exponential",), 0.999),
     "learning_rate_warm_up": Option("learning_rate_schedule", _FALLING, 0),
     "epsilon": Option("exploration", ("epsilon_greedy",), 0.8),
     "epsilon_schedule": Option("exploration", ("epsilon_greedy",), "linear"),
-    "ties": Option("exploration", ("epsilon_greedy",), "first"),
+    "ties": Option("exploration", ("epsilon_greedy", "ucb"), "first"),
     "min_epsilon": Option("epsilon_schedule", _FALLING, 0.0),
     "epsilon_decay": Option("epsilon_schedule", ("exponential",), 0.999),
     "epsilon_warm_up": Option("epsilon_schedule", _FALLING, 0),
     "temperature": Option("exploration", ("softmax",), 1.0),
+    "confidence": Option("exploration", ("ucb",), 2.0),
     "shape": Option("discretizer", (FUNCTION,), None),
     "max_rows": Option("discretizer", ("round", "bins", "edges", "identity", FUNCTION, MAPPING), None),
     "scale": Option("discretizer", ("round",), None),
@@ -56,13 +63,26 @@ OPTIONS: Mapping[str, Option] = {
 
 ONE_STEP = ("q_learning", "sarsa", "expected_sarsa", "double_q_learning", "dyna_q", "dyna_q_plus")
 """The algorithms that can assign a value at a terminal state, as the article does, if they learn a table."""
-TABLES_ONLY = ("dyna_q", "dyna_q_plus")
+TABLES_ONLY = ("dyna_q", "dyna_q_plus", "gradient_bandit")
 """The algorithms that do not work with tile coding."""
 
 
 def n_tables(algorithm: str) -> int:
     """Returns how many tables an algorithm learns."""
-    return 2 if algorithm == "double_q_learning" else 1
+    return 2 if algorithm in ("double_q_learning", *WITH_STATE_VALUES) else 1
+
+
+def check_learns_values(config: Any) -> None:
+    """Refuses the config of a run that learned preferences, where action values are needed.
+
+    Raises:
+        ValueError: names the algorithm.
+    """
+    if config.algorithm in PREFERENCES:
+        raise ValueError(
+            f"run must be of an algorithm that learns action values, got one of {config.algorithm!r}, which learns "
+            "preferences"
+        )
 
 
 def check_options(fields: Mapping[str, Any]) -> None:
@@ -74,7 +94,7 @@ def check_options(fields: Mapping[str, Any]) -> None:
     for name in OPTIONS:
         if is_set(fields[name]) and (reason := mismatch(name, fields[name], fields)):
             raise ValueError(reason)
-    for name in ("terminal_update", "learning_rate_schedule", "algorithm"):
+    for name in ("terminal_update", "learning_rate_schedule", "algorithm", "exploration", "action_mask"):
         if reason := mismatch(name, fields[name], fields):
             raise ValueError(reason)
 
@@ -96,11 +116,19 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
             return f"terminal_update must be 'target' for algorithm {algorithm!r}, got 'assign'"
         if with_tiles:
             return "terminal_update must be 'target' for discretizer 'tiles', got 'assign'"
-    if (name, value, algorithm) == ("learning_rate_schedule", "visits", "true_online_sarsa_lambda"):
+    by_episode = ("true_online_sarsa_lambda", *PREFERENCES)
+    if (name, value) == ("learning_rate_schedule", "visits") and algorithm in by_episode:
         return other_choice(name, value, ("visits",), f"for algorithm {algorithm!r}")
     if name == "algorithm" and value in TABLES_ONLY and with_tiles:
         others = other_choice(name, value, TABLES_ONLY, "for discretizer 'tiles'")
         return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"
+    if name == "exploration" and algorithm in PREFERENCES and value != "softmax":
+        return f"exploration must be 'softmax' for algorithm {algorithm!r}, got {shown(value)}"
+    if name == "action_mask" and value is not False and algorithm in PREFERENCES and with_tiles:
+        # They update states after the next one is seen, and only the mask of the last one is known.
+        return f"action_mask must be False for algorithm {algorithm!r} with discretizer 'tiles', got {shown(value)}"
+    if (name, value) == ("exploration", "ucb") and with_tiles:
+        return other_choice(name, value, ("ucb",), "for discretizer 'tiles'")
     return None
 
 
@@ -139,6 +167,8 @@ def is_set(value: Any) -> bool:
 
 def _effective(choice: str, fields: Mapping[str, Any]) -> Any:
     """The value of a choice, or its default if it is itself an option that applies and is not given."""
+    if choice == "exploration" and fields["algorithm"] in PREFERENCES:
+        return "softmax"
     value = kind(fields[choice]) if choice == "discretizer" else fields[choice]
     if value is None and choice in OPTIONS:
         option = OPTIONS[choice]

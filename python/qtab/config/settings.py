@@ -63,6 +63,8 @@ class SharedSettings(EnvironmentSettings, total=False):
     n_steps: Integer | None
     planning_steps: Integer | None
     time_weight: Real | None
+    baseline: bool | None
+    value_learning_rate: Real | None
     initial_q: Real | tuple[Real, Real] | list[Any] | Array
     terminal_update: TerminalUpdate
     on_truncation: OnTruncation
@@ -74,6 +76,7 @@ class SharedSettings(EnvironmentSettings, total=False):
     epsilon_warm_up: Integer | None
     ties: Ties | None
     temperature: Real | None
+    confidence: Real | None
     action_mask: bool | Callable[[Any], Any]
     discretizer: DiscretizerName | Callable[[Any], Any] | Mapping[str, Any]
     shape: Integer | Integers | None

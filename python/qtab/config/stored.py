@@ -6,7 +6,7 @@ from typing import Any
 from qtab.config.action_mask import STORED
 from qtab.config.config import DEFAULTS, Config
 
-ADDED = ("action_mask", "shape", "max_rows")
+ADDED = ("action_mask", "shape", "max_rows", "baseline", "value_learning_rate", "confidence")
 """Settings that earlier versions do not have: files hold them only where they differ from their defaults."""
 
 

@@ -35,6 +35,8 @@ _OTHER_NAMES = {
     "epsilon_decay": ("eps_decay", "exploration_decay"),
     "ties": ("tie_breaking", "tie_break"),
     "temperature": ("tau",),
+    "confidence": ("ucb_c", "c", "ucb"),
+    "value_learning_rate": ("alpha_w", "critic_learning_rate", "critic_lr", "value_lr"),
     "discretizer": ("discretization", "features"),
     "bins": ("n_bins", "num_bins", "buckets"),
     "tilings": ("n_tilings", "num_tilings"),

@@ -119,6 +119,7 @@ DESCRIPTIONS: Mapping[str, Description] = {
         ("stick", "hit"),
         layout="blackjack",
     ),
+    "qtab/ShortCorridor": Description((Quantity("state", values=("corridor",)),), ("left", "right")),
     "qtab/MaximizationBias": Description((Quantity("state", values=("A", "B", "end")),), ("right", "left")),
 }
 """The environments by their id, without its version."""

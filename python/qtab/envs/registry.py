@@ -83,8 +83,14 @@ ENTRIES: Mapping[str, EnvEntry] = {
 """Gymnasium's environments, by Gymnasium's id."""
 
 EXTRA: Mapping[str, EnvEntry] = {
+    f"{PREFIX}KArmedBandit-v0": EnvEntry(
+        "KArmedBandit", "", "qtab.envs.k_armed_bandit:KArmedBanditEnv", has_table=True
+    ),
     f"{PREFIX}MaximizationBias-v0": EnvEntry(
         "MaximizationBias", "", "qtab.envs.maximization_bias:MaximizationBiasEnv", has_table=True
+    ),
+    f"{PREFIX}ShortCorridor-v0": EnvEntry(
+        "ShortCorridor", "", "qtab.envs.short_corridor:ShortCorridorEnv", has_table=True
     ),
     f"{PREFIX}GridWorld5x5-v0": _table("qtab.envs.small_grid_worlds:grid_world_5x5"),
     f"{PREFIX}GridWorld4x4-v0": _table("qtab.envs.small_grid_worlds:grid_world_4x4"),

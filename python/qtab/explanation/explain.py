@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
+from qtab.config.options import check_learns_values
 from qtab.explanation.explanation import Explanation
 from qtab.explanation.fast_forward import Start, start_of
 from qtab.explanation.records import ExplainedStep
@@ -53,10 +54,11 @@ def explain(
     Raises:
         RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range. Of a run that was resumed with more episodes while a rate fell, only
-            the episodes before can be explained.
+        ValueError: for an argument out of range, or a run of an algorithm that learns preferences. Of a run
+            that was resumed with more episodes while a rate fell, only the episodes before can be explained.
     """
     checks.instance("run", run, Run)
+    check_learns_values(run.config)
     finished = len(run.episode_returns)
     if finished == 0:
         raise ValueError("run must have a finished episode, got one that was stopped during its first")

@@ -153,9 +153,10 @@ class Watcher(Observer):
         for _ in range(0 if self.start is None else self.start.episode):
             schedule.end_episode()
 
-    def _chose(self, values: NDArray[np.float64], action: int) -> None:
+    def _chose(self, values: NDArray[np.float64], state: list[int], bounds: list[float], action: int) -> None:
         if self.active and self._policy is not None:
-            self.choices.append(explained(self._policy, values, action, self._draws[0]))
+            drawn = self._draws[0] if self._draws else float("nan")
+            self.choices.append(explained(self._policy, values, state, bounds, action, drawn))
 
     def _target(self, table: int) -> tuple[int, tuple[float, ...], float | None]:
         """The step that is updated next, the rewards in its target, and the value of what follows them."""

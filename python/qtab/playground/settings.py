@@ -78,6 +78,9 @@ _TITLES = {
 }
 # Where the config's sentence speaks of what the page does not offer.
 _SENTENCES = {
+    "learning_rate": "α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided "
+    "among the tilings, and may be up to 2.",
+    "exploration": "How the agent chooses actions: a random one at times, or by the softmax of the values.",
     "max_episode_steps": "The time limit of an episode, in steps.",
     "initial_q": "The initial Q table: drawn uniformly from a range (low, high), or one number everywhere.",
     "discretizer": "How observations index the Q table: rounded to a grid, by bins of equal width, or by tile coding.",
@@ -99,6 +102,7 @@ def setting(name: str, group: str) -> dict[str, Any]:
     choices = OFFERED.get(name)
     kind, low, high, log = ("choice", None, None, False) if choices else _CONTROLS[name]
     option = OPTIONS.get(name)
+    known = OFFERED[option.choice].__contains__ if option else None
     return {
         "symbol": symbol[1] if symbol else None,
         "group": group,
@@ -109,7 +113,7 @@ def setting(name: str, group: str) -> dict[str, Any]:
         "low": low,
         "high": high,
         "log": log,
-        "applies": None if option is None else {"choice": option.choice, "values": list(option.values)},
+        "applies": None if option is None else {"choice": option.choice, "values": [*filter(known, option.values)]},
     }
 
 

@@ -2,12 +2,15 @@
 
 from collections.abc import Callable, Mapping
 
+from qtab.reference.actor_critic import actor_critic, actor_critic_lambda
 from qtab.reference.double_q_learning import double_q_learning
 from qtab.reference.dyna_q import dyna_q
 from qtab.reference.dyna_q_plus import dyna_q_plus
 from qtab.reference.expected_sarsa import expected_sarsa
+from qtab.reference.gradient_bandit import gradient_bandit
 from qtab.reference.n_step_sarsa import n_step_sarsa
 from qtab.reference.q_learning import q_learning
+from qtab.reference.reinforce import reinforce, reinforce_with_baseline
 from qtab.reference.sarsa import sarsa
 from qtab.reference.sarsa_lambda import sarsa_lambda
 from qtab.reference.streams import agent_stream
@@ -28,19 +31,29 @@ LEARNERS: Mapping[str, Callable[..., Result]] = {
         watkins_q_lambda,
         dyna_q,
         dyna_q_plus,
+        gradient_bandit,
+        reinforce,
+        reinforce_with_baseline,
+        actor_critic,
+        actor_critic_lambda,
     )
 }
 """Each algorithm by its name."""
 
 __all__ = [
     "LEARNERS",
+    "actor_critic",
+    "actor_critic_lambda",
     "agent_stream",
     "double_q_learning",
     "dyna_q",
     "dyna_q_plus",
     "expected_sarsa",
+    "gradient_bandit",
     "n_step_sarsa",
     "q_learning",
+    "reinforce",
+    "reinforce_with_baseline",
     "sarsa",
     "sarsa_lambda",
     "true_online_sarsa_lambda",

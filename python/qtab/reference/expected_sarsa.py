@@ -24,7 +24,7 @@ def expected_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) 
                 task.end(Q, state, action, step.reward)
             else:
                 next_values = task.values(Q, step.state)
-                shares = zip(task.policy.probabilities(next_values), next_values, strict=True)
+                shares = zip(task.policy.probabilities(next_values, step.state), next_values, strict=True)
                 terms = [p * float(q) for p, q in shares if (p, q) != (0.0, -math.inf)]
                 expected = terms[0]
                 for term in terms[1:]:

@@ -71,6 +71,14 @@ class Task:
         self.observer.table(Q)
         return Q
 
+    def critic_table(self) -> Table:
+        """Returns state values beside a table of preferences: 0 at first, unless both tables are given."""
+        if isinstance(self.config.initial_q, np.ndarray):
+            return self.table(1, tables=2)
+        w = np.zeros((self.n_rows, self.n_actions))
+        self.observer.table(w)
+        return w
+
     def initial_table(self, index: int, tables: int) -> Table:
         """Returns the initial values: a number, random numbers, or given ones."""
         shape = (self.n_rows, self.n_actions)
@@ -110,7 +118,7 @@ class Task:
 
     def choose(self, Q: Table, state: Rows) -> int:
         """Returns an action by the policy."""
-        return self.policy.choose(self.values(Q, state))
+        return self.policy.choose(self.values(Q, state), state)
 
     def values(self, Q: Table, state: Rows) -> NDArray[np.float64]:
         """Returns Q(S, ·), with -inf for the actions that S does not have."""

@@ -43,6 +43,12 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
         ax.set_xlim(*experiment.x_range)
     if experiment.y_range is not None:
         ax.set_ylim(*experiment.y_range)
+    for text, height in experiment.y_marks.items():
+        across = ax.get_yaxis_transform()
+        ax.hlines(height, 0, 1, transform=across, color="0.45", linewidth=1, linestyle=":")
+        ax.annotate(
+            text, (0.01, height), (0, -11), ("axes fraction", "data"), "offset points", color="0.45", fontsize=9
+        )
     finish(ax, experiment.x_label, experiment.y_label, experiment.heading)
     legend = ax.get_legend()
     if legend is not None and label_ends(ax, drawn, colors):

@@ -1,7 +1,8 @@
 //! A policy chosen at run time.
 
 use super::tie_breaking::random_action;
-use super::{Policy, Softmax, TieBreaking};
+use super::{Policy, Softmax, TieBreaking, Ucb};
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::random::Rng;
 use crate::schedules::Schedule;
 
@@ -24,12 +25,19 @@ pub enum AnyPolicy {
     },
     /// The softmax policy (Sutton & Barto, equation 2.11).
     Softmax(Softmax),
+    /// Upper-confidence-bound action selection (Sutton & Barto, section 2.7), for one active row.
+    Ucb(Ucb),
 }
 
 impl AnyPolicy {
     /// The softmax policy over `num_actions` actions.
     pub fn softmax(temperature: f64, num_actions: usize) -> Self {
         Self::Softmax(Softmax::new(temperature, num_actions))
+    }
+
+    /// The gradient of ln π(A) with respect to the preferences of the actions; 0 for policies other than the softmax.
+    pub(crate) fn log_gradient(&mut self, values: &[f64], action: usize) -> &[f64] {
+        if let Self::Softmax(softmax) = self { softmax.log_gradient(values, action) } else { &[] }
     }
 }
 
@@ -53,6 +61,15 @@ impl Policy for AnyPolicy {
                 }
             }
             Self::Softmax(softmax) => softmax.choose(values, rng),
+            Self::Ucb(ucb) => ucb.choose(0, values, rng),
+        }
+    }
+
+    #[inline]
+    fn choose_in(&mut self, rows: &[u32], values: &[f64], rng: &mut impl Rng) -> usize {
+        match self {
+            Self::Ucb(ucb) => ucb.choose(rows[0], values, rng),
+            _ => self.choose(values, rng),
         }
     }
 
@@ -64,7 +81,20 @@ impl Policy for AnyPolicy {
                 ties.expected_value(epsilon.value(), values.iter().copied().filter(is_available))
             }
             Self::Softmax(softmax) => softmax.expected_value(values),
+            Self::Ucb(ucb) => ucb.expected_value(0, values),
         }
+    }
+
+    #[inline]
+    fn expected_value_in(&mut self, rows: &[u32], values: &[f64]) -> f64 {
+        match self {
+            Self::Ucb(ucb) => ucb.expected_value(rows[0], values),
+            _ => self.expected_value(values),
+        }
+    }
+
+    fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        if let Self::Ucb(ucb) = self { ucb.persist_counts(checkpoint) } else { Ok(()) }
     }
 
     fn end_episode(&mut self) {

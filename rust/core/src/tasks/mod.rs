@@ -2,6 +2,7 @@
 
 mod boxed_task;
 mod episode_recorder;
+mod k_armed_bandit;
 mod native_task;
 mod rng_snapshot;
 mod task;
@@ -9,6 +10,7 @@ mod visit_counter;
 
 pub use boxed_task::BoxedTask;
 pub use episode_recorder::{EpisodeRecorder, Recording, Recordings};
+pub use k_armed_bandit::{KArmedBandit, Testbed};
 pub use native_task::{NativeTask, TimedState};
 pub use rng_snapshot::RngSnapshot;
 pub use task::{Next, Task, Transition};

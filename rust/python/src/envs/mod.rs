@@ -5,12 +5,14 @@
 
 mod classic_control;
 mod gymnasium;
+mod k_armed_bandit;
 mod maximization_bias;
 mod native_env;
 mod py_classic_control;
 mod py_native_env;
 mod py_vector_env;
 mod registry;
+mod short_corridor;
 mod toy_text;
 
 pub(crate) use classic_control::{numpy_uses_libm, step_cart_poles};

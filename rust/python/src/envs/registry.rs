@@ -6,8 +6,10 @@ use pyo3::prelude::*;
 use qtab_core::envs::classic_control::{Acrobot, CartPole, ContinuousMountainCar, MountainCar, Pendulum};
 
 use super::classic_control::DynClassicEnv;
+use super::k_armed_bandit::KArmedBanditEnv;
 use super::maximization_bias::MaximizationBiasEnv;
 use super::native_env::NativeEnv;
+use super::short_corridor::ShortCorridorEnv;
 use super::toy_text::{BlackjackEnv, TableEnv, TaxiEnv};
 use crate::error::invalid;
 
@@ -25,9 +27,11 @@ const ENVS: &[(&str, Entry)] = &[
     ("Blackjack", Entry::FromGymnasium(BlackjackEnv::from_gymnasium)),
     ("CartPole", Entry::ClassicControl(|| Arc::new(CartPole::default()))),
     ("ContinuousMountainCar", Entry::ClassicControl(|| Arc::new(ContinuousMountainCar::default()))),
+    ("KArmedBandit", Entry::FromGymnasium(KArmedBanditEnv::from_gymnasium)),
     ("MaximizationBias", Entry::FromGymnasium(MaximizationBiasEnv::from_gymnasium)),
     ("MountainCar", Entry::ClassicControl(|| Arc::new(MountainCar::default()))),
     ("Pendulum", Entry::ClassicControl(|| Arc::new(Pendulum::default()))),
+    ("ShortCorridor", Entry::FromGymnasium(ShortCorridorEnv::from_gymnasium)),
     ("Table", Entry::FromGymnasium(TableEnv::from_gymnasium)),
     ("Taxi", Entry::FromGymnasium(TaxiEnv::from_gymnasium)),
 ];

@@ -88,6 +88,25 @@ where
     Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
 }
 
+/// Boxed runs of a task that is made from a seed. `shape` is the number of rows and of active rows.
+pub(crate) fn boxed_factory<W>(
+    new_task: impl Fn(&Seed) -> W + Send + Sync + 'static,
+    shape: (usize, usize),
+    spec: &Arc<RunSpec>,
+    record: usize,
+    keep: fn(Recordings<W::Snapshot>) -> AnyRecordings,
+) -> Box<dyn RunFactory>
+where
+    W: RngSnapshot + Task<Active: Send, State: Send> + Send + 'static,
+    W::Snapshot: Send + 'static,
+    RunError: From<W::Error> + From<TrainingError<W::Error>>,
+{
+    let spec = Arc::clone(spec);
+    let build =
+        move |seed: &Seed, stop: &StopFlag<'_>| boxed_run(new_task(seed), shape, seed, &spec, (record, stop), keep);
+    Box::new(Factory { build, batching: Batching::one_by_one() })
+}
+
 /// A run of any learner, with recordings if asked for. `shape` is the number of rows and of active rows.
 pub(super) fn boxed_run<W>(
     task: W,
@@ -146,11 +165,14 @@ where
     // The generator draws both tables before the run takes it over.
     let second_table = match spec.algorithm.n_tables() {
         1 => None,
+        _ if spec.algorithm.value_learning_rate().is_some() => {
+            Some(spec.initial_q.critic_table((n_rows, spec.num_actions), stop)?)
+        }
         tables => Some(spec.initial_q.table((1, tables), (n_rows, spec.num_actions), &mut rng, stop)?),
     };
     let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation };
     let run = spec.algorithm.learner::<R, _>(agent, second_table, stop, run).map_err(allocation)?;
-    run.ok_or_else(|| invalid("discretizer", "one with one active row, for Dyna", "'tiles'"))
+    run.ok_or_else(|| invalid("discretizer", "one with one active row, for this algorithm", "'tiles'"))
 }
 
 /// All of a run but its learner.

@@ -24,6 +24,18 @@ pub(crate) const ALGORITHMS: &[Variant<AnyAlgorithm>] = &[
         let (planning_steps, time_weight) = (fields.get("planning_steps")?, fields.get("time_weight")?);
         Ok(AnyAlgorithm::DynaQPlus { planning_steps, time_weight })
     }),
+    ("gradient_bandit", |fields| Ok(AnyAlgorithm::GradientBandit { baseline: fields.get("baseline")? })),
+    ("reinforce", |_| Ok(AnyAlgorithm::Reinforce)),
+    ("reinforce_with_baseline", |fields| {
+        Ok(AnyAlgorithm::ReinforceWithBaseline { value_learning_rate: fields.get("value_learning_rate")? })
+    }),
+    ("actor_critic", |fields| {
+        Ok(AnyAlgorithm::ActorCritic { value_learning_rate: fields.get("value_learning_rate")? })
+    }),
+    ("actor_critic_lambda", |fields| {
+        let (value_learning_rate, trace_decay) = (fields.get("value_learning_rate")?, fields.get("trace_decay")?);
+        Ok(AnyAlgorithm::ActorCriticLambda { value_learning_rate, trace_decay })
+    }),
 ];
 
 fn n_step_sarsa(fields: &Fields<'_>) -> PyResult<AnyAlgorithm> {

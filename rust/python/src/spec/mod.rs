@@ -73,6 +73,7 @@ impl RunSpec {
             count_visits: false,
         };
         spec.check_tile_coding()?;
+        spec.check_preferences()?;
         Ok(spec)
     }
 
@@ -85,7 +86,24 @@ impl RunSpec {
             return Err(invalid("terminal_update", "'target' for tile coding", "'assign'"));
         }
         if self.algorithm.needs_single_rows() {
-            return Err(invalid("algorithm", "an algorithm without a model for tile coding", "Dyna-Q"));
+            return Err(invalid("algorithm", "an algorithm for several active rows for tile coding", "another"));
+        }
+        if matches!(self.policy, PolicySpec::Ucb { .. }) {
+            return Err(invalid("policy", "'epsilon_greedy' or 'softmax' for tile coding", "'ucb'"));
+        }
+        Ok(())
+    }
+
+    /// Refuses preferences with another policy than the softmax, and with a learning rate that falls with visits.
+    fn check_preferences(&self) -> PyResult<()> {
+        if !self.algorithm.learns_preferences() {
+            return Ok(());
+        }
+        if !matches!(self.policy, PolicySpec::Softmax { .. }) {
+            return Err(invalid("policy", "'softmax' for an algorithm that learns preferences", "another"));
+        }
+        if matches!(self.learning_rate, LearningRateSpec::Visits { .. }) {
+            return Err(invalid("learning_rate", "a schedule by the episode for this algorithm", "'visits'"));
         }
         Ok(())
     }

@@ -43,7 +43,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[inline(always)]
     pub fn choose(&mut self, rows: impl AsRef<[u32]>, rng: &mut impl Rng) -> usize {
         let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
-        self.policy.choose(values, rng)
+        self.policy.choose_in(rows.as_ref(), values, rng)
     }
 
     /// The action values of the state with these active rows. The value of an action that the state does not have is -∞.
@@ -58,7 +58,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[inline(always)]
     pub fn expected_value(&mut self, rows: impl AsRef<[u32]>) -> f64 {
         let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
-        self.policy.expected_value(values)
+        self.policy.expected_value_in(rows.as_ref(), values)
     }
 
     /// A random action among those that the state with these active rows has: `rng.integers` of their number.
@@ -145,7 +145,8 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         if let Some(masks) = &mut self.masks {
             masks.persist(checkpoint)?;
         }
-        self.learning_rate.persist_counts(checkpoint)
+        self.learning_rate.persist_counts(checkpoint)?;
+        self.policy.persist_counts(checkpoint)
     }
 
     /// Moves the schedules on to the next episode.
