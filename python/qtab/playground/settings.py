@@ -35,9 +35,14 @@ OFFERED: Mapping[str, tuple[str, ...]] = {
 """What the page offers of each choice: what rust/web/src/settings makes. The rest is for Python."""
 
 LEFT_OUT = frozenset(
-    ("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows", "edges")
-) | {"actions"}
-"""What the page does not offer: settings of Python environments, and those too long for a control."""
+    (
+        *("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows"),
+        *("edges", "actions", "sigma", "target_policy", "model", "priority_threshold", "reward_learning_rate"),
+        *("count_bonus", "baseline", "value_learning_rate", "confidence"),
+    )
+)
+"""What the page does not offer: settings of Python environments, those too long for a control, and options of choices
+that it does not offer."""
 
 # Types and ranges of the controls. A range is inside the one that the config allows, which a test checks.
 _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
