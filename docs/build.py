@@ -47,7 +47,9 @@ def main() -> None:
     """Runs the steps; the exit code is 1 if any of them finds something."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true", help="without notebooks and browser")
-    quick = parser.parse_args().quick
+    parser.add_argument("--browser", action=argparse.BooleanOptionalAction, default=True, help="open every page")
+    asked = parser.parse_args()
+    quick = asked.quick
     sys.path.insert(0, str(HERE / "_checks"))
     import browser
     import static
@@ -57,7 +59,7 @@ def main() -> None:
     print(f"built in {time.perf_counter() - began:.0f} s", flush=True)
     failed |= links() != 0
     problems = static.problems(SITE)
-    if not quick:
+    if asked.browser and not quick:
         problems += browser.problems(SITE)
     print(*problems, sep="\n")
     print(f"{len(list(SITE.rglob('*.html')))} pages, {len(problems)} problems, {time.perf_counter() - began:.0f} s")

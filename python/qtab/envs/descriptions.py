@@ -119,6 +119,11 @@ DESCRIPTIONS: Mapping[str, Description] = {
         ("stick", "hit"),
         layout="blackjack",
     ),
+    "qtab/AccessControlQueue": Description(_STATE, ("reject", "accept")),
+    "qtab/BlockingMaze": Description(_STATE, ("up", "right", "down", "left")),
+    "qtab/DynaMaze": Description(_STATE, ("up", "right", "down", "left")),
+    "qtab/Racetrack": Description(_STATE),
+    "qtab/ShortcutMaze": Description(_STATE, ("up", "right", "down", "left")),
     "qtab/ShortCorridor": Description((Quantity("state", values=("corridor",)),), ("left", "right")),
     "qtab/MaximizationBias": Description((Quantity("state", values=("A", "B", "end")),), ("right", "left")),
 }

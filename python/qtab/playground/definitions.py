@@ -9,14 +9,13 @@ import gymnasium as gym
 import numpy as np
 
 from qtab._utils.versions import versions
-from qtab.config.algorithms import ALGORITHMS
 from qtab.config.options import n_tables
 from qtab.config.presets import presets
 from qtab.envs.descriptions import describe
 from qtab.envs.grid_worlds import ACTION_NAMES
 from qtab.explanation.equations import bootstrap_symbol
 from qtab.playground.environments import ENVIRONMENTS, Entry
-from qtab.playground.settings import LEFT_OUT, rules, settings
+from qtab.playground.settings import LEFT_OUT, offered, rules, settings
 
 GRID_TIME_LIMIT = 1000
 """The time limit of grid worlds, which have none of their own, in steps."""
@@ -38,7 +37,9 @@ def definitions() -> dict[str, Any]:
         "environments": {key: _environment(key, entry) for key, entry in ENVIRONMENTS.items()},
         "settings": _plain(settings()),
         "rules": rules(),
-        "bootstraps": {name: [bootstrap_symbol(name, table) for table in range(n_tables(name))] for name in ALGORITHMS},
+        "bootstraps": {
+            name: [bootstrap_symbol(name, table) for table in range(n_tables(name))] for name in offered("algorithm")
+        },
     }
 
 

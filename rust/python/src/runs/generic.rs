@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
-use qtab_core::learners::{LearnerVisitor, TruncationHandling};
+use qtab_core::learners::{CountBonus, LearnerVisitor, TruncationHandling};
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, VisitCounter};
 use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
@@ -170,7 +170,11 @@ where
         }
         tables => Some(spec.initial_q.table((1, tables), (n_rows, spec.num_actions), &mut rng, stop)?),
     };
-    let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation };
+    let bonus = match spec.count_bonus {
+        0.0 => None,
+        weight => Some(CountBonus::new(weight, (n_rows, spec.num_actions), stop).map_err(allocation)?),
+    };
+    let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation, bonus };
     let run = spec.algorithm.learner::<R, _>(agent, second_table, stop, run).map_err(allocation)?;
     run.ok_or_else(|| invalid("discretizer", "one with one active row, for this algorithm", "'tiles'"))
 }
@@ -180,13 +184,14 @@ struct BoxedRun<R> {
     task: BoxedTask<R, RunError>,
     rng: AgentRng,
     terminate: bool,
+    bonus: Option<CountBonus>,
 }
 
 impl<R: ActiveRows + Send + 'static> LearnerVisitor<R> for BoxedRun<R> {
     type Output = Box<dyn Run>;
 
     fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
-        let learner = TruncationHandling { learner, terminate: self.terminate };
+        let learner = TruncationHandling { learner, terminate: self.terminate, bonus: self.bonus };
         Box::new(Trainer::new(self.task, learner, self.rng))
     }
 }

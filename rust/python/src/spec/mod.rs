@@ -35,6 +35,8 @@ pub(crate) struct RunSpec {
     pub(crate) policy: PolicySpec,
     pub(crate) learning_rate: LearningRateSpec,
     pub(crate) discount: f64,
+    /// The weight of the bonus for rarely visited state-action pairs; 0 for none.
+    pub(crate) count_bonus: f64,
     pub(crate) initial_q: InitialQSpec,
     pub(crate) action_masks: ActionMasksSpec,
     pub(crate) terminal_update: TerminalUpdate,
@@ -54,14 +56,17 @@ impl RunSpec {
         if num_actions == 0 {
             return Err(invalid("num_actions", "at least 1", num_actions));
         }
+        let (max_episode_steps, learning_rate) =
+            (fields.get("max_episode_steps")?, LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?);
         let spec = Self {
             discretizer: DiscretizerSpec::parse(&fields.nested("discretizer")?)?,
             num_actions,
-            max_episode_steps: fields.get("max_episode_steps")?,
-            algorithm: algorithm::algorithm(&fields.nested("algorithm")?)?,
+            max_episode_steps,
+            algorithm: algorithm::algorithm(&fields.nested("algorithm")?, max_episode_steps, learning_rate)?,
             policy: PolicySpec::parse(&fields.nested("policy")?, episodes)?,
-            learning_rate: LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?,
+            learning_rate,
             discount: fields.get("discount")?,
+            count_bonus: fields.get("count_bonus")?,
             initial_q: InitialQSpec::parse(&fields.nested("initial_q")?)?,
             action_masks: ActionMasksSpec::parse(&fields.nested("action_masks")?)?,
             terminal_update: fields
@@ -74,6 +79,9 @@ impl RunSpec {
         };
         spec.check_tile_coding()?;
         spec.check_preferences()?;
+        if spec.algorithm.needs_probabilities() && matches!(spec.policy, PolicySpec::Ucb { .. }) {
+            return Err(invalid("policy", "'epsilon_greedy' or 'softmax' for this algorithm", "'ucb'"));
+        }
         Ok(spec)
     }
 
