@@ -10,7 +10,7 @@ import qtab
 from qtab.config.config import DEFAULTS
 from qtab.config.options import OPTIONS
 from qtab.playground import definitions
-from qtab.playground.settings import LEFT_OUT
+from qtab.playground.settings import LEFT_OUT, NOT_OFFERED
 
 ENVIRONMENTS = definitions()["environments"]
 SETTINGS = definitions()["settings"]
@@ -72,3 +72,13 @@ def test_python_refuses_what_a_rule_excludes(rule):
     beside = {"scale": (10.0, 100.0)} if rule["unless"].get("discretizer") != "tiles" else {}
     with pytest.raises(ValueError, match=rule["setting"]):
         qtab.Config(**{**beside, rule["setting"]: rule["value"], **rule["unless"]})
+
+
+def test_nothing_is_said_of_what_is_not_offered():
+    for name, setting in SETTINGS.items():
+        assert "preference" not in setting["sentence"], name
+        assert "ucb" not in setting["sentence"], name
+        values = [choice["value"] for choice in setting["choices"] or ()] + (setting["applies"] or {"values": []})[
+            "values"
+        ]
+        assert not set(values) & NOT_OFFERED, name

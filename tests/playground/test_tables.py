@@ -17,7 +17,7 @@ from qtab.config.options import OPTIONS, defaults, is_set
 from qtab.playground import definitions
 from qtab.playground.assemble import data_script
 from qtab.playground.bundle import bundle
-from qtab.playground.settings import LEFT_OUT
+from qtab.playground.settings import LEFT_OUT, offered
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -131,7 +131,7 @@ def random_settings(rng: random.Random, environment: str, algorithm: str) -> dic
         "temperature": rng.choice([0.3, 2.0]),
     }
     for name in ("exploration", "epsilon_schedule", "learning_rate_schedule", "traces", "ties", "on_truncation"):
-        given[name] = rng.choice(CHOICES[name])
+        given[name] = rng.choice(offered(name))
     given["bit_generator"] = rng.choice(CHOICES["bit_generator"])
     if algorithm in ("dyna_q", "dyna_q_plus") and given["discretizer"] == "tiles":
         given["discretizer"] = "bins"
@@ -150,7 +150,7 @@ def test_two_hundred_seeds_of_the_article_equal_python(engine):
 
 
 @pytest.mark.parametrize("environment", definitions()["environments"])
-@pytest.mark.parametrize("algorithm", CHOICES["algorithm"])
+@pytest.mark.parametrize("algorithm", offered("algorithm"))
 def test_random_settings_equal_python(engine, environment, algorithm):
     rng = random.Random(f"{environment} {algorithm}")  # noqa: S311 - settings, not secrets
     for _ in range(3):
@@ -181,7 +181,7 @@ def test_painted_grid_worlds_equal_python(engine):
             "goal_reward": rng.choice([0, 10]),
             "rewards": [[rng.randrange(rows), rng.randrange(columns), rng.choice([-5.5, 3])] for _ in range(3)],
         }
-        given = random_settings(rng, "grid", rng.choice(CHOICES["algorithm"]))
+        given = random_settings(rng, "grid", rng.choice(offered("algorithm")))
         check(engine, painted, given, [seed])
 
 
@@ -189,7 +189,7 @@ def test_painted_grid_worlds_equal_python(engine):
 def test_the_page_completes_settings_as_python_does(engine, environment):
     rng = random.Random(environment)  # noqa: S311
     known = definitions()["environments"][environment]
-    for algorithm in CHOICES["algorithm"]:
+    for algorithm in offered("algorithm"):
         given = random_settings(rng, environment, algorithm)
         options = {"max_episode_steps": known["max_episode_steps"], **known["options"]}
         expected = completed({**options, **given})

@@ -32,6 +32,11 @@ class EnvEntry:
     vector_entry_point: str = ""
     """This package's twin of the vector environment that Gymnasium has for the id; empty where Gymnasium has none."""
 
+    @property
+    def knows_transitions(self) -> bool:
+        """Whether all transition probabilities are known, from which :func:`qtab.optimum` computes the optimum."""
+        return self.name in (_TABLE, "Blackjack", "Taxi")
+
 
 def _classic_control(name: str, gymnasium_class: str, *supported_kwargs: str, vector_entry_point: str = "") -> EnvEntry:
     return EnvEntry(

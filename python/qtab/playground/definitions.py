@@ -9,14 +9,13 @@ import gymnasium as gym
 import numpy as np
 
 from qtab._utils.versions import versions
-from qtab.config.algorithms import ALGORITHMS
 from qtab.config.options import n_tables
 from qtab.config.presets import presets
 from qtab.envs.descriptions import describe
 from qtab.envs.grid_worlds import ACTION_NAMES
 from qtab.explanation.equations import bootstrap_symbol
 from qtab.playground.environments import ENVIRONMENTS, Entry
-from qtab.playground.settings import LEFT_OUT, WORDS_LEFT_OUT, rules, settings
+from qtab.playground.settings import LEFT_OUT, offered, rules, settings
 
 GRID_TIME_LIMIT = 1000
 """The time limit of grid worlds, which have none of their own, in steps."""
@@ -39,9 +38,7 @@ def definitions() -> dict[str, Any]:
         "settings": _plain(settings()),
         "rules": rules(),
         "bootstraps": {
-            name: [bootstrap_symbol(name, table) for table in range(n_tables(name))]
-            for name in ALGORITHMS
-            if name not in WORDS_LEFT_OUT
+            name: [bootstrap_symbol(name, table) for table in range(n_tables(name))] for name in offered("algorithm")
         },
     }
 

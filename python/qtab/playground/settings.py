@@ -16,16 +16,16 @@ LEFT_OUT = frozenset(
         *("count_bonus", "baseline", "value_learning_rate", "confidence"),
     )
 )
-"""What the page does not offer: settings of Python environments, those too long for a control, and those of algorithms
-that it does not train."""
+"""What the page does not offer: settings of Python environments, those too long for a control, and options of choices
+that it does not offer."""
 
-WORDS_LEFT_OUT = frozenset(
+NOT_OFFERED = frozenset(
     (
         *("edges", "ucb", "n_step_tree_backup", "n_step_q_sigma", "prioritized_sweeping"),
         *(*MONTE_CARLO, *AVERAGE_REWARD, *PREFERENCES),
     )
 )
-"""The choices that the page does not offer."""
+"""The choices that the page does not offer: it shows one-step methods, traces and planning with action values."""
 
 # Types and ranges of the controls. A range is inside the one that the config allows, which a test checks.
 _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
@@ -78,6 +78,9 @@ _TITLES = {
 _SENTENCES = {
     "max_episode_steps": "The time limit of an episode, in steps.",
     "initial_q": "The initial Q table: drawn uniformly from a range (low, high), or one number everywhere.",
+    "learning_rate": "α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided "
+    "among the tilings, and may be up to 2.",
+    "exploration": "How the agent chooses actions: a random one at times, or by the softmax of the values.",
     "discretizer": "How observations index the Q table: rounded to a grid, by bins of equal width, or by tile coding.",
 }
 _SYMBOL = re.compile(r"(\w): ")
@@ -88,26 +91,31 @@ def title(word: str) -> str:
     return _TITLES.get(word) or word.replace("_", " ").capitalize()
 
 
+def offered(name: str) -> tuple[str, ...]:
+    """Returns the names that a setting chooses from on the page; none for a setting that is no choice."""
+    return tuple(word for word in CHOICES.get(name, ()) if word not in NOT_OFFERED)
+
+
 def setting(name: str, group: str) -> dict[str, Any]:
     """Returns the description of a setting for the page."""
     text = _SENTENCES.get(name) or explanations().get(name, "")
     symbol = _SYMBOL.match(text)
     sentence = text[symbol.end() :] if symbol else text
-    choices = CHOICES.get(name)
+    choices = offered(name)
     kind, low, high, log = ("choice", None, None, False) if choices else _CONTROLS[name]
     option = OPTIONS.get(name)
+    values = [value for value in option.values if value not in NOT_OFFERED] if option else []
     return {
         "symbol": symbol[1] if symbol else None,
         "group": group,
         "sentence": sentence[:1].upper() + sentence[1:],
         "type": kind,
-        "choices": choices
-        and [{"value": word, "title": title(word)} for word in choices if word not in WORDS_LEFT_OUT],
+        "choices": [{"value": word, "title": title(word)} for word in choices] or None,
         "default": default(name),
         "low": low,
         "high": high,
         "log": log,
-        "applies": None if option is None else {"choice": option.choice, "values": list(option.values)},
+        "applies": None if option is None else {"choice": option.choice, "values": values},
     }
 
 
@@ -121,10 +129,10 @@ def rules() -> list[dict[str, Any]]:
     """Returns the pairs of choices that exclude each other, with the reason in words."""
     found = []
     for name in ("terminal_update", "learning_rate_schedule", "algorithm"):
-        for value in (word for word in CHOICES[name] if word not in WORDS_LEFT_OUT):
+        for value in offered(name):
             for other in ("algorithm", "discretizer"):
-                for chosen in CHOICES[other]:
-                    if other == name or chosen in WORDS_LEFT_OUT:
+                for chosen in offered(other):
+                    if other == name:
                         continue
                     if reason := mismatch(name, value, {**DEFAULTS, other: chosen}):
                         found.append({"setting": name, "value": value, "unless": {other: chosen}, "reason": reason})
