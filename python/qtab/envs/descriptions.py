@@ -119,6 +119,9 @@ DESCRIPTIONS: Mapping[str, Description] = {
         ("stick", "hit"),
         layout="blackjack",
     ),
+    "qtab/KArmedBandit": Description(
+        (Quantity("state", values=("bandit",)),), tuple(f"arm {number}" for number in range(1, 11))
+    ),
     "qtab/ShortCorridor": Description((Quantity("state", values=("corridor",)),), ("left", "right")),
     "qtab/MaximizationBias": Description((Quantity("state", values=("A", "B", "end")),), ("right", "left")),
 }
