@@ -167,4 +167,5 @@ def run_testbeds(config: Mapping[str, Any], seeds: Sequence[int], threads: int) 
     shape = (len(seeds), resolved.config.episodes)
     rewards, optimal = np.empty(shape), np.empty(shape, np.bool_)
     _core.run_testbeds(resolved.spec(), list(seeds), rewards, optimal, threads)
-    return rewards, 100.0 * optimal
+    percentages: FloatArray = 100.0 * optimal.astype(np.float64)
+    return rewards, percentages

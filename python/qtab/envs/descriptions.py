@@ -124,6 +124,9 @@ DESCRIPTIONS: Mapping[str, Description] = {
     "qtab/DynaMaze": Description(_STATE, ("up", "right", "down", "left")),
     "qtab/Racetrack": Description(_STATE),
     "qtab/ShortcutMaze": Description(_STATE, ("up", "right", "down", "left")),
+    "qtab/KArmedBandit": Description(
+        (Quantity("state", values=("bandit",)),), tuple(f"arm {number}" for number in range(1, 11))
+    ),
     "qtab/ShortCorridor": Description((Quantity("state", values=("corridor",)),), ("left", "right")),
     "qtab/MaximizationBias": Description((Quantity("state", values=("A", "B", "end")),), ("right", "left")),
 }

@@ -8,7 +8,7 @@ use crate::tasks::Next;
 
 /// A state-action pair, and the reward that followed; at the end of the episode its return.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Visit<R> {
+struct PastStep<R> {
     rows: R,
     action: usize,
     reward: f64,
@@ -24,7 +24,7 @@ struct Visit<R> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reinforce<R> {
     /// The steps of the episode, and how many of them have been learned from.
-    visits: Vec<Visit<R>>,
+    steps: Vec<PastStep<R>>,
     learned: usize,
     /// γᵗ
     power: f64,
@@ -38,24 +38,24 @@ impl<R: ActiveRows> Reinforce<R> {
     /// Before the first episode.
     #[expect(clippy::new_without_default, reason = "as for the other learners")]
     pub fn new() -> Self {
-        Self { visits: Vec::new(), learned: 0, power: 1.0, finishing: false, finishing_work: 0 }
+        Self { steps: Vec::new(), learned: 0, power: 1.0, finishing: false, finishing_work: 0 }
     }
 
     /// Turns the rewards into returns, from the last step back.
     fn sum_rewards(&mut self, discount: f64) {
         let mut episode_return = 0.0;
-        for visit in self.visits.iter_mut().rev() {
-            episode_return = visit.reward + discount * episode_return;
-            visit.reward = episode_return;
+        for step in self.steps.iter_mut().rev() {
+            episode_return = step.reward + discount * episode_return;
+            step.reward = episode_return;
         }
-        self.finishing_work = self.visits.len() as u64 / VALUES_PER_WORK;
+        self.finishing_work = self.steps.len() as u64 / VALUES_PER_WORK;
     }
 
     /// Learns from the steps of the episode, or from a part of them where they are many.
     #[inline(never)]
     fn finish(&mut self, agent: &mut Agent, mut critic: Option<&mut Critic>) {
-        while self.learned < self.visits.len() && self.finishing_work < MAX_WORK_PER_CALL {
-            let Visit { rows, action, reward: episode_return } = self.visits[self.learned];
+        while self.learned < self.steps.len() && self.finishing_work < MAX_WORK_PER_CALL {
+            let PastStep { rows, action, reward: episode_return } = self.steps[self.learned];
             let mut error = episode_return;
             if let Some(critic) = &mut critic {
                 error -= critic.value(rows);
@@ -66,7 +66,7 @@ impl<R: ActiveRows> Reinforce<R> {
             self.learned += 1;
             self.finishing_work += agent.work();
         }
-        self.finishing = self.learned < self.visits.len();
+        self.finishing = self.learned < self.steps.len();
     }
 }
 
@@ -81,7 +81,7 @@ impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
         reward: f64,
         next: Next<R>,
     ) {
-        self.visits.push(Visit { rows: state, action, reward });
+        self.steps.push(PastStep { rows: state, action, reward });
         if !matches!(next, Next::NonTerminal(_)) {
             self.sum_rewards(agent.discount);
             self.finish(agent, critic);
@@ -95,7 +95,7 @@ impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
 
     /// An episode has as many steps as there is work for them.
     fn reserve(&mut self, _shape: (usize, usize), work: u64) -> Result<(), AllocationError> {
-        reserve(&mut self.visits, usize::try_from(work).unwrap_or(usize::MAX).min(1 << 20))
+        reserve(&mut self.steps, usize::try_from(work).unwrap_or(usize::MAX).min(1 << 20))
     }
 
     #[inline]
@@ -109,7 +109,7 @@ impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
     }
 
     fn end_episode(&mut self) {
-        self.visits.clear();
+        self.steps.clear();
         (self.learned, self.power, self.finishing, self.finishing_work) = (0, 1.0, false, 0);
     }
 
@@ -118,23 +118,23 @@ impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
         (num_rows, num_actions): (usize, usize),
         checkpoint: &mut Checkpoint<'_>,
     ) -> Result<(), CheckpointError> {
-        let mut count = self.visits.len() as u64;
+        let mut count = self.steps.len() as u64;
         count.persist(checkpoint)?;
         if checkpoint.is_restoring() {
-            self.visits.clear();
+            self.steps.clear();
         }
         for index in 0..count {
-            let saved = self.visits.get(index as usize).copied();
-            let rows = persist_rows(saved.map(|visit| visit.rows), num_rows, checkpoint)?;
-            let (mut action, mut reward) = saved.map_or((0, 0.0), |visit| (visit.action, visit.reward));
+            let saved = self.steps.get(index as usize).copied();
+            let rows = persist_rows(saved.map(|step| step.rows), num_rows, checkpoint)?;
+            let (mut action, mut reward) = saved.map_or((0, 0.0), |step| (step.action, step.reward));
             checkpoint.index(&mut action, num_actions, "action")?;
             reward.persist(checkpoint)?;
             if checkpoint.is_restoring() {
-                reserve(&mut self.visits, 1).map_err(|_| CheckpointError::OutOfMemory)?;
-                self.visits.push(Visit { rows, action, reward });
+                reserve(&mut self.steps, 1).map_err(|_| CheckpointError::OutOfMemory)?;
+                self.steps.push(PastStep { rows, action, reward });
             }
         }
-        checkpoint.index(&mut self.learned, self.visits.len() + 1, "number of steps")?;
+        checkpoint.index(&mut self.learned, self.steps.len() + 1, "number of steps")?;
         (&mut self.power, &mut self.finishing).persist(checkpoint)
     }
 }
