@@ -55,7 +55,7 @@ SHORT = {
 """The full names of the types in signatures, which show them by their last part, and of those defined elsewhere."""
 WITHOUT_A_PAGE = ("SharedSettings", "WhatIf")
 """Types of this package that have no page and are named by strings."""
-MODULES = ("book", "callbacks", "designs", "planning", "plots", "stats")
+MODULES = ("book", "callbacks", "designs", "planning", "playground", "plots", "stats")
 """The modules among the public names, whose own names are public too."""
 
 

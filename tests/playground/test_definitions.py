@@ -7,18 +7,26 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab.config.choices import CHOICES
 from qtab.config.config import DEFAULTS
 from qtab.config.options import OPTIONS
 from qtab.playground import definitions
-from qtab.playground.settings import LEFT_OUT, NOT_OFFERED
+from qtab.playground.settings import LEFT_OUT, OFFERED
 
 ENVIRONMENTS = definitions()["environments"]
 SETTINGS = definitions()["settings"]
 
 
 def test_every_setting_is_shown_or_left_out_on_purpose():
-    assert SETTINGS.keys() | LEFT_OUT == DEFAULTS.keys()
     assert not SETTINGS.keys() & LEFT_OUT
+    for name in DEFAULTS.keys() - SETTINGS.keys() - LEFT_OUT:
+        option = OPTIONS[name]
+        assert set(option.values).isdisjoint(OFFERED[option.choice]), f"{name} applies to what the page offers"
+
+
+def test_what_the_page_offers_exists():
+    for name, words in OFFERED.items():
+        assert set(words) <= set(CHOICES[name])
 
 
 def test_every_setting_has_a_sentence_and_a_default():
@@ -78,7 +86,7 @@ def test_nothing_is_said_of_what_is_not_offered():
     for name, setting in SETTINGS.items():
         assert "preference" not in setting["sentence"], name
         assert "ucb" not in setting["sentence"], name
-        values = [choice["value"] for choice in setting["choices"] or ()] + (setting["applies"] or {"values": []})[
-            "values"
-        ]
-        assert not set(values) & NOT_OFFERED, name
+        if setting["choices"]:
+            assert {choice["value"] for choice in setting["choices"]} <= {*OFFERED[name]}, name
+        if applies := setting["applies"]:
+            assert {*applies["values"]} <= {*OFFERED[applies["choice"]]}, name

@@ -15,7 +15,7 @@ from qtab.envs.descriptions import describe
 from qtab.envs.grid_worlds import ACTION_NAMES
 from qtab.explanation.equations import bootstrap_symbol
 from qtab.playground.environments import ENVIRONMENTS, Entry
-from qtab.playground.settings import LEFT_OUT, offered, rules, settings
+from qtab.playground.settings import LEFT_OUT, OFFERED, rules, settings
 
 GRID_TIME_LIMIT = 1000
 """The time limit of grid worlds, which have none of their own, in steps."""
@@ -38,7 +38,7 @@ def definitions() -> dict[str, Any]:
         "settings": _plain(settings()),
         "rules": rules(),
         "bootstraps": {
-            name: [bootstrap_symbol(name, table) for table in range(n_tables(name))] for name in offered("algorithm")
+            name: [bootstrap_symbol(name, table) for table in range(n_tables(name))] for name in OFFERED["algorithm"]
         },
     }
 
