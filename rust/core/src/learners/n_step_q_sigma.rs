@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::common::{Agent, NStep, NStepMethod, TargetPolicy, Visit};
+use super::common::{Agent, NStep, NStepMethod, NStepVisit, TargetPolicy};
 use crate::features::ActiveRows;
 
 /// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [Gₜ - Q(Sₜ, Aₜ)] with the return, from the last of n steps backwards,
@@ -38,12 +38,12 @@ impl<R: ActiveRows> NStepMethod<R> for QSigma {
         self.target_policy.ratio(agent, rows, action)
     }
 
-    fn update(&self, agent: &mut Agent, visits: &VecDeque<Visit<R, f64>>, following: Option<(R, usize)>) {
+    fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, f64>>, following: Option<(R, usize)>) {
         let weight = |probability: f64, ratio: &f64| self.sigma * ratio + (1.0 - self.sigma) * probability;
         let target = self.target_policy.backed_up(agent, visits, following, weight);
         // Ratios above 1 can push a value beyond its targets.
         agent.table.check_finite(target);
-        let Visit { rows, action, .. } = visits[0];
+        let NStepVisit { rows, action, .. } = visits[0];
         agent.update(rows, action, target);
     }
 

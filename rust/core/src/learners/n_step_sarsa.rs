@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::common::{Agent, NStep, NStepMethod, Visit};
+use super::common::{Agent, NStep, NStepMethod, NStepVisit};
 use crate::features::ActiveRows;
 
 /// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [G - Q(Sₜ, Aₜ)] with the n-step return
@@ -33,7 +33,7 @@ impl<R: ActiveRows> NStepMethod<R> for NStepReturn {
     fn memo(&self, _agent: &mut Agent, _rows: R, _action: usize) {}
 
     #[inline]
-    fn update(&self, agent: &mut Agent, visits: &VecDeque<Visit<R, ()>>, following: Option<(R, usize)>) {
+    fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, ()>>, following: Option<(R, usize)>) {
         let (mut target, mut power) = (0.0, 1.0);
         for visit in visits {
             target += power * visit.reward;
@@ -42,7 +42,7 @@ impl<R: ActiveRows> NStepMethod<R> for NStepReturn {
         if let Some((rows, action)) = following {
             target += power * agent.value(rows, action);
         }
-        if let Some(&Visit { rows, action, .. }) = visits.front() {
+        if let Some(&NStepVisit { rows, action, .. }) = visits.front() {
             agent.update(rows, action, target);
         }
     }

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::common::{Agent, NStep, NStepMethod, TargetPolicy, Visit};
+use super::common::{Agent, NStep, NStepMethod, NStepVisit, TargetPolicy};
 use crate::features::ActiveRows;
 
 /// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [Gₜ - Q(Sₜ, Aₜ)] with the return, from the last of n steps backwards,
@@ -34,9 +34,9 @@ impl<R: ActiveRows> NStepMethod<R> for TreeBackup {
     #[inline]
     fn memo(&self, _agent: &mut Agent, _rows: R, _action: usize) {}
 
-    fn update(&self, agent: &mut Agent, visits: &VecDeque<Visit<R, ()>>, following: Option<(R, usize)>) {
+    fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, ()>>, following: Option<(R, usize)>) {
         let target = self.target_policy.backed_up(agent, visits, following, |probability, ()| probability);
-        let Visit { rows, action, .. } = visits[0];
+        let NStepVisit { rows, action, .. } = visits[0];
         agent.update(rows, action, target);
     }
 

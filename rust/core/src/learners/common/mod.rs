@@ -43,7 +43,7 @@ pub(in crate::learners) use first_visits::{FirstVisits, step_of};
 pub use learner::Learner;
 pub(super) use model::single_row;
 pub use model::{Model, ModelEntry};
-pub use n_step::{NStep, NStepMethod, Visit};
+pub use n_step::{NStep, NStepMethod, NStepVisit};
 pub use planning_progress::PlanningProgress;
 pub use policy_gradient_learner::{PolicyGradientLearner, PolicyGradientRule};
 pub(in crate::learners) use predecessors::Predecessors;

@@ -12,7 +12,7 @@ use crate::tasks::Next;
 
 /// A state-action pair that awaits its update, and the reward that followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Visit<R, M> {
+pub struct NStepVisit<R, M> {
     /// The active rows of the state.
     pub rows: R,
     /// The action.
@@ -33,7 +33,7 @@ pub trait NStepMethod<R> {
 
     /// Updates the oldest pair, the first of the visits. `following` is the pair after the newest reward, or `None` after a
     /// terminal state.
-    fn update(&self, agent: &mut Agent, visits: &VecDeque<Visit<R, Self::Memo>>, following: Option<(R, usize)>);
+    fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, Self::Memo>>, following: Option<(R, usize)>);
 
     /// The work of an update with so many visits.
     #[inline]
@@ -48,7 +48,7 @@ pub struct NStep<R, M: NStepMethod<R>> {
     method: M,
     n: usize,
     /// The last visits, oldest first, at most n.
-    visits: VecDeque<Visit<R, M::Memo>>,
+    visits: VecDeque<NStepVisit<R, M::Memo>>,
     /// What was kept of the choice of the next action.
     memo: M::Memo,
     /// The pair after the newest reward of a finished episode, or `None` after a terminal state.
@@ -107,7 +107,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        self.visits.push_back(Visit { rows: state, action, reward, memo: self.memo });
+        self.visits.push_back(NStepVisit { rows: state, action, reward, memo: self.memo });
         let following = agent.sample_next(next, rng);
         if let Some((rows, next_action)) = following {
             self.memo = self.method.memo(agent, rows, next_action);
@@ -133,7 +133,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
     /// An episode has as many pairs as steps, and at most n of them wait.
     fn reserve(&mut self, _agent: &mut Agent, work: u64) -> Result<(), AllocationError> {
         let count = ((self.n - self.visits.len()) as u64).min(work) as usize;
-        self.visits.try_reserve(count).map_err(out_of_memory::<Visit<R, M::Memo>>(count))
+        self.visits.try_reserve(count).map_err(out_of_memory::<NStepVisit<R, M::Memo>>(count))
     }
 
     #[inline]
@@ -165,7 +165,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
             checkpoint.index(&mut action, num_actions, "action")?;
             (&mut reward, &mut memo).persist(checkpoint)?;
             if checkpoint.is_restoring() {
-                self.visits.push_back(Visit { rows, action, reward, memo });
+                self.visits.push_back(NStepVisit { rows, action, reward, memo });
             }
         }
         self.memo.persist(checkpoint)?;

@@ -11,7 +11,7 @@ const NONE: u32 = u32::MAX;
 
 /// What followed a pair, how often, and the next outcome of the same pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Outcome {
+struct CountedOutcome {
     entry: ModelEntry,
     count: u32,
     after: u32,
@@ -26,7 +26,7 @@ pub struct StochasticModel {
     first: Vec<u32>,
     /// How often each pair was tried.
     totals: Vec<u32>,
-    outcomes: Vec<Outcome>,
+    outcomes: Vec<CountedOutcome>,
 }
 
 impl StochasticModel {
@@ -52,7 +52,7 @@ impl StochasticModel {
             (last, next) = (next, outcome.after);
         }
         let index = self.outcomes.len() as u32;
-        self.outcomes.push(Outcome { entry, count: times, after: NONE });
+        self.outcomes.push(CountedOutcome { entry, count: times, after: NONE });
         if last == NONE {
             self.first[pair] = index;
         } else {
@@ -61,7 +61,7 @@ impl StochasticModel {
     }
 
     /// The outcomes of a pair.
-    fn of(&self, pair: usize) -> impl Iterator<Item = &Outcome> {
+    fn of(&self, pair: usize) -> impl Iterator<Item = &CountedOutcome> {
         let at = |index: u32| self.outcomes.get(index as usize);
         std::iter::successors(at(self.first[pair]), move |outcome| at(outcome.after))
     }
@@ -135,8 +135,8 @@ impl Persist for StochasticModel {
                 return Err(INVALID);
             }
             for _ in 0..count {
-                let empty = Outcome { entry: ModelEntry { reward: 0.0, next: None }, count: 0, after: NONE };
-                let Outcome { entry: ModelEntry { mut reward, mut next }, mut count, .. } =
+                let empty = CountedOutcome { entry: ModelEntry { reward: 0.0, next: None }, count: 0, after: NONE };
+                let CountedOutcome { entry: ModelEntry { mut reward, mut next }, mut count, .. } =
                     known.next().copied().unwrap_or(empty);
                 (&mut reward, &mut next, &mut count).persist(checkpoint)?;
                 if checkpoint.is_restoring() {

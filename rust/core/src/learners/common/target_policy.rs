@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{Agent, Visit};
+use super::{Agent, NStepVisit};
 use crate::features::ActiveRows;
 use crate::numeric::maximum;
 
@@ -53,7 +53,7 @@ impl TargetPolicy {
     pub(in crate::learners) fn backed_up<R: ActiveRows, M>(
         self,
         agent: &mut Agent,
-        visits: &VecDeque<Visit<R, M>>,
+        visits: &VecDeque<NStepVisit<R, M>>,
         following: Option<(R, usize)>,
         weight: impl Fn(f64, &M) -> f64,
     ) -> f64 {
