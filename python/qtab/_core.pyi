@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import disjoint_base
 
-from qtab._spec import DiscretizerSpec, PolicyChanges, Results, RunSpec, Solution
+from qtab._spec import DiscretizerSpec, PolicyChanges, PredictionSpec, Results, RunSpec, Solution
 
 __all__ = [
     "ALGORITHMS",
@@ -27,6 +27,7 @@ __all__ = [
     "Trainer",
     "TransitionTable",
     "VectorEnv",
+    "estimate_values",
     "matches_numpy",
     "numpy_uses_libm",
     "parameter_names",
@@ -40,6 +41,14 @@ BUILD_PROFILE: Literal["debug", "release"]
 DISCRETIZERS: tuple[str, ...]
 SCHEDULES: tuple[str, ...]
 
+def estimate_values(
+    spec: RunSpec,
+    prediction: PredictionSpec,
+    seeds: Sequence[int],
+    episodes: NDArray[np.uint64],
+    weights: NDArray[np.float64],
+    threads: int,
+) -> list[tuple[int, Exception]]: ...
 def matches_numpy(name: str) -> bool: ...
 def numpy_uses_libm() -> bool: ...
 def parameter_names(name: str) -> list[str]: ...
@@ -96,6 +105,7 @@ class MdpSolver:
     def n_actions(self) -> int: ...
     @property
     def initial_distribution(self) -> NDArray[np.float64]: ...
+    def transitions(self) -> list[list[tuple[float, int, float, bool]]]: ...
     def value_iteration(self, discount: float) -> Solution: ...
     def policy_iteration(self, discount: float) -> Solution: ...
     def finite_horizon(self, discount: float, steps: int) -> tuple[Solution, PolicyChanges, float]: ...

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import Required
 
 from qtab._algorithm_spec import AlgorithmSpec as AlgorithmSpec
 from qtab._discretizer_spec import DiscretizerSpec as DiscretizerSpec
@@ -176,6 +177,33 @@ class RunSpec(TypedDict):
     on_truncation: OnTruncation
     episodes: int
     bit_generator: BitGenerator
+
+
+# Prediction
+
+
+class MethodSpec(TypedDict, total=False):
+    """A prediction method with its options."""
+
+    type: Required[str]
+    n_steps: int
+    trace_decay: float
+    first_visit: bool
+    weighted: bool
+
+
+class PredictionSpec(TypedDict):
+    """What is estimated, beside the run whose task it is."""
+
+    method: MethodSpec
+    target: NDArray[np.float64]
+    """(states, actions): the policy that is evaluated."""
+    behavior: NDArray[np.float64]
+    """(states, actions): the policy that chooses the actions."""
+    rows: NDArray[np.uint32]
+    """(states, n_active)"""
+    initial_weights: NDArray[np.float64]
+    """(n_weights,)"""
 
 
 # Results

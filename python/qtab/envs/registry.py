@@ -110,6 +110,7 @@ EXTRA: Mapping[str, EnvEntry] = {
     f"{PREFIX}ShortCorridor-v0": EnvEntry(
         "ShortCorridor", "", "qtab.envs.short_corridor:ShortCorridorEnv", has_table=True
     ),
+    f"{PREFIX}RandomWalk-v0": _table("qtab.envs.random_walk:RandomWalkEnv"),
     f"{PREFIX}GridWorld5x5-v0": _table("qtab.envs.small_grid_worlds:grid_world_5x5"),
     f"{PREFIX}GridWorld4x4-v0": _table("qtab.envs.small_grid_worlds:grid_world_4x4"),
     f"{PREFIX}GamblersProblem-v0": _table("qtab.envs.gamblers_problem:gamblers_problem"),

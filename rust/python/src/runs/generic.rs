@@ -161,6 +161,13 @@ fn build_learner<R>(
 where
     R: ActiveRows + Send + 'static,
 {
+    if let Some(prediction) = &spec.prediction {
+        if n_active != 1 || prediction.num_states() != n_rows {
+            return Err(invalid("rows", format!("rows for each of the {n_rows} cells"), prediction.num_states()));
+        }
+        let predictor = prediction.predictor(spec, stop)?;
+        return Ok(BoxedRun { task, rng, terminate: spec.terminate_on_truncation }.visit(predictor));
+    }
     let agent = generic_agent(spec, n_rows, n_active, &mut rng, stop)?;
     // The generator draws both tables before the run takes it over.
     let second_table = match spec.algorithm.n_tables() {

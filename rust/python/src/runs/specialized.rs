@@ -70,6 +70,9 @@ where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active = [u32; 1]> + Clone + Send + Sync + 'static,
 {
+    if spec.prediction.is_some() {
+        return generic(env, features, spec, record);
+    }
     let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else {
         return generic(env, features, spec, record);
     };

@@ -10,6 +10,8 @@ mod policy;
 mod product;
 mod schedule;
 
+use std::sync::Arc;
+
 use pyo3::prelude::*;
 use qtab_core::learners::AnyAlgorithm;
 use qtab_core::q_table::TerminalUpdate;
@@ -23,6 +25,7 @@ pub(crate) use policy::PolicySpec;
 pub(crate) use schedule::{LearningRateSpec, SCHEDULES, ScheduleSpec};
 
 use crate::error::invalid;
+use crate::prediction::PredictionSpec;
 use crate::rng::BitGenerator;
 
 /// The agent and its training: all of a run's description but the environment and the seed.
@@ -47,6 +50,8 @@ pub(crate) struct RunSpec {
     pub(crate) max_recorded_actions: u64,
     /// Whether to count the visits of each state-action pair. Not part of what is learned, so not of Python's spec.
     pub(crate) count_visits: bool,
+    /// What is estimated instead of learning to act. It has a spec of its own in Python.
+    pub(crate) prediction: Option<Arc<PredictionSpec>>,
 }
 
 impl RunSpec {
@@ -76,6 +81,7 @@ impl RunSpec {
             bit_generator: fields.word("bit_generator", BitGenerator::WORDS)?,
             max_recorded_actions: u64::MAX,
             count_visits: false,
+            prediction: None,
         };
         spec.check_tile_coding()?;
         spec.check_preferences()?;
