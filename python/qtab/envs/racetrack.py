@@ -130,14 +130,14 @@ class RacetrackEnv(gym.Env[Any, Any]):
             changed = _clip(up + changes[0]), _clip(right + changes[1])
             if changed != (0, 0) or self.cell in self.starts:
                 up, right = changed
-        reached, ground = self._drive(up, right)
+        reached, ground = self._move_by(up, right)
         if ground == "#":
             self._start()
         else:
             self.cell, self.velocity = reached, (up, right)
         return self._state(), -1.0, ground == "F", False, {}
 
-    def _drive(self, up: int, right: int) -> tuple[tuple[int, int], str]:
+    def _move_by(self, up: int, right: int) -> tuple[tuple[int, int], str]:
         """Returns the cell that the car reaches, and what is there; "#" where it leaves the track."""
         (row, column), steps = self.cell, max(up, right)
         reached = self.cell

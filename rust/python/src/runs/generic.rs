@@ -166,7 +166,8 @@ where
             return Err(invalid("rows", format!("rows for each of the {n_rows} cells"), prediction.num_states()));
         }
         let predictor = prediction.predictor(spec, stop)?;
-        return Ok(BoxedRun { task, rng, terminate: spec.terminate_on_truncation }.visit(predictor));
+        let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation, bonus: None };
+        return Ok(run.visit(predictor));
     }
     let agent = generic_agent(spec, n_rows, n_active, &mut rng, stop)?;
     // The generator draws both tables before the run takes it over.
