@@ -43,7 +43,7 @@ installed() {
     "$pip" download --quiet --no-index --no-deps --find-links dist --dest "$tried/chosen" --only-binary :all: qtab
     "$pip" install --quiet --only-binary :all: "$tried"/chosen/qtab-*.whl
     echo "installed: $(ls "$tried/chosen"), $("$pip" list --format=freeze | sort | tr '\n' ' ')"
-    (cd "$tried" && "./venv/$bin/python" -) <.ci/wheel.py
+    (cd "$tried" && "./venv/$bin/python" -) <.ci/wheel.py || exit 1 # bash 3.2 goes on after a subshell that failed
     rm -rf "$tried"
 }
 

@@ -27,7 +27,7 @@ def tasks() -> set[str]:
 
 
 @pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.stem)
-def test_a_workflow_calls_tasks_that_exist(path: Path):
+def test_a_workflow_calls_tasks_that_exist(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     called = {task for line in re.findall(r"\.ci/run ([\w ]+)", text) for task in line.split()}
     called |= set(re.findall(r"- task: (\w+)", text))
@@ -36,20 +36,20 @@ def test_a_workflow_calls_tasks_that_exist(path: Path):
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.relative_to(FOLDER).as_posix())
-def test_actions_are_pinned_by_hash_with_their_version(path: Path):
+def test_actions_are_pinned_by_hash_with_their_version(path: Path) -> None:
     used = re.findall(r"uses: (.+)", path.read_text(encoding="utf-8"))
     assert used
     for action in used:
         assert re.fullmatch(r"\$/\.github/actions/\w+|[\w-]+/[\w-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+", action), action
 
 
-def test_an_action_has_the_same_version_everywhere():
+def test_an_action_has_the_same_version_everywhere() -> None:
     pinned = {use for path in FILES for use in re.findall(r"uses: ([\w-]+/[\w-]+@\S+ # \S+)", path.read_text("utf-8"))}
     assert len({use.partition("@")[0] for use in pinned}) == len(pinned)
 
 
 @pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.stem)
-def test_jobs_have_time_limits_and_permissions_of_their_own_and_keep_no_credentials(path: Path):
+def test_jobs_have_time_limits_and_permissions_of_their_own_and_keep_no_credentials(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert "\npermissions: {}\n" in text
     assert "\nconcurrency:\n" in text
@@ -60,7 +60,7 @@ def test_jobs_have_time_limits_and_permissions_of_their_own_and_keep_no_credenti
         assert job.count("actions/checkout@") == job.count("persist-credentials: false"), job
 
 
-def test_only_the_job_that_publishes_can_sign_for_pypi():
+def test_only_the_job_that_publishes_can_sign_for_pypi() -> None:
     release = (FOLDER / "workflows" / "release.yml").read_text(encoding="utf-8")
     before, _, publish = release.partition("\n  publish:\n")
     assert "id-token: write" not in before
@@ -85,7 +85,9 @@ def versioned(folder: Path, tag: str, changelog: str) -> subprocess.CompletedPro
     ("tag", "heading", "version"),
     [("v3.4.5", "## [3.4.5] - 2031-01-02", "3.4.5"), ("v3.4.5-rc.1", "## [3.4.5] - unreleased", "3.4.5-rc.1")],
 )
-def test_the_version_of_a_tag_is_written_wherever_it_stands(tmp_path: Path, tag: str, heading: str, version: str):
+def test_the_version_of_a_tag_is_written_wherever_it_stands(
+    tmp_path: Path, tag: str, heading: str, version: str
+) -> None:
     assert versioned(tmp_path, tag, heading).returncode == 0
     crates = len(re.findall(r'^name = "qtab-', (ROOT / "Cargo.lock").read_text(encoding="utf-8"), re.MULTILINE))
     for name, places in zip(NAMES, (2, crates, 1), strict=True):
@@ -103,14 +105,14 @@ def test_the_version_of_a_tag_is_written_wherever_it_stands(tmp_path: Path, tag:
 )
 def test_a_tag_without_a_version_or_without_a_section_of_the_changelog_is_refused(
     tmp_path: Path, tag: str, heading: str, error: str
-):
+) -> None:
     done = versioned(tmp_path, tag, heading)
     assert done.returncode == 1
     assert error in done.stderr
     assert (tmp_path / "Cargo.lock").read_bytes() == (ROOT / "Cargo.lock").read_bytes()
 
 
-def test_the_links_of_the_readme_become_absolute_for_pypi(tmp_path: Path):
+def test_the_links_of_the_readme_become_absolute_for_pypi(tmp_path: Path) -> None:
     (tmp_path / ".ci").mkdir()
     (tmp_path / ".ci" / "links.py").write_bytes((ROOT / ".ci" / "links.py").read_bytes())
     (tmp_path / "README.md").write_bytes((ROOT / "README.md").read_bytes())

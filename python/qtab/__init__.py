@@ -52,6 +52,7 @@ _MODULES = {
     "optimum": "qtab.planning.solve",
     "planning": "qtab.planning",
     "play": "qtab.rendering.play",
+    "playground": "qtab.playground",
     "plot": "qtab.plots.run",
     "plots": "qtab.plots",
     "policy_values": "qtab.planning.policy_values",
@@ -72,6 +73,7 @@ if TYPE_CHECKING:
     from qtab import book as book
     from qtab import callbacks as callbacks
     from qtab import planning as planning
+    from qtab import playground as playground
     from qtab import plots as plots
     from qtab import prediction as prediction
     from qtab import sb3 as sb3

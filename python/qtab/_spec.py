@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Required
 
+from qtab._algorithm_spec import AlgorithmSpec as AlgorithmSpec
 from qtab._discretizer_spec import DiscretizerSpec as DiscretizerSpec
-from qtab.config.choices import BitGenerator, OnTruncation, TerminalUpdate, Ties, Traces
+from qtab.config.choices import BitGenerator, OnTruncation, TerminalUpdate, Ties
 
 if TYPE_CHECKING:
     from qtab._core import NativeEnv
@@ -112,7 +113,15 @@ class SoftmaxSpec(TypedDict):
     temperature: float
 
 
-PolicySpec: TypeAlias = EpsilonGreedySpec | SoftmaxSpec
+class UcbSpec(TypedDict):
+    """Chooses the action with the largest upper confidence bound of its value."""
+
+    type: Literal["ucb"]
+    confidence: float
+    ties: Ties
+
+
+PolicySpec: TypeAlias = EpsilonGreedySpec | SoftmaxSpec | UcbSpec
 
 
 class TableSpec(TypedDict):
@@ -131,56 +140,6 @@ class UniformSpec(TypedDict):
 
 
 InitialQSpec: TypeAlias = TableSpec | UniformSpec | ConstantSpec
-
-
-class OneStepSpec(TypedDict):
-    """An algorithm without options."""
-
-    type: Literal["q_learning", "sarsa", "expected_sarsa", "double_q_learning"]
-
-
-class NStepSarsaSpec(TypedDict):
-    """n-step Sarsa."""
-
-    type: Literal["n_step_sarsa"]
-    n_steps: int
-
-
-class TraceSpec(TypedDict):
-    """An algorithm with eligibility traces of a kind."""
-
-    type: Literal["sarsa_lambda", "watkins_q_lambda"]
-    trace_decay: float
-    traces: Traces
-    trace_cutoff: float
-
-
-class TrueOnlineSarsaLambdaSpec(TypedDict):
-    """True online Sarsa(lambda), whose traces are of its own kind."""
-
-    type: Literal["true_online_sarsa_lambda"]
-    trace_decay: float
-    trace_cutoff: float
-
-
-class DynaQSpec(TypedDict):
-    """Dyna-Q."""
-
-    type: Literal["dyna_q"]
-    planning_steps: int
-
-
-class DynaQPlusSpec(TypedDict):
-    """Dyna-Q+."""
-
-    type: Literal["dyna_q_plus"]
-    planning_steps: int
-    time_weight: float
-
-
-AlgorithmSpec: TypeAlias = (
-    OneStepSpec | NStepSarsaSpec | TraceSpec | TrueOnlineSarsaLambdaSpec | DynaQSpec | DynaQPlusSpec
-)
 
 
 class UnknownMasksSpec(TypedDict):
@@ -211,6 +170,7 @@ class RunSpec(TypedDict):
     policy: PolicySpec
     learning_rate: LearningRateSpec
     discount: float
+    count_bonus: float
     initial_q: InitialQSpec
     action_masks: ActionMasksSpec
     terminal_update: TerminalUpdate

@@ -90,7 +90,8 @@ def test_sample_updates_have_the_error_of_simulated_ones():
 def small():
     experiment = qtab.book.find("8.8")
     assert isinstance(experiment, UpdateDistributions)
-    return dataclasses.replace(experiment, tasks=(Tasks(60, 1, 600), Tasks(90, 3, 900)), points=7)
+    parts = tuple(part / 6 for part in range(7))
+    return dataclasses.replace(experiment, tasks=(Tasks(60, 1, 600), Tasks(90, 3, 900)), parts=parts)
 
 
 def test_updates_on_policy_are_better_at_first_and_worse_in_the_end(small):

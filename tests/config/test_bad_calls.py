@@ -25,7 +25,8 @@ RATES: tuple[str, ...] = (
     "learning_rate_decay",
     "trace_decay",
 )
-RATES += ("trace_cutoff", "min_learning_rate", "temperature", "time_weight")
+RATES += ("trace_cutoff", "min_learning_rate", "temperature", "time_weight", "value_learning_rate", "confidence")
+RATES += ("sigma", "priority_threshold", "reward_learning_rate", "count_bonus")
 COUNTS: tuple[str, ...] = (
     "episodes",
     "max_episode_steps",
@@ -53,6 +54,7 @@ def settings() -> Iterator[tuple[str, Any]]:
     for name in LISTS:
         yield from ((name, value) for value in NOT_LISTS)
     yield from (("seed", value) for value in ["3", 1.5, -1, True, np.True_, [3], NAN])
+    yield from (("baseline", value) for value in ["yes", 1, 0, 0.5, [True]])
     yield from (("preset", value) for value in [3, b"solved", "slved", ["solved"]])
     yield from (("env_kwargs", value) for value in [3, "goal_velocity", [("a", 1)], {1: 2}])
     yield from [("actions", RAGGED), ("edges", [[2, 1]]), ("tiles", HUGE), ("bins", HUGE), ("hashed_rows", -HUGE)]

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 import qtab
 from qtab.config.choices import Algorithm
-from support.learner_settings import explorations, learning_rates, own_options
+from qtab.config.options import PREFERENCES, TABLES_ONLY
+from support.learner_settings import BY_EPISODE, explorations, learning_rates, own_options, possible_explorations
 from support.masked import MASKS, SHORT, TILES, MaskedGraph
 from support.parity import assert_same_run
 
@@ -35,14 +36,14 @@ def masked_runs(draw: st.DrawFn) -> tuple[NDArray[Any], str, dict[str, Any]]:
     shown = draw(st.sampled_from(["discrete", "box"]))
     features: dict[str, Any] = {"discretizer": "identity"}
     if shown == "box":
-        features = BINS if "dyna" in algorithm else draw(st.sampled_from([BINS, TILES]))
+        features = BINS if algorithm in (*TABLES_ONLY, *PREFERENCES) else draw(st.sampled_from([BINS, TILES]))
     return (
         masks,
         shown,
         {
             **features,
-            **draw(learning_rates(0.5, by_visits=algorithm != "true_online_sarsa_lambda")),
-            **draw(explorations()),
+            **draw(learning_rates(0.5, by_visits=algorithm not in BY_EPISODE, algorithm=algorithm)),
+            **draw(explorations(possible_explorations(algorithm, features))),
             **draw(own_options(algorithm)),
             "algorithm": algorithm,
             "bit_generator": draw(st.sampled_from(["PCG64", "MT19937"])),
@@ -64,8 +65,12 @@ def test_random_masks_give_the_table_of_the_reference(drawn: tuple[Any, str, dic
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
-@pytest.mark.parametrize("exploration", [{"epsilon": 0.7, "ties": "random"}, {"exploration": "softmax"}], ids=str)
+@pytest.mark.parametrize(
+    "exploration", [{"epsilon": 0.7, "ties": "random"}, {"exploration": "softmax"}, {"exploration": "ucb"}], ids=str
+)
 def test_masks_that_differ_within_a_cell_are_kept_to(algorithm: Any, exploration: dict[str, Any]) -> None:
+    if algorithm in PREFERENCES:
+        exploration = {"temperature": 0.5 if "epsilon" in exploration else 1.0}
     chosen: dict[str, Any] = {"algorithm": algorithm, "seed": 3, **BINS, **exploration, **SHORT}
     every = np.ones_like(MASKS)
     env = MaskedGraph(every, "none", "box")

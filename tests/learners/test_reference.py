@@ -9,6 +9,7 @@ from hypothesis import given, settings
 
 import qtab
 from qtab.config.choices import Algorithm
+from qtab.config.options import PREFERENCES, TABLES_ONLY
 from qtab.reference import LEARNERS
 from support.learner_settings import CAR, TRAINED, run_settings
 
@@ -48,9 +49,9 @@ def test_a_long_episode_gives_the_identical_table(algorithm: Any, seed: int) -> 
         max_episode_steps=1000,
         learning_rate=0.3,
         discount=1.0,
-        epsilon=0.1,
         initial_q=0.0,
-        **({"scale": (10, 100)} if "dyna" in algorithm else {"discretizer": "tiles"}),
+        **({} if algorithm in PREFERENCES else {"epsilon": 0.1}),
+        **({"scale": (10, 100)} if algorithm in TABLES_ONLY else {"discretizer": "tiles"}),
     )
     assert qtab.verify(run).equal
 
@@ -58,7 +59,7 @@ def test_a_long_episode_gives_the_identical_table(algorithm: Any, seed: int) -> 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("discretizer", ["round", "tiles"])
 def test_both_backends_give_the_identical_table(algorithm: Any, discretizer: Any) -> None:
-    if "dyna" in algorithm:
+    if algorithm in TABLES_ONLY:
         discretizer = "round"
     chosen: dict[str, Any] = {"algorithm": algorithm, "discretizer": discretizer, "seed": 5, "episodes": 3}
     rust, python = (qtab.train("MountainCar-v0", backend=backend, **chosen) for backend in BACKENDS)
@@ -93,7 +94,7 @@ class Chain(gym.Env[Any, Any]):
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("features", [{"scale": (4,)}, {"discretizer": "tiles", "tilings": 4, "tiles": (5,)}])
 def test_an_environment_in_python_gives_the_identical_table(algorithm: Any, features: dict[str, Any]) -> None:
-    if "dyna" in algorithm:
+    if algorithm in TABLES_ONLY:
         features = {"scale": (4,)}
     run = qtab.train(Chain(), algorithm=algorithm, seed=2, episodes=30, **features)
     assert run.terminated.any()

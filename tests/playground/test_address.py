@@ -71,14 +71,20 @@ def test_a_hostile_address_only_sets_controls(playground: Playground, fragment: 
 
 NAMES = ["env", "seed", "seeds", "example", "layout", "wind", "rewards", *definitions()["settings"]]
 WORDS = st.one_of(
-    st.sampled_from([*definitions()["environments"], "tiles", "bins", "round", "dyna_q", "softmax", "assign", "visits"]),
+    st.sampled_from(
+        [*definitions()["environments"], "tiles", "bins", "round", "dyna_q", "softmax", "assign", "visits"]
+    ),
     st.floats().map(str),
     st.lists(st.floats(), min_size=1, max_size=4).map(lambda numbers: ",".join(map(str, numbers))),
     st.text(max_size=12),
 )
 
 
-@settings(max_examples=settings.default.max_examples // 4, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(
+    max_examples=settings().max_examples // 4,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+    deadline=None,
+)
 @given(st.lists(st.tuples(st.sampled_from(NAMES), WORDS), max_size=8))
 def test_any_address_only_sets_controls(playground: Playground, parts: list[tuple[str, str]]) -> None:
     if not playground.requests:

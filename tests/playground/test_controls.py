@@ -77,7 +77,7 @@ def _change(playground: Playground, name: str, before: Any) -> Any:
     field.fill(f"{first:g}")
     field.press("Enter")
     if definition["type"] == "initial_q":
-        low, high = before if isinstance(before, list) else (before, before)
+        _, high = before if isinstance(before, list) else (before, before)
         return [first, high] if first < high else first
     assert isinstance(before, list)
     count = len(KNOWN["environments"]["MountainCar-v0"]["observations"])

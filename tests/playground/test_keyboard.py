@@ -38,7 +38,9 @@ def test_everything_that_can_be_pressed_is_reached_with_tab_and_seen(playground:
             continue
         assert found["outline"], found
         assert found["name"], found
-        reached.add(playground.page.evaluate("() => [...document.querySelectorAll('*')].indexOf(document.activeElement)"))
+        reached.add(
+            playground.page.evaluate("() => [...document.querySelectorAll('*')].indexOf(document.activeElement)")
+        )
     assert len(reached) >= wanted
 
 
@@ -47,7 +49,9 @@ def test_a_state_is_selected_with_the_arrow_keys(playground: Playground) -> None
     press(playground, "v", "Home", "ArrowUp", "ArrowUp", "ArrowRight")
     label = playground.page.evaluate("() => document.activeElement.getAttribute('aria-label')")
     assert label.startswith("Row ")
-    before = playground.page.evaluate("() => [playground.view.values.focused, document.querySelectorAll('.map-cell').length]")
+    before = playground.page.evaluate(
+        "() => [playground.view.values.focused, document.querySelectorAll('.map-cell').length]"
+    )
     assert before[1] == 1, "only one cell takes the focus with Tab"
     press(playground, "Enter")
     playground.page.wait_for_function("cell => playground.view.result.inspection?.cell === cell", arg=before[0])

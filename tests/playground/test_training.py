@@ -57,7 +57,9 @@ def test_stepping_to_the_end_learns_what_running_does(playground: Playground) ->
 def test_a_long_run_can_be_stopped_and_continued(playground: Playground) -> None:
     playground.open("#env=MountainCar-v0&episodes=100")
     playground.type_number("episodes", "50000")
-    playground.page.wait_for_function("() => playground.training.state === 'training' && playground.view.result.done > 0")
+    playground.page.wait_for_function(
+        "() => playground.training.state === 'training' && playground.view.result.done > 0"
+    )
     playground.page.locator("#stop").click()
     stopped = playground.settled().result()
     assert stopped["state"] == "paused"
@@ -95,3 +97,12 @@ def test_examples_show_failure_and_cure(playground: Playground) -> None:
     cured = playground.settled().result()
     assert sum(cured["returns"][-1000:]) > 500
     assert "initial values of 1" in playground.text("look")
+
+
+def test_values_that_differ_are_shown_differently(playground: Playground) -> None:
+    playground.open("#env=MountainCar-v0&example=0")
+    playground.page.wait_for_function("() => playground.view.result.inspection")
+    values = playground.page.evaluate("() => Array.from(playground.view.result.inspection.actionValues)")
+    shown = playground.page.locator(".action-values tbody tr td:nth-of-type(1)").all_inner_texts()
+    assert len(set(shown)) == len(set(values)) == 3
+    assert max(values) - min(values) < 0.01, "four digits would show them alike"

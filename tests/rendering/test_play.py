@@ -178,21 +178,6 @@ def test_without_a_display_nothing_is_shown_and_a_message_says_so(caplog: pytest
     assert "no window is shown (SDL draws to 'dummy'); .save('agent.mp4') writes the video" in caplog.text
 
 
-def test_an_environment_without_pictures_is_refused_without_advice_to_save_them(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
-    class Plain(FrozenLakeEnv):
-        metadata = {"render_modes": ["ansi"]}  # noqa: RUF012 - as in Gymnasium's classes
-
-    gym.register("Plain-v0", Plain)
-    try:
-        with pytest.raises(ValueError, match="Plain-v0 cannot be rendered as 'rgb_array'; its render modes are: 'ansi"):
-            qtab.play(lake(), env="Plain-v0")
-    finally:
-        del gym.registry["Plain-v0"]
-    assert caplog.messages == []
-
-
 def test_without_pygame_an_environment_that_does_not_need_it_is_shown_without_a_window(
     caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

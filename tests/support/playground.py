@@ -14,7 +14,9 @@ SETTLED = """() => {
 COLORS = """(canvas) => {
   const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
   const colors = new Set();
-  for (let at = 0; at < data.length; at += 4) if (data[at + 3]) colors.add((data[at] << 16) | (data[at + 1] << 8) | data[at + 2]);
+  for (let at = 0; at < data.length; at += 4) {
+    if (data[at + 3]) colors.add((data[at] << 16) | (data[at + 1] << 8) | data[at + 2]);
+  }
   return colors.size;
 }"""
 """How many colors a canvas has."""

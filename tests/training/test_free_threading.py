@@ -167,7 +167,7 @@ def test_an_attribute_assigned_while_the_attributes_are_read_takes_effect():
         assign = False
 
         @property
-        def render_mode(self) -> None:  # type: ignore[override]
+        def render_mode(self) -> None:
             if self.assign:
                 self.__dict__["assign"] = False
                 self.force = 0.01

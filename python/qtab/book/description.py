@@ -1,7 +1,7 @@
 """What an experiment is called, where it comes from, and how its table and figure are laid out."""
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 
@@ -35,6 +35,8 @@ class Description:
     """The limits of the x axis; None fits the data."""
     y_range: tuple[float, float] | None = None
     """The limits of the y axis; None fits the data."""
+    y_marks: Mapping[str, float] = field(default_factory=dict)
+    """Heights to mark by a dashed line, each by its text."""
 
     @property
     def number(self) -> str:

@@ -30,6 +30,7 @@ _BY_NAME: Mapping[str, Any] = {
     "edges": ("[NUMBER,...] ...", "*", constructors.read_edges),
     "actions": ("COUNT|ACTION ACTION ...", "*", constructors.read_actions),
     "action_mask": ("{True,False}", 1, constructors.read_flag),
+    "baseline": ("{True,False}", 1, constructors.read_flag),
     "initial_q": ("LOW HIGH|VALUE|FILE", "*", constructors.read_initial_q),
 }
 _BY_TYPE: Mapping[Any, Any] = {

@@ -37,7 +37,7 @@ def optimum_of(resolved: ResolvedRun, always: bool, progress: bool | None) -> Op
 
 def _has_quick_optimum(resolved: ResolvedRun) -> bool:
     environment = resolved.environment
-    if not isinstance(environment, NativeEnvironment) or not environment.entry.has_table:
+    if not isinstance(environment, NativeEnvironment) or not environment.entry.knows_transitions:
         return False
     return resolved.discretizer.n_rows * len(resolved.actions) * resolved.max_episode_steps <= MAX_QUICK_UPDATES
 

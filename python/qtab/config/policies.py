@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from qtab._spec import EpsilonGreedySpec, SoftmaxSpec
+from qtab._spec import EpsilonGreedySpec, SoftmaxSpec, UcbSpec
 from qtab._utils.checks import required
 from qtab.config.choices import Ties
 from qtab.config.config import Config
@@ -34,7 +34,19 @@ class Softmax:
         return {"type": "softmax", "temperature": self.temperature}
 
 
-Policy: TypeAlias = EpsilonGreedy | Softmax
+@dataclass(frozen=True)
+class Ucb:
+    """The action with the largest upper confidence bound of its value."""
+
+    confidence: float
+    ties: Ties
+
+    def spec(self) -> UcbSpec:
+        """Returns the policy as the extension takes it."""
+        return {"type": "ucb", "confidence": self.confidence, "ties": self.ties}
+
+
+Policy: TypeAlias = EpsilonGreedy | Softmax | Ucb
 
 
 def policy(config: Config) -> Policy:
@@ -45,4 +57,6 @@ def policy(config: Config) -> Policy:
     """
     if config.exploration == "softmax":
         return Softmax(required("temperature", config.temperature))
+    if config.exploration == "ucb":
+        return Ucb(required("confidence", config.confidence), required("ties", config.ties))
     return EpsilonGreedy(epsilon(config), required("ties", config.ties))

@@ -1,5 +1,6 @@
 """Named settings for environments: the article's, the textbook's, and ones that learn well."""
 
+import math
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
@@ -35,6 +36,28 @@ _BIAS_BOOK: SharedSettings = {
     "ties": "random",
     "initial_q": np.array([[0.0] * 2 + [-np.inf] * 8, [0.0] * 10, [0.0] * 10]),
     "episodes": 300,
+}
+
+# Sutton & Barto, 2nd ed., Figure 2.2: sample averages and an exploration rate of 0.1.
+_BANDIT_BOOK: SharedSettings = {
+    "learning_rate": 1.0,
+    "learning_rate_schedule": "visits",
+    "discount": 1.0,
+    "epsilon": 0.1,
+    "epsilon_schedule": "constant",
+    "ties": "random",
+    "initial_q": 0.0,
+    "episodes": 1000,
+}
+
+# Sutton & Barto, 2nd ed., Figure 13.1. The first policy goes right with probability 0.05, as the figure's first returns
+# show; the book does not state it.
+_CORRIDOR_BOOK: SharedSettings = {
+    "algorithm": "reinforce",
+    "learning_rate": 2.0**-13,
+    "discount": 1.0,
+    "initial_q": np.array([[math.log(19.0), 0.0]]),
+    "episodes": 1000,
 }
 
 # Tuned by hand over a few seeds. The exploration rate falls to 0, and in environments with chance so does the learning
@@ -200,7 +223,9 @@ _PRESETS: Mapping[str, Mapping[str, SharedSettings]] = {
     "CliffWalkingSlippery-v1": {"tuned": _SLIPPERY_CLIFF, "solved": _SOLVED_SLIPPERY_CLIFF},
     "Taxi-v4": {"tuned": _TAXI, "solved": _SOLVED_TAXI},
     "Blackjack-v1": {"tuned": _BLACKJACK, "solved": _SOLVED_BLACKJACK},
+    "KArmedBandit-v0": {"book": _BANDIT_BOOK},
     "MaximizationBias-v0": {"book": _BIAS_BOOK},
+    "ShortCorridor-v0": {"book": _CORRIDOR_BOOK},
 }
 
 

@@ -14,7 +14,7 @@ from qtab.config.action_mask import mask_setting
 from qtab.config.choices import CHOICES
 from qtab.config.discretizer import uses_tiles
 from qtab.config.keyed_discretizers import check_limits, checked_discretizer
-from qtab.config.options import OPTIONS, check_options, other_choice
+from qtab.config.options import OPTIONS, PREFERENCES, check_options, other_choice
 
 LARGEST_MT19937_SEED = 2**32 - 1
 MAX_TILINGS = 32
@@ -43,7 +43,12 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
     if missing and uses_tiles(checked["discretizer"]):
         raise ValueError(other_choice("discretizer", "tiles", ("tiles",), "for an initial_q that contains -inf"))
     most_rate = 2 if uses_tiles(checked["discretizer"]) else 1
-    checks.real("learning_rate", checked["learning_rate"], 0, most_rate)
+    if checked["algorithm"] in PREFERENCES:
+        _not_negative("learning_rate", checked["learning_rate"])
+    else:
+        checks.real("learning_rate", checked["learning_rate"], 0, most_rate)
+    if checked["value_learning_rate"] is not None:
+        checks.real("value_learning_rate", checked["value_learning_rate"], 0, most_rate)
     _at_most(checked, "min_epsilon", "epsilon", OPTIONS["epsilon"].default)
     _at_most(checked, "min_learning_rate", "learning_rate", None)
     for name in ("epsilon_warm_up", "learning_rate_warm_up"):
@@ -81,6 +86,12 @@ def _not_negative(name: str, value: Any) -> float:
     if number < 0:
         raise ValueError(f"{name} must not be negative, got {shown(value)}")
     return number
+
+
+def _flag(name: str, value: Any) -> bool:
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError(f"{name} must be True or False, got {shown(value)}")
+    return bool(value)
 
 
 def _integer(least: int, most: int | None = None) -> Callable[[str, Any], int]:
@@ -211,11 +222,17 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "epsilon_decay": _real(0, 1),
     "epsilon_warm_up": _integer(0, checks.LARGEST_COUNT),
     "temperature": _above_zero,
+    "confidence": _not_negative,
+    "baseline": _flag,
+    "value_learning_rate": checks.finite,  # as for the learning rate
     "trace_decay": _real(0, 1),
     "trace_cutoff": _real(0, 1),
     "n_steps": _integer(1, 1_000_000),
+    "sigma": _real(0, 1),
     "planning_steps": _integer(0, 1_000_000),
     "time_weight": _not_negative,
+    "priority_threshold": _not_negative,
+    "reward_learning_rate": _real(0, 1),
     "scale": _scale,
     "tilings": _integer(1, MAX_TILINGS),
     "tiles": _counts(1, MAX_TILES),
@@ -224,6 +241,7 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "edges": _edges,
     "low": _each(checks.finite),
     "high": _each(checks.finite),
+    "count_bonus": _not_negative,
     "actions": _actions,
     "action_mask": mask_setting,
     "initial_q": _initial_q,

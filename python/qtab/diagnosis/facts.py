@@ -109,7 +109,7 @@ class Facts:
             return self.given_optimum
         entry = entry_for_id(self.config.env)
         updates = self.run.discretizer.n_rows * len(self.run.actions) * (self.config.max_episode_steps or 0)
-        if not self.can_repeat or entry is None or not entry.has_table or updates > MAX_QUICK_UPDATES:
+        if not self.can_repeat or entry is None or not entry.knows_transitions or updates > MAX_QUICK_UPDATES:
             return None
         return solve(self.run)
 

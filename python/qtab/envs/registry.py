@@ -32,6 +32,11 @@ class EnvEntry:
     vector_entry_point: str = ""
     """This package's twin of the vector environment that Gymnasium has for the id; empty where Gymnasium has none."""
 
+    @property
+    def knows_transitions(self) -> bool:
+        """Whether all transition probabilities are known, from which :func:`qtab.optimum` computes the optimum."""
+        return self.name in (_TABLE, "Blackjack", "Taxi")
+
 
 def _classic_control(name: str, gymnasium_class: str, *supported_kwargs: str, vector_entry_point: str = "") -> EnvEntry:
     return EnvEntry(
@@ -82,9 +87,28 @@ ENTRIES: Mapping[str, EnvEntry] = {
 }
 """Gymnasium's environments, by Gymnasium's id."""
 
+_BOOK = {
+    "AccessControlQueue-v0": (_TABLE, "access_control_queue:AccessControlQueueEnv"),
+    "BlockingMaze-v0": ("ChangingMaze", "changing_mazes:BlockingMazeEnv"),
+    "DynaMaze-v0": (_TABLE, "dyna_maze:DynaMazeEnv"),
+    "Racetrack-v0": ("Racetrack", "racetrack:RacetrackEnv"),
+    "ShortcutMaze-v0": ("ChangingMaze", "changing_mazes:ShortcutMazeEnv"),
+}
+"""The names in the extension module, and the classes, of environments of Sutton & Barto's book."""
+
 EXTRA: Mapping[str, EnvEntry] = {
+    **{
+        f"{PREFIX}{name}": EnvEntry(of_extension, "", f"qtab.envs.{entry_point}", has_table=True)
+        for name, (of_extension, entry_point) in _BOOK.items()
+    },
+    f"{PREFIX}KArmedBandit-v0": EnvEntry(
+        "KArmedBandit", "", "qtab.envs.k_armed_bandit:KArmedBanditEnv", has_table=True
+    ),
     f"{PREFIX}MaximizationBias-v0": EnvEntry(
         "MaximizationBias", "", "qtab.envs.maximization_bias:MaximizationBiasEnv", has_table=True
+    ),
+    f"{PREFIX}ShortCorridor-v0": EnvEntry(
+        "ShortCorridor", "", "qtab.envs.short_corridor:ShortCorridorEnv", has_table=True
     ),
     f"{PREFIX}RandomWalk-v0": _table("qtab.envs.random_walk:RandomWalkEnv"),
     f"{PREFIX}GridWorld5x5-v0": _table("qtab.envs.small_grid_worlds:grid_world_5x5"),

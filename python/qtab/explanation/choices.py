@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.explanation.records import Choice, Reason
-from qtab.reference.policies import EpsilonGreedy, Policy, Softmax
+from qtab.reference.policies import EpsilonGreedy, Policy, Softmax, Ucb
 from qtab.reference.streams import AgentStream
 
 
@@ -32,22 +32,42 @@ class ObservedStream:
 class ObservedPolicy:
     """A policy that reports the values and the action of each choice to ``chose``."""
 
-    def __init__(self, policy: Policy, chose: Callable[[NDArray[np.float64], int], None]) -> None:
+    def __init__(
+        self, policy: Policy, chose: Callable[[NDArray[np.float64], list[int], list[float], int], None]
+    ) -> None:
         self._policy, self._chose = policy, chose
         self.probabilities, self.end_episode = policy.probabilities, policy.end_episode
 
-    def choose(self, values: NDArray[np.float64]) -> int:
+    def choose(self, values: NDArray[np.float64], state: list[int]) -> int:
         """Returns an action."""
-        action = self._policy.choose(values)
-        self._chose(values, action)
+        # The choice changes the bounds.
+        bounds = self._policy.bounds(values, state) if isinstance(self._policy, Ucb) else []
+        action = self._policy.choose(values, state)
+        self._chose(values, state, bounds, action)
         return action
 
 
-def explained(policy: Policy, values: NDArray[np.float64], action: int, drawn: float) -> Choice:
-    """Returns why a policy chose an action, from the random number in [0, 1) that it drew."""
-    tied = int(np.count_nonzero(values == np.max(values)))
+def explained(
+    policy: Policy, values: NDArray[np.float64], state: list[int], bounds: list[float], action: int, drawn: float
+) -> Choice:
+    """Returns why a policy chose an action.
+
+    Args:
+        policy: The policy.
+        values: (actions,): the action values.
+        state: The active rows of the state.
+        bounds: (actions,): the upper confidence bounds that were compared; empty for other policies.
+        action: The action.
+        drawn: The random number in [0, 1) that the policy drew, if it draws one.
+    """
+    compared = np.array(bounds) if bounds else values
+    tied = int(np.count_nonzero(compared == np.max(compared)))
     reason: Reason = "softmax"
     epsilon = None
+    random_ties = isinstance(policy, EpsilonGreedy | Ucb) and policy.random_ties
+    if bounds:
+        probability = 1.0 / tied if random_ties else 1.0
+        return Choice(action, "upper bound", tuple(bounds), probability, float("nan"), tied, None, None, random_ties)
     if isinstance(policy, EpsilonGreedy):
         epsilon = policy.epsilon.value
         reason = "explored" if not drawn < 1.0 - epsilon else "greedy" if tied == 1 else "tie broken"
@@ -55,10 +75,10 @@ def explained(policy: Policy, values: NDArray[np.float64], action: int, drawn: f
         action=action,
         reason=reason,
         values=tuple(values.tolist()),
-        probability=float(policy.probabilities(values)[action]),
+        probability=float(policy.probabilities(values, state)[action]),
         drawn=drawn,
         tied=tied,
         epsilon=epsilon,
         temperature=policy.temperature if isinstance(policy, Softmax) else None,
-        random_ties=isinstance(policy, EpsilonGreedy) and policy.random_ties,
+        random_ties=random_ties,
     )

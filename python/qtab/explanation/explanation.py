@@ -53,7 +53,11 @@ class Explanation:
     def heading(self) -> str:
         """The run, the episode and its rates, in one line."""
         config, choice, length = self.config, self.steps[0].choice, self.episode_length
-        rate = f"temperature {choice.temperature:.6g}" if choice.epsilon is None else f"epsilon {choice.epsilon:.6g}"
+        if choice.epsilon is not None:
+            rate = f"epsilon {choice.epsilon:.6g}"
+        else:
+            name = "confidence" if config.exploration == "ucb" else "temperature"
+            rate = f"{name} {getattr(config, name):.6g}"
         return (
             f"{config.env}, {config.algorithm}, seed {config.seed}, episode {self.episode}: "
             f"{length} step{'' if length == 1 else 's'}, return {self.episode_return:.6g}; "

@@ -44,6 +44,7 @@ def start_of(run: Run, episode: int) -> Start | None:
     config = run.config
     by_values = (
         config.ties == "random"
+        or config.exploration == "ucb"
         or config.action_mask is not False
         or (isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q).any())
     )

@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 from qtab._utils import html
 
-Reason = Literal["greedy", "tie broken", "explored", "softmax"]
+Reason = Literal["greedy", "tie broken", "explored", "softmax", "upper bound"]
 
 
 @dataclass(frozen=True)
@@ -16,23 +16,29 @@ class Choice:
     """The column of the action in the table."""
     reason: Reason
     """``"greedy"``: it has the largest value. ``"tie broken"``: several have. ``"explored"``: drawn at random, as
-    happens with probability epsilon. ``"softmax"``: drawn with the probabilities of the softmax policy."""
+    happens with probability epsilon. ``"softmax"``: drawn with the probabilities of the softmax policy.
+    ``"upper bound"``: it has the largest upper confidence bound."""
     values: tuple[float, ...]
-    """(actions,): the values that the policy compared; the sum of both tables for Double Q-learning."""
+    """(actions,): the values that the policy compared; the sum of both tables for Double Q-learning, the bounds for
+    upper confidence bounds."""
     probability: float
     """How likely the policy was to choose this action."""
     drawn: float
-    """The random number in [0, 1) that decided."""
+    """The random number in [0, 1) that decided; NaN for upper confidence bounds, which draw none."""
     tied: int
     """The number of actions with the largest value."""
     epsilon: float | None
-    """The exploration rate; None for softmax."""
+    """The exploration rate; None for other policies than epsilon-greedy."""
     temperature: float | None
-    """The temperature of softmax; None for epsilon-greedy."""
+    """The temperature of softmax; None for others."""
     random_ties: bool
     """Whether ties are broken at random, instead of for the first action."""
 
     def __str__(self) -> str:
+        if self.reason == "upper bound":
+            chosen = f"upper bound: Q + c √(ln t / N) = {self.values[self.action]:.6g} is the largest"
+            how = "a random one" if self.random_ties else "the first"
+            return chosen if self.tied == 1 else f"{chosen}, {how} of {self.tied}"
         if self.epsilon is None:
             return f"softmax: drawn with probability {self.probability:.3g} at temperature {self.temperature:.6g}"
         if self.reason == "explored":

@@ -40,7 +40,7 @@ def bootstrap(
     if algorithm == "double_q_learning":
         return value(tables[1 - table], next_state, int(np.argmax(next_values)))
     if algorithm == "expected_sarsa":
-        return _expected(policy.probabilities(next_values), next_values)
+        return _expected(policy.probabilities(next_values, next_state), next_values)
     return float(np.max(next_values))
 
 

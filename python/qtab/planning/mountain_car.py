@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -67,7 +68,8 @@ def _routes(searched: _core.MountainCarSearch, max_episode_steps: int) -> Search
     steps = np.array([max_episode_steps if route is None else len(route) for route in routes], dtype=np.int64)
     predict_return = -float(searched.rollout_lengths().mean())
     found = Search(starts, steps, tuple(routes), predict_return, *searched.axes())
-    for array in (starts, steps, found.positions, found.velocities, *(route for route in routes if route is not None)):
+    shared: list[NDArray[Any]] = [starts, steps, found.positions, found.velocities]
+    for array in shared + [route for route in routes if route is not None]:
         array.flags.writeable = False  # several optima share them
     return found
 

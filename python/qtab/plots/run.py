@@ -102,6 +102,8 @@ def _settings_note(run: Run) -> str:
     config = run.config
     if config.temperature is not None:
         exploration = f"τ = {config.temperature:g}"
+    elif config.confidence is not None:
+        exploration = f"c = {config.confidence:g}"
     else:
         exploration = f"ε = {config.epsilon:g}"
         if config.min_epsilon is not None:

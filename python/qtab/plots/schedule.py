@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from qtab._utils import checks
-from qtab.config.policies import Softmax
+from qtab.config.policies import Softmax, Ucb
 from qtab.config.policies import policy as policy_of
 from qtab.config.schedules import ByVisits, learning_rate
 from qtab.config.schedules import rates as rates_in
@@ -22,7 +22,7 @@ MAX_POINTS = 2_000
 
 
 def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) -> "Axes":
-    """Draws the exploration rate ε, or the temperature τ, and the learning rate α in each episode.
+    """Draws the exploration rate ε, or the temperature τ or the confidence c, and the learning rate α in each episode.
 
     A learning rate that falls with the visits of a state and action is no function of the episode: a band shows where
     it lies, from its value at the first visit down to its minimum.
@@ -49,6 +49,9 @@ def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) ->
         ax.axhline(
             behaviour.temperature, color=color(0), linewidth=2, label=f"temperature τ = {behaviour.temperature:g}"
         )
+    elif isinstance(behaviour, Ucb):
+        label = f"confidence c = {behaviour.confidence:g}"
+        ax.axhline(behaviour.confidence, color=color(0), linewidth=2, label=label)
     else:
         rates = rates_in(behaviour.epsilon, episodes, config.episodes)
         ax.plot(episodes + 1, rates, color=color(0), linewidth=2, label="exploration rate ε")

@@ -15,6 +15,7 @@ from qtab.discretizers import Discretizer, Identity
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.edges import Edges
 from qtab.planning.optimum import Optimum
+from qtab.results.action_values import read_by_policy
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.run import Run
 from qtab.results.runs import Runs
@@ -97,7 +98,11 @@ def subject_of(name: str, source: Any) -> Subject:
     """
     if isinstance(source, Run):
         return _of_runs(
-            source, source.config, source.tables[np.newaxis], source.action_names, f"seed {source.config.seed}"
+            source,
+            source.config,
+            read_by_policy(source.config, source.tables)[np.newaxis],
+            source.action_names,
+            f"seed {source.config.seed}",
         )
     if isinstance(source, Runs):
         if source.tables is None:
@@ -105,7 +110,8 @@ def subject_of(name: str, source: Any) -> Subject:
         if not len(source):
             raise ValueError(f"{name} must hold at least one run, got none")
         names = action_names(source.config.env, source.actions)
-        return _of_runs(source, source.config, source.tables, names, f"{len(source):,} seeds")
+        tables = np.moveaxis(read_by_policy(source.config, np.moveaxis(source.tables, 1, 0)), 0, 1)
+        return _of_runs(source, source.config, tables, names, f"{len(source):,} seeds")
     if isinstance(source, Optimum):
         return _of_optimum(source)
     raise TypeError(f"{name} must be a Run, Runs or an Optimum, got {shown(source)}{load_hint(source)}")

@@ -17,7 +17,7 @@ def double_q_learning(env: gym.Env, config: Config, stop_after: int | None = Non
         rate2.schedule.value = rate1.schedule.value
         state, over = task.reset(), False
         while not over:
-            action = task.policy.choose(task.values(Q1, state) + task.values(Q2, state))
+            action = task.policy.choose(task.values(Q1, state) + task.values(Q2, state), state)
             step = task.step(action)
 
             # A coin decides which table learns:

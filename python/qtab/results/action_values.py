@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.config.action_mask import FORGOTTEN, checked_mask
+from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
 
 if TYPE_CHECKING:
     from qtab.results.run import Run
@@ -23,9 +24,31 @@ def summed(parts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
     return total
 
 
+def read_by_policy(config: Config, tables: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns the tables, (k, ...), whose sum the greedy policy reads: of preferences and state values the former."""
+    return tables[:1] if config.algorithm in WITH_STATE_VALUES else tables
+
+
+def state_values(run: "Run", observation: Any) -> NDArray[np.float64]:
+    """Returns the () or (n,) values of observations under the policy that was learned.
+
+    Raises:
+        ValueError: of an algorithm that learns preferences alone.
+    """
+    if run.config.algorithm in WITH_STATE_VALUES:
+        active = np.moveaxis(run.discretizer.active_rows(observation), -1, 0)
+        return summed(run.tables[1][row, 0] for row in active)
+    if run.config.algorithm in PREFERENCES:
+        raise ValueError(
+            f"values needs an algorithm that learns values, got a run of {run.config.algorithm!r}, which learns "
+            "preferences alone: run.q_values(observation) are those"
+        )
+    return np.asarray(np.max(of_observations(run, observation), axis=-1) / len(run.tables))
+
+
 def of_cells(run: "Run") -> NDArray[np.float64]:
-    """Returns (*cells, actions): the values that the greedy policy reads; of two tables the sum."""
-    values = summed(run.tables).reshape(*run.discretizer.shape, len(run.actions))
+    """Returns (*cells, actions): the values or preferences that the greedy policy reads; of two tables the sum."""
+    values = summed(read_by_policy(run.config, run.tables)).reshape(*run.discretizer.shape, len(run.actions))
     return values if run.action_masks is None else np.where(run.action_masks, values, -np.inf)
 
 
@@ -67,7 +90,7 @@ def to_choose_from(run: "Run", observation: Any, action_masks: Any) -> NDArray[n
 
 def _of_rows(run: "Run", rows: NDArray[np.int64]) -> NDArray[np.float64]:
     active = np.moveaxis(rows, -1, 0)
-    return summed(summed(table[row] for row in active) for table in run.tables)
+    return summed(summed(table[row] for row in active) for table in read_by_policy(run.config, run.tables))
 
 
 def _available(run: "Run", observation: Any, rows: NDArray[np.int64]) -> NDArray[np.bool_] | None:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.config.policies import EpsilonGreedy, policy
+from qtab.config.policies import EpsilonGreedy, Ucb, policy
 
 
 def action_probabilities(config: Config, episodes: int, values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -21,6 +21,8 @@ def action_probabilities(config: Config, episodes: int, values: NDArray[np.float
         available = _available(config, values)
         greedy = _greedy(values, chosen.ties == "random")
         return epsilon * _uniform(available) + (1.0 - epsilon) * _uniform(greedy)
+    if isinstance(chosen, Ucb):  # the counts of its bounds are not part of a run
+        return _uniform(_greedy(values, chosen.ties == "random"))
     with np.errstate(under="ignore"):
         weights = np.exp((values - values.max(axis=1, keepdims=True)) / chosen.temperature)
     probabilities: NDArray[np.float64] = weights / weights.sum(axis=1, keepdims=True)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.files import replacing
+from qtab.results.action_values import read_by_policy
 from qtab.results.consistency import check_consistent
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def plain_data(run: "Run") -> dict[str, Any]:
         "discretizer": dict(discretizer.spec()),
         "shape": list(discretizer.shape),
         "actions": [_plain(actions[column]) for column in range(len(actions))],
-        "q_tables": [_rows(_masked(table, run.action_masks)) for table in run.tables],
+        "q_tables": [_rows(_masked(table, run.action_masks)) for table in read_by_policy(run.config, run.tables)],
         "versions": dict(run.versions),
     }
 

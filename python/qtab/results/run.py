@@ -36,7 +36,8 @@ class Run(WithPage):
     config: Config
     """Everything needed to repeat the run; defaults and preset are filled in."""
     tables: NDArray[np.float64]
-    """(k, rows, actions): the Q tables; two for Double Q-learning, else one."""
+    """(k, rows, actions): the Q tables; two for Double Q-learning, else one. Policy gradient methods have preferences
+    in the first one, and state values, if they learn them, in the second: the value of a row in each of its columns."""
     episode_returns: NDArray[np.float64]
     """(episodes,): the sum of rewards of each finished episode."""
     episode_lengths: NDArray[np.int64]
@@ -107,6 +108,8 @@ class Run(WithPage):
     def q_table(self) -> NDArray[np.float64]:
         """(*cells, actions): the values that the greedy policy reads; of two tables the sum; -inf for masked actions.
 
+        Of a policy gradient method they are the preferences, of which the policy is the softmax.
+
         Raises:
             ValueError: with tile coding, which has no cells.
         """
@@ -145,6 +148,8 @@ class Run(WithPage):
     def q_values(self, observation: Any) -> NDArray[np.float64]:
         """Returns the (actions,) values of an observation, or the (n, actions) values of n observations.
 
+        Of a policy gradient method they are preferences.
+
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
             ValueError: if it has another shape than the space, or lies outside the space.
@@ -155,13 +160,15 @@ class Run(WithPage):
         """Returns the value of an observation under the greedy policy, or the (n,) values of n observations.
 
         It is the largest action value, as a float. Of Double Q-learning, whose :attr:`q_table` is the sum of two
-        tables, it is half of that: the mean of two estimates.
+        tables, it is half of that: the mean of two estimates. Of REINFORCE with baseline and of actor-critic methods it
+        is the state value that they learn.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
-            ValueError: if it has another shape than the space, or lies outside the space.
+            ValueError: if it has another shape than the space, or lies outside the space, or for an algorithm that
+                learns preferences without values.
         """
-        values = np.max(self.q_values(observation), axis=-1) / len(self.tables)
+        values = action_values.state_values(self, observation)
         return values if values.ndim else float(values)
 
     def predict(
@@ -181,9 +188,10 @@ class Run(WithPage):
             observation: An observation, or n of them.
             state: Ignored.
             episode_start: Ignored.
-            deterministic: True takes the greedy action. False draws an action from the behaviour policy, with the ε
-                or the temperature that the last episode of the training left: an ε that fell to 0 leaves the greedy
-                action. The draws come from a generator of this run, which is seeded by its seed.
+            deterministic: True takes the greedy action, which is the most likely one of preferences. False draws an
+                action from the behaviour policy, with the ε or the temperature that the last episode of the training
+                left: an ε that fell to 0 leaves the greedy action, as does exploration "ucb". The draws come from a
+                generator of this run, which is seeded by its seed.
             action_masks: (actions,) or (n, actions): which actions there are. None: by the run's ``action_mask``.
 
         Raises:

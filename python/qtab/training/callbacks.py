@@ -100,7 +100,9 @@ class Progress:
         discretizer = self._current("q_table").discretizer
         if not discretizer.has_cells or self.config.action_mask is not False:
             return self.run.q_table  # of tile coding its error says what works instead
-        first, *others = self.tables
+        from qtab.results.action_values import read_by_policy
+
+        first, *others = read_by_policy(self.config, self.tables)
         values: NDArray[np.float64] = sum(others, first.copy())
         return values.reshape(*discretizer.shape, -1)
 

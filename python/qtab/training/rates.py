@@ -19,8 +19,8 @@ class Rates:
         self._schedules: dict[str, tuple[int, Schedule]] = {}
 
     def epsilon(self, episode: int) -> float | None:
-        """Returns the exploration rate of an episode, counted from 0; None with softmax exploration."""
-        return None if self._config.exploration == "softmax" else self._value("epsilon", episode)
+        """Returns the exploration rate of an episode, counted from 0; None unless it is epsilon-greedy."""
+        return self._value("epsilon", episode) if self._config.exploration == "epsilon_greedy" else None
 
     def learning_rate(self, episode: int) -> float:
         """Returns the learning rate of an episode, counted from 0."""

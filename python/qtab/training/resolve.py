@@ -16,7 +16,7 @@ from qtab.config import DEFAULTS, Config
 from qtab.config.algorithms import algorithm_settings
 from qtab.config.config import replace_checked
 from qtab.config.merge import config_of, merge_layers, naming_preset
-from qtab.config.options import defaults, n_tables
+from qtab.config.options import WITH_STATE_VALUES, defaults, n_tables
 from qtab.config.policies import policy
 from qtab.config.presets import preset
 from qtab.config.schedules import learning_rate
@@ -201,7 +201,7 @@ def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[E
 
 
 def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> Any:
-    """The first Q table; for an algorithm of two tables one that is given is used twice."""
+    """The first Q table; for an algorithm of two tables one that is given is used twice, or beside values of 0."""
     initial_q, count = config.initial_q, n_tables(config.algorithm)
     if not isinstance(initial_q, np.ndarray):
         return initial_q
@@ -212,11 +212,17 @@ def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> 
     one = (*discretizer.shape, n_actions)
     shape = one if count == 1 else (count, *one)
     if initial_q.shape == one and count > 1:
-        both = np.stack([initial_q] * count)
+        second = np.zeros(one) if config.algorithm in WITH_STATE_VALUES else initial_q
+        both = np.stack([initial_q, second])
         both.flags.writeable = False
         return both
     if initial_q.shape not in (shape, (count, discretizer.n_rows, n_actions)):
         raise ValueError(f"initial_q must have the table's shape {shape}, got {initial_q.shape}")
+    if config.algorithm in WITH_STATE_VALUES:
+        values = initial_q.reshape(count, -1, n_actions)[1]
+        if not np.isfinite(values).all() or (values != values[:, :1]).any():
+            raise ValueError("initial_q must have in its second table the value of a state in each of its columns")
+        return initial_q
     missing = np.isneginf(initial_q.reshape(count, -1))
     if (missing != missing[0]).any():
         raise ValueError("initial_q must have -inf in both tables or in none, got it in one")

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from qtab.config.config import replace_checked
 from qtab.discretizers import Sparse
+from qtab.results.action_values import read_by_policy, summed
 from qtab.results.run import Run
 from qtab.training.resolved_run import ResolvedRun
 
@@ -28,5 +29,4 @@ def continued(resolved: ResolvedRun, run: Run) -> ResolvedRun:
 
 def greedy_table(run: Run) -> NDArray[np.float64]:
     """The table that the greedy policy reads: of two the sum, with tile coding as well, whose values are sums, too."""
-    table: NDArray[np.float64] = run.tables[0] if len(run.tables) == 1 else run.tables[0] + run.tables[1]
-    return table[np.newaxis]
+    return summed(read_by_policy(run.config, run.tables))[np.newaxis]

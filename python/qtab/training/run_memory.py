@@ -16,6 +16,12 @@ BYTES_PER_VALUE = {
     "watkins_q_lambda": 24,
     "dyna_q": 36,
     "dyna_q_plus": 44,
+    "monte_carlo": 4,
+    "monte_carlo_es": 4,
+    "off_policy_monte_carlo": 8,
+    "prioritized_sweeping": 64,
+    "gradient_bandit": 16,
+    "actor_critic_lambda": 16,
 }
 """What an algorithm keeps for each value of its table: traces, or what followed each state-action pair."""
 BYTES_PER_VISIT_COUNT = 4
@@ -35,6 +41,8 @@ def bytes_in_progress(resolved: ResolvedRun) -> int:
     values = math.prod(tables_shape(resolved, 1))
     per_value = 8 + BYTES_PER_VALUE.get(resolved.config.algorithm, 0)
     if resolved.learning_rate.spec()["type"] == "visits":
+        per_value += BYTES_PER_VISIT_COUNT
+    if resolved.config.exploration == "ucb":
         per_value += BYTES_PER_VISIT_COUNT
     masks = mask_bytes(resolved.masks, resolved.discretizer, len(resolved.actions))
     return resolved.config.episodes * BYTES_PER_EPISODE + values * per_value + masks

@@ -39,7 +39,7 @@ mod _core {
     #[pymodule_export]
     use super::rng::PyAgentRng;
     #[pymodule_export]
-    use super::training::{PyTrainer, train_many};
+    use super::training::{PyTrainer, run_testbeds, train_many};
 
     /// How the extension was compiled: only "release" says anything about speed.
     #[pymodule_export]

@@ -6,7 +6,7 @@ pub(crate) struct Episode {
     /// The observations, one more than actions: their components one after the other.
     pub(crate) observations: Vec<f64>,
     pub(crate) actions: Vec<u8>,
-    pub(crate) episode_return: f64,
+    pub(crate) total_reward: f64,
     pub(crate) terminated: bool,
 }
 
@@ -14,7 +14,7 @@ impl Episode {
     pub(crate) fn push(&mut self, observation: Vec<f64>, action: usize, reward: f64) {
         self.observations.extend(observation);
         self.actions.push(action as u8);
-        self.episode_return += reward;
+        self.total_reward += reward;
     }
 
     /// Adds the observation after the last step.

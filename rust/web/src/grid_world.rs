@@ -7,14 +7,14 @@ use crate::json::Json;
 /// The longest side of a grid, in cells.
 pub(crate) const MAX_SIDE: usize = 40;
 /// Up, right, down, left: how the row and the column change.
-const MOVES: [(i64, i64); 4] = [(-1, 0), (0, 1), (1, 0), (0, -1)];
+const MOVES: [(isize, isize); 4] = [(-1, 0), (0, 1), (1, 0), (0, -1)];
 
 /// A map: what its cells are, and what they earn.
 pub(crate) struct GridWorld {
     rows: usize,
     columns: usize,
     cells: Vec<u8>,
-    wind: Vec<u32>,
+    wind: Vec<isize>,
     /// The reward of a step into each cell.
     rewards: Vec<f64>,
 }
@@ -39,8 +39,12 @@ impl GridWorld {
         let wind = match environment.get("wind") {
             None => vec![0; columns],
             Some(wind) => {
-                let shifts = wind.array().unwrap_or_default().iter().map(|shift| shift.integer(MAX_SIDE as u32));
-                let shifts: Option<Vec<u32>> = shifts.collect();
+                let shifts = wind
+                    .array()
+                    .unwrap_or_default()
+                    .iter()
+                    .map(|shift| isize::try_from(shift.integer(MAX_SIDE as u32)?).ok());
+                let shifts: Option<Vec<isize>> = shifts.collect();
                 shifts
                     .filter(|shifts| shifts.len() == columns)
                     .ok_or_else(|| format!("wind must hold {columns} integers from 0 to {MAX_SIDE}"))?
@@ -83,22 +87,27 @@ impl GridWorld {
     }
 
     /// The cell that a move leads to.
-    fn next_cell(&self, cell: usize, (down, right): (i64, i64)) -> usize {
+    fn next_cell(&self, cell: usize, (down, right): (isize, isize)) -> usize {
         let (row, column) = (cell / self.columns, cell % self.columns);
-        let clip = |index: i64, count: usize| index.clamp(0, count as i64 - 1) as usize;
-        let next_row = clip(row as i64 + down - i64::from(self.wind[column]), self.rows);
-        let next = next_row * self.columns + clip(column as i64 + right, self.columns);
+        let moved = |index: usize, by: isize, count: usize| index.saturating_add_signed(by).min(count - 1);
+        let next_row = moved(row, down - self.wind[column], self.rows);
+        let next = next_row * self.columns + moved(column, right, self.columns);
         if self.cells[next] == b'#' { cell } else { next }
     }
 
     pub(crate) fn mdp(&self) -> Result<TabularMdp, String> {
         let states = 0..self.cells.len();
-        let starts = self.cells.iter().filter(|&&cell| cell == b'S').count() as f64;
+        let starts = self.cells.iter().map(|&cell| f64::from(u8::from(cell == b'S'))).sum::<f64>();
         let initial: Vec<f64> = self.cells.iter().map(|&cell| if cell == b'S' { 1.0 / starts } else { 0.0 }).collect();
         let outcome = |cell, direction| {
             let next = self.next_cell(cell, direction);
             let terminated = self.cells[next] == b'G';
-            vec![Outcome { probability: 1.0, state: next as i64, reward: self.rewards[next], terminated }]
+            vec![Outcome {
+                probability: 1.0,
+                state: i64::try_from(next).unwrap_or(i64::MAX),
+                reward: self.rewards[next],
+                terminated,
+            }]
         };
         let pairs: Vec<_> = states.flat_map(|cell| MOVES.map(|direction| outcome(cell, direction))).collect();
         TabularMdp::new(MOVES.len(), &initial, &pairs).map_err(|error| error.to_string())

@@ -86,7 +86,7 @@ impl Cells {
                 if cell >= self.count() {
                     return None;
                 }
-                let middle = |edges: &[f64], index: usize| (edges[index] + edges[index + 1]) / 2.0;
+                let middle = |edges: &[f64], index: usize| edges[index].midpoint(edges[index + 1]);
                 let mut observation = plane.at.clone();
                 observation[plane.components[0]] = middle(&plane.x_edges, cell % self.columns());
                 observation[plane.components[1]] = middle(&plane.y_edges, cell / self.columns());

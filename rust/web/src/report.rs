@@ -6,7 +6,7 @@ use crate::best::Best;
 use crate::episode::{Episode, action_value};
 use crate::json::{write_number, write_text};
 use crate::training::Training;
-use crate::updates::{Update, UpdateKind};
+use crate::updates::{Update, UpdateKind, Watch};
 
 /// The longest greedy episode that a page shows, in steps.
 const MAX_SHOWN_STEPS: u64 = 2000;
@@ -109,7 +109,7 @@ fn add_map(training: &Training, arrays: &mut Arrays) {
             let value = action_value(&tables, &rows, num_actions, action).filter(|_| !rows.is_empty());
             action_values.push(value.unwrap_or(f64::NAN));
             if let Some(value) = value
-                && !(value <= best.1)
+                && (best.0 == NO_ACTION || value > best.1)
             {
                 best = (action as u8, value);
             }
@@ -129,6 +129,11 @@ fn add_map(training: &Training, arrays: &mut Arrays) {
     }
 }
 
+/// A cell or a row as JavaScript reads it; there are far fewer than this type has numbers.
+fn as_i32(index: usize) -> i32 {
+    i32::try_from(index).unwrap_or(i32::MAX)
+}
+
 /// How often each action was taken in a state: with tile coding, the mean over its tiles.
 fn count_of(counts: &[i64], rows: &[u32], num_actions: usize) -> Vec<f64> {
     let count = |row: u32, action| counts.get(row as usize * num_actions + action).copied().unwrap_or(0) as f64;
@@ -140,13 +145,13 @@ fn write_greedy_episode(training: &Training, arrays: &mut Arrays, out: &mut Stri
     let tables = training.runs[0].run.tables();
     let steps = training.settings.max_episode_steps.min(MAX_SHOWN_STEPS);
     let episode = training.subject.greedy_episode(&tables, training.seeds[0], steps);
-    let Some(Episode { observations, actions, episode_return, terminated }) = episode else { return };
+    let Some(Episode { observations, actions, total_reward, terminated }) = episode else { return };
     let components = observations.len() / (actions.len() + 1);
-    let cells = observations.chunks(components.max(1)).map(|seen| training.cells.cell(seen) as i32).collect();
+    let cells = observations.chunks(components.max(1)).map(|seen| as_i32(training.cells.cell(seen))).collect();
     let truncated = !terminated && actions.len() as u64 == training.settings.max_episode_steps;
     let _ = write!(out, "\"episode\":{{\"components\":{components},\"terminated\":{terminated},");
     let _ = write!(out, "\"truncated\":{truncated},\"return\":");
-    write_number(out, episode_return);
+    write_number(out, total_reward);
     out.push_str("},");
     arrays.add("observations", Array::F64(observations));
     arrays.add("episodeActions", Array::U8(actions));
@@ -176,10 +181,10 @@ pub(crate) fn inspection(training: &Training, cell: usize, arrays: &mut Arrays) 
     arrays.add("actionValues", Array::F64((0..num_actions).map(value).collect()));
     let visits = run.visits().map(|counts| count_of(counts, &rows, num_actions)).unwrap_or_default();
     arrays.add("visits", Array::F64(visits));
-    arrays.add("activeRows", Array::I32(rows.iter().map(|&row| row as i32).collect()));
+    arrays.add("activeRows", Array::I32(rows.iter().map(|&row| as_i32(row as usize)).collect()));
     arrays.add("observation", Array::F64(observation));
     let mut out = format!("{{\"cell\":{cell},\"updates\":[");
-    for (index, update) in run.watch().into_iter().flat_map(|watch| watch.updates()).enumerate() {
+    for (index, update) in run.watch().into_iter().flat_map(Watch::updates).enumerate() {
         if index > 0 {
             out.push(',');
         }

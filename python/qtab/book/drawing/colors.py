@@ -20,6 +20,7 @@ METHOD_COLORS: Mapping[str, str] = {
     "greedy": _GREEN,
     "UCB": _ORANGE,
     "gradient bandit": _PURPLE,
+    "gradient bandit without baseline": _BROWN,
     "optimistic greedy": _TEAL,
     # chapter 4
     "final values": _GREY,

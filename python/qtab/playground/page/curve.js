@@ -7,6 +7,7 @@ import { onThemeChange, themeColors } from "./theme.js";
 
 const POINTS = 400;
 const MAX_DOTS = 6000;
+const LABEL_SPACE = 26;
 
 /** Shows learning curves on a canvas, a summary below it, and the numbers under the pointer. */
 export class LearningCurve {
@@ -21,20 +22,24 @@ export class LearningCurve {
     canvas.addEventListener("pointerleave", () => this.point(null));
   }
 
-  /** Shows `returns`, an array for each seed; `episodes`: the length of the run; `marks`: {value, name} to compare with. */
-  show(returns, episodes, marks) {
+  /**
+   * Shows a number for each episode: `returns` has an array for each seed. `episodes`: the length of the run; `marks`:
+   * {value, name} to compare with; `measure`: "returns", or "lengths" for the numbers of steps.
+   */
+  show(returns, episodes, marks, measure = "returns") {
     const finished = Math.min(...returns.map((each) => each.length));
     const width = windowOf(episodes);
     const ends = windowEnds(finished, POINTS);
     const means = returns.map((each) => movingMeans(each, width, ends));
     const over = finished ? meanAndInterval(means) : { mean: [], half: [] };
-    this.shown = { returns, episodes, marks, finished, width, ends, means, over };
+    const word = measure === "lengths" ? "number of steps" : "return";
+    this.shown = { returns, episodes, marks, word, finished, width, ends, means, over };
     this.describe();
     this.draw();
   }
 
   describe() {
-    const { returns, episodes, marks, finished, width, over } = this.shown;
+    const { returns, episodes, marks, word, finished, width, over } = this.shown;
     const seeds = returns.length;
     let text = "No episode is finished yet.";
     if (finished) {
@@ -43,11 +48,11 @@ export class LearningCurve {
       const first = over.mean.find((_, index) => this.shown.ends[index] >= Math.min(width, finished));
       const interval = seeds > 1 ? ` ± ${number(half, 3)} (95 % interval of the mean of ${seeds} seeds)` : "";
       const covered = Math.min(width, finished);
-      text = `Mean return of the last ${counted(covered, "episode")}: ${number(last)}${interval}.`;
+      text = `Mean ${word} of the last ${counted(covered, "episode")}: ${number(last)}${interval}.`;
       this.canvas.setAttribute(
         "aria-label",
         `Learning curve of ${count(finished)} of ${counted(episodes, "episode")}, ${counted(seeds, "seed")}. ` +
-          `Mean return at first ${number(first)}, at last ${number(last)}. ` +
+          `Mean ${word} at first ${number(first)}, at last ${number(last)}. ` +
           marks.map(({ name, value }) => `${name}: ${number(value)}.`).join(" "),
       );
     } else {
@@ -84,7 +89,7 @@ export class LearningCurve {
     const box = { left: 52, right: width - 14, top: 22, bottom: height - 42 };
     const x = scale(0, episodes, box.left, box.right);
     const y = scale(low, high, box.bottom, box.top);
-    axes(g, box, x, y, ticks(0, episodes, width < 420 ? 4 : 5), ticks(low, high, 6), { x: "episode", y: "return" });
+    axes(g, box, x, y, ticks(0, episodes, width < 420 ? 4 : 5), ticks(low, high, 6), { x: "episode", y: this.shown.word });
     g.save();
     g.beginPath();
     g.rect(box.left, box.top - 4, box.right - box.left, box.bottom - box.top + 8);
@@ -162,11 +167,10 @@ function drawBand(g, ends, { mean, half }, x, y, color) {
   g.globalAlpha = 1;
 }
 
-/** Draws the lines to compare with, their labels apart from each other. */
+/** Draws the lines to compare with; the label of one that is close below another is below its line. */
 function drawMarks(g, box, marks, y, colors) {
-  let above = Infinity;
-  for (const { name, value, dash } of [...marks].sort((left, right) => left.value - right.value)) {
-    if (!Number.isFinite(value)) continue;
+  const shown = marks.filter(({ value }) => Number.isFinite(value)).sort((left, right) => left.value - right.value);
+  shown.forEach(({ name, value, dash }, index) => {
     g.strokeStyle = colors.good;
     g.lineWidth = 1.5;
     g.setLineDash(dash);
@@ -175,8 +179,8 @@ function drawMarks(g, box, marks, y, colors) {
     g.lineTo(box.right, y(value));
     g.stroke();
     g.setLineDash([]);
-    const at = Math.min(y(value) - 9, above - 14);
-    above = at;
+    const isClose = index + 1 < shown.length && y(value) - y(shown[index + 1].value) < LABEL_SPACE;
+    const at = y(value) + (isClose ? 9 : -9);
     const label = `${name} ${number(value)}`;
     const wide = g.measureText(label).width;
     g.fillStyle = colors.card;
@@ -186,5 +190,5 @@ function drawMarks(g, box, marks, y, colors) {
     g.fillStyle = colors.good;
     g.textAlign = "right";
     g.fillText(label, box.right, at);
-  }
+  });
 }

@@ -1,6 +1,7 @@
 // What lies on a map's cells: colors, arrows of the policy, letters of a grid world, paths, marks.
 
 import { css, inkOn, shade } from "./colormap.js";
+import { number } from "./format.js";
 import { FONT } from "./surface.js";
 import { themeColors } from "./theme.js";
 
@@ -106,6 +107,25 @@ export function drawLetters(g, frame, layout) {
   g.font = `12px ${FONT}`;
 }
 
+/** Writes the rewards of a painted grid, [row, column, reward], below the arrows of their cells. */
+export function drawRewards(g, frame, columns, rewards) {
+  for (const [row, column, reward] of rewards) {
+    const { x, y, width, height } = frame.cell(row * columns + column);
+    const size = Math.max(Math.min(width * 0.3, 13), 8);
+    const text = number(reward, 3);
+    g.font = `700 ${size}px ${FONT}`;
+    const wide = g.measureText(text).width + size * 0.6;
+    g.fillStyle = "rgba(255, 255, 255, 0.9)";
+    g.beginPath();
+    g.roundRect(x + width / 2 - wide / 2, y + height - size * 1.25, wide, size * 1.2, size * 0.4);
+    g.fill();
+    g.fillStyle = reward < 0 ? "#a33c0c" : "#1b6b3a";
+    g.textAlign = "center";
+    g.fillText(text, x + width / 2, y + height - size * 0.6);
+  }
+  g.font = `12px ${FONT}`;
+}
+
 /** Draws a path through points with a light edge, so that it is seen on every color, and a dot at its start. */
 export function drawPath(g, frame, points) {
   if (!points.length) return;
@@ -114,7 +134,8 @@ export function drawPath(g, frame, points) {
   g.beginPath();
   g.rect(frame.box.left, frame.box.top, frame.box.right - frame.box.left, frame.box.bottom - frame.box.top);
   g.clip();
-  for (const [color, width] of [["rgba(255, 255, 255, 0.85)", 3.6], [warm, 1.8]]) {
+  const thin = points.length > 250 ? 0.5 : 1;
+  for (const [color, width] of [["rgba(255, 255, 255, 0.85)", 3.6 * thin], [warm, 1.8 * thin]]) {
     g.strokeStyle = color;
     g.lineWidth = width;
     g.beginPath();

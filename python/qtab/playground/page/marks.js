@@ -19,13 +19,13 @@ export class Marks {
     return marks;
   }
 
-  showKey(seeds, episodes, marks) {
+  showKey(seeds, episodes, marks, word) {
     const width = counted(windowOf(episodes), "episode");
     const mean = `mean of ${width}`;
     const lines =
       seeds > 1
         ? [["accent", "1px solid", `each seed, ${mean}`], ["warm", "3px solid", `mean of ${seeds} seeds, with its 95 % interval`]]
-        : [["accent", "3px dotted", "return of each episode"], ["warm", "3px solid", mean]];
+        : [["accent", "3px dotted", `${word} of each episode`], ["warm", "3px solid", mean]];
     if (marks.some(({ name }) => name === "threshold")) lines.push(["good", "2px dotted", "threshold of a solved task"]);
     const best = marks.find(({ name }) => name !== "threshold");
     if (best) lines.push(["good", "2px dashed", best.name === "optimal" ? "expected return of an optimal policy" : "best known return"]);

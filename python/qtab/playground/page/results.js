@@ -33,7 +33,7 @@ export function learnedContent(result, frame, path) {
 /** The content of the map of visits. */
 export function visitsContent(result, frame) {
   const { map } = result;
-  const most = map.visits.reduce((largest, visits) => Math.max(largest, visits), 0);
+  const most = Math.round(map.visits.reduce((largest, visits) => Math.max(largest, visits), 0));
   const top = Math.log1p(most) || 1;
   const share = (cell) => (isWall(map.values, cell) ? NaN : Math.log1p(map.visits[cell]) / top);
   const palette = themeColors().isDark ? "darkVisits" : "visits";

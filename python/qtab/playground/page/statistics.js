@@ -8,7 +8,7 @@ const T_QUANTILES = [
 
 /** How many episodes a moving mean covers, for a run of a number of episodes. */
 export function windowOf(episodes) {
-  return episodes >= 1000 ? 100 : Math.max(Math.round(episodes / 20), 1);
+  return episodes >= 1000 ? 100 : Math.min(Math.max(Math.round(episodes / 20), 5), episodes);
 }
 
 /** The mean of the last so many numbers before each of the ends, which ascend; of fewer at the start. */

@@ -4,13 +4,14 @@ import { complete } from "./engine.js";
 
 export const MANY_SEEDS = 16;
 export const PAINTED = "grid";
+/** How many rows and columns a map has where the table has no cells of two components. */
+const RASTER = 48;
 
 /** The choices, their checks, and those who want to know of changes. */
 export class Store {
   constructor(definitions) {
     this.definitions = definitions;
     this.listeners = new Set();
-    this.changedAt = performance.now();
     this.state = this.initial(Object.keys(definitions.environments)[0]);
   }
 
@@ -42,7 +43,6 @@ export class Store {
     const state = { ...this.state, ...changes };
     if (changes.settings) state.settings = complete(state.environment, changes.settings);
     this.state = state;
-    this.changedAt = performance.now();
     for (const listener of this.listeners) listener(state, Object.keys(changes));
   }
 
@@ -74,7 +74,9 @@ export class Store {
   impossible(name, value) {
     if (name === "discretizer" && !this.entry.discretizers.includes(value)) {
       return this.entry.states === null
-        ? `not for ${this.entry.title.toLowerCase()}, whose observations ${value === "identity" ? "are not states by number" : "have no bounds"}`
+        ? value === "identity"
+          ? "the observations are not numbered states"
+          : "some observations have no bounds"
         : "the states are numbered and need none";
     }
     const { rules, settings: known } = this.definitions;
@@ -101,7 +103,9 @@ export class Store {
   request() {
     const { environment, settings, seed, seeds, grid } = this.state;
     const asked = environment === PAINTED ? { id: environment, ...grid } : { id: environment };
-    return { environment: asked, settings, seeds: Array.from({ length: seeds }, (_, index) => seed + index) };
+    const { map: plane, observations } = this.entry;
+    const map = plane ? { map: { ...plane, at: observations.map(() => 0), columns: RASTER, rows: RASTER } } : {};
+    return { environment: asked, settings, seeds: Array.from({ length: seeds }, (_, index) => seed + index), ...map };
   }
 }
 

@@ -8,23 +8,19 @@ export class Training {
     this.id = null;
     this.cell = null;
     this.at = null;
-    this.environment = null;
-    this.asked = 0;
+    this.shape = null;
+    this.inspectedRun = null;
     this.engine = new Engine({ onMessage: (message) => this.receive(message) });
   }
 
   /** Trains with the store's settings from the start; the newest request wins. */
   start(run = true) {
-    const { environment, grid } = this.store.state;
-    const cells = `${environment} ${grid?.layout[0].length}x${grid?.layout.length} ${this.store.state.settings.discretizer}`;
-    if (cells !== this.environment) this.cell = null;
-    this.environment = cells;
-    this.asked = performance.now();
+    // The map may have other cells; what to inspect is decided with its first result.
+    this.engine.inspect(null);
     this.state = run ? "training" : "paused";
     this.at = null;
     this.onStart();
     this.id = this.engine.start({ ...this.store.request(), run });
-    if (this.cell !== null) this.engine.inspect(this.cell);
   }
 
   receive(message) {
@@ -34,9 +30,8 @@ export class Training {
     } else if (message.type === "result") {
       this.state = message.state;
       this.at = message.current?.cell ?? null;
-      const start = message.episode?.cells[0];
-      if (this.cell === null && message.state !== "training" && start !== undefined) this.inspect(start);
-      this.onResult({ ...message, milliseconds: performance.now() - this.asked });
+      if (message.state !== "training") this.keepInspecting(message);
+      this.onResult(message);
     } else if (message.type === "inspection") {
       this.onResult({ type: "inspection", inspection: message });
     }
@@ -71,6 +66,18 @@ export class Training {
   /** Shows the numbers of a cell, now and in later results. */
   inspect(cell) {
     this.cell = cell;
+    this.inspectedRun = this.id;
     this.engine.inspect(cell);
+  }
+
+  /** Inspects the cell that was chosen in a new run, too, if its map has it; else the start of the greedy episode. */
+  keepInspecting({ map, episode }) {
+    const shape = `${this.store.state.environment} ${map.columns} ${map.rows}`;
+    if (shape !== this.shape) this.cell = null;
+    this.shape = shape;
+    if (this.inspectedRun === this.id) return;
+    const hasValues = this.cell !== null && !Number.isNaN(map.values[this.cell]);
+    const cell = hasValues ? this.cell : episode?.cells[0];
+    if (cell !== undefined) this.inspect(cell);
   }
 }

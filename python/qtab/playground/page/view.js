@@ -3,6 +3,7 @@
 import { LearningCurve } from "./curve.js";
 import { count, counted, number } from "./format.js";
 import { showInspection } from "./inspector.js";
+import { moveWithArrows } from "./environments.js";
 import { Motion } from "./motion.js";
 import { Painter } from "./painter.js";
 import { bestContent, learnedContent, pathOf, showLegend, valueRange, visitsContent } from "./results.js";
@@ -37,6 +38,8 @@ export class View {
     this.visits = new StateMap(element("visits"), { name: "Map of the visits", describe });
     this.best = new StateMap(element("best"), { name: "Map of the optimum", describe });
     this.marks = new Marks(element("curve-key"));
+    this.measure = null;
+    this.setUpMeasure(element("measure"));
     showInspection(element("inspector-title"), element("inspection"), null, {});
     onThemeChange(() => this.isStale || this.draw());
   }
@@ -90,16 +93,36 @@ export class View {
   draw() {
     const { result } = this;
     this.showStatus(result);
-    const marks = this.marks.of(this.store, result);
-    const { returns, seeds, done, episodes } = result;
-    const bySeed = seeds.map((_, index) => returns.subarray(index * done, (index + 1) * done));
-    this.marks.showKey(seeds.length, episodes, marks);
-    this.curve.show(bySeed, episodes, marks);
+    this.showCurve(result);
     this.showMaps(result);
     this.showMotion(result);
     this.showState();
-    element("results").dataset.drawn = `${result.id} ${result.state}`;
-    element("results").dataset.milliseconds = Math.round(performance.now() - this.store.changedAt);
+  }
+
+  showCurve(result) {
+    const { seeds, done, episodes } = result;
+    const { environment, grid } = this.store.state;
+    // Where steps cost nothing, their number shows how good the agent is.
+    const measure = this.measure ?? (environment === PAINTED && grid.step_reward === 0 ? "lengths" : "returns");
+    for (const button of element("measure").children) {
+      const chosen = button.dataset.measure === measure;
+      button.setAttribute("aria-checked", chosen);
+      button.tabIndex = chosen ? 0 : -1;
+    }
+    const marks = measure === "returns" ? this.marks.of(this.store, result) : [];
+    const bySeed = seeds.map((_, index) => result[measure].subarray(index * done, (index + 1) * done));
+    this.marks.showKey(seeds.length, episodes, marks, measure === "returns" ? "return" : "number of steps");
+    this.curve.show(bySeed, episodes, marks, measure);
+  }
+
+  setUpMeasure(group) {
+    for (const button of group.children) {
+      button.addEventListener("click", () => {
+        this.measure = button.dataset.measure;
+        if (!this.isStale) this.showCurve(this.result);
+      });
+    }
+    moveWithArrows(group, (button) => button.click());
   }
 
   showStatus(result) {
@@ -147,7 +170,8 @@ export class View {
     const layout = environment === PAINTED ? grid.layout : entry.layout;
     const { observations, map, actions } = entry;
     const plane = map && { x: observations[map.x], y: observations[map.y], xIndex: map.x, yIndex: map.y };
-    return { plane, layout, actions, hasCells: settings.discretizer !== "tiles" };
+    const rewards = environment === PAINTED ? grid.rewards : null;
+    return { plane, layout, rewards, actions, hasCells: settings.discretizer !== "tiles" };
   }
 
   showMaps(result) {
@@ -206,7 +230,7 @@ export class View {
     const kind = { S: ", start", G: ", goal", H: ", hole", C: ", cliff" }[layout?.[row]?.[column]] ?? "";
     const greedy = actions[map.greedy[cell]];
     const policy = greedy ? `, greedy action ${greedy}` : "";
-    return `${place}${kind}: value ${number(map.values[cell])}${policy}, visited ${counted(map.visits[cell], "time")}.`;
+    return `${place}${kind}: value ${number(map.values[cell])}${policy}, visited ${counted(Math.round(map.visits[cell]), "time")}.`;
   }
 
   /** The state of an inspected cell: its observation, or its place on the grid. */
@@ -230,7 +254,8 @@ export class View {
   }
 
   showState() {
-    const { inspection } = this.result;
+    const { inspection, state } = this.result;
+    if (!inspection && state === "training") return;
     if (this.values.selected !== (inspection?.cell ?? null) && inspection) this.values.select(inspection.cell);
     const { actions } = this.store.entry;
     const bootstraps = this.store.definitions.bootstraps[this.store.state.settings.algorithm];

@@ -1,8 +1,11 @@
 //! An algorithm chosen at run time, and the learner that it makes of an agent.
 
 use super::{
-    Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Learner, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
-    TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
+    ActorCritic, ActorCriticLambda, Agent, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
+    DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarlo, MonteCarloEs, NStepQSigma, NStepSarsa,
+    NStepTreeBackup, OffPolicyMonteCarlo, PolicyGradientLearner, PolicyGradientRule, PrioritizedSweeping, QLearning,
+    Reinforce, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceOptions, Traces,
+    TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
 };
 use crate::features::ActiveRows;
 use crate::memory::AllocationError;
@@ -47,17 +50,87 @@ pub enum AnyAlgorithm {
         /// The weight κ of the bonus for actions not tried for long.
         time_weight: f64,
     },
-}
-
-/// The options of an algorithm whose eligibility traces are of a kind.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TraceOptions {
-    /// What a visit does to a trace.
-    pub kind: TraceKind,
-    /// The trace decay λ.
-    pub decay: f64,
-    /// Traces at or below this are dropped.
-    pub cutoff: f64,
+    /// [`DynaQ`] with a [`StochasticModel`]
+    StochasticDynaQ {
+        /// The updates from the model after each step.
+        planning_steps: u32,
+    },
+    /// [`MonteCarlo`]
+    MonteCarlo {
+        /// The most steps of an episode.
+        max_episode_steps: u64,
+    },
+    /// [`MonteCarloEs`]
+    MonteCarloEs {
+        /// The most steps of an episode.
+        max_episode_steps: u64,
+    },
+    /// [`OffPolicyMonteCarlo`]
+    OffPolicyMonteCarlo {
+        /// The most steps of an episode.
+        max_episode_steps: u64,
+        /// α, by which W / C is multiplied.
+        learning_rate: f64,
+        /// The smallest step size.
+        min_learning_rate: f64,
+    },
+    /// [`NStepTreeBackup`]
+    NStepTreeBackup {
+        /// The number of rewards in a target, at least 1.
+        n_steps: usize,
+        /// The target policy.
+        target_policy: TargetPolicy,
+    },
+    /// [`NStepQSigma`]
+    NStepQSigma {
+        /// The number of rewards in a target, at least 1.
+        n_steps: usize,
+        /// The degree of sampling σ.
+        sigma: f64,
+        /// The target policy.
+        target_policy: TargetPolicy,
+    },
+    /// [`PrioritizedSweeping`]
+    PrioritizedSweeping {
+        /// The most updates after each step.
+        planning_steps: u32,
+        /// The smallest error that is planned, θ.
+        priority_threshold: f64,
+    },
+    /// [`DifferentialSarsa`]
+    DifferentialSarsa {
+        /// The step size β of the average reward.
+        reward_learning_rate: f64,
+    },
+    /// [`DifferentialQLearning`]
+    DifferentialQLearning {
+        /// The step size β of the average reward.
+        reward_learning_rate: f64,
+    },
+    /// [`GradientBandit`]
+    GradientBandit {
+        /// Whether rewards are compared with their average.
+        baseline: bool,
+    },
+    /// [`Reinforce`]
+    Reinforce,
+    /// [`Reinforce`] with a [`Critic`]
+    ReinforceWithBaseline {
+        /// The step size αʷ of the state values.
+        value_learning_rate: f64,
+    },
+    /// [`ActorCritic`]
+    ActorCritic {
+        /// The step size αʷ of the state values.
+        value_learning_rate: f64,
+    },
+    /// [`ActorCriticLambda`]
+    ActorCriticLambda {
+        /// The step size αʷ of the state values.
+        value_learning_rate: f64,
+        /// The trace decay λ.
+        trace_decay: f64,
+    },
 }
 
 /// What is done with the learner that [`AnyAlgorithm::learner`] makes, whichever its type.
@@ -72,15 +145,46 @@ pub trait LearnerVisitor<R> {
 impl AnyAlgorithm {
     /// How many tables the algorithm learns.
     pub fn n_tables(&self) -> usize {
-        if matches!(self, Self::DoubleQLearning) { 2 } else { 1 }
+        if matches!(self, Self::DoubleQLearning) || self.value_learning_rate().is_some() { 2 } else { 1 }
     }
 
-    /// Whether the algorithm learns a model, for which each state must have a row of the table.
+    /// Whether the algorithm needs the probabilities of actions, which not every policy has.
+    pub fn needs_probabilities(&self) -> bool {
+        matches!(self, Self::OffPolicyMonteCarlo { .. } | Self::NStepTreeBackup { .. } | Self::NStepQSigma { .. })
+    }
+
+    /// Whether each state must have a row of the table: for a model, for average rewards, or for visits to be counted.
     pub fn needs_single_rows(&self) -> bool {
-        matches!(self, Self::DynaQ { .. } | Self::DynaQPlus { .. })
+        matches!(
+            self,
+            Self::DynaQ { .. }
+                | Self::DynaQPlus { .. }
+                | Self::StochasticDynaQ { .. }
+                | Self::MonteCarlo { .. }
+                | Self::MonteCarloEs { .. }
+                | Self::OffPolicyMonteCarlo { .. }
+                | Self::PrioritizedSweeping { .. }
+                | Self::GradientBandit { .. }
+        )
     }
 
-    /// Makes a learner of an agent and passes it to `visitor`. `second_table` is the other table of Double Q-learning.
+    /// The step size of the state values, which are the second table; `None` for an algorithm that learns none.
+    pub fn value_learning_rate(&self) -> Option<f64> {
+        match *self {
+            Self::ReinforceWithBaseline { value_learning_rate }
+            | Self::ActorCritic { value_learning_rate }
+            | Self::ActorCriticLambda { value_learning_rate, .. } => Some(value_learning_rate),
+            _ => None,
+        }
+    }
+
+    /// Whether the table holds preferences, of which the policy must be the softmax.
+    pub fn learns_preferences(&self) -> bool {
+        matches!(self, Self::GradientBandit { .. } | Self::Reinforce) || self.value_learning_rate().is_some()
+    }
+
+    /// Makes a learner of an agent and passes it to `visitor`. `second_table` is the other table of Double Q-learning, or
+    /// the state values of a critic.
     /// `None` where the algorithm needs single rows and `R` holds several, or a second table and there is none.
     ///
     /// # Errors
@@ -88,7 +192,7 @@ impl AnyAlgorithm {
     pub fn learner<R, V>(
         self,
         agent: Agent,
-        second_table: Option<QTable>,
+        mut second_table: Option<QTable>,
         stop: &StopFlag<'_>,
         visitor: V,
     ) -> Result<Option<V::Output>, AllocationError>
@@ -96,11 +200,18 @@ impl AnyAlgorithm {
         R: ActiveRows + Send + 'static,
         V: LearnerVisitor<R>,
     {
-        // Known when this is compiled, so that Dyna is left out of the code for several rows.
+        // Known when this is compiled, so that what needs single rows is left out of the code for several rows.
         if self.needs_single_rows() && size_of::<R>() != size_of::<u32>() {
             return Ok(None);
         }
         let (n_rows, num_actions) = agent.table.shape();
+        let critic = match self.value_learning_rate() {
+            Some(rate) => match second_table.take() {
+                Some(table) => Some(Critic { table, step_size: rate / agent.learning_rate.n_active() }),
+                None => return Ok(None),
+            },
+            None => None,
+        };
         let new_model = || Model::new(n_rows, num_actions, stop);
         let new_traces = |cutoff: f64| Traces::new(n_rows * num_actions, cutoff, stop);
         Ok(Some(match self {
@@ -125,8 +236,58 @@ impl AnyAlgorithm {
             Self::DynaQPlus { planning_steps, time_weight } => {
                 with_rule(agent, DynaQPlus::new(new_model()?, planning_steps, time_weight, stop)?, visitor)
             }
+            Self::StochasticDynaQ { planning_steps } => {
+                let model = StochasticModel::new(n_rows, num_actions, stop)?;
+                with_rule(agent, DynaQ::new(model, planning_steps), visitor)
+            }
+            Self::MonteCarlo { max_episode_steps } => {
+                with_rule(agent, MonteCarlo::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)
+            }
+            Self::MonteCarloEs { max_episode_steps } => {
+                with_rule(agent, MonteCarloEs::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)
+            }
+            Self::OffPolicyMonteCarlo { max_episode_steps, learning_rate, min_learning_rate } => {
+                let rates = (learning_rate, min_learning_rate);
+                let rule = OffPolicyMonteCarlo::new(n_rows * num_actions, max_episode_steps, rates, stop)?;
+                with_rule(agent, rule, visitor)
+            }
+            Self::NStepTreeBackup { n_steps, target_policy } => {
+                with_rule(agent, NStepTreeBackup::new(n_steps, target_policy), visitor)
+            }
+            Self::NStepQSigma { n_steps, sigma, target_policy } => {
+                with_rule(agent, NStepQSigma::new(n_steps, sigma, target_policy), visitor)
+            }
+            Self::PrioritizedSweeping { planning_steps, priority_threshold } => {
+                let rule = PrioritizedSweeping::new(new_model()?, planning_steps, priority_threshold, stop)?;
+                with_rule(agent, rule, visitor)
+            }
+            Self::DifferentialSarsa { reward_learning_rate } => {
+                with_rule(agent, DifferentialSarsa::new(reward_learning_rate), visitor)
+            }
+            Self::DifferentialQLearning { reward_learning_rate } => {
+                with_rule(agent, DifferentialQLearning::new(reward_learning_rate), visitor)
+            }
+            Self::GradientBandit { baseline } => {
+                with_rule(agent, GradientBandit::new(baseline, n_rows, stop)?, visitor)
+            }
+            Self::Reinforce | Self::ReinforceWithBaseline { .. } => {
+                with_gradient(agent, critic, Reinforce::new(), visitor)
+            }
+            Self::ActorCritic { .. } => with_gradient(agent, critic, ActorCritic::new(), visitor),
+            Self::ActorCriticLambda { trace_decay, .. } => {
+                with_gradient(agent, critic, ActorCriticLambda::new(trace_decay, n_rows, stop)?, visitor)
+            }
         }))
     }
+}
+
+fn with_gradient<R, U, V>(agent: Agent, critic: Option<Critic>, rule: U, visitor: V) -> V::Output
+where
+    R: ActiveRows + Send + 'static,
+    U: PolicyGradientRule<R> + Send + 'static,
+    V: LearnerVisitor<R>,
+{
+    visitor.visit(PolicyGradientLearner { agent, critic, rule })
 }
 
 fn with_rule<R, U, V>(agent: Agent, rule: U, visitor: V) -> V::Output

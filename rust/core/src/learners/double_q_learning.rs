@@ -39,7 +39,7 @@ impl DoubleQLearning {
         for (sum, value) in self.sums.iter_mut().zip(self.second_table.action_values(rows)) {
             *sum += value;
         }
-        self.agent.policy.choose(&self.sums, rng)
+        self.agent.policy.choose_in(rows, &self.sums, rng)
     }
 }
 

@@ -41,7 +41,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
             Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
                 let values = self.traces.action_values(&mut agent.table, next_state);
                 let values = available::<0>(&mut agent.masks, next_state.as_ref(), values);
-                let next_action = agent.policy.choose(values, rng);
+                let next_action = agent.policy.choose_in(next_state.as_ref(), values, rng);
                 let largest = maximum(values);
                 // An action that ties for the maximum is greedy, even if it was chosen by exploring.
                 (next_action, reward + agent.discount * largest, values[next_action] == largest)

@@ -1,7 +1,8 @@
 //! A policy chosen at run time.
 
 use super::tie_breaking::random_action;
-use super::{Policy, Softmax, TieBreaking};
+use super::{Policy, Softmax, TieBreaking, Ucb};
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::random::Rng;
 use crate::schedules::Schedule;
 
@@ -24,12 +25,19 @@ pub enum AnyPolicy {
     },
     /// The softmax policy (Sutton & Barto, equation 2.11).
     Softmax(Softmax),
+    /// Upper-confidence-bound action selection (Sutton & Barto, section 2.7), for one active row.
+    Ucb(Ucb),
 }
 
 impl AnyPolicy {
     /// The softmax policy over `num_actions` actions.
     pub fn softmax(temperature: f64, num_actions: usize) -> Self {
         Self::Softmax(Softmax::new(temperature, num_actions))
+    }
+
+    /// The gradient of ln π(A) with respect to the preferences of the actions; 0 for policies other than the softmax.
+    pub(crate) fn log_gradient(&mut self, values: &[f64], action: usize) -> &[f64] {
+        if let Self::Softmax(softmax) = self { softmax.log_gradient(values, action) } else { &[] }
     }
 }
 
@@ -53,6 +61,15 @@ impl Policy for AnyPolicy {
                 }
             }
             Self::Softmax(softmax) => softmax.choose(values, rng),
+            Self::Ucb(ucb) => ucb.choose(0, values, rng),
+        }
+    }
+
+    #[inline]
+    fn choose_in(&mut self, rows: &[u32], values: &[f64], rng: &mut impl Rng) -> usize {
+        match self {
+            Self::Ucb(ucb) => ucb.choose(rows[0], values, rng),
+            _ => self.choose(values, rng),
         }
     }
 
@@ -64,7 +81,33 @@ impl Policy for AnyPolicy {
                 ties.expected_value(epsilon.value(), values.iter().copied().filter(is_available))
             }
             Self::Softmax(softmax) => softmax.expected_value(values),
+            Self::Ucb(ucb) => ucb.expected_value(0, values),
         }
+    }
+
+    fn probability(&mut self, values: &[f64], action: usize) -> f64 {
+        match self {
+            Self::EpsilonGreedy { epsilon, ties } => ties.probability(epsilon.value(), values, values.len(), action),
+            Self::MaskedEpsilonGreedy { epsilon, ties } => {
+                let count = values.iter().filter(|&value| is_available(value)).count();
+                ties.probability(epsilon.value(), values, count, action)
+            }
+            Self::Softmax(softmax) => softmax.probability(values, action),
+            // It has counted its choice since; nothing that needs probabilities is combined with it.
+            Self::Ucb(_) => 1.0,
+        }
+    }
+
+    #[inline]
+    fn expected_value_in(&mut self, rows: &[u32], values: &[f64]) -> f64 {
+        match self {
+            Self::Ucb(ucb) => ucb.expected_value(rows[0], values),
+            _ => self.expected_value(values),
+        }
+    }
+
+    fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        if let Self::Ucb(ucb) = self { ucb.persist_counts(checkpoint) } else { Ok(()) }
     }
 
     fn end_episode(&mut self) {
@@ -102,6 +145,19 @@ mod tests {
         // (1/16 + 3/4) 4 + 1/16 (2 + 0 - 1)
         assert_eq!(epsilon_greedy(TieBreaking::First).expected_value(&[2.0, 4.0, 0.0, -1.0]), 3.3125);
         assert_eq!(EpsilonGreedy::linear(0.25, 0.25, 1).expected_value(&[2.0, 4.0, 0.0, -1.0]), 3.3125);
+    }
+
+    #[test]
+    fn probabilities_share_what_is_greedy_as_ties_are_broken() {
+        let values = [4.0, 4.0, 0.0, -1.0];
+        let probabilities = |ties| [0, 1, 2].map(|action| epsilon_greedy(ties).probability(&values, action));
+        assert_eq!(probabilities(TieBreaking::First), [0.8125, 0.0625, 0.0625]);
+        assert_eq!(probabilities(TieBreaking::Random), [0.4375, 0.4375, 0.0625]);
+        assert_eq!(EpsilonGreedy::linear(0.25, 0.25, 1).probability(&values, 0), 0.8125);
+        let masked = [4.0, 4.0, f64::NEG_INFINITY, -1.0];
+        let mut policy = AnyPolicy::MaskedEpsilonGreedy { epsilon: Schedule::constant(0.75), ties: TieBreaking::First };
+        assert_eq!([0, 3].map(|action| policy.probability(&masked, action)), [0.5, 0.25]);
+        assert_eq!(AnyPolicy::softmax(1.0, 4).probability(&[0.0; 4], 3), 0.25);
     }
 
     #[test]

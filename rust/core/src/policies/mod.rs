@@ -5,6 +5,7 @@ mod epsilon_greedy;
 mod policy;
 mod softmax;
 mod tie_breaking;
+mod ucb;
 
 pub use any_policy::AnyPolicy;
 pub(crate) use any_policy::random_available_action;
@@ -12,3 +13,4 @@ pub use epsilon_greedy::EpsilonGreedy;
 pub use policy::Policy;
 pub use softmax::Softmax;
 pub use tie_breaking::TieBreaking;
+pub use ucb::Ucb;

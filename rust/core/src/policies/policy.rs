@@ -1,5 +1,6 @@
 //! The trait of all policies.
 
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::random::Rng;
 
 /// A policy π over action values.
@@ -7,8 +8,33 @@ pub trait Policy {
     /// Samples an action from π, given the values of all actions.
     fn choose(&mut self, values: &[f64], rng: &mut impl Rng) -> usize;
 
+    /// The same in the state with these active rows, for policies that count what they chose in each state.
+    #[inline]
+    fn choose_in(&mut self, rows: &[u32], values: &[f64], rng: &mut impl Rng) -> usize {
+        let _ = rows;
+        self.choose(values, rng)
+    }
+
     /// The expected value Σₐ π(a) Q(a), summed from left to right.
     fn expected_value(&mut self, values: &[f64]) -> f64;
+
+    /// The same in the state with these active rows.
+    #[inline]
+    fn expected_value_in(&mut self, rows: &[u32], values: &[f64]) -> f64 {
+        let _ = rows;
+        self.expected_value(values)
+    }
+
+    /// The probability π(a) of an action, for policies that do not count.
+    fn probability(&mut self, values: &[f64], action: usize) -> f64;
+
+    /// Saves or restores what it has counted.
+    ///
+    /// # Errors
+    /// The bytes are damaged.
+    fn persist_counts(&mut self, _checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        Ok(())
+    }
 
     /// Called after every episode.
     fn end_episode(&mut self);

@@ -31,6 +31,16 @@ impl Softmax {
         }
         &self.probabilities
     }
+
+    /// The gradient of ln π(A) with respect to the values, which are then preferences: (1 - π(A)) / τ for A, and -π(a) / τ
+    /// for any other action (Sutton & Barto, equation 13.9).
+    pub(super) fn log_gradient(&mut self, values: &[f64], action: usize) -> &[f64] {
+        self.probabilities(values);
+        for (other, part) in self.probabilities.iter_mut().enumerate() {
+            *part = (f64::from(u8::from(other == action)) - *part) / self.temperature;
+        }
+        &self.probabilities
+    }
 }
 
 impl Policy for Softmax {
@@ -50,6 +60,10 @@ impl Policy for Softmax {
     fn expected_value(&mut self, values: &[f64]) -> f64 {
         let pairs = self.probabilities(values).iter().zip(values).filter(|(_, value)| is_available(value));
         sum(pairs.map(|(probability, value)| probability * value))
+    }
+
+    fn probability(&mut self, values: &[f64], action: usize) -> f64 {
+        self.probabilities(values)[action]
     }
 
     fn end_episode(&mut self) {}

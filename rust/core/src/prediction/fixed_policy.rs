@@ -25,7 +25,8 @@ impl FixedPolicy {
         let mut deterministic = true;
         for (state, row) in probabilities.chunks(num_actions).enumerate() {
             let last = row.iter().rposition(|&probability| probability > 0.0);
-            let Some(last) = last else { panic!("state {state} must have an action") };
+            assert!(last.is_some(), "state {state} must have an action");
+            let last = last.unwrap_or(0);
             let mut sum = 0.0;
             for (action, probability) in row.iter().enumerate() {
                 sum += probability;
@@ -42,17 +43,15 @@ impl FixedPolicy {
     /// every state draws nothing.
     #[inline]
     pub fn choose(&self, state: u32, rng: &mut impl Rng) -> usize {
-        match &self.actions {
-            Some(actions) => actions[state as usize] as usize,
-            None => {
-                let thresholds = &self.thresholds[state as usize * self.num_actions..][..self.num_actions];
-                let random = rng.random();
-                if let &[first, _] = thresholds {
-                    return usize::from(first <= random);
-                }
-                thresholds.iter().take_while(|&&threshold| threshold <= random).count()
-            }
+        if let Some(actions) = &self.actions {
+            return actions[state as usize] as usize;
         }
+        let thresholds = &self.thresholds[state as usize * self.num_actions..][..self.num_actions];
+        let random = rng.random();
+        if let &[first, _] = thresholds {
+            return usize::from(first <= random);
+        }
+        thresholds.iter().take_while(|&&threshold| threshold <= random).count()
     }
 
     /// π(a|s).

@@ -14,7 +14,8 @@ impl StateRows {
     /// `rows` holds `n_active` rows for each state, those of state 0 first, each less than `n_weights`; `None` if it does
     /// not.
     pub fn new(rows: Arc<[u32]>, n_active: usize, n_weights: usize) -> Option<Self> {
-        let fits = n_active > 0 && rows.len() % n_active == 0 && rows.iter().all(|&row| (row as usize) < n_weights);
+        let fits =
+            n_active > 0 && rows.len().is_multiple_of(n_active) && rows.iter().all(|&row| (row as usize) < n_weights);
         fits.then_some(Self { rows, n_active, n_weights })
     }
 

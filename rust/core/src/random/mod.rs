@@ -6,6 +6,7 @@ mod pcg64;
 mod prefetched_pcg64;
 mod rng;
 mod seed_sequence;
+mod standard_normal;
 
 pub use agent_rng::AgentRng;
 pub use mt19937::Mt19937;

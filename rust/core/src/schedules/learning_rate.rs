@@ -41,6 +41,13 @@ impl LearningRate {
     }
 }
 
+impl LearningRate {
+    /// The number of active rows of an observation, which share the learning rate.
+    pub fn n_active(&self) -> f64 {
+        self.n_active
+    }
+}
+
 impl StepSize for LearningRate {
     #[inline]
     fn visit(&mut self, weight_index: usize) {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::planning::Mdp;
+use qtab_core::tasks::Testbed;
 
 use crate::runs::RunFactory;
 use crate::spec::RunSpec;
@@ -17,6 +18,11 @@ pub(crate) trait NativeEnv: Send + Sync {
     /// A vector environment; None where there is none.
     fn vector_env(&self, _py: Python<'_>, _options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {
         Ok(None)
+    }
+
+    /// The distribution of bandit problems; None for any other environment.
+    fn testbed(&self) -> Option<Testbed> {
+        None
     }
 
     /// The Markov decision process; None where it is not known.

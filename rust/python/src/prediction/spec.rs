@@ -64,7 +64,10 @@ impl PredictionSpec {
             let array: PyReadonlyArray2<'_, f64> = fields.get(name)?;
             let values = array.as_slice()?;
             let possible = |row: &[f64]| row.iter().any(|&probability| probability > 0.0);
-            if num_actions == 0 || values.len() % num_actions > 0 || !values.chunks(num_actions).all(possible) {
+            if num_actions == 0
+                || !values.len().is_multiple_of(num_actions)
+                || !values.chunks(num_actions).all(possible)
+            {
                 return Err(invalid(name, format!("{num_actions} probabilities for each state"), "others"));
             }
             let values: Arc<[f64]> = collect(values.iter().copied()).map_err(allocation)?.into();

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use qtab_core::StopFlag;
 use qtab_core::learners::{Agent, AnyAlgorithm};
 use qtab_core::memory::AllocationError;
-use qtab_core::policies::AnyPolicy;
+use qtab_core::policies::{AnyPolicy, Ucb};
 use qtab_core::random::Rng;
 use qtab_core::schedules::LearningRate;
 
@@ -21,15 +21,20 @@ pub(super) fn generic_agent(
 ) -> PyResult<Agent> {
     let shape = (n_rows, spec.num_actions);
     let masks = match spec.algorithm {
-        // It plans with actions that it has not tried.
-        AnyAlgorithm::DynaQPlus { .. } if spec.action_masks.is_none() => {
+        // They draw actions without looking at values: to plan with what was not tried, and to start an episode.
+        AnyAlgorithm::DynaQPlus { .. } | AnyAlgorithm::MonteCarloEs { .. } if spec.action_masks.is_none() => {
             spec.initial_q.masks(n_rows * spec.num_actions, spec.num_actions)?
         }
         _ => spec.action_masks.build(shape, n_active, stop)?,
     };
     Ok(Agent {
         table: spec.initial_q.table((0, spec.algorithm.n_tables()), shape, rng, stop)?,
-        policy: policy(spec),
+        policy: match spec.policy {
+            PolicySpec::Ucb { confidence, ties } => {
+                AnyPolicy::Ucb(Ucb::new(confidence, ties, shape, stop).map_err(allocation)?)
+            }
+            _ => policy(spec),
+        },
         learning_rate: learning_rate(spec, n_rows * spec.num_actions, n_active, stop).map_err(allocation)?,
         discount: spec.discount,
         terminal_update: spec.terminal_update,
@@ -37,7 +42,7 @@ pub(super) fn generic_agent(
     })
 }
 
-/// The behaviour policy, whichever the spec names.
+/// The behaviour policy, whichever the spec names, except for UCB, which counts visits of a table.
 pub(super) fn policy(spec: &RunSpec) -> AnyPolicy {
     match spec.policy {
         PolicySpec::EpsilonGreedy { epsilon, ties } => {
@@ -49,6 +54,7 @@ pub(super) fn policy(spec: &RunSpec) -> AnyPolicy {
             }
         }
         PolicySpec::Softmax { temperature } => AnyPolicy::softmax(temperature, spec.num_actions),
+        PolicySpec::Ucb { .. } => unreachable!("generic_agent makes it"),
     }
 }
 

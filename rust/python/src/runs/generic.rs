@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
-use qtab_core::learners::{LearnerVisitor, TruncationHandling};
+use qtab_core::learners::{CountBonus, LearnerVisitor, TruncationHandling};
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, VisitCounter};
 use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
@@ -88,6 +88,25 @@ where
     Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
 }
 
+/// Boxed runs of a task that is made from a seed. `shape` is the number of rows and of active rows.
+pub(crate) fn boxed_factory<W>(
+    new_task: impl Fn(&Seed) -> W + Send + Sync + 'static,
+    shape: (usize, usize),
+    spec: &Arc<RunSpec>,
+    record: usize,
+    keep: fn(Recordings<W::Snapshot>) -> AnyRecordings,
+) -> Box<dyn RunFactory>
+where
+    W: RngSnapshot + Task<Active: Send, State: Send> + Send + 'static,
+    W::Snapshot: Send + 'static,
+    RunError: From<W::Error> + From<TrainingError<W::Error>>,
+{
+    let spec = Arc::clone(spec);
+    let build =
+        move |seed: &Seed, stop: &StopFlag<'_>| boxed_run(new_task(seed), shape, seed, &spec, (record, stop), keep);
+    Box::new(Factory { build, batching: Batching::one_by_one() })
+}
+
 /// A run of any learner, with recordings if asked for. `shape` is the number of rows and of active rows.
 pub(super) fn boxed_run<W>(
     task: W,
@@ -147,17 +166,25 @@ where
             return Err(invalid("rows", format!("rows for each of the {n_rows} cells"), prediction.num_states()));
         }
         let predictor = prediction.predictor(spec, stop)?;
-        return Ok(BoxedRun { task, rng, terminate: spec.terminate_on_truncation }.visit(predictor));
+        let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation, bonus: None };
+        return Ok(run.visit(predictor));
     }
     let agent = generic_agent(spec, n_rows, n_active, &mut rng, stop)?;
     // The generator draws both tables before the run takes it over.
     let second_table = match spec.algorithm.n_tables() {
         1 => None,
+        _ if spec.algorithm.value_learning_rate().is_some() => {
+            Some(spec.initial_q.critic_table((n_rows, spec.num_actions), stop)?)
+        }
         tables => Some(spec.initial_q.table((1, tables), (n_rows, spec.num_actions), &mut rng, stop)?),
     };
-    let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation };
+    let bonus = match spec.count_bonus {
+        0.0 => None,
+        weight => Some(CountBonus::new(weight, (n_rows, spec.num_actions), stop).map_err(allocation)?),
+    };
+    let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation, bonus };
     let run = spec.algorithm.learner::<R, _>(agent, second_table, stop, run).map_err(allocation)?;
-    run.ok_or_else(|| invalid("discretizer", "one with one active row, for Dyna", "'tiles'"))
+    run.ok_or_else(|| invalid("discretizer", "one with one active row, for this algorithm", "'tiles'"))
 }
 
 /// All of a run but its learner.
@@ -165,13 +192,14 @@ struct BoxedRun<R> {
     task: BoxedTask<R, RunError>,
     rng: AgentRng,
     terminate: bool,
+    bonus: Option<CountBonus>,
 }
 
 impl<R: ActiveRows + Send + 'static> LearnerVisitor<R> for BoxedRun<R> {
     type Output = Box<dyn Run>;
 
     fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
-        let learner = TruncationHandling { learner, terminate: self.terminate };
+        let learner = TruncationHandling { learner, terminate: self.terminate, bonus: self.bonus };
         Box::new(Trainer::new(self.task, learner, self.rng))
     }
 }

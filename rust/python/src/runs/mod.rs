@@ -9,10 +9,12 @@ mod python_env;
 mod python_task;
 mod run;
 mod specialized;
+mod testbed;
 
 pub(crate) use factory::{RunBatch, RunFactory};
-pub(crate) use generic::{generic, generic_box};
+pub(crate) use generic::{boxed_factory, generic, generic_box};
 pub(crate) use python_env::PythonEnv;
 pub(crate) use python_task::python_run;
 pub(crate) use run::{AnyRecordings, BuiltRun, Run};
 pub(crate) use specialized::{QLearningBatching, specialized};
+pub(crate) use testbed::run_testbed;

@@ -79,7 +79,8 @@ where
     let one_step =
         matches!(spec.algorithm, AnyAlgorithm::QLearning | AnyAlgorithm::Sarsa | AnyAlgorithm::ExpectedSarsa);
     let fits = spec.num_actions == N && env.num_actions() == N && spec.bit_generator == BitGenerator::Pcg64;
-    if !one_step || !fits || !spec.action_masks.is_none() || spec.terminate_on_truncation || record > 0 {
+    let counts = matches!(spec.policy, PolicySpec::Ucb { .. }) || spec.count_bonus != 0.0;
+    if !one_step || !fits || counts || !spec.action_masks.is_none() || spec.terminate_on_truncation || record > 0 {
         return generic(env, features, spec, record);
     }
     let builder = Builder::<E, F, N> { env, features, spec: Arc::clone(spec) };

@@ -8,7 +8,7 @@ use qtab_core::QTable;
 use qtab_core::StopFlag;
 use qtab_core::learners::ActionMasks;
 use qtab_core::memory::{collect, filled, from_fn};
-use qtab_core::random::Rng;
+use qtab_core::random::{NoRng, Rng};
 
 use super::fields::{Fields, Variant};
 use crate::error::{allocation, invalid};
@@ -55,6 +55,14 @@ impl InitialQSpec {
                 Ok(Some(Box::new(ActionMasks::known(available, num_actions))))
             }
             _ => Ok(None),
+        }
+    }
+
+    /// The table of state values beside a table of preferences: 0 everywhere, unless both tables are given.
+    pub(crate) fn critic_table(&self, shape: (usize, usize), stop: &StopFlag<'_>) -> PyResult<QTable> {
+        match self {
+            Self::Given(_) => self.table((1, 2), shape, &mut NoRng, stop),
+            _ => (Self::Constant { value: 0.0 }).table((0, 1), shape, &mut NoRng, stop),
         }
     }
 

@@ -38,6 +38,8 @@ pub(crate) struct RunSpec {
     pub(crate) policy: PolicySpec,
     pub(crate) learning_rate: LearningRateSpec,
     pub(crate) discount: f64,
+    /// The weight of the bonus for rarely visited state-action pairs; 0 for none.
+    pub(crate) count_bonus: f64,
     pub(crate) initial_q: InitialQSpec,
     pub(crate) action_masks: ActionMasksSpec,
     pub(crate) terminal_update: TerminalUpdate,
@@ -59,14 +61,17 @@ impl RunSpec {
         if num_actions == 0 {
             return Err(invalid("num_actions", "at least 1", num_actions));
         }
+        let (max_episode_steps, learning_rate) =
+            (fields.get("max_episode_steps")?, LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?);
         let spec = Self {
             discretizer: DiscretizerSpec::parse(&fields.nested("discretizer")?)?,
             num_actions,
-            max_episode_steps: fields.get("max_episode_steps")?,
-            algorithm: algorithm::algorithm(&fields.nested("algorithm")?)?,
+            max_episode_steps,
+            algorithm: algorithm::algorithm(&fields.nested("algorithm")?, max_episode_steps, learning_rate)?,
             policy: PolicySpec::parse(&fields.nested("policy")?, episodes)?,
-            learning_rate: LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?,
+            learning_rate,
             discount: fields.get("discount")?,
+            count_bonus: fields.get("count_bonus")?,
             initial_q: InitialQSpec::parse(&fields.nested("initial_q")?)?,
             action_masks: ActionMasksSpec::parse(&fields.nested("action_masks")?)?,
             terminal_update: fields
@@ -79,6 +84,10 @@ impl RunSpec {
             prediction: None,
         };
         spec.check_tile_coding()?;
+        spec.check_preferences()?;
+        if spec.algorithm.needs_probabilities() && matches!(spec.policy, PolicySpec::Ucb { .. }) {
+            return Err(invalid("policy", "'epsilon_greedy' or 'softmax' for this algorithm", "'ucb'"));
+        }
         Ok(spec)
     }
 
@@ -91,7 +100,24 @@ impl RunSpec {
             return Err(invalid("terminal_update", "'target' for tile coding", "'assign'"));
         }
         if self.algorithm.needs_single_rows() {
-            return Err(invalid("algorithm", "an algorithm without a model for tile coding", "Dyna-Q"));
+            return Err(invalid("algorithm", "an algorithm for several active rows for tile coding", "another"));
+        }
+        if matches!(self.policy, PolicySpec::Ucb { .. }) {
+            return Err(invalid("policy", "'epsilon_greedy' or 'softmax' for tile coding", "'ucb'"));
+        }
+        Ok(())
+    }
+
+    /// Refuses preferences with another policy than the softmax, and with a learning rate that falls with visits.
+    fn check_preferences(&self) -> PyResult<()> {
+        if !self.algorithm.learns_preferences() {
+            return Ok(());
+        }
+        if !matches!(self.policy, PolicySpec::Softmax { .. }) {
+            return Err(invalid("policy", "'softmax' for an algorithm that learns preferences", "another"));
+        }
+        if matches!(self.learning_rate, LearningRateSpec::Visits { .. }) {
+            return Err(invalid("learning_rate", "a schedule by the episode for this algorithm", "'visits'"));
         }
         Ok(())
     }

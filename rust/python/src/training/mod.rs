@@ -3,10 +3,12 @@
 mod env_spec;
 mod many;
 mod results;
+mod testbed;
 mod trainer;
 
 pub(crate) use env_spec::EnvironmentSpec;
 pub(crate) use many::train_many;
+pub(crate) use testbed::run_testbeds;
 pub(crate) use trainer::PyTrainer;
 
 /// Signals are checked after this much work: some 8192 steps of Q-learning on a grid, a fraction of a millisecond.

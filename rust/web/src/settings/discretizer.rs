@@ -115,6 +115,6 @@ fn check_rows(
     name: &'static str,
     mut counts: impl Iterator<Item = u64>,
 ) -> Result<(), SettingError> {
-    let rows = counts.try_fold(1_u64, |rows, count| rows.checked_mul(count)).filter(|rows| *rows <= MAX_ROWS);
+    let rows = counts.try_fold(1_u64, u64::checked_mul).filter(|rows| *rows <= MAX_ROWS);
     rows.map(|_| ()).ok_or_else(|| fields.invalid(name, &format!("so few that the table has at most {MAX_ROWS} rows")))
 }

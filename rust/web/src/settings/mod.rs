@@ -37,7 +37,7 @@ pub(crate) struct Settings {
     mersenne_twister: bool,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 enum PolicySetting {
     EpsilonGreedy { epsilon: Schedule, ties: TieBreaking },
     Softmax { temperature: f64 },
@@ -114,9 +114,9 @@ impl Settings {
                 LearningRate::by_visit_count(value, minimum, weights, n_active, &stop)?
             }
         };
-        let policy = match &self.policy {
-            &PolicySetting::EpsilonGreedy { epsilon, ties } => AnyPolicy::EpsilonGreedy { epsilon, ties },
-            &PolicySetting::Softmax { temperature } => AnyPolicy::softmax(temperature, num_actions),
+        let policy = match self.policy {
+            PolicySetting::EpsilonGreedy { epsilon, ties } => AnyPolicy::EpsilonGreedy { epsilon, ties },
+            PolicySetting::Softmax { temperature } => AnyPolicy::softmax(temperature, num_actions),
         };
         let (discount, terminal_update) = (self.discount, self.terminal_update);
         Ok((Agent { table, policy, learning_rate, discount, terminal_update, masks: None }, second))

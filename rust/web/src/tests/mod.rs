@@ -39,8 +39,8 @@ const ALGORITHMS: [&str; 10] = [
 ];
 
 const MOUNTAIN_CAR: &str = r#"{"kind": "mountain_car"}"#;
-const GRID: &str = r##"{"kind": "grid", "layout": ["S..#G", ".....", ".#..."], "wind": [0, 0, 1, 0, 0], "step_reward": -1,
-    "goal_reward": 5, "rewards": [[2, 2, -3]]}"##;
+const GRID: &str = r#"{"kind": "grid", "layout": ["S..#G", ".....", ".#..."], "wind": [0, 0, 1, 0, 0], "step_reward": -1,
+    "goal_reward": 5, "rewards": [[2, 2, -3]]}"#;
 
 /// The response to a request, which must be JSON.
 fn call(playground: &mut Playground, request: &str) -> Json {

@@ -73,7 +73,7 @@ fn traces_on_tile_coding_learn_what_the_core_learns() {
 #[test]
 fn a_painted_grid_is_the_mdp_that_it_shows() {
     let corridor =
-        r##"{"kind": "grid", "layout": ["S.G#"], "step_reward": -1, "goal_reward": 2, "rewards": [[0, 1, -4]]}"##;
+        r#"{"kind": "grid", "layout": ["S.G#"], "step_reward": -1, "goal_reward": 2, "rewards": [[0, 1, -4]]}"#;
     let mut playground = Playground::default();
     start(&mut playground, corridor, &of_table(r#""sarsa""#), "[3]");
     finish(&mut playground, 100);

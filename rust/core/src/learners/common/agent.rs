@@ -16,7 +16,7 @@ pub(crate) const MAX_WORK_PER_CALL: u64 = 8192;
 
 /// The work of an update that reads a row of so many values.
 #[inline]
-pub(super) fn row_work(num_actions: usize) -> u64 {
+pub(in crate::learners) fn row_work(num_actions: usize) -> u64 {
     1 + num_actions as u64 / VALUES_PER_WORK
 }
 
@@ -43,7 +43,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[inline(always)]
     pub fn choose(&mut self, rows: impl AsRef<[u32]>, rng: &mut impl Rng) -> usize {
         let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
-        self.policy.choose(values, rng)
+        self.policy.choose_in(rows.as_ref(), values, rng)
     }
 
     /// The action values of the state with these active rows. The value of an action that the state does not have is -∞.
@@ -58,7 +58,13 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[inline(always)]
     pub fn expected_value(&mut self, rows: impl AsRef<[u32]>) -> f64 {
         let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
-        self.policy.expected_value(values)
+        self.policy.expected_value_in(rows.as_ref(), values)
+    }
+
+    /// The probability π(a) of an action in the state with these active rows.
+    pub fn probability(&mut self, rows: impl AsRef<[u32]>, action: usize) -> f64 {
+        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
+        self.policy.probability(values, action)
     }
 
     /// A random action among those that the state with these active rows has: `rng.integers` of their number.
@@ -145,7 +151,8 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         if let Some(masks) = &mut self.masks {
             masks.persist(checkpoint)?;
         }
-        self.learning_rate.persist_counts(checkpoint)
+        self.learning_rate.persist_counts(checkpoint)?;
+        self.policy.persist_counts(checkpoint)
     }
 
     /// Moves the schedules on to the next episode.

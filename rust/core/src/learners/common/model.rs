@@ -182,6 +182,6 @@ impl Agent {
 
 /// The row of a state with one active row.
 pub(crate) fn single_row(rows: &impl AsRef<[u32]>) -> u32 {
-    let &[row] = rows.as_ref() else { unreachable!("Dyna needs one active row per state, so no tile coding") };
+    let &[row] = rows.as_ref() else { unreachable!("a learner of tables has one active row per state") };
     row
 }

@@ -133,7 +133,11 @@ impl Traces {
     ) -> Option<(usize, f64)> {
         let (Next::NonTerminal(next_state) | Next::Truncated(next_state)) = next else { return None };
         let values = self.action_values(&mut agent.table, &next_state);
-        let next_action = agent.policy.choose(available::<0>(&mut agent.masks, next_state.as_ref(), values), rng);
+        let next_action = agent.policy.choose_in(
+            next_state.as_ref(),
+            available::<0>(&mut agent.masks, next_state.as_ref(), values),
+            rng,
+        );
         Some((next_action, values[next_action]))
     }
 

@@ -1,0 +1,49 @@
+# The playground's tools, as .ci/run needs them: WebAssembly for Rust, and Chromium.
+
+# Ends a task early where this machine lacks something that cannot be had; an error where QTAB_REQUIRE_ALL=1, as in the
+# workflows.
+skipped() {
+    echo "skipped: $1"
+    [ "${QTAB_REQUIRE_ALL:-}" != 1 ] || exit 1
+}
+
+# Whether Rust compiles for WebAssembly here, after rustup was asked for it. (Debian's rustc-web 1.85 with rust-web-src
+# does not: the crates need 1.88.)
+wasm_target() {
+    local folder
+    folder=$(rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null) || return 1
+    [ -d "$folder" ] || rustup target add wasm32-unknown-unknown
+}
+no_wasm="Rust's target wasm32-unknown-unknown is missing, rustup cannot add it, and Debian's rustc-web 1.85 is older than 1.88"
+
+# Builds qtab.wasm where that is possible; the wheel then holds the playground.
+wasm_module() {
+    if wasm_target; then
+        "$host_python" rust/web/build_backend.py
+        export QTAB_PLAYGROUND=1
+    else
+        skipped "the playground: $no_wasm"
+    fi
+}
+
+# Sets CHROMIUM to the browser's program, which apt-get installs if there is none.
+find_chromium() {
+    export CHROMIUM=${CHROMIUM:-$(type -P chromium || type -P chromium-browser || type -P google-chrome || true)}
+    [ -z "$CHROMIUM" ] || return 0
+    local sudo=
+    [ "$(id -u)" = 0 ] || sudo=sudo
+    $sudo apt-get install --yes --quiet chromium && CHROMIUM=$(type -P chromium)
+}
+
+# The playground in Chromium: the module built anew, its tables compared with Python's, the page's controls.
+playground() {
+    tools
+    wasm_module
+    [ "${QTAB_PLAYGROUND:-}" = 1 ] || return 0
+    if ! find_chromium; then
+        skipped "the tests of the page: there is no Chromium, and apt-get cannot install it"
+        return 0
+    fi
+    .venv/$bin/pip install --quiet '.[browser]'
+    .venv/$bin/python -m pytest -n 0 -m browser tests/playground
+}

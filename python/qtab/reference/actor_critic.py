@@ -1,0 +1,72 @@
+"""Actor-critic methods in plain NumPy (Sutton & Barto, 2nd ed., the boxes in section 13.5)."""
+
+import gymnasium as gym
+import numpy as np
+
+from qtab._utils.checks import required
+from qtab.config import Config
+from qtab.reference.policy_gradient import Critic, ascend, log_gradient, step_size
+from qtab.reference.task import Result, Rows, Step, Task
+
+
+def actor_critic(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
+    """Trains on ``env`` by one-step actor-critic; see :func:`qtab.reference.reinforce_with_baseline`."""
+    task = Task(env, config, stop_after)
+    theta, critic = task.table(0, tables=2), Critic(task)
+
+    for _ in task.episodes():
+        state, over = task.reset(), False
+        power = 1.0  # I = γ^t
+        while not over:
+            action = task.choose(theta, state)
+            step = task.step(action)
+
+            # w <- w + α δ ∇v(S, w), θ <- θ + α I δ ∇ ln π(A | S, θ), I <- γ I
+            error = td_error(task, critic, state, step)
+            critic.update(state, error)
+            ascend(task, theta, state, action, power * error)
+            power *= task.discount
+
+            state, over = step.state, step.over
+
+    return task.result(theta, critic.w)
+
+
+def actor_critic_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
+    """Trains on ``env`` by actor-critic with eligibility traces, the same λ for both."""
+    task = Task(env, config, stop_after)
+    decay = task.discount * required("trace_decay", config.trace_decay)
+    theta, critic = task.table(0, tables=2), Critic(task)
+
+    for _ in task.episodes():
+        state, over = task.reset(), False
+        z_w, z_theta = np.zeros(task.n_rows), np.zeros_like(theta)
+        power = 1.0
+        while not over:
+            action = task.choose(theta, state)
+            step = task.step(action)
+            error = td_error(task, critic, state, step)
+
+            # z_w <- γλ z_w + ∇v(S, w), z_θ <- γλ z_θ + I ∇ ln π(A | S, θ)
+            z_w *= decay
+            z_theta *= decay
+            gradient = log_gradient(task, theta, state, action)
+            for row in state:
+                z_w[row] += 1.0
+                for other, part in enumerate(gradient):
+                    z_theta[row, other] += power * part
+            # w <- w + α δ z_w, θ <- θ + α δ z_θ, I <- γ I
+            (traced,) = np.nonzero(z_w)
+            critic.w[traced] += (critic.step * error * z_w[traced])[:, np.newaxis]
+            theta[traced] += step_size(task) * error * z_theta[traced]
+            power *= task.discount
+
+            state, over = step.state, step.over
+
+    return task.result(theta, critic.w)
+
+
+def td_error(task: Task, critic: Critic, state: Rows, step: Step) -> float:
+    """Returns δ = R + γ v(S', w) - v(S, w)."""
+    target = step.reward if step.terminal else step.reward + task.discount * critic.value(step.state)
+    return target - critic.value(state)

@@ -1,0 +1,49 @@
+//! `qtab/KArmedBandit-v0`, the k-armed bandit testbed.
+
+use std::sync::Arc;
+
+use pyo3::intern;
+use pyo3::prelude::*;
+use qtab_core::tasks::{KArmedBandit, Testbed};
+
+use super::native_env::NativeEnv;
+use crate::convert::Seed;
+use crate::error::invalid;
+use crate::rng::environment_rng;
+use crate::runs::{AnyRecordings, RunFactory, boxed_factory};
+use crate::spec::RunSpec;
+
+pub(crate) struct KArmedBanditEnv(Testbed);
+
+impl KArmedBanditEnv {
+    pub(crate) fn from_gymnasium(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
+        Ok(Arc::new(Self(testbed(env)?)))
+    }
+}
+
+/// The distribution that an environment draws its problem from.
+fn testbed(env: &Bound<'_, PyAny>) -> PyResult<Testbed> {
+    let py = env.py();
+    Ok(Testbed {
+        num_actions: env.getattr(intern!(py, "k"))?.extract()?,
+        mean: env.getattr(intern!(py, "mean"))?.extract()?,
+        deviation: env.getattr(intern!(py, "deviation"))?.extract()?,
+        random_walk: env.getattr(intern!(py, "random_walk"))?.extract()?,
+    })
+}
+
+impl NativeEnv for KArmedBanditEnv {
+    fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+        spec.discretizer.check_identity(1)?;
+        if spec.num_actions != self.0.num_actions {
+            return Err(invalid("num_actions", format!("{}, the environment's", self.0.num_actions), spec.num_actions));
+        }
+        let testbed = self.0;
+        let new_task = move |seed: &Seed| KArmedBandit::new(testbed, environment_rng(seed));
+        Ok(boxed_factory(new_task, (1, 1), spec, record, AnyRecordings::Native))
+    }
+
+    fn testbed(&self) -> Option<Testbed> {
+        Some(self.0)
+    }
+}

@@ -1,0 +1,71 @@
+//! Many runs on the k-armed testbed in one call.
+
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+use numpy::{PyReadwriteArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use qtab_core::StopFlag;
+
+use super::env_spec::EnvironmentSpec;
+use crate::convert::{Seed, Seeds};
+use crate::error::invalid;
+use crate::interrupt::run_interruptible;
+use crate::runs::run_testbed;
+use crate::spec::{Fields, RunSpec};
+
+/// The results of one run.
+type Row<'a> = (&'a Seed, &'a mut [f64], &'a mut [bool]);
+
+/// Trains one run for each seed on `threads` threads, and writes the reward of each step and whether its action was
+/// optimal into `rewards` and `optimal`, (runs, steps). A run has the numbers of `Trainer`.
+#[pyfunction]
+pub(crate) fn run_testbeds(
+    py: Python<'_>,
+    spec: &Bound<'_, PyAny>,
+    seeds: Seeds,
+    mut rewards: PyReadwriteArray2<'_, f64>,
+    mut optimal: PyReadwriteArray2<'_, bool>,
+    threads: usize,
+) -> PyResult<()> {
+    let fields = Fields::new(spec)?;
+    let testbed = match EnvironmentSpec::parse(&fields.nested("env")?)? {
+        EnvironmentSpec::Native(env) => env.testbed(),
+        EnvironmentSpec::Python(_) => None,
+    };
+    let testbed = testbed.ok_or_else(|| invalid("env", "a k-armed bandit", "another environment"))?;
+    let spec = RunSpec::parse(&fields)?;
+    let (Seeds(seeds), steps) = (seeds, rewards.shape()[1]);
+    for (name, shape) in [("rewards", rewards.shape()), ("optimal", optimal.shape())] {
+        if shape != [seeds.len(), steps] || steps == 0 {
+            return Err(invalid(name, format!("an array of shape ({}, {steps})", seeds.len()), format!("{shape:?}")));
+        }
+    }
+    let rows = rewards.as_slice_mut()?.chunks_exact_mut(steps).zip(optimal.as_slice_mut()?.chunks_exact_mut(steps));
+    let rows = seeds.iter().zip(rows).map(|(seed, (rewards, optimal))| (seed, rewards, optimal));
+    let (rows, failure) = (Mutex::new(rows), Mutex::new(None));
+    let next = || -> Option<Row<'_>> { rows.lock().unwrap_or_else(PoisonError::into_inner).next() };
+    let work = |stop: &StopFlag<'_>| {
+        while let Some((seed, rewards, optimal)) = next() {
+            if stop.is_set() {
+                return;
+            }
+            if let Err(error) = run_testbed(testbed, &spec, seed, (rewards, optimal), stop) {
+                failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                return;
+            }
+        }
+    };
+    run_interruptible(py, |stop| {
+        thread::scope(|scope| {
+            for _ in 1..threads.min(seeds.len()) {
+                // Threads may run out. Those that there are then do all the work.
+                if thread::Builder::new().spawn_scoped(scope, || work(stop)).is_err() {
+                    break;
+                }
+            }
+            work(stop);
+        });
+    })?;
+    failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+}

@@ -1,0 +1,68 @@
+"""The book's experiments on the k-armed testbed: equal to training, and of the book's shapes."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import qtab
+from qtab.book.testbed import ENV, TestbedExperiment, run_testbeds
+
+NAMES = [name for name, experiment in qtab.book.EXPERIMENTS.items() if isinstance(experiment, TestbedExperiment)]
+
+
+def testbed(name: str) -> TestbedExperiment:
+    experiment = qtab.book.find(name)
+    assert isinstance(experiment, TestbedExperiment)
+    return experiment
+
+
+testbed.__test__ = False  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_rewards_and_choices_are_those_of_training(name: str) -> None:
+    experiment = testbed(name)
+    for setting in {one.line: one for one in experiment.settings}.values():
+        config: dict[str, Any] = {**experiment.config(setting), "episodes": 60}
+        rewards, optimal = run_testbeds(config, range(3, 6), 2)
+        for index, seed in enumerate(range(3, 6)):
+            run = qtab.train(ENV, seed=seed, record=60, **config)
+            assert rewards[index].tobytes() == run.episode_returns.tobytes()
+            values = experiment.mean + np.random.default_rng(seed).standard_normal(10)
+            chosen = [one.actions[0] == np.argmax(values) for one in run.recordings]
+            assert (optimal[index] == 100.0 * np.array(chosen)).all()
+        assert qtab.verify(run).equal
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_experiment_makes_a_table_and_a_picture(name: str) -> None:
+    result = qtab.book.run(name, runs=2, seed=5)
+    assert "FEWER" in str(result)
+    assert "1,000 steps of each run" in " ".join(str(result).split())
+    assert all(np.isfinite(line.mean).all() for line in result.lines)
+    figure: Any = result.plot().figure
+    assert sum(len(ax.lines) for ax in figure.axes) == len(result.lines)
+    threads = qtab.book.run(name, runs=2, seed=5, threads=1)
+    assert [line.mean.tobytes() for line in threads.lines] == [line.mean.tobytes() for line in result.lines]
+
+
+def test_figures_of_several_panels_need_axes_of_their_own() -> None:
+    result = qtab.book.run("figure-2.2", runs=2)
+    with pytest.raises(ValueError, match=r"^ax must be None for figure-2\.2, which creates 2 axes"):
+        result.plot(result.plot())
+
+
+def test_the_order_of_the_methods_is_that_of_the_book() -> None:
+    explored = {line.name: line.mean[-200:].mean() for line in qtab.book.run("figure-2.2", runs=300).lines}
+    reward = [explored[f"ε = {epsilon}: average reward"] for epsilon in ("0", "0.01", "0.1")]
+    assert reward == sorted(reward)
+    assert 0.9 < reward[0] < 1.15 < 1.25 < reward[2] < 1.5
+    gradient = {line.name: line.mean[-1] for line in qtab.book.run("figure-2.5", runs=300).lines}
+    assert gradient["with baseline, α = 0.1"] > gradient["with baseline, α = 0.4"] > 55
+    assert gradient["without baseline, α = 0.4"] < gradient["without baseline, α = 0.1"] < 60
+
+
+def test_bad_specs_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"^algorithm must be 'q_learning' or 'gradient_bandit'"):
+        run_testbeds({"algorithm": "sarsa", "episodes": 2}, range(1), 1)
