@@ -129,6 +129,7 @@ DESCRIPTIONS: Mapping[str, Description] = {
     "qtab/GridWorld5x5": Description(_STATE, ("up", "right", "down", "left")),
     "qtab/JacksCarRental": Description(_STATE, tuple(f"move {moved}" for moved in range(-5, 6))),
     "qtab/RandomMdp": Description(_STATE),
+    "qtab/RandomWalk": Description(_STATE, ("left", "right")),
     "qtab/KArmedBandit": Description(
         (Quantity("state", values=("bandit",)),), tuple(f"arm {number}" for number in range(1, 11))
     ),

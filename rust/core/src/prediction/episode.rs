@@ -6,7 +6,7 @@ use crate::tasks::Next;
 
 /// A step of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct EpisodeStep {
+pub(super) struct EpisodeVisit {
     pub(super) state: u32,
     pub(super) action: u32,
     /// Whether the state had not been visited before in this episode.
@@ -17,7 +17,7 @@ pub(super) struct EpisodeStep {
 /// The steps of an episode, and its returns once it is over.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Episode {
-    pub(super) visits: Vec<EpisodeStep>,
+    pub(super) visits: Vec<EpisodeVisit>,
     /// G of each step, once the episode is over.
     pub(super) returns: Vec<f64>,
     /// For each state the number of the episode, from 1, that visited it last.
@@ -38,7 +38,7 @@ impl Episode {
     pub(super) fn push(&mut self, step: PredictionStep) -> bool {
         self.finished = 0;
         let first = std::mem::replace(&mut self.last_visits[step.state as usize], self.number) != self.number;
-        self.visits.push(EpisodeStep { state: step.state, action: step.action as u32, first, reward: step.reward });
+        self.visits.push(EpisodeVisit { state: step.state, action: step.action as u32, first, reward: step.reward });
         step.is_last()
     }
 

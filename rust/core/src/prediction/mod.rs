@@ -22,7 +22,7 @@ pub use batch_td::BatchTd;
 pub use fixed_policy::FixedPolicy;
 pub use importance_sampling::ImportanceSampling;
 pub use linear_values::LinearValues;
-pub use monte_carlo::MonteCarlo;
+pub use monte_carlo::MonteCarloPrediction;
 pub use n_step_td::NStepTd;
 pub use offline_lambda_return::OfflineLambdaReturn;
 pub use prediction_rule::{PredictionRule, PredictionStep};

@@ -7,19 +7,19 @@ use crate::memory::AllocationError;
 /// w ← w + α [Gₜ - v(Sₜ)] ∇v(Sₜ) at the end of an episode, for its steps from the first to the last. With a learning rate
 /// of 1 / n at the n-th visit, the values of a table are the averages of the returns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MonteCarlo {
+pub struct MonteCarloPrediction {
     first_visit: bool,
     episode: Episode,
 }
 
-impl MonteCarlo {
+impl MonteCarloPrediction {
     /// With `first_visit`, a state learns only from its first visit in an episode. `states` is their number.
     pub fn new(first_visit: bool, states: usize) -> Self {
         Self { first_visit, episode: Episode::new(states) }
     }
 }
 
-impl PredictionRule for MonteCarlo {
+impl PredictionRule for MonteCarloPrediction {
     #[inline]
     fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
         if !self.episode.push(step) {
@@ -52,7 +52,7 @@ mod tests {
     #[test]
     fn first_visits_ignore_later_ones() {
         for (first_visit, value) in [(true, 1.0), (false, 2.5)] {
-            let mut learner = predictor(&[1.0, 0.0], MonteCarlo::new(first_visit, 2));
+            let mut learner = predictor(&[1.0, 0.0], MonteCarloPrediction::new(first_visit, 2));
             for episode in 0..2 {
                 learner.values.weights = vec![1.0, 0.0];
                 learner.rule.learn(&mut learner.values, step(0, -1.0, 0));

@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 use qtab_core::StopFlag;
 use qtab_core::memory::{AllocationError, collect};
 use qtab_core::prediction::{
-    BatchTd, FixedPolicy, ImportanceSampling, LinearValues, MonteCarlo, NStepTd, OfflineLambdaReturn, PredictionRule,
-    Predictor, StateRows, TdLambda, TdZero, TrueOnlineTdLambda,
+    BatchTd, FixedPolicy, ImportanceSampling, LinearValues, MonteCarloPrediction, NStepTd, OfflineLambdaReturn,
+    PredictionRule, Predictor, StateRows, TdLambda, TdZero, TrueOnlineTdLambda,
 };
 use qtab_core::schedules::LearningRate;
 
@@ -109,7 +109,7 @@ impl PredictionSpec {
             MethodSpec::TdLambda { trace_decay } => Box::new(TdLambda::new(trace_decay, weights)),
             MethodSpec::TrueOnlineTdLambda { trace_decay } => Box::new(TrueOnlineTdLambda::new(trace_decay, weights)),
             MethodSpec::OfflineLambdaReturn { trace_decay } => Box::new(OfflineLambdaReturn::new(trace_decay, states)),
-            MethodSpec::MonteCarlo { first_visit } => Box::new(MonteCarlo::new(first_visit, states)),
+            MethodSpec::MonteCarlo { first_visit } => Box::new(MonteCarloPrediction::new(first_visit, states)),
             MethodSpec::ImportanceSampling { weighted, first_visit } => {
                 let (target, behavior) = (self.target.clone(), self.behavior.clone());
                 Box::new(ImportanceSampling::new(weighted, first_visit, target, behavior, (states, weights)))
