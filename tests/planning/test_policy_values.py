@@ -31,8 +31,9 @@ def solved(env: Any, policy: NDArray[np.float64], discount: float) -> NDArray[np
                 weight = policy[state, action] * probability
                 rewards[state] += weight * reward
                 chain[state, next_state] += 0.0 if terminated else weight * discount
-    values: NDArray[np.float64] = np.linalg.solve(np.eye(count) - chain, rewards)
-    return values
+    values: Any = np.linalg.solve(np.eye(count) - chain, rewards)
+    solution: NDArray[np.float64] = values
+    return solution
 
 
 def test_the_random_walk_has_the_books_values() -> None:

@@ -42,7 +42,7 @@ def test_a_method_equals_plain_numpy(method: Any) -> None:
 
 @given(data=st.data())
 def test_any_settings_equal_plain_numpy(data: st.DataObject) -> None:
-    method = data.draw(st.sampled_from(METHODS))
+    method: Any = data.draw(st.sampled_from(METHODS))
     options = dict(OPTIONS[method])
     rate = st.floats(0.0, 1.0)
     for name in options.keys() & {"learning_rate", "trace_decay"}:

@@ -43,7 +43,8 @@ def thousand_states() -> PredictionTask:
 
 def mean_rms_error(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:
     """Returns (runs, 1): the RMS error over the states, averaged over the recorded episodes."""
-    return estimates.rms_error(truth).mean(axis=1, keepdims=True)
+    means: FloatArray = estimates.rms_error(truth).mean(axis=1, keepdims=True)
+    return means
 
 
 def rms_errors(estimates: ValueEstimates, truth: PolicyValues) -> FloatArray:

@@ -56,8 +56,9 @@ class PolicyValues:
         flat = np.ascontiguousarray(self.probabilities.reshape(-1))
         every = self.solver.expected_visits(flat)
         # Several states share a row where the observation hides part of the state.
-        rows = np.bincount(self.solver.rows, weights=every, minlength=self.values.size)
-        return rows.reshape(self.values.shape)
+        rows: Any = np.bincount(self.solver.rows, weights=every, minlength=self.values.size)
+        visits: NDArray[np.float64] = rows.reshape(self.values.shape)
+        return visits
 
     @property
     def state_distribution(self) -> NDArray[np.float64]:
@@ -66,7 +67,8 @@ class PolicyValues:
         Raises:
             ValueError: if episodes under this policy may never end.
         """
-        return self.visits / self.visits.sum()
+        fractions: NDArray[np.float64] = self.visits / self.visits.sum()
+        return fractions
 
     def __repr__(self) -> str:
         """One line: the values are not shown."""

@@ -116,7 +116,7 @@ def estimate_values(
     limit = memory_limit(None)
     numbers = seed_sequence(seeds, limit)
     points = recorded_episodes(record, settings.episodes)
-    given = {} if max_episode_steps is None else {"max_episode_steps": max_episode_steps}
+    given: dict[str, Any] = {} if max_episode_steps is None else {"max_episode_steps": max_episode_steps}
     if env_kwargs is not None:
         given["env_kwargs"] = env_kwargs
     resolved, space = resolve_prediction(env, policy, settings, numbers[0], given)

@@ -40,7 +40,8 @@ def lowest_stick(values: FloatArray) -> FloatArray:
     """Returns (usable ace, dealer's cards): the lowest sum from which on the greedy policy sticks."""
     sticks = values.argmax(axis=0) == STICK
     from_here_on = np.flip(np.cumprod(np.flip(sticks, axis=1), axis=1), axis=1)
-    return SUMS.stop - from_here_on.sum(axis=1).astype(np.float64)
+    lowest: FloatArray = SUMS.stop - from_here_on.sum(axis=1).astype(np.float64)
+    return lowest
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -63,7 +64,7 @@ class ExploringStarts(Experiment):
             for first in range(0, runs, threads):
                 seeds = range(seed + first, seed + min(first + threads, runs))
                 trained = train_many(**CONFIG, seeds=seeds, tables=True, threads=threads, progress=False)
-                tables += [values_of(table) for table in trained.tables]
+                tables += [values_of(run.tables) for run in trained]
                 bar.move_to(len(tables))
         thresholds = np.stack([lowest_stick(values) for values in tables])
         error = thresholds.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(thresholds.shape[1:], np.nan)
