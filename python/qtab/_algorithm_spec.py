@@ -2,7 +2,7 @@
 
 from typing import Literal, TypeAlias, TypedDict
 
-from qtab.config.choices import Model, TargetPolicy, Traces
+from qtab.config.choices import ModelKind, TargetPolicy, Traces
 
 
 class PlainSpec(TypedDict):
@@ -49,7 +49,7 @@ class DynaQSpec(TypedDict):
 
     type: Literal["dyna_q"]
     planning_steps: int
-    model: Model
+    model: ModelKind
 
 
 class DynaQPlusSpec(TypedDict):

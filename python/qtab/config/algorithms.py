@@ -8,7 +8,7 @@ from typing_extensions import Self
 
 from qtab._spec import AlgorithmSpec
 from qtab._utils.checks import required
-from qtab.config.choices import Algorithm, Model, TargetPolicy, Traces
+from qtab.config.choices import Algorithm, ModelKind, TargetPolicy, Traces
 from qtab.config.config import Config
 
 
@@ -63,7 +63,7 @@ class DynaQ(AlgorithmSettings):
     """Dyna-Q."""
 
     planning_steps: int
-    model: Model
+    model: ModelKind
 
 
 @dataclass(frozen=True)

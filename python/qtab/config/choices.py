@@ -61,7 +61,7 @@ EpsilonSchedule: TypeAlias = Literal["constant", "linear", "exponential"]
 Ties: TypeAlias = Literal["first", "random"]
 Traces: TypeAlias = Literal["accumulating", "replacing", "clearing"]
 TargetPolicy: TypeAlias = Literal["greedy", "behavior"]
-Model: TypeAlias = Literal["deterministic", "stochastic"]
+ModelKind: TypeAlias = Literal["deterministic", "stochastic"]
 DiscretizerName: TypeAlias = Literal["round", "bins", "edges", "tiles", "identity"]
 TerminalUpdate: TypeAlias = Literal["target", "assign"]
 OnTruncation: TypeAlias = Literal["bootstrap", "terminate"]
@@ -76,7 +76,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "ties": get_args(Ties),
     "traces": get_args(Traces),
     "target_policy": get_args(TargetPolicy),
-    "model": get_args(Model),
+    "model": get_args(ModelKind),
     "discretizer": get_args(DiscretizerName),
     "terminal_update": get_args(TerminalUpdate),
     "on_truncation": get_args(OnTruncation),

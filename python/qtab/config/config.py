@@ -23,7 +23,7 @@ from qtab.config.choices import (
     EpsilonSchedule,
     Exploration,
     LearningRateSchedule,
-    Model,
+    ModelKind,
     OnTruncation,
     TargetPolicy,
     TerminalUpdate,
@@ -111,7 +111,7 @@ class Config:
     """The number of updates from the model after each step."""
     time_weight: float | None = None
     """κ: Dyna-Q+ plans with a bonus of κ √τ on the reward of an action not tried for τ steps."""
-    model: Model | None = None
+    model: ModelKind | None = None
     """What Dyna-Q plans with: what last followed a state and action (deterministic), or a sample of all that followed
     it so far (stochastic)."""
     priority_threshold: float | None = None

@@ -19,7 +19,7 @@ from qtab.config.choices import (
     EpsilonSchedule,
     Exploration,
     LearningRateSchedule,
-    Model,
+    ModelKind,
     OnTruncation,
     TargetPolicy,
     TerminalUpdate,
@@ -67,7 +67,7 @@ class SharedSettings(EnvironmentSettings, total=False):
     target_policy: TargetPolicy | None
     planning_steps: Integer | None
     time_weight: Real | None
-    model: Model | None
+    model: ModelKind | None
     priority_threshold: Real | None
     reward_learning_rate: Real | None
     baseline: bool | None
