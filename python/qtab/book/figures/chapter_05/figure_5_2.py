@@ -42,7 +42,8 @@ def lowest_stick(values: FloatArray) -> FloatArray:
     """Returns (usable ace, dealer's cards): the lowest sum from which on the greedy policy sticks."""
     sticks = values.argmax(axis=0) == STICK
     from_here_on = np.flip(np.cumprod(np.flip(sticks, axis=1), axis=1), axis=1)
-    return SUMS.stop - from_here_on.sum(axis=1).astype(np.float64)
+    lowest: FloatArray = SUMS.stop - from_here_on.sum(axis=1).astype(np.float64)
+    return lowest
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
