@@ -8,14 +8,6 @@ sdist() {
     cp "$work"/dist/qtab-*.tar.gz dist/
 }
 
-# The WebAssembly module of the playground, which sdist and wheels hold.
-wasm() {
-    if command -v rustup >/dev/null; then
-        rustup target add wasm32-unknown-unknown
-    fi
-    "$host_python" rust/web/build_backend.py
-}
-
 # The wheels of $TARGET, or of this machine, in dist/: one for the stable ABI, and one for each free-threaded interpreter
 # of $FREE_THREADED. From 3.15 on, free-threaded Pythons have a stable ABI too. Zig links those for Linux, so that they
 # run with old C libraries; it also builds for aarch64 on x86_64, and then needs no interpreter.
@@ -51,7 +43,7 @@ installed() {
     "$pip" download --quiet --no-index --no-deps --find-links dist --dest "$tried/chosen" --only-binary :all: qtab
     "$pip" install --quiet --only-binary :all: "$tried"/chosen/qtab-*.whl
     echo "installed: $(ls "$tried/chosen"), $("$pip" list --format=freeze | sort | tr '\n' ' ')"
-    (cd "$tried" && "./venv/$bin/python" -) <.ci/wheel.py
+    (cd "$tried" && "./venv/$bin/python" -) <.ci/wheel.py || exit 1 # bash 3.2 goes on after a subshell that failed
     rm -rf "$tried"
 }
 

@@ -27,7 +27,8 @@ def sphinx(quick: bool) -> int:
     options = ["-b", "html", "-j", "2", "-W", "--keep-going", "-n", "-q"]
     if quick:
         options += ["-D", "nb_execution_mode=off"]
-    returncode = subprocess.run([sys.executable, "-m", "sphinx", *options, str(HERE), str(SITE)], check=False).returncode  # noqa: S603
+    command = [sys.executable, "-m", "sphinx", *options, str(HERE), str(SITE)]
+    returncode = subprocess.run(command, check=False).returncode  # noqa: S603 - our own words
     # The theme's template, which it keeps among its static files, is no page.
     (SITE / "_static" / "webpack-macros.html").unlink(missing_ok=True)
     return returncode
@@ -46,7 +47,9 @@ def main() -> None:
     """Runs the steps; the exit code is 1 if any of them finds something."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true", help="without notebooks and browser")
-    quick = parser.parse_args().quick
+    parser.add_argument("--browser", action=argparse.BooleanOptionalAction, default=True, help="open every page")
+    asked = parser.parse_args()
+    quick = asked.quick
     sys.path.insert(0, str(HERE / "_checks"))
     import browser
     import static
@@ -56,7 +59,7 @@ def main() -> None:
     print(f"built in {time.perf_counter() - began:.0f} s", flush=True)
     failed |= links() != 0
     problems = static.problems(SITE)
-    if not quick:
+    if asked.browser and not quick:
         problems += browser.problems(SITE)
     print(*problems, sep="\n")
     print(f"{len(list(SITE.rglob('*.html')))} pages, {len(problems)} problems, {time.perf_counter() - began:.0f} s")

@@ -26,7 +26,7 @@ def anchors(page: Path) -> set[str]:
 @pytest.mark.parametrize("page", PAGES, ids=page_id)
 def test_links_lead_to_files_and_headings_that_exist(page: Path) -> None:
     for _, _, target in LINK.findall(page.read_text(encoding="utf-8")):
-        if target.startswith("https://"):
+        if target.startswith(("https://", "http://")):
             continue
         path, _, fragment = target.partition("#")
         linked = page.parent / path if path else page

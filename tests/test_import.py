@@ -15,7 +15,7 @@ def in_a_process(code):
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120).stdout
 
 
-MODULES = ["book", "callbacks", "designs", "planning", "plots", "sb3", "stats"]
+MODULES = ["book", "callbacks", "designs", "planning", "playground", "plots", "sb3", "stats"]
 HEAVY = "matplotlib", "tyro", "tqdm", "moviepy", "pygame", "PIL", "tomllib", "numba", "IPython", "tensorboardX"
 
 

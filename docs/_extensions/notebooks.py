@@ -7,6 +7,7 @@ each notebook, the ids of the cells that show a picture.
 import json
 from pathlib import Path
 
+from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
@@ -33,7 +34,15 @@ def copy_notebooks(app: Sphinx) -> None:
             target.write_text(text, encoding="utf-8")
 
 
+def drop_blank_outputs(app: Sphinx, doctree: nodes.document) -> None:
+    """Removes what a progress bar leaves behind when it is closed: an output without a word."""
+    for output in list(doctree.findall(nodes.literal_block)):
+        if not output.astext().strip():
+            output.parent.remove(output)
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Registers the copy, before Sphinx looks for pages."""
+    """Registers the copy, before Sphinx looks for pages, and the removal."""
     app.connect("builder-inited", copy_notebooks, priority=100)
+    app.connect("doctree-read", drop_blank_outputs)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,7 +1,7 @@
 """Links that leave ``docs/``: they lead to files on GitHub, and to the pages that the site has instead of them.
 
-``[a notebook](../../examples/study.ipynb)`` becomes the page of that notebook, ``[README](../../README.md#install)`` the
-page with the same text, and any other file a download. So each page reads well in both places.
+``[a notebook](../../examples/study.ipynb)`` becomes the page of that notebook, ``[README](../../README.md#install)``
+the page with the same text, and any other file a download. So each page reads well in both places.
 """
 
 import json
@@ -19,9 +19,6 @@ PAGES = {
     "SECURITY.md": "docs/reference/security.md",
     "README.md": "docs/index.md",
     "README.md#install": "docs/install.md",
-    "README.md#how-fast": "docs/explanation/speed.md",
-    "README.md#learners-discretizers-actions": "docs/reference/choices.md",
-    "README.md#parts": "docs/install.md#parts",
 }
 """What the site shows instead of a file outside of ``docs/``, or of one of its sections."""
 

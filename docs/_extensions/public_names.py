@@ -55,7 +55,7 @@ SHORT = {
 """The full names of the types in signatures, which show them by their last part, and of those defined elsewhere."""
 WITHOUT_A_PAGE = ("SharedSettings", "WhatIf")
 """Types of this package that have no page and are named by strings."""
-MODULES = ("book", "callbacks", "designs", "planning", "plots", "stats")
+MODULES = ("book", "callbacks", "designs", "planning", "playground", "plots", "stats")
 """The modules among the public names, whose own names are public too."""
 
 
@@ -64,7 +64,9 @@ def public() -> dict[str, str]:
     """Returns the public name of each object by the name under which it is defined."""
     names = {f"qtab.{name}": getattr(qtab, name) for name in qtab.__all__ if name != "sb3"}
     for module in MODULES:
-        names |= {f"qtab.{module}.{name}": getattr(names[f"qtab.{module}"], name) for name in names[f"qtab.{module}"].__all__}
+        names |= {
+            f"qtab.{module}.{name}": getattr(names[f"qtab.{module}"], name) for name in names[f"qtab.{module}"].__all__
+        }
     found: dict[str, str] = {}
     for name, value in names.items():
         if hasattr(value, "__qualname__"):

@@ -20,9 +20,17 @@ from qtab.config.explanations import default
 from qtab.config.settings import Settings
 
 SHORTER = (
-    (re.compile(r"(?:numpy\.)?ndarray\[tuple\[(?:typing\.)?Any, \.\.\.\], (?:numpy\.)?dtype\[([^\]]+)\]\]"), r"NDArray[\1]"),
+    (
+        re.compile(r"(?:numpy\.)?ndarray\[tuple\[(?:typing\.)?Any, \.\.\.\], (?:numpy\.)?dtype\[([^\]]+)\]\]"),
+        r"NDArray[\1]",
+    ),
     (re.compile(r"\bfloating\[[^\]]*\]"), "floating"),
-    (re.compile(r"\b(?:typing|collections\.abc|concurrent\.futures\._base|gymnasium(?:\.\w+)+|np|numpy|os|qtab(?:\.\w+)+|gym|pd|pandas)\.(?=\w)"), ""),
+    (
+        re.compile(
+            r"\b(?:typing|collections\.abc|concurrent\.futures\._base|gymnasium(?:\.\w+)+|np|numpy|os|qtab(?:\.\w+)+|gym|pd|pandas)\.(?=\w)"
+        ),
+        "",
+    ),
     (re.compile(r"\bOptional\[(.*)\]$"), r"\1 | None"),
     (re.compile(r"\bUnion\[(.*)\]$"), r"\1"),
     (re.compile(r"'([A-Z]\w*)'"), r"\1"),

@@ -1,4 +1,4 @@
-"""Makes the pictures of docs/gallery/index.md by running its code: each block's last figure becomes the picture below it.
+"""Makes the pictures of docs/gallery/index.md by its code: each block's last figure becomes the picture below it.
 
 python docs/gallery/pictures.py               # all of them, in about a minute
 python docs/gallery/pictures.py lake windy    # only some; the code is run from the top in any case

@@ -1,4 +1,4 @@
-"""Prints the tables of docs/reference/environments.md: the results of every preset over 100 seeds, which takes a minute or two.
+"""Prints the tables of docs/reference/environments.md, every preset over 100 seeds, in a minute or two.
 
 With an environment, those of one preset over other seeds:
 

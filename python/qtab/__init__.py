@@ -36,12 +36,14 @@ _MODULES = {
     "Sweep": "qtab.sweeps.results",
     "SweepProgress": "qtab.sweeps.progress",
     "TabularEnv": "qtab.envs.tabular",
+    "ValueEstimates": "qtab.prediction.estimates",
     "Verification": "qtab.training.verify",
     "animate": "qtab.rendering.animate",
     "book": "qtab.book",
     "callbacks": "qtab.callbacks",
     "designs": "qtab.sweeps.designs",
     "diagnose": "qtab.diagnosis.diagnose",
+    "estimate_values": "qtab.prediction.estimate",
     "evaluate": "qtab.training.evaluate",
     "explain": "qtab.explanation.explain",
     "load": "qtab.results.storage",
@@ -54,6 +56,7 @@ _MODULES = {
     "plot": "qtab.plots.run",
     "plots": "qtab.plots",
     "policy_values": "qtab.planning.policy_values",
+    "prediction": "qtab.prediction",
     "presets": "qtab.config.presets",
     "resume": "qtab.training.resume",
     "sb3": "qtab.sb3",
@@ -72,6 +75,7 @@ if TYPE_CHECKING:
     from qtab import planning as planning
     from qtab import playground as playground
     from qtab import plots as plots
+    from qtab import prediction as prediction
     from qtab import sb3 as sb3
     from qtab import stats as stats
     from qtab.config import Config as Config
@@ -88,6 +92,8 @@ if TYPE_CHECKING:
     from qtab.planning.policy_values import policy_values as policy_values
     from qtab.planning.solve import optimum as optimum
     from qtab.plots.run import plot as plot
+    from qtab.prediction.estimate import estimate_values as estimate_values
+    from qtab.prediction.estimates import ValueEstimates as ValueEstimates
     from qtab.rendering.animate import Animation as Animation
     from qtab.rendering.animate import animate as animate
     from qtab.rendering.play import Playback as Playback

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import Required
 
+from qtab._algorithm_spec import AlgorithmSpec as AlgorithmSpec
 from qtab._discretizer_spec import DiscretizerSpec as DiscretizerSpec
-from qtab.config.choices import BitGenerator, OnTruncation, TerminalUpdate, Ties, Traces
+from qtab.config.choices import BitGenerator, OnTruncation, TerminalUpdate, Ties
 
 if TYPE_CHECKING:
     from qtab._core import NativeEnv
@@ -140,86 +142,6 @@ class UniformSpec(TypedDict):
 InitialQSpec: TypeAlias = TableSpec | UniformSpec | ConstantSpec
 
 
-class OneStepSpec(TypedDict):
-    """An algorithm without options."""
-
-    type: Literal["q_learning", "sarsa", "expected_sarsa", "double_q_learning", "reinforce"]
-
-
-class NStepSarsaSpec(TypedDict):
-    """n-step Sarsa."""
-
-    type: Literal["n_step_sarsa"]
-    n_steps: int
-
-
-class TraceSpec(TypedDict):
-    """An algorithm with eligibility traces of a kind."""
-
-    type: Literal["sarsa_lambda", "watkins_q_lambda"]
-    trace_decay: float
-    traces: Traces
-    trace_cutoff: float
-
-
-class TrueOnlineSarsaLambdaSpec(TypedDict):
-    """True online Sarsa(lambda), whose traces are of its own kind."""
-
-    type: Literal["true_online_sarsa_lambda"]
-    trace_decay: float
-    trace_cutoff: float
-
-
-class DynaQSpec(TypedDict):
-    """Dyna-Q."""
-
-    type: Literal["dyna_q"]
-    planning_steps: int
-
-
-class DynaQPlusSpec(TypedDict):
-    """Dyna-Q+."""
-
-    type: Literal["dyna_q_plus"]
-    planning_steps: int
-    time_weight: float
-
-
-class GradientBanditSpec(TypedDict):
-    """The gradient bandit algorithm."""
-
-    type: Literal["gradient_bandit"]
-    baseline: bool
-
-
-class StateValuesSpec(TypedDict):
-    """A policy gradient method that learns state values beside the policy."""
-
-    type: Literal["reinforce_with_baseline", "actor_critic"]
-    value_learning_rate: float
-
-
-class ActorCriticLambdaSpec(TypedDict):
-    """Actor-critic with eligibility traces."""
-
-    type: Literal["actor_critic_lambda"]
-    value_learning_rate: float
-    trace_decay: float
-
-
-AlgorithmSpec: TypeAlias = (
-    OneStepSpec
-    | NStepSarsaSpec
-    | TraceSpec
-    | TrueOnlineSarsaLambdaSpec
-    | DynaQSpec
-    | DynaQPlusSpec
-    | GradientBanditSpec
-    | StateValuesSpec
-    | ActorCriticLambdaSpec
-)
-
-
 class UnknownMasksSpec(TypedDict):
     """Every state has all actions (none), or the environment gives the masks (observed)."""
 
@@ -248,12 +170,40 @@ class RunSpec(TypedDict):
     policy: PolicySpec
     learning_rate: LearningRateSpec
     discount: float
+    count_bonus: float
     initial_q: InitialQSpec
     action_masks: ActionMasksSpec
     terminal_update: TerminalUpdate
     on_truncation: OnTruncation
     episodes: int
     bit_generator: BitGenerator
+
+
+# Prediction
+
+
+class MethodSpec(TypedDict, total=False):
+    """A prediction method with its options."""
+
+    type: Required[str]
+    n_steps: int
+    trace_decay: float
+    first_visit: bool
+    weighted: bool
+
+
+class PredictionSpec(TypedDict):
+    """What is estimated, beside the run whose task it is."""
+
+    method: MethodSpec
+    target: NDArray[np.float64]
+    """(states, actions): the policy that is evaluated."""
+    behavior: NDArray[np.float64]
+    """(states, actions): the policy that chooses the actions."""
+    rows: NDArray[np.uint32]
+    """(states, n_active)"""
+    initial_weights: NDArray[np.float64]
+    """(n_weights,)"""
 
 
 # Results

@@ -181,7 +181,7 @@ def test_numbers_that_json_does_not_have_become_null() -> None:
 
 
 def test_the_page_on_the_command_line_lists_every_key(folder: Path) -> None:
-    page = (ROOT / "docs" / "command_line.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "reference" / "command_line.md").read_text(encoding="utf-8")
     shared = page.split("| `qtab train` and `qtab resume` | |")[1].split("## Completion")[0]
     lines = {line.split("`")[1]: line for line in shared.splitlines() if line.startswith("| `")}
     described = {key for line in lines.values() for key in re.findall(r"`(\w+)`", line)}
@@ -194,7 +194,7 @@ def test_the_page_on_the_command_line_lists_every_key(folder: Path) -> None:
 
 
 def test_the_page_on_the_command_line_lists_every_command_and_those_without_the_flags(tmp_path: Path) -> None:
-    page = (ROOT / "docs" / "command_line.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "reference" / "command_line.md").read_text(encoding="utf-8")
     table = page.split("\n\n")[1]
     assert sorted(re.findall(r"`qtab (\w+)", table)) == sorted(SUBCOMMANDS)
     sentence = re.search(r"All commands except for (.*?) have both flags", page, re.DOTALL)

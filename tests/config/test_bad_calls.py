@@ -26,6 +26,7 @@ RATES: tuple[str, ...] = (
     "trace_decay",
 )
 RATES += ("trace_cutoff", "min_learning_rate", "temperature", "time_weight", "value_learning_rate", "confidence")
+RATES += ("sigma", "priority_threshold", "reward_learning_rate", "count_bonus")
 COUNTS: tuple[str, ...] = (
     "episodes",
     "max_episode_steps",

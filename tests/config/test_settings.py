@@ -90,4 +90,5 @@ def test_a_signature_shows_every_setting_with_its_type_and_default(function: Cal
 def test_the_docstring_explains_a_setting_as_the_config_does() -> None:
     words = " ".join(str(qtab.train.__doc__).split())
     assert "discount: γ: the discount factor, in [0, 1]." in words
-    assert "n_steps: n: the number of rewards in a target. Applies to algorithm 'n_step_sarsa'." in words
+    n_step = "'n_step_sarsa', 'n_step_tree_backup' or 'n_step_q_sigma'"
+    assert f"n_steps: n: the number of rewards in a target. Applies to algorithm {n_step}." in words

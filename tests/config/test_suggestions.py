@@ -111,7 +111,11 @@ def test_a_wrong_preset_names_the_nearest_one() -> None:
             "trace_decay applies to algorithm 'sarsa_lambda', 'watkins_q_lambda', 'true_online_sarsa_lambda' "
             "or 'actor_critic_lambda', not to 'q_learning', got 0.9",
         ),
-        ({"n_steps": np.int64(2)}, "n_steps applies to algorithm 'n_step_sarsa', not to 'q_learning', got 2"),
+        (
+            {"n_steps": np.int64(2)},
+            "n_steps applies to algorithm 'n_step_sarsa', 'n_step_tree_backup' or 'n_step_q_sigma', not to "
+            "'q_learning', got 2",
+        ),
         (
             {"epsilon_decay": 0.9, "exploration": "softmax"},
             "epsilon_decay applies to exploration 'epsilon_greedy', not to 'softmax', got 0.9",

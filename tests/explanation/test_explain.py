@@ -1,7 +1,7 @@
 """An explanation's numbers are the run's: from the shown targets and step sizes follows the table, bit for bit."""
 
 from dataclasses import replace
-from typing import Any, get_args
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -10,14 +10,13 @@ from hypothesis import given, settings
 from numpy.typing import NDArray
 
 import qtab
-from qtab.config.choices import Algorithm
-from qtab.config.options import PREFERENCES
+from qtab.explanation.explain import EXPLAINED
 from qtab.explanation.records import ExplainedStep, Update
 from support.gridworld import Room
 from support.learner_settings import run_settings
 
 CAR = "MountainCar-v0"
-ALGORITHMS = [name for name in get_args(Algorithm) if name not in PREFERENCES]
+ALGORITHMS = EXPLAINED
 EXAMPLES = max(1, (settings.default or settings()).max_examples // 20)
 TRACED = "sarsa_lambda", "true_online_sarsa_lambda", "watkins_q_lambda"
 SMALL: dict[str, Any] = {"seed": 3, "episodes": 6, "max_episode_steps": 60, "epsilon": 0.5}
@@ -236,6 +235,12 @@ def test_it_prints_as_text_and_as_a_table() -> None:
     page = explanation._repr_html_()
     assert page.count("<tr>") == 3
     assert "S', a" not in page  # escaped
+
+
+def test_an_algorithm_that_is_not_explained_is_named() -> None:
+    run = qtab.train(CAR, algorithm="monte_carlo", **SMALL)
+    with pytest.raises(ValueError, match=r"run must be one of .* explained, got 'monte_carlo'"):
+        qtab.explain(run)
 
 
 def test_bad_arguments_are_named() -> None:

@@ -1,20 +1,19 @@
 """An explanation is the same whether the reference repeats all episodes or starts from Rust's tables and generators."""
 
 from dataclasses import replace
-from typing import Any, get_args
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
 
 import qtab
-from qtab.config.choices import Algorithm
-from qtab.config.options import PREFERENCES
 from qtab.explanation import explain as module
+from qtab.explanation.explain import EXPLAINED
 from qtab.explanation.fast_forward import Start, start_of
 from support.learner_settings import run_settings
 
 CAR = "MountainCar-v0"
-ALGORITHMS = [name for name in get_args(Algorithm) if name not in PREFERENCES]
+ALGORITHMS = EXPLAINED
 EXAMPLES = max(1, (settings.default or settings()).max_examples // 20)
 
 

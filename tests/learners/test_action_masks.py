@@ -42,7 +42,7 @@ def masked_runs(draw: st.DrawFn) -> tuple[NDArray[Any], str, dict[str, Any]]:
         shown,
         {
             **features,
-            **draw(learning_rates(0.5, by_visits=algorithm not in BY_EPISODE)),
+            **draw(learning_rates(0.5, by_visits=algorithm not in BY_EPISODE, algorithm=algorithm)),
             **draw(explorations(possible_explorations(algorithm, features))),
             **draw(own_options(algorithm)),
             "algorithm": algorithm,

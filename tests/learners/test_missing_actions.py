@@ -1,7 +1,7 @@
 """States with fewer actions than others, marked by -inf in the initial table."""
 
 import math
-from typing import Any
+from typing import Any, get_args
 
 import gymnasium as gym
 import numpy as np
@@ -11,11 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
-from support.learner_settings import explorations, learning_rates, own_options
+from qtab.config.choices import Algorithm
+from qtab.config.options import PREFERENCES
+from support.learner_settings import BY_EPISODE, explorations, learning_rates, own_options, possible_explorations
 
 BIAS = "qtab/MaximizationBias-v0"
-ALGORITHMS = sorted({"q_learning", "sarsa", "expected_sarsa", "double_q_learning", "n_step_sarsa", "sarsa_lambda"})
-ALGORITHMS += ["true_online_sarsa_lambda", "watkins_q_lambda", "dyna_q", "dyna_q_plus"]
+ALGORITHMS = [name for name in get_args(Algorithm) if name not in PREFERENCES]
 
 
 def some_of_a(missing=8):
@@ -32,11 +33,11 @@ def settings(draw):
     for row in rows:
         row[draw(st.integers(0, 9))] = draw(values)
     return {
-        **draw(learning_rates(1.0, by_visits=algorithm != "true_online_sarsa_lambda")),
+        **draw(learning_rates(1.0, by_visits=algorithm not in BY_EPISODE, algorithm=algorithm)),
         **draw(own_options(algorithm)),
         "algorithm": algorithm,
         "initial_q": np.array(rows),
-        **draw(explorations(["epsilon_greedy", "softmax", "ucb"])),
+        **draw(explorations(possible_explorations(algorithm, {}))),
         "seed": draw(st.integers(0, 2**32 - 1)),
         "episodes": 30,
     }

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.config.options import OPTIONS
+from qtab.config.options import OPTIONS, TABLES_ONLY
 
 TILES: dict[str, Any] = {"discretizer": "tiles"}
 VALUES: dict[str, Any] = {
@@ -15,8 +15,13 @@ VALUES: dict[str, Any] = {
     "traces": "replacing",
     "trace_cutoff": 0.0,
     "n_steps": 4,
+    "sigma": 0.5,
+    "target_policy": "greedy",
     "planning_steps": 5,
     "time_weight": 0.1,
+    "model": "deterministic",
+    "priority_threshold": 0.1,
+    "reward_learning_rate": 0.1,
     "baseline": True,
     "value_learning_rate": 0.1,
     "min_learning_rate": 0.0,
@@ -70,11 +75,11 @@ def test_an_option_that_does_not_apply_is_refused_by_name(name: str, chosen: dic
         qtab.train("MountainCar-v0", episodes=1, **chosen, **{name: VALUES[name]})
 
 
-@pytest.mark.parametrize("algorithm", ["dyna_q", "dyna_q_plus"])
-def test_dyna_needs_a_table(algorithm: Any) -> None:
+@pytest.mark.parametrize("algorithm", TABLES_ONLY)
+def test_a_model_and_returns_need_a_table(algorithm: Any) -> None:
     with pytest.raises(
         ValueError,
-        match=r"^algorithm must be 'q_learning', .* or 'actor_critic_lambda' for discretizer 'tiles', got 'dyna_q",
+        match=rf"^algorithm must be 'q_learning', .* for discretizer 'tiles', got '{algorithm}', which works with",
     ):
         qtab.train("MountainCar-v0", algorithm=algorithm, **TILES)
 
@@ -103,6 +108,12 @@ def test_true_online_sarsa_lambda_refuses_the_visits_schedule() -> None:
         ("n_steps", 0, {"algorithm": "n_step_sarsa"}),
         ("planning_steps", -1, {"algorithm": "dyna_q"}),
         ("time_weight", -1.0, {"algorithm": "dyna_q_plus"}),
+        ("sigma", 1.01, {"algorithm": "n_step_q_sigma"}),
+        ("target_policy", "behaviour", {"algorithm": "n_step_q_sigma"}),
+        ("model", "random", {"algorithm": "dyna_q"}),
+        ("priority_threshold", -1.0, {"algorithm": "prioritized_sweeping"}),
+        ("reward_learning_rate", 1.5, {"algorithm": "differential_sarsa"}),
+        ("count_bonus", -0.1, {}),
         ("time_weight", float("inf"), {"algorithm": "dyna_q_plus"}),
         ("temperature", 0.0, {"exploration": "softmax"}),
         ("temperature", float("nan"), {"exploration": "softmax"}),

@@ -81,7 +81,7 @@ WORDS = st.one_of(
 
 
 @settings(
-    max_examples=settings.default.max_examples // 4,
+    max_examples=settings().max_examples // 4,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
     deadline=None,
 )

@@ -1,22 +1,32 @@
 """What the page knows of environments and settings agrees with the package."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
 
 import qtab
+from qtab.config.choices import CHOICES
 from qtab.config.config import DEFAULTS
 from qtab.config.options import OPTIONS
 from qtab.playground import definitions
-from qtab.playground.settings import LEFT_OUT
+from qtab.playground.settings import LEFT_OUT, OFFERED
 
 ENVIRONMENTS = definitions()["environments"]
 SETTINGS = definitions()["settings"]
 
 
 def test_every_setting_is_shown_or_left_out_on_purpose():
-    assert SETTINGS.keys() | LEFT_OUT == DEFAULTS.keys()
     assert not SETTINGS.keys() & LEFT_OUT
+    for name in DEFAULTS.keys() - SETTINGS.keys() - LEFT_OUT:
+        option = OPTIONS[name]
+        assert set(option.values).isdisjoint(OFFERED[option.choice]), f"{name} applies to what the page offers"
+
+
+def test_what_the_page_offers_exists():
+    for name, words in OFFERED.items():
+        assert set(words) <= set(CHOICES[name])
 
 
 def test_every_setting_has_a_sentence_and_a_default():
@@ -31,7 +41,7 @@ def test_every_setting_has_a_sentence_and_a_default():
 def test_the_ends_of_a_range_are_valid_settings(name):
     setting = SETTINGS[name]
     option = OPTIONS.get(name)
-    beside = {"episodes": 100_000} if name.endswith("warm_up") else {}
+    beside: dict[str, Any] = {"episodes": 100_000} if name.endswith("warm_up") else {}
     while option is not None:
         beside[option.choice] = option.values[0]
         option = OPTIONS.get(option.choice)
@@ -46,7 +56,8 @@ def test_the_ends_of_a_range_are_valid_settings(name):
 @pytest.mark.parametrize("key", ENVIRONMENTS)
 def test_presets_are_valid(key):
     for preset in ENVIRONMENTS[key]["presets"].values():
-        qtab.Config(**{name: tuple(value) if isinstance(value, list) else value for name, value in preset.items()})
+        config: Any = {name: tuple(value) if isinstance(value, list) else value for name, value in preset.items()}
+        qtab.Config(**config)
         assert preset["discretizer"] in ENVIRONMENTS[key]["discretizers"]
         assert preset.keys() <= SETTINGS.keys()
 
@@ -54,7 +65,7 @@ def test_presets_are_valid(key):
 @pytest.mark.parametrize("key", [key for key, environment in ENVIRONMENTS.items() if environment["table"]])
 def test_tables_are_gymnasiums(key):
     known = ENVIRONMENTS[key]
-    env = gym.make(known["python"], **known["env_kwargs"]).unwrapped
+    env: Any = gym.make(known["python"], **known["env_kwargs"]).unwrapped
     table = known["table"]
     for state, actions in enumerate(table["outcomes"]):
         for action, outcomes in enumerate(actions):
@@ -69,3 +80,13 @@ def test_python_refuses_what_a_rule_excludes(rule):
     beside = {"scale": (10.0, 100.0)} if rule["unless"].get("discretizer") != "tiles" else {}
     with pytest.raises(ValueError, match=rule["setting"]):
         qtab.Config(**{**beside, rule["setting"]: rule["value"], **rule["unless"]})
+
+
+def test_nothing_is_said_of_what_is_not_offered():
+    for name, setting in SETTINGS.items():
+        assert "preference" not in setting["sentence"], name
+        assert "ucb" not in setting["sentence"], name
+        if setting["choices"]:
+            assert {choice["value"] for choice in setting["choices"]} <= {*OFFERED[name]}, name
+        if applies := setting["applies"]:
+            assert {*applies["values"]} <= {*OFFERED[applies["choice"]]}, name

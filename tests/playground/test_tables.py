@@ -11,18 +11,13 @@ import pytest
 from numpy.typing import NDArray
 
 import qtab
-from qtab.config import choices
 from qtab.config.config import DEFAULTS
 from qtab.config.options import OPTIONS, defaults, is_set
 from qtab.playground import definitions
 from qtab.playground.assemble import data_script
 from qtab.playground.bundle import bundle
-from qtab.playground.settings import CHOICES_LEFT_OUT, LEFT_OUT
+from qtab.playground.settings import OFFERED, is_offered
 
-CHOICES = {
-    name: tuple(word for word in words if word not in CHOICES_LEFT_OUT) for name, words in choices.CHOICES.items()
-}
-"""The choices that the page offers."""
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 ENGINE = (Path(qtab.__file__).parent / "playground/page/engine.js").read_text(encoding="utf-8")
@@ -110,7 +105,7 @@ def completed(given: dict[str, Any]) -> dict[str, Any]:
         elif fields[name] is None:
             fields |= defaults(fields)
     plain = {name: list(value) if isinstance(value, tuple) else value for name, value in fields.items()}
-    return {name: value for name, value in plain.items() if name not in LEFT_OUT and is_set(fields[name])}
+    return {name: value for name, value in plain.items() if is_offered(name) and is_set(fields[name])}
 
 
 def random_settings(rng: random.Random, environment: str, algorithm: str) -> dict[str, Any]:
@@ -135,15 +130,15 @@ def random_settings(rng: random.Random, environment: str, algorithm: str) -> dic
         "temperature": rng.choice([0.3, 2.0]),
     }
     for name in ("exploration", "epsilon_schedule", "learning_rate_schedule", "traces", "ties", "on_truncation"):
-        given[name] = rng.choice(CHOICES[name])
-    given["bit_generator"] = rng.choice(CHOICES["bit_generator"])
+        given[name] = rng.choice(OFFERED[name])
+    given["bit_generator"] = rng.choice(OFFERED["bit_generator"])
     if algorithm in ("dyna_q", "dyna_q_plus") and given["discretizer"] == "tiles":
         given["discretizer"] = "bins"
     if algorithm == "true_online_sarsa_lambda" and given["learning_rate_schedule"] == "visits":
         given["learning_rate_schedule"] = "linear"
     one_step = ("q_learning", "sarsa", "expected_sarsa", "double_q_learning", "dyna_q", "dyna_q_plus")
     if algorithm in one_step and given["discretizer"] != "tiles":
-        given["terminal_update"] = rng.choice(CHOICES["terminal_update"])
+        given["terminal_update"] = rng.choice(OFFERED["terminal_update"])
     return given
 
 
@@ -154,7 +149,7 @@ def test_two_hundred_seeds_of_the_article_equal_python(engine):
 
 
 @pytest.mark.parametrize("environment", definitions()["environments"])
-@pytest.mark.parametrize("algorithm", CHOICES["algorithm"])
+@pytest.mark.parametrize("algorithm", OFFERED["algorithm"])
 def test_random_settings_equal_python(engine, environment, algorithm):
     rng = random.Random(f"{environment} {algorithm}")  # noqa: S311 - settings, not secrets
     for _ in range(3):
@@ -185,7 +180,7 @@ def test_painted_grid_worlds_equal_python(engine):
             "goal_reward": rng.choice([0, 10]),
             "rewards": [[rng.randrange(rows), rng.randrange(columns), rng.choice([-5.5, 3])] for _ in range(3)],
         }
-        given = random_settings(rng, "grid", rng.choice(CHOICES["algorithm"]))
+        given = random_settings(rng, "grid", rng.choice(OFFERED["algorithm"]))
         check(engine, painted, given, [seed])
 
 
@@ -193,7 +188,7 @@ def test_painted_grid_worlds_equal_python(engine):
 def test_the_page_completes_settings_as_python_does(engine, environment):
     rng = random.Random(environment)  # noqa: S311
     known = definitions()["environments"][environment]
-    for algorithm in CHOICES["algorithm"]:
+    for algorithm in OFFERED["algorithm"]:
         given = random_settings(rng, environment, algorithm)
         options = {"max_episode_steps": known["max_episode_steps"], **known["options"]}
         expected = completed({**options, **given})

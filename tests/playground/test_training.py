@@ -97,3 +97,12 @@ def test_examples_show_failure_and_cure(playground: Playground) -> None:
     cured = playground.settled().result()
     assert sum(cured["returns"][-1000:]) > 500
     assert "initial values of 1" in playground.text("look")
+
+
+def test_values_that_differ_are_shown_differently(playground: Playground) -> None:
+    playground.open("#env=MountainCar-v0&example=0")
+    playground.page.wait_for_function("() => playground.view.result.inspection")
+    values = playground.page.evaluate("() => Array.from(playground.view.result.inspection.actionValues)")
+    shown = playground.page.locator(".action-values tbody tr td:nth-of-type(1)").all_inner_texts()
+    assert len(set(shown)) == len(set(values)) == 3
+    assert max(values) - min(values) < 0.01, "four digits would show them alike"

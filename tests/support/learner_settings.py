@@ -7,7 +7,7 @@ import pytest
 from hypothesis import strategies as st
 
 from qtab import _core
-from qtab.config.options import ONE_STEP, PREFERENCES, TABLES_ONLY
+from qtab.config.options import ONE_STEP, PREFERENCES, TABLES_ONLY, WITH_PROBABILITIES
 from qtab.envs.registry import ENTRIES
 from support.machine import MACHINE
 
@@ -49,10 +49,10 @@ falling = st.sampled_from(["linear", "exponential"])
 
 
 @st.composite
-def learning_rates(draw: st.DrawFn, most: float, by_visits: bool) -> dict[str, Any]:
+def learning_rates(draw: st.DrawFn, most: float, by_visits: bool, algorithm: str = "") -> dict[str, Any]:
     rate = draw(st.floats(0, most))
     kinds = ["constant", "linear", "exponential"] + ["visits"] * by_visits
-    kind = draw(st.sampled_from(kinds))
+    kind = draw(st.sampled_from(["visits"] if algorithm == "off_policy_monte_carlo" else kinds))
     settings: dict[str, Any] = {"learning_rate": rate, "learning_rate_schedule": kind}
     if kind != "constant":
         settings["min_learning_rate"] = draw(st.floats(0, rate))
@@ -67,7 +67,9 @@ def possible_explorations(algorithm: str, features: dict[str, Any]) -> list[str]
     """The ways to explore that an algorithm can use with a discretizer."""
     if algorithm in PREFERENCES:
         return ["softmax"]
-    return ["epsilon_greedy", "softmax"] + ["ucb"] * (features.get("discretizer") != "tiles")
+    return ["epsilon_greedy", "softmax"] + ["ucb"] * (
+        features.get("discretizer") != "tiles" and algorithm not in WITH_PROBABILITIES
+    )
 
 
 @st.composite
@@ -136,12 +138,21 @@ def environments(draw: st.DrawFn, env: str) -> dict[str, Any]:
 def own_options(algorithm: str) -> st.SearchStrategy[dict[str, Any]]:
     traced = {"trace_decay": share, "trace_cutoff": st.sampled_from([0.0, 1e-3, 0.3])}
     kinds = st.sampled_from(["accumulating", "replacing", "clearing"])
+    target = st.sampled_from(["greedy", "behavior"])
     options: dict[str, dict[str, st.SearchStrategy[Any]]] = {
         "n_step_sarsa": {"n_steps": st.integers(1, 60)},
         "sarsa_lambda": {**traced, "traces": kinds},
         "watkins_q_lambda": {**traced, "traces": kinds},
         "true_online_sarsa_lambda": traced,
-        "dyna_q": {"planning_steps": st.integers(0, 5)},
+        "dyna_q": {"planning_steps": st.integers(0, 5), "model": st.sampled_from(["deterministic", "stochastic"])},
+        "n_step_tree_backup": {"n_steps": st.integers(1, 60), "target_policy": target},
+        "n_step_q_sigma": {"n_steps": st.integers(1, 60), "target_policy": target, "sigma": share},
+        "prioritized_sweeping": {
+            "planning_steps": st.integers(0, 5),
+            "priority_threshold": st.sampled_from([0.0, 1e-4, 0.3]),
+        },
+        "differential_sarsa": {"reward_learning_rate": share, "discount": st.just(1.0)},
+        "differential_q_learning": {"reward_learning_rate": share, "discount": st.just(1.0)},
         "dyna_q_plus": {"planning_steps": st.integers(0, 5), "time_weight": st.floats(0, 1)},
         "gradient_bandit": {"baseline": st.booleans()},
         "reinforce_with_baseline": {"value_learning_rate": share},
@@ -159,11 +170,11 @@ def run_settings(draw: st.DrawFn, algorithm: str, env: str = CAR) -> dict[str, A
     most = 0.5 if "tiles" in settings else 1.0
     return {
         **settings,
-        **draw(learning_rates(most, by_visits=algorithm not in BY_EPISODE)),
+        **draw(learning_rates(most, by_visits=algorithm not in BY_EPISODE, algorithm=algorithm)),
         **draw(explorations(possible_explorations(algorithm, settings))),
+        "discount": draw(st.floats(0, 1)),
         **draw(own_options(algorithm)),
         "algorithm": algorithm,
-        "discount": draw(st.floats(0, 1)),
         "initial_q": draw(st.sampled_from([0.0, 1.5, (-1.0, 1.0), (-0.001, 0.0)])),
         "on_truncation": draw(st.sampled_from(["bootstrap", "terminate"])),
         "bit_generator": draw(st.sampled_from(["PCG64", "MT19937"])),

@@ -64,7 +64,7 @@ def run(page: Path, *, fewer: dict[str, str] | None = None) -> dict[str, Any]:
 
 def matches(expected: str, printed: str) -> bool:
     """Whether a text is the expected one, in which `...` stands for any text."""
-    pattern = ".*".join(re.escape(part.strip("\n")) for part in expected.strip().split("..."))
+    pattern = ".*".join(re.escape(part.strip("\n")) for part in expected.rstrip().split("..."))
     return re.fullmatch(rf"\n*{pattern}\s*", _stripped(printed), re.DOTALL) is not None
 
 

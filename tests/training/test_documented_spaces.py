@@ -1,4 +1,4 @@
-"""The tables of docs/how_to/spaces.md: what they say trains and verifies equal, or is refused, and then trains as they say."""
+"""The tables of docs/how_to/spaces.md: what trains verifies equal; what is refused then trains as they say."""
 
 import re
 import warnings

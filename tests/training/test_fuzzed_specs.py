@@ -23,6 +23,11 @@ SPECS: list[Any] = [
         ("MountainCar-v0", {"algorithm": "true_online_sarsa_lambda", "hashed_rows": 64, **TILES}),
         ("CartPole-v1", {"discretizer": "bins", "bins": 3, "algorithm": "n_step_sarsa", "n_steps": 3}),
         ("CliffWalking-v1", {"algorithm": "dyna_q_plus", "planning_steps": 3}),
+        ("CliffWalking-v1", {"algorithm": "dyna_q", "planning_steps": 3, "model": "stochastic"}),
+        ("CliffWalking-v1", {"algorithm": "prioritized_sweeping", "planning_steps": 3}),
+        ("FrozenLake-v1", {"algorithm": "off_policy_monte_carlo", "count_bonus": 0.5}),
+        ("MountainCar-v0", {"algorithm": "n_step_q_sigma", "n_steps": 3, **TILES}),
+        ("MountainCar-v0", {"algorithm": "differential_sarsa", **TILES}),
         ("Taxi-v4", {"exploration": "softmax", "temperature": 1.0}),
         ("Blackjack-v1", {"learning_rate_schedule": "visits", "learning_rate": 1.0}),
     ]

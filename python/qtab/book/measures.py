@@ -35,6 +35,16 @@ def final_return(log: EpisodeLog) -> FloatArray:
     return means
 
 
+def reward_by(times: tuple[int, ...]) -> Measure:
+    """Returns the measure (runs, times): how often the goal was reached, for a reward of 1, by each time step."""
+
+    def measure(log: EpisodeLog) -> FloatArray:
+        ends = np.where(log.truncated, times[-1] + 1, log.lengths.cumsum(axis=1))
+        return np.stack([(ends <= time).sum(axis=1) for time in times], axis=1).astype(np.float64)
+
+    return measure
+
+
 def episodes_by(times: tuple[int, ...]) -> Measure:
     """Returns the measure (runs, times): the number of episodes that are over after each number of time steps."""
 

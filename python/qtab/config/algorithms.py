@@ -8,7 +8,7 @@ from typing_extensions import Self
 
 from qtab._spec import AlgorithmSpec
 from qtab._utils.checks import required
-from qtab.config.choices import Algorithm, Traces
+from qtab.config.choices import Algorithm, ModelKind, TargetPolicy, Traces
 from qtab.config.config import Config
 
 
@@ -63,6 +63,7 @@ class DynaQ(AlgorithmSettings):
     """Dyna-Q."""
 
     planning_steps: int
+    model: ModelKind
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,38 @@ class DynaQPlus(AlgorithmSettings):
 
     planning_steps: int
     time_weight: float
+
+
+@dataclass(frozen=True)
+class NStepTreeBackup(AlgorithmSettings):
+    """n-step tree backup."""
+
+    n_steps: int
+    target_policy: TargetPolicy
+
+
+@dataclass(frozen=True)
+class NStepQSigma(AlgorithmSettings):
+    """n-step Q(σ)."""
+
+    n_steps: int
+    sigma: float
+    target_policy: TargetPolicy
+
+
+@dataclass(frozen=True)
+class PrioritizedSweeping(AlgorithmSettings):
+    """Prioritized sweeping."""
+
+    planning_steps: int
+    priority_threshold: float
+
+
+@dataclass(frozen=True)
+class Differential(AlgorithmSettings):
+    """Differential Sarsa or differential Q-learning."""
+
+    reward_learning_rate: float
 
 
 @dataclass(frozen=True)
@@ -106,6 +139,14 @@ ALGORITHMS: Mapping[Algorithm, type[AlgorithmSettings]] = {
     "watkins_q_lambda": EligibilityTraces,
     "dyna_q": DynaQ,
     "dyna_q_plus": DynaQPlus,
+    "monte_carlo": AlgorithmSettings,
+    "monte_carlo_es": AlgorithmSettings,
+    "off_policy_monte_carlo": AlgorithmSettings,
+    "n_step_tree_backup": NStepTreeBackup,
+    "n_step_q_sigma": NStepQSigma,
+    "prioritized_sweeping": PrioritizedSweeping,
+    "differential_sarsa": Differential,
+    "differential_q_learning": Differential,
     "gradient_bandit": GradientBandit,
     "reinforce": AlgorithmSettings,
     "reinforce_with_baseline": WithStateValues,

@@ -14,6 +14,14 @@ Algorithm: TypeAlias = Literal[
     "watkins_q_lambda",
     "dyna_q",
     "dyna_q_plus",
+    "monte_carlo",
+    "monte_carlo_es",
+    "off_policy_monte_carlo",
+    "n_step_tree_backup",
+    "n_step_q_sigma",
+    "prioritized_sweeping",
+    "differential_sarsa",
+    "differential_q_learning",
     "gradient_bandit",
     "reinforce",
     "reinforce_with_baseline",
@@ -31,6 +39,14 @@ ALGORITHM_NAMES: Mapping[str, str] = {
     "watkins_q_lambda": "Watkins's Q(λ)",
     "dyna_q": "Dyna-Q",
     "dyna_q_plus": "Dyna-Q+",
+    "monte_carlo": "Monte Carlo control",
+    "monte_carlo_es": "Monte Carlo ES",
+    "off_policy_monte_carlo": "off-policy Monte Carlo control",
+    "n_step_tree_backup": "n-step tree backup",
+    "n_step_q_sigma": "n-step Q(σ)",
+    "prioritized_sweeping": "prioritized sweeping",
+    "differential_sarsa": "differential Sarsa",
+    "differential_q_learning": "differential Q-learning",
     "gradient_bandit": "gradient bandit",
     "reinforce": "REINFORCE",
     "reinforce_with_baseline": "REINFORCE with baseline",
@@ -44,6 +60,8 @@ Exploration: TypeAlias = Literal["epsilon_greedy", "softmax", "ucb"]
 EpsilonSchedule: TypeAlias = Literal["constant", "linear", "exponential"]
 Ties: TypeAlias = Literal["first", "random"]
 Traces: TypeAlias = Literal["accumulating", "replacing", "clearing"]
+TargetPolicy: TypeAlias = Literal["greedy", "behavior"]
+ModelKind: TypeAlias = Literal["deterministic", "stochastic"]
 DiscretizerName: TypeAlias = Literal["round", "bins", "edges", "tiles", "identity"]
 TerminalUpdate: TypeAlias = Literal["target", "assign"]
 OnTruncation: TypeAlias = Literal["bootstrap", "terminate"]
@@ -57,6 +75,8 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "epsilon_schedule": get_args(EpsilonSchedule),
     "ties": get_args(Ties),
     "traces": get_args(Traces),
+    "target_policy": get_args(TargetPolicy),
+    "model": get_args(ModelKind),
     "discretizer": get_args(DiscretizerName),
     "terminal_update": get_args(TerminalUpdate),
     "on_truncation": get_args(OnTruncation),

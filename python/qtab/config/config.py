@@ -23,7 +23,9 @@ from qtab.config.choices import (
     EpsilonSchedule,
     Exploration,
     LearningRateSchedule,
+    ModelKind,
     OnTruncation,
+    TargetPolicy,
     TerminalUpdate,
     Ties,
     Traces,
@@ -81,10 +83,11 @@ class Config:
     """α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided among the
     tilings, and may be up to 2. For preferences any step size that is not negative."""
     discount: float = 0.9
-    """γ: the discount factor, in [0, 1]."""
+    """γ: the discount factor, in [0, 1]. Algorithms that learn the average reward have none: it is 1."""
     learning_rate_schedule: LearningRateSchedule = "constant"
     """How the learning rate falls: linearly or exponentially over the episodes, or (visits) as learning_rate / n at the
-    n-th visit of a state and action."""
+    n-th visit of a state and action. The default of Monte Carlo methods is visits, with a learning rate of 1: averages.
+    Off-policy Monte Carlo, which needs it, weights the visits."""
     min_learning_rate: float | None = None
     """The lowest learning rate of a schedule, in [0, learning_rate]."""
     learning_rate_decay: float | None = None
@@ -100,10 +103,21 @@ class Config:
     """Traces at or below this are dropped, in [0, 1]. With 0, only those that underflow to 0 are."""
     n_steps: int | None = None
     """n: the number of rewards in a target."""
+    sigma: float | None = None
+    """σ: the degree of sampling of Q(σ), from 0 (tree backup: expected values) to 1 (sampled actions)."""
+    target_policy: TargetPolicy | None = None
+    """The policy whose values are learned: the greedy one (greedy), or the one that acts (behavior)."""
     planning_steps: int | None = None
     """The number of updates from the model after each step."""
     time_weight: float | None = None
     """κ: Dyna-Q+ plans with a bonus of κ √τ on the reward of an action not tried for τ steps."""
+    model: ModelKind | None = None
+    """What Dyna-Q plans with: what last followed a state and action (deterministic), or a sample of all that followed
+    it so far (stochastic)."""
+    priority_threshold: float | None = None
+    """θ: prioritized sweeping plans the updates that would change a value by more than this, before α."""
+    reward_learning_rate: float | None = None
+    """β: the step size of the average reward, in [0, 1]."""
     baseline: bool | None = None
     """Whether the gradient bandit algorithm compares rewards with their average in the state, or with 0."""
     value_learning_rate: float | None = None
@@ -140,6 +154,9 @@ class Config:
     confidence: float | None = None
     """c: ucb chooses the action with the largest Q + c √(ln t / N) after N of t choices in a state; not negative."""
 
+    count_bonus: float = 0.0
+    """The bonus of exploration: the agent learns from the reward + count_bonus / √n at the n-th visit of a state and
+    action. 0 is none; it is not part of the returns."""
     action_mask: Mask = False
     """Which actions each observation has: those of the environment's masks (True), by its method action_masks() or else
     in info["action_mask"]; those of a function, from an observation to (actions,) booleans or 0 and 1; or all (False).

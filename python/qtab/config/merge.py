@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from qtab._utils.shown import shown
+from qtab.config.algorithm_defaults import algorithm_defaults
 from qtab.config.config import DEFAULTS, Config
 from qtab.config.options import applicable, is_set
 from qtab.config.presets import preset
@@ -27,7 +28,8 @@ def merge_layers(*layers: Mapping[str, Any]) -> dict[str, Any]:
 def config_of(env: str, asked: Mapping[str, Any]) -> Config:
     """Returns the config of an environment: the settings that were asked for over those of its preset.
 
-    A preset is a starting point: those of its settings that do not apply to what was asked for are left out.
+    A preset is a starting point: those of its settings that do not apply to what was asked for are left out, and an
+    algorithm that was asked for brings its own.
 
     Raises:
         TypeError: for a setting of the wrong type.
@@ -37,9 +39,11 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
     if name is not None and not isinstance(name, str):
         raise TypeError(f"preset must be a name, got {shown(name)}")
     name, start = preset(env, name)
-    start = applicable(start, {**DEFAULTS, **start, **asked})
-    with naming_preset(name, start, asked):
-        return Config(**{**start, **asked, "env": env, "preset": name})
+    own = algorithm_defaults(start, asked)
+    start = applicable(start, {**DEFAULTS, **start, **own, **asked})
+    own = applicable(own, {**DEFAULTS, **start, **own, **asked})
+    with naming_preset(name, {setting: value for setting, value in start.items() if setting not in own}, asked):
+        return Config(**{**start, **own, **asked, "env": env, "preset": name})
 
 
 @contextmanager

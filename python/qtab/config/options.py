@@ -22,20 +22,33 @@ class Option:
 
 
 _WITH_TRACES = ("sarsa_lambda", "watkins_q_lambda")
+_WITH_TARGET_POLICY = ("n_step_tree_backup", "n_step_q_sigma")
 _FALLING = ("linear", "exponential")
 WITH_STATE_VALUES = ("reinforce_with_baseline", "actor_critic", "actor_critic_lambda")
 """The algorithms that learn state values beside a policy: a second table, with the value of a row in every column."""
 PREFERENCES = ("gradient_bandit", "reinforce", *WITH_STATE_VALUES)
 """The algorithms whose table holds preferences, of which the policy is the softmax, instead of action values."""
 
+WITH_PROBABILITIES = ("off_policy_monte_carlo", *_WITH_TARGET_POLICY)
+"""The algorithms that learn from the probabilities of the actions."""
+AVERAGE_REWARD = ("differential_sarsa", "differential_q_learning")
+"""The algorithms that learn the average reward, without a discount."""
+MONTE_CARLO = ("monte_carlo", "monte_carlo_es", "off_policy_monte_carlo")
+"""The algorithms that learn from the returns of whole episodes."""
+
 # A choice comes before the options that depend on it.
 OPTIONS: Mapping[str, Option] = {
     "trace_decay": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda", "actor_critic_lambda"), 0.9),
     "traces": Option("algorithm", _WITH_TRACES, "replacing"),
     "trace_cutoff": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda"), 0.0),
-    "n_steps": Option("algorithm", ("n_step_sarsa",), 4),
-    "planning_steps": Option("algorithm", ("dyna_q", "dyna_q_plus"), 10),
+    "n_steps": Option("algorithm", ("n_step_sarsa", *_WITH_TARGET_POLICY), 4),
+    "sigma": Option("algorithm", ("n_step_q_sigma",), 0.5),
+    "target_policy": Option("algorithm", _WITH_TARGET_POLICY, "greedy"),
+    "planning_steps": Option("algorithm", ("dyna_q", "dyna_q_plus", "prioritized_sweeping"), 10),
     "time_weight": Option("algorithm", ("dyna_q_plus",), 1e-3),
+    "model": Option("algorithm", ("dyna_q",), "deterministic"),
+    "priority_threshold": Option("algorithm", ("prioritized_sweeping",), 1e-4),
+    "reward_learning_rate": Option("algorithm", AVERAGE_REWARD, 0.01),
     "baseline": Option("algorithm", ("gradient_bandit",), True),
     "value_learning_rate": Option("algorithm", WITH_STATE_VALUES, 0.1),
     "min_learning_rate": Option("learning_rate_schedule", (*_FALLING, "visits"), 0.0),
@@ -61,9 +74,17 @@ OPTIONS: Mapping[str, Option] = {
     "high": Option("discretizer", ("bins", "tiles"), None),
 }
 
-ONE_STEP = ("q_learning", "sarsa", "expected_sarsa", "double_q_learning", "dyna_q", "dyna_q_plus")
+ONE_STEP = (
+    "q_learning",
+    "sarsa",
+    "expected_sarsa",
+    "double_q_learning",
+    "dyna_q",
+    "dyna_q_plus",
+    "prioritized_sweeping",
+)
 """The algorithms that can assign a value at a terminal state, as the article does, if they learn a table."""
-TABLES_ONLY = ("dyna_q", "dyna_q_plus", "gradient_bandit")
+TABLES_ONLY = ("dyna_q", "dyna_q_plus", *MONTE_CARLO, "prioritized_sweeping", "gradient_bandit")
 """The algorithms that do not work with tile coding."""
 
 
@@ -94,7 +115,7 @@ def check_options(fields: Mapping[str, Any]) -> None:
     for name in OPTIONS:
         if is_set(fields[name]) and (reason := mismatch(name, fields[name], fields)):
             raise ValueError(reason)
-    for name in ("terminal_update", "learning_rate_schedule", "algorithm", "exploration", "action_mask"):
+    for name in ("terminal_update", "learning_rate_schedule", "discount", "algorithm", "exploration", "action_mask"):
         if reason := mismatch(name, fields[name], fields):
             raise ValueError(reason)
 
@@ -119,6 +140,10 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
     by_episode = ("true_online_sarsa_lambda", *PREFERENCES)
     if (name, value) == ("learning_rate_schedule", "visits") and algorithm in by_episode:
         return other_choice(name, value, ("visits",), f"for algorithm {algorithm!r}")
+    if name == "learning_rate_schedule" and value != "visits" and algorithm == "off_policy_monte_carlo":
+        return f"{name} must be 'visits' for algorithm {algorithm!r}, got {shown(value)}"
+    if name == "discount" and value != 1 and algorithm in AVERAGE_REWARD:
+        return f"discount must be 1 for algorithm {algorithm!r}, which learns the average reward, got {shown(value)}"
     if name == "algorithm" and value in TABLES_ONLY and with_tiles:
         others = other_choice(name, value, TABLES_ONLY, "for discretizer 'tiles'")
         return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"
@@ -129,6 +154,8 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
         return f"action_mask must be False for algorithm {algorithm!r} with discretizer 'tiles', got {shown(value)}"
     if (name, value) == ("exploration", "ucb") and with_tiles:
         return other_choice(name, value, ("ucb",), "for discretizer 'tiles'")
+    if (name, value) == ("exploration", "ucb") and algorithm in WITH_PROBABILITIES:
+        return other_choice(name, value, ("ucb",), f"for algorithm {algorithm!r}")
     return None
 
 

@@ -19,7 +19,9 @@ from qtab.config.choices import (
     EpsilonSchedule,
     Exploration,
     LearningRateSchedule,
+    ModelKind,
     OnTruncation,
+    TargetPolicy,
     TerminalUpdate,
     Ties,
     Traces,
@@ -61,8 +63,13 @@ class SharedSettings(EnvironmentSettings, total=False):
     traces: Traces | None
     trace_cutoff: Real | None
     n_steps: Integer | None
+    sigma: Real | None
+    target_policy: TargetPolicy | None
     planning_steps: Integer | None
     time_weight: Real | None
+    model: ModelKind | None
+    priority_threshold: Real | None
+    reward_learning_rate: Real | None
     baseline: bool | None
     value_learning_rate: Real | None
     initial_q: Real | tuple[Real, Real] | list[Any] | Array
@@ -76,6 +83,7 @@ class SharedSettings(EnvironmentSettings, total=False):
     epsilon_warm_up: Integer | None
     ties: Ties | None
     temperature: Real | None
+    count_bonus: Real
     confidence: Real | None
     action_mask: bool | Callable[[Any], Any]
     discretizer: DiscretizerName | Callable[[Any], Any] | Mapping[str, Any]

@@ -5,13 +5,32 @@ from typing import Any
 
 from qtab.config.action_mask import STORED
 from qtab.config.config import DEFAULTS, Config
+from qtab.config.options import OPTIONS
 
-ADDED = ("action_mask", "shape", "max_rows", "baseline", "value_learning_rate", "confidence")
+ADDED = (
+    *("action_mask", "shape", "max_rows", "baseline", "value_learning_rate", "confidence"),
+    *("sigma", "target_policy", "model", "priority_threshold", "reward_learning_rate", "count_bonus"),
+)
 """Settings that earlier versions do not have: files hold them only where they differ from their defaults."""
+
+IMPLIED = ("model",)
+"""Added options of algorithms that earlier versions have: files leave out what these did without the option."""
 
 
 def stored_settings(config: Config) -> dict[str, Any]:
     """Returns the settings of a config by name. A function, which no file can hold, is replaced by a word."""
     fields: Mapping[str, Any] = {name: getattr(config, name) for name in DEFAULTS}
     kept = {name: value for name, value in fields.items() if name not in ADDED or value != DEFAULTS[name]}
+    for name in IMPLIED:
+        if kept.get(name) == OPTIONS[name].default:
+            del kept[name]
     return {name: STORED if name == "action_mask" and callable(value) else value for name, value in kept.items()}
+
+
+def implied_settings(config: Config) -> dict[str, Any]:
+    """Returns the options that a stored config leaves out although they apply."""
+    return {
+        name: OPTIONS[name].default
+        for name in IMPLIED
+        if getattr(config, name) is None and getattr(config, OPTIONS[name].choice) in OPTIONS[name].values
+    }

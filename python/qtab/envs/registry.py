@@ -87,7 +87,20 @@ ENTRIES: Mapping[str, EnvEntry] = {
 }
 """Gymnasium's environments, by Gymnasium's id."""
 
+_BOOK = {
+    "AccessControlQueue-v0": (_TABLE, "access_control_queue:AccessControlQueueEnv"),
+    "BlockingMaze-v0": ("ChangingMaze", "changing_mazes:BlockingMazeEnv"),
+    "DynaMaze-v0": (_TABLE, "dyna_maze:DynaMazeEnv"),
+    "Racetrack-v0": ("Racetrack", "racetrack:RacetrackEnv"),
+    "ShortcutMaze-v0": ("ChangingMaze", "changing_mazes:ShortcutMazeEnv"),
+}
+"""The names in the extension module, and the classes, of environments of Sutton & Barto's book."""
+
 EXTRA: Mapping[str, EnvEntry] = {
+    **{
+        f"{PREFIX}{name}": EnvEntry(of_extension, "", f"qtab.envs.{entry_point}", has_table=True)
+        for name, (of_extension, entry_point) in _BOOK.items()
+    },
     f"{PREFIX}KArmedBandit-v0": EnvEntry(
         "KArmedBandit", "", "qtab.envs.k_armed_bandit:KArmedBanditEnv", has_table=True
     ),
@@ -97,6 +110,7 @@ EXTRA: Mapping[str, EnvEntry] = {
     f"{PREFIX}ShortCorridor-v0": EnvEntry(
         "ShortCorridor", "", "qtab.envs.short_corridor:ShortCorridorEnv", has_table=True
     ),
+    f"{PREFIX}RandomWalk-v0": _table("qtab.envs.random_walk:RandomWalkEnv"),
     f"{PREFIX}GridWorld5x5-v0": _table("qtab.envs.small_grid_worlds:grid_world_5x5"),
     f"{PREFIX}GridWorld4x4-v0": _table("qtab.envs.small_grid_worlds:grid_world_4x4"),
     f"{PREFIX}GamblersProblem-v0": _table("qtab.envs.gamblers_problem:gamblers_problem"),

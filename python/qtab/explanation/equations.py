@@ -12,6 +12,8 @@ BOOTSTRAP = {
     "watkins_q_lambda": "max Q(S', a)",
     "dyna_q": "max Q(S', a)",
     "dyna_q_plus": "max Q(S', a)",
+    "n_step_tree_backup": "[Σ π(a | S') Q(S', a) + π(A' | S') (G' - Q(S', A'))]",
+    "n_step_q_sigma": "[Σ π(a | S') Q(S', a) + (σ ρ + (1 - σ) π(A' | S')) (G' - Q(S', A'))]",
 }
 """The value of the next state in the target of each algorithm; Double Q-learning names its tables as well."""
 SHOWN_REWARDS = 4

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
-from qtab.config.options import check_learns_values
+from qtab.config.options import check_learns_values, listed
+from qtab.explanation.equations import BOOTSTRAP
 from qtab.explanation.explanation import Explanation
 from qtab.explanation.fast_forward import Start, start_of
 from qtab.explanation.records import ExplainedStep
@@ -24,6 +25,9 @@ from qtab.reference.schedules import LearningRate
 from qtab.results.run import Run
 from qtab.training.extensions import repeatable
 from qtab.training.run_env import make_run_env
+
+EXPLAINED = (*BOOTSTRAP, "double_q_learning")
+"""The algorithms whose updates can be explained."""
 
 
 def explain(
@@ -54,11 +58,16 @@ def explain(
     Raises:
         RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or a run of an algorithm that learns preferences. Of a run
-            that was resumed with more episodes while a rate fell, only the episodes before can be explained.
+        ValueError: for an argument out of range, and for a run of an algorithm that learns preferences or is not
+            explained: Monte Carlo control, prioritized sweeping, differential Sarsa and Q-learning. Of a run that was
+            resumed with more episodes while a rate fell, only the episodes before can be explained.
     """
     checks.instance("run", run, Run)
     check_learns_values(run.config)
+    if run.config.algorithm not in EXPLAINED:
+        raise ValueError(
+            f"run must be one of algorithm {listed(EXPLAINED)} to be explained, got {run.config.algorithm!r}"
+        )
     finished = len(run.episode_returns)
     if finished == 0:
         raise ValueError("run must have a finished episode, got one that was stopped during its first")

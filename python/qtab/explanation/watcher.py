@@ -58,6 +58,7 @@ class Watcher(Observer):
         self._masks: ActionMasks
         self._unfinished: UnfinishedUpdate | None = None
         self._draws: list[float] = []
+        self._given: tuple[int, tuple[float, ...], float | None] | None = None
 
     def masks(self, masks: ActionMasks) -> None:
         """Keeps the action masks, which are filled in as states are seen."""
@@ -95,6 +96,10 @@ class Watcher(Observer):
         self.finish()
         self.steps.append(step)
 
+    def target(self, step: int, reward: float, following: float | None) -> None:
+        """Keeps what the target of the next update is made of."""
+        self._given = step, (reward,), following
+
     def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:  # noqa: N803
         """Begins an update: of this step, of an earlier one for n-step Sarsa, or in planning."""
         if not self.active:
@@ -105,7 +110,8 @@ class Watcher(Observer):
         if self.config.algorithm in ("dyna_q", "dyna_q_plus") and self.steps[-1].updates:
             step, rewards, following = None, (), None  # planning
         else:
-            step, rewards, following = self._target(table)
+            step, rewards, following = self._given or self._target(table)
+            self._given = None
         self._unfinished = UnfinishedUpdate(
             step, table, tuple(state), action, rewards, following, target, self._weights(table, state)
         )

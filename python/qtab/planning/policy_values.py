@@ -14,8 +14,8 @@ from qtab import _core
 from qtab._utils import checks, html, svg
 from qtab._utils.fields import with_fields
 from qtab.config.unknown import suggesting
+from qtab.planning.policies import GivenPolicy, probabilities
 from qtab.planning.table import opened_table
-from qtab.prediction.policies import GivenPolicy, probabilities
 
 
 @with_fields

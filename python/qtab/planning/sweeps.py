@@ -13,8 +13,8 @@ from qtab import _core
 from qtab._utils import checks
 from qtab.discretizers import Identity
 from qtab.discretizers.actions import Actions
+from qtab.planning.policies import GivenPolicy, probabilities
 from qtab.planning.table import opened_table
-from qtab.prediction.policies import GivenPolicy, probabilities
 
 FloatArray = NDArray[np.float64]
 

@@ -7,3 +7,7 @@ from qtab.playground.assemble import page, write_site
 from qtab.playground.definitions import definitions
 
 __all__ = ["definitions", "page", "write_site"]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, *(name for name in globals() if name.startswith("__"))]

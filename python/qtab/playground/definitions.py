@@ -9,14 +9,13 @@ import gymnasium as gym
 import numpy as np
 
 from qtab._utils.versions import versions
-from qtab.config.algorithms import ALGORITHMS
 from qtab.config.options import n_tables
 from qtab.config.presets import presets
 from qtab.envs.descriptions import describe
 from qtab.envs.grid_worlds import ACTION_NAMES
 from qtab.explanation.equations import bootstrap_symbol
 from qtab.playground.environments import ENVIRONMENTS, Entry
-from qtab.playground.settings import CHOICES_LEFT_OUT, LEFT_OUT, rules, settings
+from qtab.playground.settings import LEFT_OUT, OFFERED, rules, settings
 
 GRID_TIME_LIMIT = 1000
 """The time limit of grid worlds, which have none of their own, in steps."""
@@ -39,9 +38,7 @@ def definitions() -> dict[str, Any]:
         "settings": _plain(settings()),
         "rules": rules(),
         "bootstraps": {
-            name: [bootstrap_symbol(name, table) for table in range(n_tables(name))]
-            for name in ALGORITHMS
-            if name not in CHOICES_LEFT_OUT
+            name: [bootstrap_symbol(name, table) for table in range(n_tables(name))] for name in OFFERED["algorithm"]
         },
     }
 
@@ -83,7 +80,8 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
     spec, unwrapped = env.spec, env.unwrapped
     assert spec is not None  # noqa: S101 - made by its id
     description = describe(entry.env)
-    tabular = isinstance(env.observation_space, gym.spaces.Discrete)
+    space: Any = env.observation_space
+    tabular = isinstance(space, gym.spaces.Discrete)
     given = {
         name: {setting: value for setting, value in preset.items() if setting not in LEFT_OUT}
         for name, preset in presets(entry.env).items()
@@ -104,7 +102,7 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
     env.close()
     if tabular:
         made |= {
-            "states": int(env.observation_space.n),
+            "states": int(space.n),
             "layout": _layout(unwrapped),
             "table": _table(unwrapped),
             "discretizers": ["identity"],
@@ -112,7 +110,7 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
             "map": None,
         }
         return made
-    low, high = env.observation_space.low, env.observation_space.high
+    low, high = space.low, space.high
     bounded = bool(np.isfinite([low, high]).all()) and bool((np.abs([low, high]) < 1e6).all())
     components = [quantity.name for quantity in description.observation]
     plane = description.plane or components[:2]

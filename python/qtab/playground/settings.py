@@ -1,21 +1,47 @@
 """The settings that the playground shows: their sentences, symbols and defaults are those of :class:`qtab.Config`."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from qtab.config.choices import CHOICES
+from qtab.config.choices import ALGORITHM_NAMES
 from qtab.config.config import DEFAULTS
 from qtab.config.explanations import default, explanations, groups
-from qtab.config.options import OPTIONS, PREFERENCES, mismatch
+from qtab.config.options import OPTIONS, mismatch
+
+OFFERED: Mapping[str, tuple[str, ...]] = {
+    "algorithm": (
+        "q_learning",
+        "sarsa",
+        "expected_sarsa",
+        "double_q_learning",
+        "n_step_sarsa",
+        "sarsa_lambda",
+        "true_online_sarsa_lambda",
+        "watkins_q_lambda",
+        "dyna_q",
+        "dyna_q_plus",
+    ),
+    "learning_rate_schedule": ("constant", "linear", "exponential", "visits"),
+    "traces": ("accumulating", "replacing", "clearing"),
+    "terminal_update": ("target", "assign"),
+    "on_truncation": ("bootstrap", "terminate"),
+    "exploration": ("epsilon_greedy", "softmax"),
+    "epsilon_schedule": ("constant", "linear", "exponential"),
+    "ties": ("first", "random"),
+    "discretizer": ("round", "bins", "tiles", "identity"),
+    "bit_generator": ("PCG64", "MT19937"),
+}
+"""What the page offers of each choice: what rust/web/src/settings makes. The rest is for Python."""
 
 LEFT_OUT = frozenset(
-    ("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows", "edges")
-) | {"actions", "baseline", "value_learning_rate", "confidence"}
-"""What the page does not offer: settings of Python environments, those too long for a control, and those of choices
-that it does not offer."""
-CHOICES_LEFT_OUT = frozenset(("edges", "ucb", *PREFERENCES))
-"""The choices that the page does not offer: it shows how action values change, by policies that count nothing."""
+    (
+        *("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows"),
+        *("edges", "actions", "model", "count_bonus"),
+    )
+)
+"""What the page does not offer: settings of Python environments, those too long for a control, and those that the page
+always has at their defaults."""
 
 # Types and ranges of the controls. A range is inside the one that the config allows, which a test checks.
 _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
@@ -46,17 +72,7 @@ _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
 }
 
 _TITLES = {
-    "q_learning": "Q-learning",
-    "expected_sarsa": "Expected Sarsa",
-    "double_q_learning": "Double Q-learning",
-    "n_step_sarsa": "n-step Sarsa",
-    "sarsa_lambda": "Sarsa(λ)",
-    "true_online_sarsa_lambda": "True online Sarsa(λ)",
-    "watkins_q_lambda": "Watkins's Q(λ)",
-    "dyna_q": "Dyna-Q",
-    "dyna_q_plus": "Dyna-Q+",
     "round": "Rounding",
-    "bins": "Bins",
     "tiles": "Tile coding",
     "identity": "None: states are numbers",
     "epsilon_greedy": "ε-greedy",
@@ -66,10 +82,10 @@ _TITLES = {
 }
 # Where the config's sentence speaks of what the page does not offer.
 _SENTENCES = {
-    "max_episode_steps": "The time limit of an episode, in steps.",
     "learning_rate": "α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided "
     "among the tilings, and may be up to 2.",
     "exploration": "How the agent chooses actions: a random one at times, or by the softmax of the values.",
+    "max_episode_steps": "The time limit of an episode, in steps.",
     "initial_q": "The initial Q table: drawn uniformly from a range (low, high), or one number everywhere.",
     "discretizer": "How observations index the Q table: rounded to a grid, by bins of equal width, or by tile coding.",
 }
@@ -78,7 +94,8 @@ _SYMBOL = re.compile(r"(\w): ")
 
 def title(word: str) -> str:
     """Returns the name of a choice as people write it."""
-    return _TITLES.get(word) or word.replace("_", " ").capitalize()
+    name = ALGORITHM_NAMES.get(word) or _TITLES.get(word) or word.replace("_", " ").capitalize()
+    return name if name.startswith(("n-", "ε")) else name[:1].upper() + name[1:]
 
 
 def setting(name: str, group: str) -> dict[str, Any]:
@@ -86,30 +103,35 @@ def setting(name: str, group: str) -> dict[str, Any]:
     text = _SENTENCES.get(name) or explanations().get(name, "")
     symbol = _SYMBOL.match(text)
     sentence = text[symbol.end() :] if symbol else text
-    choices = CHOICES.get(name)
+    choices = OFFERED.get(name)
     kind, low, high, log = ("choice", None, None, False) if choices else _CONTROLS[name]
     option = OPTIONS.get(name)
+    known = OFFERED[option.choice].__contains__ if option else None
     return {
         "symbol": symbol[1] if symbol else None,
         "group": group,
         "sentence": sentence[:1].upper() + sentence[1:],
         "type": kind,
-        "choices": choices and [{"value": word, "title": title(word)} for word in _offered(choices)],
+        "choices": choices and [{"value": word, "title": title(word)} for word in choices],
         "default": default(name),
         "low": low,
         "high": high,
         "log": log,
-        "applies": None if option is None else {"choice": option.choice, "values": _offered(option.values)},
+        "applies": None if option is None else {"choice": option.choice, "values": [*filter(known, option.values)]},
     }
 
 
-def _offered(words: Iterable[str]) -> list[str]:
-    return [word for word in words if word not in CHOICES_LEFT_OUT]
+def is_offered(name: str) -> bool:
+    """Returns whether the page shows a setting: not if it applies to what it does not offer alone."""
+    if name in LEFT_OUT or (name not in OFFERED and name not in _CONTROLS):
+        return False
+    option = OPTIONS.get(name)
+    return option is None or not set(option.values).isdisjoint(OFFERED[option.choice])
 
 
 def settings() -> dict[str, dict[str, Any]]:
     """Returns every setting of the page by its name; the groups in the config's order."""
-    grouped = groups(name for name in DEFAULTS if name not in LEFT_OUT)
+    grouped = groups(name for name in DEFAULTS if is_offered(name))
     return {name: setting(name, group) for group, names in grouped.items() for name in names}
 
 
@@ -117,10 +139,10 @@ def rules() -> list[dict[str, Any]]:
     """Returns the pairs of choices that exclude each other, with the reason in words."""
     found = []
     for name in ("terminal_update", "learning_rate_schedule", "algorithm"):
-        for value in CHOICES[name]:
+        for value in OFFERED[name]:
             for other in ("algorithm", "discretizer"):
-                for chosen in CHOICES[other]:
-                    if other == name or not CHOICES_LEFT_OUT.isdisjoint((value, chosen)):
+                for chosen in OFFERED[other]:
+                    if other == name:
                         continue
                     if reason := mismatch(name, value, {**DEFAULTS, other: chosen}):
                         found.append({"setting": name, "value": value, "unless": {other: chosen}, "reason": reason})

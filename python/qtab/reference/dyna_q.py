@@ -7,14 +7,18 @@ from qtab.config import Config
 from qtab.config.algorithms import DynaQ
 from qtab.reference.task import Result, Rows, Table, Task
 
+Outcomes = dict[tuple[float, int | None], int]
+"""How often each reward and next row followed a state and action."""
+
 
 def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
     options = DynaQ.of(config)
     Q = task.table()
-    # Model(S, A) = R, S' (None after a terminal state); dicts keep the order of first visits and first tries.
-    model: dict[int, dict[int, tuple[float, Rows | None]]] = {}
+    # Model(S, A) = what followed: R, S' (None after a terminal state), and how often. Dicts keep the order of first
+    # visits, first tries and first outcomes. A deterministic model keeps the last outcome alone.
+    model: dict[int, dict[int, Outcomes]] = {}
 
     for _ in task.episodes():
         state, over = task.reset(), False
@@ -23,17 +27,32 @@ def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Resul
             step = task.step(action)
             next_state = None if step.terminal else step.state
             learn(task, Q, state, action, step.reward, next_state)
-            model.setdefault(state[0], {})[action] = (step.reward, next_state)
+            outcomes = model.setdefault(state[0], {}).setdefault(action, {})
+            if options.model == "deterministic":
+                outcomes.clear()
+            outcome = step.reward, None if next_state is None else next_state[0]
+            outcomes[outcome] = outcomes.get(outcome, 0) + 1
 
             for _ in range(options.planning_steps):
                 row = list(model)[int(task.rng.integers(0, len(model)))]
                 tried = list(model[row])
                 past_action = tried[int(task.rng.integers(0, len(tried)))]
-                learn(task, Q, [row], past_action, *model[row][past_action])
+                reward, after = sample(task, model[row][past_action])
+                learn(task, Q, [row], past_action, reward, None if after is None else [after])
 
             state, over = step.state, step.over
 
     return task.result(Q)
+
+
+def sample(task: Task, outcomes: Outcomes) -> tuple[float, int | None]:
+    """Returns an outcome with the probability that it had so far."""
+    left = int(task.rng.integers(0, sum(outcomes.values())))
+    for outcome, count in outcomes.items():
+        if left < count:
+            return outcome
+        left -= count
+    raise AssertionError("the counts are those of the outcomes")
 
 
 def learn(task: Task, Q: Table, state: Rows, action: int, reward: float, next_state: Rows | None) -> None:

@@ -5,7 +5,7 @@ import math
 import gymnasium as gym
 
 from qtab.config import Config
-from qtab.reference.task import Result, Task
+from qtab.reference.task import Result, Rows, Table, Task
 
 
 def expected_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
@@ -23,14 +23,19 @@ def expected_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) 
             if step.terminal:
                 task.end(Q, state, action, step.reward)
             else:
-                next_values = task.values(Q, step.state)
-                shares = zip(task.policy.probabilities(next_values, step.state), next_values, strict=True)
-                terms = [p * float(q) for p, q in shares if (p, q) != (0.0, -math.inf)]
-                expected = terms[0]
-                for term in terms[1:]:
-                    expected += term
+                expected = expected_value(task, Q, step.state)
                 task.update(Q, state, action, step.reward + task.discount * expected)
 
             state, over = step.state, step.over
 
     return task.result(Q)
+
+
+def expected_value(task: Task, Q: Table, state: Rows) -> float:
+    """Returns Σ π(a | S) Q(S, a), added from left to right."""
+    values = task.values(Q, state)
+    shares = zip(task.policy.probabilities(values, state), values, strict=True)
+    first, *others = [p * float(q) for p, q in shares if (p, q) != (0.0, -math.inf)]
+    for term in others:
+        first += term
+    return first

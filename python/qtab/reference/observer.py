@@ -38,6 +38,15 @@ class Observer:
     def table(self, Q: Table) -> None:
         """Called with each table before the first episode."""
 
+    def target(self, step: int, reward: float, following: float | None) -> None:
+        """Called before an update with what only the learner knows of its target.
+
+        Args:
+            step: The number of the step in the episode, from 0.
+            reward: The reward in the target.
+            following: The value that is discounted in it; None if nothing follows.
+        """
+
     def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:
         """Called before Q(S, A) changes towards a target."""
 

@@ -1,5 +1,6 @@
 """What all learners share: the discretized environment, the schedules, the policy, and the record of episodes."""
 
+import math
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
@@ -56,6 +57,8 @@ class Task:
         self.n_rows = int(np.prod(self.discretizer.shape))
         self.policy = self.observer.policy(policy(config, self.rng))
         self.learning_rate = self.new_learning_rate()
+        self.visits = np.zeros((self.n_rows, self.n_actions), dtype=int)
+        self.state: Rows = []
         self.returns: list[float] = []
         self.lengths: list[int] = []
 
@@ -103,6 +106,7 @@ class Task:
         observation, info = self.env.reset(seed=self.seed if len(self.returns) == 1 else None)
         state = self.discretizer.rows(observation)
         self.masks.see(state, observation, info)
+        self.state = state
         return state
 
     def step(self, action: int) -> Step:
@@ -114,7 +118,18 @@ class Task:
         state = self.discretizer.rows(observation)
         if not terminated:  # a terminal state may have no action
             self.masks.see(state, observation, info)
+        if self.config.count_bonus:
+            reward = float(reward) + self.bonus(action)
+        self.state = state
         return Step(float(reward), state, bool(terminal), bool(terminated or truncated))
+
+    def bonus(self, action: int) -> float:
+        """Counts a visit of the state and action; returns β / √n, the average of the active rows."""
+        total = 0.0
+        for row in self.state:
+            self.visits[row, action] += 1
+            total += self.config.count_bonus / math.sqrt(int(self.visits[row, action]))
+        return total / len(self.state)
 
     def choose(self, Q: Table, state: Rows) -> int:
         """Returns an action by the policy."""

@@ -16,6 +16,7 @@ from qtab.config.action_mask import STORED
 from qtab.config.config import replace_checked
 from qtab.config.discretizer import MissingFunction
 from qtab.config.options import defaults
+from qtab.config.stored import implied_settings
 from qtab.envs.stored import stored_id
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent
@@ -183,6 +184,7 @@ def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Call
         fields["initial_q"] = stored["initial_q"]
     fields["env"] = stored_id(fields["env"])
     config = Config(**fields)
+    config = replace_checked(config, **implied_settings(config))
     if config.seed is None or config.max_episode_steps is None or defaults(vars(config)):
         raise ValueError("its config is not that of a run")
     return config

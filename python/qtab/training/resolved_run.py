@@ -131,6 +131,7 @@ class ResolvedRun:
             "algorithm": self.algorithm.spec(),
             "policy": self.policy.spec(),
             "learning_rate": self.learning_rate.spec(),
+            "count_bonus": config.count_bonus,
             "discount": config.discount,
             "initial_q": initial_q_spec(config.initial_q),
             "action_masks": self.masks.spec(),

@@ -24,6 +24,7 @@ def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None
     state = required("run.state", earlier.state)
     if isinstance(resolved.environment, PythonEnvironment):
         _restore_generator(resolved.environment.env, resolved.seed, state)
+        continue_after(resolved.environment.env, int(earlier.episode_lengths.sum()))
     elif state.generator is not None:
         raise ValueError("run must be resumed with env=, an environment stepped in Python as the run was trained on")
     tables = [table.ravel() for table in earlier.tables]
@@ -39,6 +40,13 @@ def _restore_generator(env: gym.Env, seed: int, state: RunState) -> None:
         env.unwrapped.np_random.bit_generator.state = _with_arrays(state.generator)
     except (TypeError, ValueError, KeyError, OverflowError) as error:
         raise ValueError(f"run has a generator that its environment cannot take over: {error}") from None
+
+
+def continue_after(env: gym.Env, steps: int) -> None:
+    """Tells an environment that changes with time how many steps were taken, by its method ``resume_after``."""
+    resume_after = getattr(env.unwrapped, "resume_after", None)
+    if callable(resume_after):
+        resume_after(steps)
 
 
 def _with_arrays(state: Any) -> Any:

@@ -16,6 +16,10 @@ BYTES_PER_VALUE = {
     "watkins_q_lambda": 24,
     "dyna_q": 36,
     "dyna_q_plus": 44,
+    "monte_carlo": 4,
+    "monte_carlo_es": 4,
+    "off_policy_monte_carlo": 8,
+    "prioritized_sweeping": 64,
     "gradient_bandit": 16,
     "actor_critic_lambda": 16,
 }

@@ -46,6 +46,7 @@ pub mod memory;
 pub mod numeric;
 pub mod planning;
 pub mod policies;
+pub mod prediction;
 pub mod q_table;
 pub mod random;
 pub mod schedules;

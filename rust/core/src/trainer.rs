@@ -240,7 +240,7 @@ mod tests {
             terminal_update: TerminalUpdate::Target,
             masks: None,
         };
-        let learner = TruncationHandling { learner: TdLearner { agent, rule: rule.clone() }, terminate };
+        let learner = TruncationHandling { learner: TdLearner { agent, rule: rule.clone() }, terminate, bonus: None };
         let mut whole = Trainer::new(task, learner, Pcg64::new(&seed));
         let mut in_parts = whole.clone();
         whole.advance(Budget { episodes: 2, work: u64::MAX }).expect("no bounds are left");

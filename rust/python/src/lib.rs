@@ -8,6 +8,7 @@ mod envs;
 mod error;
 mod interrupt;
 mod planning;
+mod prediction;
 mod rng;
 mod runs;
 mod spec;
@@ -33,6 +34,8 @@ mod _core {
     };
     #[pymodule_export]
     use super::planning::{PyExpectedUpdates, PyMdpSolver, PyMountainCarSearch};
+    #[pymodule_export]
+    use super::prediction::estimate_values;
     #[pymodule_export]
     use super::rng::PyAgentRng;
     #[pymodule_export]

@@ -199,7 +199,7 @@ impl<R: qtab_core::features::ActiveRows + Send + 'static> LearnerVisitor<R> for 
     type Output = Box<dyn Run>;
 
     fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
-        let learner = TruncationHandling { learner, terminate: self.terminate };
+        let learner = TruncationHandling { learner, terminate: self.terminate, bonus: None };
         Box::new(Trainer::new(self.task, UpdateRecorder::new(learner, self.watch), self.rng))
     }
 }

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 MAX_MARKERS = 40
 """A line with more points than this is drawn without markers."""
+MOST_LABELED = 100
+"""A logarithmic axis over less than this ratio is also labeled between the powers of ten."""
 
 
 def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
@@ -37,8 +39,10 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
         ax.set_xticks([], minor=True)
     if experiment.log_y:
         ax.set_yscale("log")
-        for axis in ("set_major_formatter", "set_minor_formatter"):
-            getattr(ax.yaxis, axis)("{x:,.0f}")
+        ax.yaxis.set_major_formatter("{x:,.0f}")
+        lowest, highest = ax.get_ylim()
+        if highest < MOST_LABELED * lowest:
+            ax.yaxis.set_minor_formatter("{x:,.0f}")
     if experiment.x_range is not None:
         ax.set_xlim(*experiment.x_range)
     if experiment.y_range is not None:

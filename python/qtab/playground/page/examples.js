@@ -17,7 +17,7 @@ export const EXAMPLES = {
       preset: "article",
       settings: { scale: [20, 200], discount: 1, initial_q: 0, epsilon: 0, learning_rate: 0.5, learning_rate_schedule: "linear" },
       title: "Optimistic: better",
-      look: "Still Q-learning on a grid, now with γ = 1, smaller cells, a falling α, and initial values of 0. As each step costs 1, these are optimistic: the agent explores without ε, and soon reaches the flag in nearly every episode. The threshold stays out of reach.",
+      look: "Still Q-learning on a grid, now with γ = 1, smaller cells, a falling α, and initial values of 0. As each step costs 1, these are optimistic: the agent explores without ε. It begins to reach the flag after some hundred episodes and ends far above the article, but the threshold stays out of reach.",
     },
     {
       preset: "solved",
@@ -48,7 +48,7 @@ export const EXAMPLES = {
       preset: "solved",
       settings: { initial_q: 0 },
       title: "No exploration: fails",
-      look: "With ε = 0 and initial values of 0 all actions look alike, and the agent always takes the first. It never sees the goal, so there is nothing to learn from: the map stays empty.",
+      look: "With ε = 0 and initial values of 0 all actions look alike, and the agent always takes the first. It never sees the goal, so there is nothing to learn from: all values stay 0.",
     },
     {
       preset: "solved",
@@ -112,14 +112,14 @@ export const EXAMPLES = {
       title: "Solved",
       look: "Nothing here is random, so α = 1 and no exploration are enough: the greedy path takes 13 steps.",
     },
-    { preset: "tuned", title: "ε falls to 0", look: "As ε falls, the falls from the cliff cease, and the return rises to the optimum." },
+    { preset: "tuned", title: "ε falls to 0", look: "As ε falls, the falls from the cliff cease, and the return rises towards the optimum." },
   ],
   WindyGridWorld: [
     {
       preset: "learns",
       settings: { algorithm: "sarsa" },
       title: "Sarsa",
-      look: "Example 6.5 of Sutton & Barto. The wind blows upwards: the path goes past the goal, lets itself be carried up, and returns from the right.",
+      look: "Example 6.5 of Sutton & Barto. The wind carries the agent to the top row and past the goal; it goes down in the calm columns on the right, and returns from there.",
     },
     { preset: "learns", title: "Q-learning", look: "The values fall by 1 with each step from the goal, and the greedy path takes 15 steps." },
     {

@@ -15,6 +15,15 @@ export function number(value, digits = 4) {
   return text.replace(/-/g, "−");
 }
 
+/** Numbers to compare: with as many digits as tell different ones apart. */
+export function distinguished(values) {
+  const different = new Set(values).size;
+  for (let digits = 4; ; digits++) {
+    const texts = Array.from(values, (value) => number(value, digits));
+    if (new Set(texts).size === different || digits === 17) return texts;
+  }
+}
+
 /** A whole number with separators. */
 export function count(value) {
   return value.toLocaleString("en-US").replace("-", "−");

@@ -1,7 +1,7 @@
 // A selected state: its action values and visits, and its last updates with their numbers.
 
 import { numberEquation, symbolEquation } from "./equation.js";
-import { count, number } from "./format.js";
+import { count, distinguished, number } from "./format.js";
 
 const SHOWN_UPDATES = 5;
 const HINT =
@@ -39,12 +39,13 @@ function valueTable({ actionValues, visits }, actions) {
   const largest = Math.max(...actionValues);
   const widest = Math.max(...Array.from(actionValues, Math.abs), 1e-300);
   const head = make("tr", {}, ...["Action", "Value", "Visits", "Size"].map((textContent) => make("th", { scope: "col", textContent })));
+  const texts = distinguished(actionValues);
   const rows = actions.map((action, index) => {
     const bar = make("span", { className: "bar" });
     const share = Math.abs(actionValues[index]) / widest;
     bar.style.width = `${Number.isFinite(share) ? 100 * share : 0}%`;
     const name = make("th", { scope: "row", textContent: action });
-    const cells = [number(actionValues[index]), count(Math.round(visits[index]))].map((text) => make("td", { textContent: text }));
+    const cells = [texts[index], count(Math.round(visits[index]))].map((text) => make("td", { textContent: text }));
     const row = make("tr", {}, name, ...cells, make("td", { className: "bar-cell" }, bar));
     if (actionValues[index] === largest) row.className = "greedy";
     return row;

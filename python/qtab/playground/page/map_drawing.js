@@ -1,6 +1,7 @@
 // What lies on a map's cells: colors, arrows of the policy, letters of a grid world, paths, marks.
 
 import { css, inkOn, shade } from "./colormap.js";
+import { number } from "./format.js";
 import { FONT } from "./surface.js";
 import { themeColors } from "./theme.js";
 
@@ -103,6 +104,25 @@ export function drawLetters(g, frame, layout) {
     g.fillStyle = "#1f4f8f";
     g.fillText(letter, x + size * 0.9, y + size * 0.95);
   });
+  g.font = `12px ${FONT}`;
+}
+
+/** Writes the rewards of a painted grid, [row, column, reward], below the arrows of their cells. */
+export function drawRewards(g, frame, columns, rewards) {
+  for (const [row, column, reward] of rewards) {
+    const { x, y, width, height } = frame.cell(row * columns + column);
+    const size = Math.max(Math.min(width * 0.3, 13), 8);
+    const text = number(reward, 3);
+    g.font = `700 ${size}px ${FONT}`;
+    const wide = g.measureText(text).width + size * 0.6;
+    g.fillStyle = "rgba(255, 255, 255, 0.9)";
+    g.beginPath();
+    g.roundRect(x + width / 2 - wide / 2, y + height - size * 1.25, wide, size * 1.2, size * 0.4);
+    g.fill();
+    g.fillStyle = reward < 0 ? "#a33c0c" : "#1b6b3a";
+    g.textAlign = "center";
+    g.fillText(text, x + width / 2, y + height - size * 0.6);
+  }
   g.font = `12px ${FONT}`;
 }
 

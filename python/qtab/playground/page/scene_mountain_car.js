@@ -62,7 +62,7 @@ export function drawFlag(g, x, y, size, colors) {
   g.fillStyle = colors.good;
   g.beginPath();
   g.moveTo(x, y - size);
-  g.lineTo(x + size * 0.55, y - size * 0.78);
+  g.lineTo(x + size * 0.38, y - size * 0.78);
   g.lineTo(x, y - size * 0.56);
   g.fill();
 }

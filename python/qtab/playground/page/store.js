@@ -12,7 +12,6 @@ export class Store {
   constructor(definitions) {
     this.definitions = definitions;
     this.listeners = new Set();
-    this.changedAt = performance.now();
     this.state = this.initial(Object.keys(definitions.environments)[0]);
   }
 
@@ -44,7 +43,6 @@ export class Store {
     const state = { ...this.state, ...changes };
     if (changes.settings) state.settings = complete(state.environment, changes.settings);
     this.state = state;
-    this.changedAt = performance.now();
     for (const listener of this.listeners) listener(state, Object.keys(changes));
   }
 
@@ -76,7 +74,9 @@ export class Store {
   impossible(name, value) {
     if (name === "discretizer" && !this.entry.discretizers.includes(value)) {
       return this.entry.states === null
-        ? `not for ${this.entry.title.toLowerCase()}, whose observations ${value === "identity" ? "are not states by number" : "have no bounds"}`
+        ? value === "identity"
+          ? "the observations are not numbered states"
+          : "some observations have no bounds"
         : "the states are numbered and need none";
     }
     const { rules, settings: known } = this.definitions;

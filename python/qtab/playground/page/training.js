@@ -10,7 +10,6 @@ export class Training {
     this.at = null;
     this.shape = null;
     this.inspectedRun = null;
-    this.asked = 0;
     this.engine = new Engine({ onMessage: (message) => this.receive(message) });
   }
 
@@ -18,7 +17,6 @@ export class Training {
   start(run = true) {
     // The map may have other cells; what to inspect is decided with its first result.
     this.engine.inspect(null);
-    this.asked = performance.now();
     this.state = run ? "training" : "paused";
     this.at = null;
     this.onStart();
@@ -33,7 +31,7 @@ export class Training {
       this.state = message.state;
       this.at = message.current?.cell ?? null;
       if (message.state !== "training") this.keepInspecting(message);
-      this.onResult({ ...message, milliseconds: performance.now() - this.asked });
+      this.onResult(message);
     } else if (message.type === "inspection") {
       this.onResult({ type: "inspection", inspection: message });
     }

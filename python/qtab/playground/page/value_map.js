@@ -1,7 +1,7 @@
 // A map of the states: values, visits or the optimum, with the policy and the greedy agent's path, and a cell to select.
 
 import { themeColors, onThemeChange } from "./theme.js";
-import { drawCells, drawDot, drawLetters, drawOutline, drawPath, drawPolicy } from "./map_drawing.js";
+import { drawCells, drawDot, drawLetters, drawOutline, drawPath, drawPolicy, drawRewards } from "./map_drawing.js";
 import { drawPlaneAxes, frameOf } from "./map_frame.js";
 import { onResize, surface } from "./surface.js";
 
@@ -60,13 +60,14 @@ export class StateMap {
   draw() {
     if (!this.content) return;
     const { g, width, height } = surface(this.canvas);
-    const { map, plane, layout, greedy, palette, path } = this.content;
+    const { map, plane, layout, rewards, greedy, palette, path } = this.content;
     const frame = frameOf(map, plane, width, height);
     this.frame = frame;
     drawCells(g, frame, map.columns * map.rows, palette, this.content);
     if (greedy) drawPolicy(g, frame, map, palette, this.content);
     if (plane) drawPlaneAxes(g, frame, map);
     if (layout) drawLetters(g, frame, layout);
+    if (rewards) drawRewards(g, frame, map.columns, rewards);
     if (path) drawPath(g, frame, path.map((place) => this.point(frame, place)));
     if (this.agent !== null) drawDot(g, this.point(frame, this.agent), 6, themeColors().warm);
     if (this.selected !== null) drawOutline(g, frame.cell(this.selected));

@@ -97,8 +97,6 @@ export class View {
     this.showMaps(result);
     this.showMotion(result);
     this.showState();
-    element("results").dataset.drawn = `${result.id} ${result.state}`;
-    element("results").dataset.milliseconds = Math.round(performance.now() - this.store.changedAt);
   }
 
   showCurve(result) {
@@ -172,7 +170,8 @@ export class View {
     const layout = environment === PAINTED ? grid.layout : entry.layout;
     const { observations, map, actions } = entry;
     const plane = map && { x: observations[map.x], y: observations[map.y], xIndex: map.x, yIndex: map.y };
-    return { plane, layout, actions, hasCells: settings.discretizer !== "tiles" };
+    const rewards = environment === PAINTED ? grid.rewards : null;
+    return { plane, layout, rewards, actions, hasCells: settings.discretizer !== "tiles" };
   }
 
   showMaps(result) {

@@ -62,6 +62,13 @@ impl<T: Persist, const N: usize> Persist for [T; N] {
     }
 }
 
+/// Nothing.
+impl Persist for () {
+    fn persist(&mut self, _checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        Ok(())
+    }
+}
+
 /// Several values, one after the other.
 macro_rules! persist_tuple {
     ($($name:ident),*) => {

@@ -6,8 +6,10 @@ use super::Checkpoint;
 use crate::envs::classic_control::MountainCar;
 use crate::features::{Axis, Features, Rounding, TileCoding};
 use crate::learners::{
-    Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
-    TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, WatkinsQLambda,
+    Agent, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model,
+    MonteCarlo, MonteCarloEs, NStepQSigma, NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping,
+    QLearning, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda,
+    WatkinsQLambda,
 };
 use crate::policies::{AnyPolicy, TieBreaking};
 use crate::q_table::TerminalUpdate;
@@ -71,7 +73,13 @@ impl Setup {
         let advance = |run: &mut Run<F, L>, steps| {
             run.advance(Budget { episodes: EPISODES, work: steps }).expect("all observations have rows");
         };
-        advance(&mut whole, u64::MAX);
+        // In parts, for which some learners make room.
+        let finish = |run: &mut Run<F, L>| {
+            while run.episodes().returns.len() < EPISODES {
+                advance(run, 1 << 16);
+            }
+        };
+        finish(&mut whole);
         advance(&mut stopped, self.steps);
         let tables = stopped.learner().tables().into_iter().map(<[f64]>::to_vec).collect::<Vec<_>>();
         let mut bytes = Vec::new();
@@ -81,7 +89,7 @@ impl Setup {
         let mut checkpoint = Checkpoint::restore(&bytes);
         resumed.persist(&mut checkpoint).expect("the bytes are those of this run");
         checkpoint.finish().expect("all bytes are read");
-        advance(&mut resumed, u64::MAX);
+        finish(&mut resumed);
         assert_eq!(resumed.episodes(), whole.episodes());
         assert_eq!(resumed.learner().tables(), whole.learner().tables());
         let mut states = [Vec::new(), Vec::new()];
@@ -102,6 +110,11 @@ impl Setup {
         self.check(features, || TdLearner { agent: agent(), rule: ExpectedSarsa });
         self.check(features, || DoubleQLearning::new(agent(), QTable::new(vec![0.0; rows * ACTIONS], ACTIONS)));
         self.check(features, || TdLearner { agent: agent(), rule: NStepSarsa::new(4) });
+        let target = TargetPolicy::Greedy;
+        self.check(features, || TdLearner { agent: agent(), rule: NStepTreeBackup::new(4, target) });
+        self.check(features, || TdLearner { agent: agent(), rule: NStepQSigma::new(4, 0.5, target) });
+        self.check(features, || TdLearner { agent: agent(), rule: DifferentialSarsa::new(0.1) });
+        self.check(features, || TdLearner { agent: agent(), rule: DifferentialQLearning::new(0.1) });
         let rule = || SarsaLambda { traces: traces(), kind, trace_decay: 0.8 };
         self.check(features, || TdLearner { agent: agent(), rule: rule() });
         let rule = || WatkinsQLambda { traces: traces(), kind, trace_decay: 0.8 };
@@ -135,6 +148,18 @@ proptest! {
         let planning = 20_000;
         let (agent, model) = (|| setup.agent(rows, 1), || Model::new(rows, ACTIONS, &StopFlag::new()).expect("a small model"));
         setup.check(&grid, || TdLearner { agent: agent(), rule: DynaQ::new(model(), planning) });
+        let stop = StopFlag::new();
+        let stochastic = || StochasticModel::new(rows, ACTIONS, &stop).expect("a small model");
+        setup.check(&grid, || TdLearner { agent: agent(), rule: DynaQ::new(stochastic(), 5) });
+        let sweeping = || PrioritizedSweeping::new(model(), planning, 1e-4, &stop).expect("a small model");
+        setup.check(&grid, || TdLearner { agent: agent(), rule: sweeping() });
+        let pairs = rows * ACTIONS;
+        let monte_carlo = || MonteCarlo::new(pairs, LIMIT, &stop).expect("a few pairs");
+        setup.check(&grid, || TdLearner { agent: agent(), rule: monte_carlo() });
+        let exploring_starts = || MonteCarloEs::new(pairs, LIMIT, &stop).expect("a few pairs");
+        setup.check(&grid, || TdLearner { agent: agent(), rule: exploring_starts() });
+        let off_policy = || OffPolicyMonteCarlo::new(pairs, LIMIT, (1.0, 0.0), &stop).expect("a few pairs");
+        setup.check(&grid, || TdLearner { agent: agent(), rule: off_policy() });
         let dyna_q_plus = || DynaQPlus::new(model(), planning, 1e-3, &StopFlag::new()).expect("a small model");
         setup.check(&grid, || TdLearner { agent: agent(), rule: dyna_q_plus() });
     }

@@ -1,9 +1,11 @@
 //! An algorithm chosen at run time, and the learner that it makes of an agent.
 
 use super::{
-    ActorCritic, ActorCriticLambda, Agent, Critic, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, GradientBandit,
-    Learner, Model, NStepSarsa, PolicyGradientLearner, PolicyGradientRule, QLearning, Reinforce, Sarsa, SarsaLambda,
-    TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
+    ActorCritic, ActorCriticLambda, Agent, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
+    DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarlo, MonteCarloEs, NStepQSigma, NStepSarsa,
+    NStepTreeBackup, OffPolicyMonteCarlo, PolicyGradientLearner, PolicyGradientRule, PrioritizedSweeping, QLearning,
+    Reinforce, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceOptions, Traces,
+    TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
 };
 use crate::features::ActiveRows;
 use crate::memory::AllocationError;
@@ -48,6 +50,63 @@ pub enum AnyAlgorithm {
         /// The weight κ of the bonus for actions not tried for long.
         time_weight: f64,
     },
+    /// [`DynaQ`] with a [`StochasticModel`]
+    StochasticDynaQ {
+        /// The updates from the model after each step.
+        planning_steps: u32,
+    },
+    /// [`MonteCarlo`]
+    MonteCarlo {
+        /// The most steps of an episode.
+        max_episode_steps: u64,
+    },
+    /// [`MonteCarloEs`]
+    MonteCarloEs {
+        /// The most steps of an episode.
+        max_episode_steps: u64,
+    },
+    /// [`OffPolicyMonteCarlo`]
+    OffPolicyMonteCarlo {
+        /// The most steps of an episode.
+        max_episode_steps: u64,
+        /// α, by which W / C is multiplied.
+        learning_rate: f64,
+        /// The smallest step size.
+        min_learning_rate: f64,
+    },
+    /// [`NStepTreeBackup`]
+    NStepTreeBackup {
+        /// The number of rewards in a target, at least 1.
+        n_steps: usize,
+        /// The target policy.
+        target_policy: TargetPolicy,
+    },
+    /// [`NStepQSigma`]
+    NStepQSigma {
+        /// The number of rewards in a target, at least 1.
+        n_steps: usize,
+        /// The degree of sampling σ.
+        sigma: f64,
+        /// The target policy.
+        target_policy: TargetPolicy,
+    },
+    /// [`PrioritizedSweeping`]
+    PrioritizedSweeping {
+        /// The most updates after each step.
+        planning_steps: u32,
+        /// The smallest error that is planned, θ.
+        priority_threshold: f64,
+    },
+    /// [`DifferentialSarsa`]
+    DifferentialSarsa {
+        /// The step size β of the average reward.
+        reward_learning_rate: f64,
+    },
+    /// [`DifferentialQLearning`]
+    DifferentialQLearning {
+        /// The step size β of the average reward.
+        reward_learning_rate: f64,
+    },
     /// [`GradientBandit`]
     GradientBandit {
         /// Whether rewards are compared with their average.
@@ -74,17 +133,6 @@ pub enum AnyAlgorithm {
     },
 }
 
-/// The options of an algorithm whose eligibility traces are of a kind.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TraceOptions {
-    /// What a visit does to a trace.
-    pub kind: TraceKind,
-    /// The trace decay λ.
-    pub decay: f64,
-    /// Traces at or below this are dropped.
-    pub cutoff: f64,
-}
-
 /// What is done with the learner that [`AnyAlgorithm::learner`] makes, whichever its type.
 pub trait LearnerVisitor<R> {
     /// The result.
@@ -100,9 +148,24 @@ impl AnyAlgorithm {
         if matches!(self, Self::DoubleQLearning) || self.value_learning_rate().is_some() { 2 } else { 1 }
     }
 
-    /// Whether the algorithm learns a model or average rewards, for which each state must have a row of the table.
+    /// Whether the algorithm needs the probabilities of actions, which not every policy has.
+    pub fn needs_probabilities(&self) -> bool {
+        matches!(self, Self::OffPolicyMonteCarlo { .. } | Self::NStepTreeBackup { .. } | Self::NStepQSigma { .. })
+    }
+
+    /// Whether each state must have a row of the table: for a model, for average rewards, or for visits to be counted.
     pub fn needs_single_rows(&self) -> bool {
-        matches!(self, Self::DynaQ { .. } | Self::DynaQPlus { .. } | Self::GradientBandit { .. })
+        matches!(
+            self,
+            Self::DynaQ { .. }
+                | Self::DynaQPlus { .. }
+                | Self::StochasticDynaQ { .. }
+                | Self::MonteCarlo { .. }
+                | Self::MonteCarloEs { .. }
+                | Self::OffPolicyMonteCarlo { .. }
+                | Self::PrioritizedSweeping { .. }
+                | Self::GradientBandit { .. }
+        )
     }
 
     /// The step size of the state values, which are the second table; `None` for an algorithm that learns none.
@@ -172,6 +235,37 @@ impl AnyAlgorithm {
             Self::DynaQ { planning_steps } => with_rule(agent, DynaQ::new(new_model()?, planning_steps), visitor),
             Self::DynaQPlus { planning_steps, time_weight } => {
                 with_rule(agent, DynaQPlus::new(new_model()?, planning_steps, time_weight, stop)?, visitor)
+            }
+            Self::StochasticDynaQ { planning_steps } => {
+                let model = StochasticModel::new(n_rows, num_actions, stop)?;
+                with_rule(agent, DynaQ::new(model, planning_steps), visitor)
+            }
+            Self::MonteCarlo { max_episode_steps } => {
+                with_rule(agent, MonteCarlo::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)
+            }
+            Self::MonteCarloEs { max_episode_steps } => {
+                with_rule(agent, MonteCarloEs::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)
+            }
+            Self::OffPolicyMonteCarlo { max_episode_steps, learning_rate, min_learning_rate } => {
+                let rates = (learning_rate, min_learning_rate);
+                let rule = OffPolicyMonteCarlo::new(n_rows * num_actions, max_episode_steps, rates, stop)?;
+                with_rule(agent, rule, visitor)
+            }
+            Self::NStepTreeBackup { n_steps, target_policy } => {
+                with_rule(agent, NStepTreeBackup::new(n_steps, target_policy), visitor)
+            }
+            Self::NStepQSigma { n_steps, sigma, target_policy } => {
+                with_rule(agent, NStepQSigma::new(n_steps, sigma, target_policy), visitor)
+            }
+            Self::PrioritizedSweeping { planning_steps, priority_threshold } => {
+                let rule = PrioritizedSweeping::new(new_model()?, planning_steps, priority_threshold, stop)?;
+                with_rule(agent, rule, visitor)
+            }
+            Self::DifferentialSarsa { reward_learning_rate } => {
+                with_rule(agent, DifferentialSarsa::new(reward_learning_rate), visitor)
+            }
+            Self::DifferentialQLearning { reward_learning_rate } => {
+                with_rule(agent, DifferentialQLearning::new(reward_learning_rate), visitor)
             }
             Self::GradientBandit { baseline } => {
                 with_rule(agent, GradientBandit::new(baseline, n_rows, stop)?, visitor)

@@ -1,7 +1,8 @@
 //! Dyna-Q: Q-learning that also learns from a model (R. Sutton, 1990; Sutton & Barto, the box in section 8.2).
 
-use super::common::{Agent, Model, ModelEntry, PlanningProgress, UpdateRule, single_row};
+use super::common::{Agent, DynaModel, Model, ModelEntry, PlanningProgress, UpdateRule, single_row};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::memory::AllocationError;
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -11,26 +12,26 @@ use crate::tasks::Next;
 /// 2. Model(S, A) ← R, S′;
 /// 3. n times: S ← a random visited state, A ← a random action tried in S, R, S′ ← Model(S, A), and update 1.
 ///
-/// A state must have one active row.
+/// With a [`StochasticModel`](super::StochasticModel), R, S′ is sampled from what followed S, A so far. A state must have one active row.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DynaQ {
+pub struct DynaQ<M = Model> {
     /// The model.
-    pub model: Model,
+    pub model: M,
     /// The number of planning updates per step, n.
     pub planning_steps: u32,
     /// The planning of the last step.
     progress: PlanningProgress,
 }
 
-impl DynaQ {
+impl<M: DynaModel> DynaQ<M> {
     /// An update rule before the first step.
-    pub fn new(model: Model, planning_steps: u32) -> Self {
+    pub fn new(model: M, planning_steps: u32) -> Self {
         let progress = PlanningProgress::new(model.num_actions());
         Self { model, planning_steps, progress }
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
+impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
     #[inline]
     fn learn(
         &mut self,
@@ -53,6 +54,10 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
         self.progress.work()
     }
 
+    fn reserve(&mut self, _agent: &mut Agent, work: u64) -> Result<(), AllocationError> {
+        self.model.reserve(work)
+    }
+
     #[inline]
     fn is_unfinished(&self) -> bool {
         self.progress.is_unfinished()
@@ -63,7 +68,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQ {
         for _ in 0..self.progress.take() {
             let row = self.model.sample_state(rng);
             let action = self.model.sample_action(row, rng);
-            if let Some(entry) = self.model.entry(row, action) {
+            if let Some(entry) = self.model.sample(row, action, rng) {
                 agent.update_from_entry(row, action, entry);
             }
         }

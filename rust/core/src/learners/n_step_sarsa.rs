@@ -2,169 +2,49 @@
 
 use std::collections::VecDeque;
 
-use super::common::{Agent, MAX_WORK_PER_CALL, UpdateRule, VALUES_PER_WORK};
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
+use super::common::{Agent, NStep, NStepMethod, NStepVisit};
 use crate::features::ActiveRows;
-use crate::memory::{AllocationError, out_of_memory};
-use crate::random::Rng;
-use crate::tasks::Next;
-
-/// A state-action pair that awaits its update, and the reward that followed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Visit<R> {
-    rows: R,
-    action: usize,
-    reward: f64,
-}
 
 /// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [G - Q(Sₜ, Aₜ)] with the n-step return
 /// G = Rₜ₊₁ + γ Rₜ₊₂ + … + γⁿ⁻¹ Rₜ₊ₙ + γⁿ Q(Sₜ₊ₙ, Aₜ₊ₙ).
 ///
 /// The sum runs from left to right, and the powers of γ are a running product. At the end of an episode the last n pairs
 /// are updated with shorter returns.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NStepSarsa<R> {
-    n: usize,
-    /// The last visits, oldest first, at most n.
-    visits: VecDeque<Visit<R>>,
-    /// What the returns of the last pairs of a finished episode end with: the pair after the newest reward, or `None`
-    /// after a terminal state.
-    bootstrap: Option<(R, usize)>,
-    /// Whether the episode is finished and pairs still await their updates.
-    finishing: bool,
-    /// The work of the updates at the end of the episode, in the last call.
-    finishing_work: u64,
-}
+pub type NStepSarsa<R> = NStep<R, NStepReturn>;
 
-impl<R: ActiveRows> NStepSarsa<R> {
+/// The n-step return of Sarsa.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NStepReturn;
+
+impl<R: ActiveRows> NStep<R, NStepReturn> {
     /// Targets of `n` rewards.
     ///
     /// # Panics
     /// If `n` is 0.
     pub fn new(n: usize) -> Self {
-        assert!(n > 0, "n_steps must be at least 1, got 0");
-        Self { n, visits: VecDeque::new(), bootstrap: None, finishing: false, finishing_work: 0 }
-    }
-
-    /// The work of an update.
-    #[inline]
-    fn update_work(&self, agent: &Agent) -> u64 {
-        agent.work() + self.visits.len() as u64 / VALUES_PER_WORK
-    }
-
-    /// Updates the oldest pair. `bootstrap` is the pair after the newest reward, or `None` after a terminal state.
-    #[inline]
-    fn update_oldest(&mut self, agent: &mut Agent, bootstrap: Option<(R, usize)>) {
-        let (mut target, mut power) = (0.0, 1.0);
-        for visit in &self.visits {
-            target += power * visit.reward;
-            power *= agent.discount;
-        }
-        if let Some((rows, action)) = bootstrap {
-            target += power * agent.value(rows, action);
-        }
-        if let Some(Visit { rows, action, .. }) = self.visits.pop_front() {
-            agent.update(rows, action, target);
-        }
-    }
-
-    /// Updates the last pairs of an episode, or a part of them where they are many.
-    #[inline(never)]
-    fn finish(&mut self, agent: &mut Agent) {
-        self.finishing_work = 0;
-        while !self.visits.is_empty() && self.finishing_work < MAX_WORK_PER_CALL {
-            self.finishing_work += self.update_work(agent);
-            self.update_oldest(agent, self.bootstrap);
-        }
-        self.finishing = !self.visits.is_empty();
+        Self::with_method(NStepReturn, n)
     }
 }
 
-impl<R: ActiveRows> UpdateRule<R, Agent> for NStepSarsa<R> {
-    #[inline]
-    fn learn(
-        &mut self,
-        agent: &mut Agent,
-        state: R,
-        action: usize,
-        reward: f64,
-        next: Next<R>,
-        rng: &mut impl Rng,
-    ) -> usize {
-        self.visits.push_back(Visit { rows: state, action, reward });
-        let bootstrap = agent.sample_next(next, rng);
-        if !matches!(next, Next::NonTerminal(_)) {
-            self.bootstrap = bootstrap;
-            self.finish(agent);
-        } else if self.visits.len() == self.n {
-            self.update_oldest(agent, bootstrap);
-        }
-        bootstrap.map_or(0, |(_, next_action)| next_action)
-    }
+impl<R: ActiveRows> NStepMethod<R> for NStepReturn {
+    type Memo = ();
 
     #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        self.update_work(agent) + self.finishing_work
-    }
-
-    fn end_episode(&mut self, _agent: &mut Agent) {
-        self.finishing_work = 0;
-    }
-
-    /// An episode has as many pairs as steps, and at most n of them wait.
-    fn reserve(&mut self, _agent: &mut Agent, work: u64) -> Result<(), AllocationError> {
-        let count = ((self.n - self.visits.len()) as u64).min(work) as usize;
-        self.visits.try_reserve(count).map_err(out_of_memory::<Visit<R>>(count))
-    }
+    fn memo(&self, _agent: &mut Agent, _rows: R, _action: usize) {}
 
     #[inline]
-    fn is_unfinished(&self) -> bool {
-        self.finishing
-    }
-
-    fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
-        self.finish(agent);
-        self.bootstrap.map_or(0, |(_, next_action)| next_action)
-    }
-
-    fn persist(
-        &mut self,
-        (num_rows, num_actions): (usize, usize),
-        checkpoint: &mut Checkpoint<'_>,
-    ) -> Result<(), CheckpointError> {
-        let mut count = self.visits.len();
-        checkpoint.index(&mut count, self.n + 1, "number of steps")?;
-        if checkpoint.is_restoring() {
-            self.visits.clear();
-            self.visits.try_reserve(count).map_err(|_| CheckpointError::OutOfMemory)?;
+    fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, ()>>, following: Option<(R, usize)>) {
+        let (mut target, mut power) = (0.0, 1.0);
+        for visit in visits {
+            target += power * visit.reward;
+            power *= agent.discount;
         }
-        for index in 0..count {
-            let saved = self.visits.get(index).copied();
-            let rows = persist_rows(saved.map(|visit| visit.rows), num_rows, checkpoint)?;
-            let (mut action, mut reward) = saved.map_or((0, 0.0), |visit| (visit.action, visit.reward));
-            checkpoint.index(&mut action, num_actions, "action")?;
-            reward.persist(checkpoint)?;
-            if checkpoint.is_restoring() {
-                self.visits.push_back(Visit { rows, action, reward });
-            }
+        if let Some((rows, action)) = following {
+            target += power * agent.value(rows, action);
         }
-        let mut bootstraps = self.bootstrap.is_some();
-        (&mut self.finishing, &mut bootstraps).persist(checkpoint)?;
-        self.bootstrap = if bootstraps {
-            let rows = persist_rows(self.bootstrap.map(|(rows, _)| rows), num_rows, checkpoint)?;
-            let mut action = self.bootstrap.map_or(0, |(_, action)| action);
-            checkpoint.index(&mut action, num_actions, "action")?;
-            Some((rows, action))
-        } else {
-            None
-        };
-        Ok(())
-    }
-
-    /// The pairs that await their updates are forgotten.
-    fn abandon_episode(&mut self, _agent: &mut Agent) {
-        self.finishing = false;
-        self.visits.clear();
+        if let Some(&NStepVisit { rows, action, .. }) = visits.front() {
+            agent.update(rows, action, target);
+        }
     }
 }
 
@@ -173,6 +53,7 @@ mod tests {
     use super::*;
     use crate::learners::common::test_support::{agent, rng};
     use crate::learners::common::{Learner, TdLearner};
+    use crate::tasks::Next;
 
     #[test]
     fn one_update_by_hand() {

@@ -93,8 +93,8 @@ impl ExpectedUpdates {
                     let state = current.unwrap_or_else(|| self.mdp.reset(&mut self.rng));
                     let row = &self.q_values[state as usize * num_actions..][..num_actions];
                     let action = policy.choose(row, &mut self.rng);
-                    let step = self.mdp.step(state, action, &mut self.rng);
-                    *current = (!step.terminated).then_some(step.state);
+                    let transition = self.mdp.step(state, action, &mut self.rng);
+                    *current = (!transition.terminated).then_some(transition.state);
                     (state as usize, action)
                 }
             };

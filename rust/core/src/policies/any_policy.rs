@@ -85,6 +85,19 @@ impl Policy for AnyPolicy {
         }
     }
 
+    fn probability(&mut self, values: &[f64], action: usize) -> f64 {
+        match self {
+            Self::EpsilonGreedy { epsilon, ties } => ties.probability(epsilon.value(), values, values.len(), action),
+            Self::MaskedEpsilonGreedy { epsilon, ties } => {
+                let count = values.iter().filter(|&value| is_available(value)).count();
+                ties.probability(epsilon.value(), values, count, action)
+            }
+            Self::Softmax(softmax) => softmax.probability(values, action),
+            // It has counted its choice since; nothing that needs probabilities is combined with it.
+            Self::Ucb(_) => 1.0,
+        }
+    }
+
     #[inline]
     fn expected_value_in(&mut self, rows: &[u32], values: &[f64]) -> f64 {
         match self {
@@ -132,6 +145,19 @@ mod tests {
         // (1/16 + 3/4) 4 + 1/16 (2 + 0 - 1)
         assert_eq!(epsilon_greedy(TieBreaking::First).expected_value(&[2.0, 4.0, 0.0, -1.0]), 3.3125);
         assert_eq!(EpsilonGreedy::linear(0.25, 0.25, 1).expected_value(&[2.0, 4.0, 0.0, -1.0]), 3.3125);
+    }
+
+    #[test]
+    fn probabilities_share_what_is_greedy_as_ties_are_broken() {
+        let values = [4.0, 4.0, 0.0, -1.0];
+        let probabilities = |ties| [0, 1, 2].map(|action| epsilon_greedy(ties).probability(&values, action));
+        assert_eq!(probabilities(TieBreaking::First), [0.8125, 0.0625, 0.0625]);
+        assert_eq!(probabilities(TieBreaking::Random), [0.4375, 0.4375, 0.0625]);
+        assert_eq!(EpsilonGreedy::linear(0.25, 0.25, 1).probability(&values, 0), 0.8125);
+        let masked = [4.0, 4.0, f64::NEG_INFINITY, -1.0];
+        let mut policy = AnyPolicy::MaskedEpsilonGreedy { epsilon: Schedule::constant(0.75), ties: TieBreaking::First };
+        assert_eq!([0, 3].map(|action| policy.probability(&masked, action)), [0.5, 0.25]);
+        assert_eq!(AnyPolicy::softmax(1.0, 4).probability(&[0.0; 4], 3), 0.25);
     }
 
     #[test]

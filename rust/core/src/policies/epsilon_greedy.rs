@@ -2,7 +2,7 @@
 
 use std::hint::select_unpredictable;
 
-use super::Policy;
+use super::{Policy, TieBreaking};
 use crate::numeric::{argmax, sum};
 use crate::random::Rng;
 
@@ -48,6 +48,10 @@ impl Policy for EpsilonGreedy {
         (1..values.len()).fold(expected_if_greedy(0), |found, action| {
             select_unpredictable(action == best, expected_if_greedy(action), found)
         })
+    }
+
+    fn probability(&mut self, values: &[f64], action: usize) -> f64 {
+        TieBreaking::First.probability(self.epsilon, values, values.len(), action)
     }
 
     /// ε is not clamped, as in the article: rounding may leave it a few 1e-14 below its minimum.

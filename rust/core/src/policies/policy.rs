@@ -25,6 +25,9 @@ pub trait Policy {
         self.expected_value(values)
     }
 
+    /// The probability π(a) of an action, for policies that do not count.
+    fn probability(&mut self, values: &[f64], action: usize) -> f64;
+
     /// Saves or restores what it has counted.
     ///
     /// # Errors

@@ -62,6 +62,10 @@ impl Policy for Softmax {
         sum(pairs.map(|(probability, value)| probability * value))
     }
 
+    fn probability(&mut self, values: &[f64], action: usize) -> f64 {
+        self.probabilities(values)[action]
+    }
+
     fn end_episode(&mut self) {}
 }
 

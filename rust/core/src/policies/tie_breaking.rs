@@ -29,6 +29,20 @@ impl TieBreaking {
         }
     }
 
+    /// The probability of an action under the ε-greedy policy over `count` available actions.
+    #[inline]
+    pub(super) fn probability(self, epsilon: f64, values: &[f64], count: usize, action: usize) -> f64 {
+        let (best, other) = (argmax(values), epsilon / count as f64);
+        match self {
+            Self::First if action == best => other + (1.0 - epsilon),
+            Self::Random if values[action] == values[best] => {
+                let ties = values.iter().filter(|&&value| value == values[best]).count();
+                other + (1.0 - epsilon) / ties as f64
+            }
+            _ => other,
+        }
+    }
+
     /// The expected value Σₐ π(a) Q(a) of the ε-greedy policy.
     #[inline]
     pub(super) fn expected_value(self, epsilon: f64, values: impl Iterator<Item = f64> + Clone) -> f64 {

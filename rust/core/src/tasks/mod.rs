@@ -1,6 +1,7 @@
 //! Tasks: what a learner interacts with. An environment, its features and its time limit.
 
 mod boxed_task;
+mod changing_task;
 mod episode_recorder;
 mod k_armed_bandit;
 mod native_task;
@@ -9,6 +10,7 @@ mod task;
 mod visit_counter;
 
 pub use boxed_task::BoxedTask;
+pub use changing_task::ChangingTask;
 pub use episode_recorder::{EpisodeRecorder, Recording, Recordings};
 pub use k_armed_bandit::{KArmedBandit, Testbed};
 pub use native_task::{NativeTask, TimedState};

@@ -3,6 +3,7 @@
 //! To add an environment, implement [`NativeEnv`] for it in a file of its own ([`classic_control::ClassicEnv`] brings an
 //! implementation for what has Gymnasium-style parameters), and add its line to the registry.
 
+mod changing_maze;
 mod classic_control;
 mod gymnasium;
 mod k_armed_bandit;
@@ -11,6 +12,7 @@ mod native_env;
 mod py_classic_control;
 mod py_native_env;
 mod py_vector_env;
+mod racetrack;
 mod registry;
 mod short_corridor;
 mod toy_text;

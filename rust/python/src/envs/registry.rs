@@ -5,10 +5,12 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use qtab_core::envs::classic_control::{Acrobot, CartPole, ContinuousMountainCar, MountainCar, Pendulum};
 
+use super::changing_maze::ChangingMazeEnv;
 use super::classic_control::DynClassicEnv;
 use super::k_armed_bandit::KArmedBanditEnv;
 use super::maximization_bias::MaximizationBiasEnv;
 use super::native_env::NativeEnv;
+use super::racetrack::RacetrackEnv;
 use super::short_corridor::ShortCorridorEnv;
 use super::toy_text::{BlackjackEnv, TableEnv, TaxiEnv};
 use crate::error::invalid;
@@ -26,11 +28,13 @@ const ENVS: &[(&str, Entry)] = &[
     ("Acrobot", Entry::ClassicControl(|| Arc::new(Acrobot::default()))),
     ("Blackjack", Entry::FromGymnasium(BlackjackEnv::from_gymnasium)),
     ("CartPole", Entry::ClassicControl(|| Arc::new(CartPole::default()))),
+    ("ChangingMaze", Entry::FromGymnasium(ChangingMazeEnv::from_gymnasium)),
     ("ContinuousMountainCar", Entry::ClassicControl(|| Arc::new(ContinuousMountainCar::default()))),
     ("KArmedBandit", Entry::FromGymnasium(KArmedBanditEnv::from_gymnasium)),
     ("MaximizationBias", Entry::FromGymnasium(MaximizationBiasEnv::from_gymnasium)),
     ("MountainCar", Entry::ClassicControl(|| Arc::new(MountainCar::default()))),
     ("Pendulum", Entry::ClassicControl(|| Arc::new(Pendulum::default()))),
+    ("Racetrack", Entry::FromGymnasium(RacetrackEnv::from_gymnasium)),
     ("ShortCorridor", Entry::FromGymnasium(ShortCorridorEnv::from_gymnasium)),
     ("Table", Entry::FromGymnasium(TableEnv::from_gymnasium)),
     ("Taxi", Entry::FromGymnasium(TaxiEnv::from_gymnasium)),

@@ -54,6 +54,18 @@ impl PyMdpSolver {
         PyArray1::from_slice(py, self.0.table.initial_distribution())
     }
 
+    /// The outcomes of each state-action pair, the actions of state 0 first, as `P` lists them: probability, next state,
+    /// reward, terminated.
+    fn transitions(&self) -> Vec<Vec<(f64, u32, f64, bool)>> {
+        let pairs = (0..self.0.table.num_states()).flat_map(|state| {
+            (0..self.0.table.num_actions()).map(move |action| {
+                let outcomes = self.0.table.outcomes(state, action);
+                outcomes.map(|(probability, step)| (probability, step.state, step.reward, step.terminated)).collect()
+            })
+        });
+        pairs.collect()
+    }
+
     fn value_iteration<'py>(&self, py: Python<'py>, discount: f64) -> PyResult<PySolution<'py>> {
         self.solve(py, discount, value_iteration)
     }

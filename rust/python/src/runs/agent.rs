@@ -21,8 +21,8 @@ pub(super) fn generic_agent(
 ) -> PyResult<Agent> {
     let shape = (n_rows, spec.num_actions);
     let masks = match spec.algorithm {
-        // It plans with actions that it has not tried.
-        AnyAlgorithm::DynaQPlus { .. } if spec.action_masks.is_none() => {
+        // They draw actions without looking at values: to plan with what was not tried, and to start an episode.
+        AnyAlgorithm::DynaQPlus { .. } | AnyAlgorithm::MonteCarloEs { .. } if spec.action_masks.is_none() => {
             spec.initial_q.masks(n_rows * spec.num_actions, spec.num_actions)?
         }
         _ => spec.action_masks.build(shape, n_active, stop)?,

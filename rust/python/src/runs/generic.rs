@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
-use qtab_core::learners::{LearnerVisitor, TruncationHandling};
+use qtab_core::learners::{CountBonus, LearnerVisitor, TruncationHandling};
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, VisitCounter};
 use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
@@ -161,6 +161,14 @@ fn build_learner<R>(
 where
     R: ActiveRows + Send + 'static,
 {
+    if let Some(prediction) = &spec.prediction {
+        if n_active != 1 || prediction.num_states() != n_rows {
+            return Err(invalid("rows", format!("rows for each of the {n_rows} cells"), prediction.num_states()));
+        }
+        let predictor = prediction.predictor(spec, stop)?;
+        let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation, bonus: None };
+        return Ok(run.visit(predictor));
+    }
     let agent = generic_agent(spec, n_rows, n_active, &mut rng, stop)?;
     // The generator draws both tables before the run takes it over.
     let second_table = match spec.algorithm.n_tables() {
@@ -170,7 +178,11 @@ where
         }
         tables => Some(spec.initial_q.table((1, tables), (n_rows, spec.num_actions), &mut rng, stop)?),
     };
-    let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation };
+    let bonus = match spec.count_bonus {
+        0.0 => None,
+        weight => Some(CountBonus::new(weight, (n_rows, spec.num_actions), stop).map_err(allocation)?),
+    };
+    let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation, bonus };
     let run = spec.algorithm.learner::<R, _>(agent, second_table, stop, run).map_err(allocation)?;
     run.ok_or_else(|| invalid("discretizer", "one with one active row, for this algorithm", "'tiles'"))
 }
@@ -180,13 +192,14 @@ struct BoxedRun<R> {
     task: BoxedTask<R, RunError>,
     rng: AgentRng,
     terminate: bool,
+    bonus: Option<CountBonus>,
 }
 
 impl<R: ActiveRows + Send + 'static> LearnerVisitor<R> for BoxedRun<R> {
     type Output = Box<dyn Run>;
 
     fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
-        let learner = TruncationHandling { learner, terminate: self.terminate };
+        let learner = TruncationHandling { learner, terminate: self.terminate, bonus: self.bonus };
         Box::new(Trainer::new(self.task, learner, self.rng))
     }
 }

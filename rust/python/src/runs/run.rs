@@ -28,6 +28,12 @@ pub(crate) trait Run: Send {
     /// Which actions the states have, row by row; None if each has all of them.
     fn action_masks(&self) -> Option<&[bool]>;
 
+    /// How many updates were made from a model; None where that is not counted.
+    fn planning_updates(&self) -> Option<u64>;
+
+    /// The estimate of the average reward; None where none is learned.
+    fn average_reward(&self) -> Option<f64>;
+
     /// Saves or restores all but the tables and the finished episodes.
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 
@@ -71,6 +77,14 @@ where
         self.learner().action_masks()
     }
 
+    fn planning_updates(&self) -> Option<u64> {
+        self.learner().planning_updates()
+    }
+
+    fn average_reward(&self) -> Option<f64> {
+        self.learner().average_reward()
+    }
+
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         Trainer::persist(self, checkpoint)
     }
@@ -107,6 +121,14 @@ impl Run for Box<dyn Run> {
 
     fn action_masks(&self) -> Option<&[bool]> {
         (**self).action_masks()
+    }
+
+    fn planning_updates(&self) -> Option<u64> {
+        (**self).planning_updates()
+    }
+
+    fn average_reward(&self) -> Option<f64> {
+        (**self).average_reward()
     }
 
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {

@@ -70,13 +70,16 @@ where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active = [u32; 1]> + Clone + Send + Sync + 'static,
 {
+    if spec.prediction.is_some() {
+        return generic(env, features, spec, record);
+    }
     let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else {
         return generic(env, features, spec, record);
     };
     let one_step =
         matches!(spec.algorithm, AnyAlgorithm::QLearning | AnyAlgorithm::Sarsa | AnyAlgorithm::ExpectedSarsa);
     let fits = spec.num_actions == N && env.num_actions() == N && spec.bit_generator == BitGenerator::Pcg64;
-    let counts = matches!(spec.policy, PolicySpec::Ucb { .. });
+    let counts = matches!(spec.policy, PolicySpec::Ucb { .. }) || spec.count_bonus != 0.0;
     if !one_step || !fits || counts || !spec.action_masks.is_none() || spec.terminate_on_truncation || record > 0 {
         return generic(env, features, spec, record);
     }

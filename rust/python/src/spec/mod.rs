@@ -10,6 +10,8 @@ mod policy;
 mod product;
 mod schedule;
 
+use std::sync::Arc;
+
 use pyo3::prelude::*;
 use qtab_core::learners::AnyAlgorithm;
 use qtab_core::q_table::TerminalUpdate;
@@ -23,6 +25,7 @@ pub(crate) use policy::PolicySpec;
 pub(crate) use schedule::{LearningRateSpec, SCHEDULES, ScheduleSpec};
 
 use crate::error::invalid;
+use crate::prediction::PredictionSpec;
 use crate::rng::BitGenerator;
 
 /// The agent and its training: all of a run's description but the environment and the seed.
@@ -35,6 +38,8 @@ pub(crate) struct RunSpec {
     pub(crate) policy: PolicySpec,
     pub(crate) learning_rate: LearningRateSpec,
     pub(crate) discount: f64,
+    /// The weight of the bonus for rarely visited state-action pairs; 0 for none.
+    pub(crate) count_bonus: f64,
     pub(crate) initial_q: InitialQSpec,
     pub(crate) action_masks: ActionMasksSpec,
     pub(crate) terminal_update: TerminalUpdate,
@@ -45,6 +50,8 @@ pub(crate) struct RunSpec {
     pub(crate) max_recorded_actions: u64,
     /// Whether to count the visits of each state-action pair. Not part of what is learned, so not of Python's spec.
     pub(crate) count_visits: bool,
+    /// What is estimated instead of learning to act. It has a spec of its own in Python.
+    pub(crate) prediction: Option<Arc<PredictionSpec>>,
 }
 
 impl RunSpec {
@@ -54,14 +61,17 @@ impl RunSpec {
         if num_actions == 0 {
             return Err(invalid("num_actions", "at least 1", num_actions));
         }
+        let (max_episode_steps, learning_rate) =
+            (fields.get("max_episode_steps")?, LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?);
         let spec = Self {
             discretizer: DiscretizerSpec::parse(&fields.nested("discretizer")?)?,
             num_actions,
-            max_episode_steps: fields.get("max_episode_steps")?,
-            algorithm: algorithm::algorithm(&fields.nested("algorithm")?)?,
+            max_episode_steps,
+            algorithm: algorithm::algorithm(&fields.nested("algorithm")?, max_episode_steps, learning_rate)?,
             policy: PolicySpec::parse(&fields.nested("policy")?, episodes)?,
-            learning_rate: LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?,
+            learning_rate,
             discount: fields.get("discount")?,
+            count_bonus: fields.get("count_bonus")?,
             initial_q: InitialQSpec::parse(&fields.nested("initial_q")?)?,
             action_masks: ActionMasksSpec::parse(&fields.nested("action_masks")?)?,
             terminal_update: fields
@@ -71,9 +81,13 @@ impl RunSpec {
             bit_generator: fields.word("bit_generator", BitGenerator::WORDS)?,
             max_recorded_actions: u64::MAX,
             count_visits: false,
+            prediction: None,
         };
         spec.check_tile_coding()?;
         spec.check_preferences()?;
+        if spec.algorithm.needs_probabilities() && matches!(spec.policy, PolicySpec::Ucb { .. }) {
+            return Err(invalid("policy", "'epsilon_greedy' or 'softmax' for this algorithm", "'ucb'"));
+        }
         Ok(spec)
     }
 

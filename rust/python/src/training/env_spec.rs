@@ -8,7 +8,7 @@ use crate::envs::{NativeEnv, PyNativeEnv};
 use crate::runs::PythonEnv;
 use crate::spec::{Fields, Variant};
 
-pub(super) enum EnvironmentSpec {
+pub(crate) enum EnvironmentSpec {
     Native(Arc<dyn NativeEnv>),
     Python(PythonEnv),
 }
@@ -19,7 +19,7 @@ const ENVIRONMENTS: &[Variant<EnvironmentSpec>] = &[
 ];
 
 impl EnvironmentSpec {
-    pub(super) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
+    pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
         fields.tagged(ENVIRONMENTS)
     }
 }

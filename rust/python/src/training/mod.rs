@@ -6,6 +6,7 @@ mod results;
 mod testbed;
 mod trainer;
 
+pub(crate) use env_spec::EnvironmentSpec;
 pub(crate) use many::train_many;
 pub(crate) use testbed::run_testbeds;
 pub(crate) use trainer::PyTrainer;

@@ -159,6 +159,16 @@ impl PyTrainer {
         Ok(self.lock()?.run.action_masks().map(|masks| PyArray1::from_slice(py, masks)))
     }
 
+    /// How many updates were made from a model; None where that is not counted.
+    fn planning_updates(&self) -> PyResult<Option<u64>> {
+        Ok(self.lock()?.run.planning_updates())
+    }
+
+    /// The estimate of the average reward; None where none is learned.
+    fn average_reward(&self) -> PyResult<Option<f64>> {
+        Ok(self.lock()?.run.average_reward())
+    }
+
     /// The recorded episodes, oldest first, taken out. It ends the training.
     fn take_recordings<'py>(&self, py: Python<'py>) -> PyResult<Vec<PyRecording<'py>>> {
         let built = self.lock()?;

@@ -4,11 +4,13 @@ mod invalid_mdp;
 mod maximization_bias;
 mod outcome;
 mod outcome_distribution;
+mod racetrack;
 mod short_corridor;
 mod tabular_mdp;
 
 pub use invalid_mdp::InvalidMdp;
 pub use maximization_bias::{MaximizationBias, STATES as MAXIMIZATION_BIAS_STATES};
 pub use outcome::{Outcome, TOLERANCE};
+pub use racetrack::{Ground, Racetrack};
 pub use short_corridor::ShortCorridor;
 pub use tabular_mdp::TabularMdp;

@@ -16,7 +16,7 @@ pub(crate) const MAX_WORK_PER_CALL: u64 = 8192;
 
 /// The work of an update that reads a row of so many values.
 #[inline]
-pub(super) fn row_work(num_actions: usize) -> u64 {
+pub(in crate::learners) fn row_work(num_actions: usize) -> u64 {
     1 + num_actions as u64 / VALUES_PER_WORK
 }
 
@@ -59,6 +59,12 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     pub fn expected_value(&mut self, rows: impl AsRef<[u32]>) -> f64 {
         let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.expected_value_in(rows.as_ref(), values)
+    }
+
+    /// The probability π(a) of an action in the state with these active rows.
+    pub fn probability(&mut self, rows: impl AsRef<[u32]>, action: usize) -> f64 {
+        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
+        self.policy.probability(values, action)
     }
 
     /// A random action among those that the state with these active rows has: `rng.integers` of their number.

@@ -53,6 +53,16 @@ pub trait Learner<R> {
         0
     }
 
+    /// How many updates were made from a model; `None` where that is not counted.
+    fn planning_updates(&self) -> Option<u64> {
+        None
+    }
+
+    /// The estimate of the average reward; `None` where none is learned.
+    fn average_reward(&self) -> Option<f64> {
+        None
+    }
+
     /// Called after the last step of every episode.
     fn end_episode(&mut self);
 

@@ -5,7 +5,7 @@ use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
 /// The planning updates of a step, done in parts, so that a caller never waits long for a part.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::learners) struct PlanningProgress {
+pub struct PlanningProgress {
     /// The number of updates still to do.
     remaining: u32,
     /// The work of the last part.

@@ -26,7 +26,8 @@ where
 {
     #[inline]
     fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
-        self.agent.choose(state, rng)
+        let chosen = self.rule.first_action(&mut self.agent, state, rng);
+        chosen.unwrap_or_else(|| self.agent.choose(state, rng))
     }
 
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
@@ -60,6 +61,14 @@ where
 
     fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
         self.rule.resume(&mut self.agent, next, rng)
+    }
+
+    fn planning_updates(&self) -> Option<u64> {
+        self.rule.planning_updates()
+    }
+
+    fn average_reward(&self) -> Option<f64> {
+        self.rule.average_reward()
     }
 
     fn end_episode(&mut self) {

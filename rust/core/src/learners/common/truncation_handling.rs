@@ -1,7 +1,8 @@
-//! The treatment of truncated episodes (F. Pardo et al., "Time limits in reinforcement learning", 2018).
+//! What a learner is told of a step: truncated episodes (F. Pardo et al., "Time limits in reinforcement learning", 2018),
+//! and rewards with a bonus.
 
-use super::Learner;
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use super::{CountBonus, Learner};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::AllocationError;
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -14,6 +15,8 @@ pub struct TruncationHandling<L> {
     pub learner: L,
     /// Whether truncation is treated as termination.
     pub terminate: bool,
+    /// What is added to the rewards, if anything.
+    pub bonus: Option<CountBonus>,
 }
 
 impl<L> TruncationHandling<L> {
@@ -27,7 +30,7 @@ impl<L> TruncationHandling<L> {
     }
 }
 
-impl<R, L: Learner<R>> Learner<R> for TruncationHandling<L> {
+impl<R: AsRef<[u32]>, L: Learner<R>> Learner<R> for TruncationHandling<L> {
     #[inline]
     fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
         self.learner.first_action(state, rng)
@@ -36,6 +39,10 @@ impl<R, L: Learner<R>> Learner<R> for TruncationHandling<L> {
     #[inline]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
         let next = self.as_learned(next);
+        let reward = match &mut self.bonus {
+            None => reward,
+            Some(bonus) => reward + bonus.visit(state.as_ref(), action),
+        };
         self.learner.learn(state, action, reward, next, rng)
     }
 
@@ -67,6 +74,14 @@ impl<R, L: Learner<R>> Learner<R> for TruncationHandling<L> {
         self.learner.resume(next, rng)
     }
 
+    fn planning_updates(&self) -> Option<u64> {
+        self.learner.planning_updates()
+    }
+
+    fn average_reward(&self) -> Option<f64> {
+        self.learner.average_reward()
+    }
+
     fn end_episode(&mut self) {
         self.learner.end_episode();
     }
@@ -96,7 +111,8 @@ impl<R, L: Learner<R>> Learner<R> for TruncationHandling<L> {
     }
 
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.learner.persist(checkpoint)
+        self.learner.persist(checkpoint)?;
+        self.bonus.as_mut().map_or(Ok(()), |bonus| bonus.persist(checkpoint))
     }
 
     fn diverged(&self) -> bool {
@@ -117,6 +133,7 @@ mod tests {
             let mut learner = TruncationHandling {
                 learner: TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: Sarsa },
                 terminate,
+                bonus: None,
             };
             learner.learn([0], 0, -1.0, Next::Truncated([1]), &mut rng());
             assert_eq!(learner.learner.agent.table.values()[0], value);

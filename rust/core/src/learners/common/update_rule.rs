@@ -7,6 +7,13 @@ use crate::tasks::Next;
 
 /// The update rule of an algorithm for an agent `G`: its equation, and what it stores between steps.
 pub trait UpdateRule<R, G> {
+    /// Samples the first action of an episode; `None` leaves that to the policy.
+    #[inline]
+    fn first_action(&mut self, agent: &mut G, state: R, rng: &mut impl Rng) -> Option<usize> {
+        let (_, _, _) = (agent, state, rng);
+        None
+    }
+
     /// Learns from one step and returns the next action, as [`Learner::learn`](super::Learner::learn).
     fn learn(
         &mut self,
@@ -40,6 +47,16 @@ pub trait UpdateRule<R, G> {
     fn resume(&mut self, agent: &mut G, next: Next<R>, rng: &mut impl Rng) -> usize {
         let (_, _, _) = (agent, next, rng);
         0
+    }
+
+    /// As [`Learner::planning_updates`](super::Learner::planning_updates).
+    fn planning_updates(&self) -> Option<u64> {
+        None
+    }
+
+    /// The estimate of the average reward; `None` where none is learned.
+    fn average_reward(&self) -> Option<f64> {
+        None
     }
 
     /// Called after the last step of every episode.

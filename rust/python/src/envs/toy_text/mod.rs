@@ -13,3 +13,4 @@ pub(super) use table::TableEnv;
 pub(crate) use taxi::PyTaxi;
 pub(super) use taxi::TaxiEnv;
 pub(crate) use transition_table::PyTransitionTable;
+pub(super) use transition_table::table_of;

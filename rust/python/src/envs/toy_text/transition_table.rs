@@ -14,7 +14,7 @@ use crate::error::allocation;
 const STATES_BETWEEN_CHECKS: usize = 1024;
 
 /// The table of an environment. It is an error where `NumPy` would add its probabilities differently than Python floats.
-pub(super) fn table_of(env: &Bound<'_, PyAny>) -> PyResult<TabularMdp> {
+pub(in crate::envs) fn table_of(env: &Bound<'_, PyAny>) -> PyResult<TabularMdp> {
     let py = env.py();
     let initial: Vec<f64> = env.getattr(intern!(py, "initial_state_distrib"))?.extract()?;
     parse_table(&env.getattr(intern!(py, "P"))?, &initial, true)

@@ -24,7 +24,7 @@ GivenPolicy: TypeAlias = ArrayLike | Callable[[Any], Any] | Run | Optimum | str
 
 
 def probabilities(
-    name: str, policy: GivenPolicy, space: gym.Space[Any], cells: Discretizer, actions: Actions
+    name: str, policy: GivenPolicy, space: gym.Space[Any] | None, cells: Discretizer, actions: Actions
 ) -> NDArray[np.float64]:
     """Returns (rows, actions) float64: the probability of each action in each cell of the observations.
 
@@ -34,7 +34,7 @@ def probabilities(
             probabilities, where a single axis may take the place of those of the cells; a function from an observation
             to an action or to (actions,) probabilities; a run, for its greedy policy; or an optimum that does not
             depend on the steps left.
-        space: The observation space.
+        space: The observation space, which only a function needs.
         cells: The cells of the observations.
         actions: The actions.
 
@@ -114,7 +114,7 @@ def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> NDArra
 
 
 def _of_function(
-    name: str, policy: Callable[[Any], Any], space: gym.Space[Any], cells: Discretizer, actions: Actions
+    name: str, policy: Callable[[Any], Any], space: gym.Space[Any] | None, cells: Discretizer, actions: Actions
 ) -> NDArray[np.float64]:
     if not isinstance(space, gym.spaces.Discrete | gym.spaces.MultiDiscrete | gym.spaces.Tuple):
         raise ValueError(f"{name} must be an array for observations that are not discrete, got a function")

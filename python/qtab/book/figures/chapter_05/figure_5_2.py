@@ -1,0 +1,91 @@
+"""Figure 5.2: blackjack by Monte Carlo with exploring starts: the optimal policy and its values."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from qtab._utils.progress import ProgressBar
+from qtab.book.drawing.blackjack import DEALER, USABLE, draw_blackjack
+from qtab.book.experiment import Experiment
+from qtab.book.result import Line, Result
+from qtab.book.runner import FloatArray
+from qtab.training.train_many import train_many
+
+STICK = 0
+SUMS = range(11, 22)
+"""The sums of the player that the figure shows."""
+
+CONFIG: dict[str, Any] = {
+    "env": "Blackjack-v1",
+    "env_kwargs": {"sab": True},
+    "algorithm": "monte_carlo_es",
+    "discount": 1.0,
+    "initial_q": 0.0,
+    "max_episode_steps": 100,  # more cards than any hand has
+    "episodes": 5_000_000,
+}
+"""The keyword arguments of :func:`qtab.train`."""
+
+
+def values_of(table: FloatArray) -> FloatArray:
+    """Returns (actions, usable ace, sums, dealer's cards) of a table of Gymnasium's observations."""
+    shape = (32, 11, 2, 2)
+    return table.reshape(shape)[SUMS.start : SUMS.stop, 1:].transpose(3, 2, 0, 1)
+
+
+def lowest_stick(values: FloatArray) -> FloatArray:
+    """Returns (usable ace, dealer's cards): the lowest sum from which on the greedy policy sticks."""
+    sticks = values.argmax(axis=0) == STICK
+    from_here_on = np.flip(np.cumprod(np.flip(sticks, axis=1), axis=1), axis=1)
+    return SUMS.stop - from_here_on.sum(axis=1).astype(np.float64)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class ExploringStarts(Experiment):
+    """Runs of Monte Carlo ES on blackjack."""
+
+    @property
+    def line_names(self) -> Sequence[str]:
+        """The names of the lines, each once."""
+        return USABLE
+
+    def run(
+        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
+    ) -> Result:
+        """Trains with every seed; the figure shows the average of their values."""
+        runs, seed, threads = self.check_arguments(runs, seed, threads)
+        started = time.perf_counter()
+        tables = []
+        with ProgressBar(runs, "run", progress, self.name) as bar:
+            for first in range(0, runs, threads):
+                seeds = range(seed + first, seed + min(first + threads, runs))
+                trained = train_many(**CONFIG, seeds=seeds, tables=True, threads=threads, progress=False)
+                tables += [values_of(table) for table in trained.tables]
+                bar.move_to(len(tables))
+        thresholds = np.stack([lowest_stick(values) for values in tables])
+        error = thresholds.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(thresholds.shape[1:], np.nan)
+        none = np.zeros(len(DEALER), np.int64)
+        cards = np.arange(1.0, len(DEALER) + 1)
+        lines = tuple(
+            Line(name, cards, thresholds[:, ace].mean(axis=0), error[ace], runs, none, none)
+            for ace, name in ((1, USABLE[0]), (0, USABLE[1]))
+        )
+        mean = np.mean(tables, axis=0)
+        surfaces = {name: mean[:, ace] for ace, name in ((1, USABLE[0]), (0, USABLE[1]))}
+        return Result(self, lines, runs, seed, time.perf_counter() - started, draw_blackjack, surfaces)
+
+
+EXPERIMENT = ExploringStarts(
+    name="figure-5.2",
+    title="the optimal policy of blackjack, by Monte Carlo with exploring starts",
+    book="exploring starts, γ = 1, initial values of zero, at first a policy that sticks on 20 and 21 only; one run",
+    unspecified="the number of episodes (5,000,000 here). The figure shows the average of 10 runs. The book draws the "
+    "first cards so that all starts have the same probability; here they are dealt, and only the first action is "
+    "drawn. The first policy sticks everywhere, as all values are zero",
+    runs=10,
+    x_label="dealer's card",
+    y_label="lowest sum that sticks",
+)

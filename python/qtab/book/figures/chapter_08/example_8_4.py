@@ -1,0 +1,142 @@
+"""Example 8.4: prioritized sweeping against Dyna-Q on mazes of eight sizes."""
+
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from qtab import _core
+from qtab._utils.progress import ProgressBar
+from qtab.book.drawing import draw_lines
+from qtab.book.experiment import Experiment
+from qtab.book.result import Line, Result
+from qtab.book.runner import FloatArray
+from qtab.envs.dyna_maze import MOST_DOUBLINGS, DynaMazeEnv
+from qtab.training.resolve import resolve
+
+ENV = "qtab/DynaMaze-v0"
+PLANNING_STEPS = 5
+EPISODES = 20_000
+"""More than any run needs."""
+PRECISION = 1.02
+"""The greedy policy is looked at again after so many times the updates: looking costs more than learning."""
+METHODS = {"Dyna-Q": "dyna_q", "prioritized sweeping": "prioritized_sweeping"}
+"""The algorithm of each line."""
+CONFIG: dict[str, Any] = {
+    "planning_steps": PLANNING_STEPS,
+    "learning_rate": 1.0,
+    "discount": 0.95,
+    "epsilon": 0.1,
+    "epsilon_schedule": "constant",
+    "ties": "random",
+    "initial_q": 0.0,
+    "max_episode_steps": 10_000_000,
+    "episodes": EPISODES,
+}
+"""The keyword arguments of :func:`qtab.train`."""
+
+
+class Maze:
+    """A maze, and whether a table solves it."""
+
+    def __init__(self, doublings: int) -> None:
+        self.doublings = doublings
+        env: Any = gym.make(ENV, doublings=doublings).unwrapped
+        assert isinstance(env, DynaMazeEnv)  # noqa: S101 - what the id stands for
+        self.states = sum(row.count(".") + row.count("S") + row.count("G") for row in env.layout)
+        self.start = int(np.argmax(env.initial_state_distrib))
+        self.next_states = np.array(
+            [[env.P[state][action][0][1] for action in range(4)] for state in range(len(env.P))]
+        )
+        self.is_goal = np.array([cell == "G" for row in env.layout for cell in row])
+        self.shortest = self._shortest()
+
+    def _shortest(self) -> int:
+        """The number of steps of the shortest way, by breadth-first search."""
+        reached = np.zeros(len(self.is_goal), np.bool_)
+        reached[self.start] = True
+        steps = 0
+        while not (reached & self.is_goal).any():
+            reached[self.next_states[reached].ravel()] = True
+            steps += 1
+        return steps
+
+    def is_solved(self, table: FloatArray) -> bool:
+        """Whether the greedy policy takes a shortest way. Of several greedy actions it takes the first."""
+        state, greedy = self.start, table.reshape(-1, 4).argmax(axis=1)
+        for _ in range(self.shortest):
+            state = int(self.next_states[state, greedy[state]])
+        return bool(self.is_goal[state])
+
+
+def updates_to_optimum(maze: Maze, algorithm: str, seed: int) -> int:
+    """Returns the number of updates, to within 2 %, after which the greedy policy is first seen to be optimal."""
+    with_options = {**CONFIG, "algorithm": algorithm, "env_kwargs": {"doublings": maze.doublings}}
+    resolved = resolve(ENV, {**with_options, "seed": seed})
+    trainer = _core.Trainer(resolved.spec(), seed)
+    updates, steps, looked_at = 0, 0, 0.0
+    for episode in range(1, EPISODES + 1):
+        trainer.advance(episode)
+        planned = trainer.planning_updates()
+        steps += int(trainer.episodes(episode - 1)[1][0])
+        # Each step of Dyna-Q makes an update of its own, and all that are planned.
+        updates = steps * (1 + PLANNING_STEPS) if planned is None else planned
+        if updates >= looked_at:
+            if maze.is_solved(trainer.tables()):
+                break
+            looked_at = PRECISION * updates
+    return updates
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class UpdatesToOptimum(Experiment):
+    """How many updates both methods need on each maze."""
+
+    @property
+    def line_names(self) -> Sequence[str]:
+        """The names of the lines, each once."""
+        return tuple(METHODS)
+
+    def run(
+        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
+    ) -> Result:
+        """Runs both methods on every maze with every seed; see :func:`qtab.book.run`."""
+        runs, seed, threads = self.check_arguments(runs, seed, threads)
+        started = time.perf_counter()
+        mazes = [Maze(doublings) for doublings in range(MOST_DOUBLINGS + 1)]
+        tasks = [(name, maze, seed + number) for maze in mazes for name in METHODS for number in range(runs)]
+        counts: dict[tuple[str, int], list[int]] = {(name, maze.states): [] for maze in mazes for name in METHODS}
+        with ProgressBar(len(tasks), "run", progress, self.name) as bar, ThreadPoolExecutor(threads) as pool:
+            done = pool.map(lambda task: updates_to_optimum(task[1], METHODS[task[0]], task[2]), tasks)
+            for index, ((name, maze, _), count) in enumerate(zip(tasks, done, strict=True)):
+                counts[name, maze.states].append(count)
+                bar.move_to(index + 1)
+        sizes = np.array([maze.states for maze in mazes], np.float64)
+        none = np.zeros(len(mazes), np.int64)
+        lines = []
+        for name, algorithm in METHODS.items():
+            samples = np.array([counts[name, maze.states] for maze in mazes], np.float64)
+            error = samples.std(axis=1, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(len(mazes), np.nan)
+            method = algorithm if name == "Dyna-Q" else ""
+            lines.append(Line(name, sizes, samples.mean(axis=1), error, runs, none, none, method=method))
+        return Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_lines)
+
+
+EXPERIMENT = UpdatesToOptimum(
+    name="example-8.4",
+    title="prioritized sweeping and Dyna-Q on mazes",
+    book=f"mazes of the same structure and of more and more cells; at most n = {PLANNING_STEPS} updates per step",
+    unspecified="all other settings: here α = 1, ε = 0.1, γ = 0.95, θ = 0.0001, ties are broken at random, and there "
+    "are 10 runs. The greedy policy is looked at between episodes, with every 2 % of updates; it is optimal if it "
+    "takes a shortest way. The update that Dyna-Q makes from each real step counts",
+    runs=10,
+    x_label="number of states",
+    y_label="updates until the policy is optimal",
+    log_x=True,
+    x_ticks=(47, 94, 188, 376, 752, 1504, 3008, 6016),
+    log_y=True,
+)

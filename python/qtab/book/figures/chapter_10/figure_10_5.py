@@ -1,0 +1,129 @@
+"""Figure 10.5: differential Sarsa on the access-control queue."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from qtab import _core
+from qtab._utils.progress import ProgressBar
+from qtab.book.drawing import line_colors
+from qtab.book.experiment import Experiment
+from qtab.book.result import Line, Result
+from qtab.plots.axes import shown_figure
+from qtab.training.resolve import resolve
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+STEPS = 2_000_000
+SERVERS = 10
+PRIORITIES = (1, 2, 4, 8)
+AVERAGE = "average reward"
+CONFIG: dict[str, Any] = {
+    "algorithm": "differential_sarsa",
+    "learning_rate": 0.01,
+    "reward_learning_rate": 0.01,
+    "epsilon": 0.1,
+    "epsilon_schedule": "constant",
+    "ties": "random",
+    "initial_q": 0.0,
+    "max_episode_steps": STEPS,
+    "episodes": 1,
+}
+"""The keyword arguments of :func:`qtab.train`: one episode that the time limit ends."""
+
+
+def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
+    """Draws the greedy policy for the average of the runs, and its values below; returns the lower axes.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        ValueError: if ``ax`` is not None.
+    """
+    if ax is not None:
+        raise ValueError(f"ax must be None for {result.experiment.name}, which creates two axes")
+    from matplotlib.colors import ListedColormap
+
+    figure = shown_figure(7, 7)
+    figure.suptitle(result.experiment.heading)
+    upper, lower = figure.subplots(2, 1, height_ratios=(1, 2), sharex=True)
+    policy = result.surfaces["policy"].T
+    free, levels = np.arange(SERVERS + 1), np.arange(len(PRIORITIES))
+    upper.pcolormesh(
+        free, levels, policy, cmap=ListedColormap(("#f3c9a6", "#d9e4f2")), vmin=0, vmax=1, edgecolors="white"
+    )
+    for action, word in enumerate(("REJECT", "ACCEPT")):
+        where = np.argwhere(policy[:, 1:] == action)
+        if len(where):  # in the cell that is nearest to the middle
+            height, across = where[np.abs(where - where.mean(axis=0)).sum(axis=1).argmin()]
+            upper.text(across + 1, height, word, ha="center", va="center", color="black")
+    upper.set_yticks(levels, PRIORITIES)
+    upper.invert_yaxis()
+    upper.set(ylabel="priority", title="policy")
+    drawn = [line for line in result.lines if line.drawn]
+    for line, hue in zip(drawn, line_colors(drawn, lower), strict=True):
+        error = np.nan_to_num(line.error)
+        lower.fill_between(line.x, line.mean - 2 * error, line.mean + 2 * error, color=hue, alpha=0.25, linewidth=0)
+        lower.plot(line.x, line.mean, color=hue, marker="o", markersize=4)
+        top = int(line.mean.argmax())
+        where = line.x[top], line.mean[top]
+        lower.annotate(line.name, where, (8, 0), textcoords="offset points", va="center", color=hue)
+    lower.axhline(0, color="0.6", linewidth=0.8)
+    lower.set_xlim(-0.5, SERVERS + 0.5)
+    lower.set_xticks(free)
+    lower.set(xlabel=result.experiment.x_label, ylabel="differential value of the best action", title="values")
+    axes: Axes = lower
+    return axes
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class AccessControl(Experiment):
+    """Runs of differential Sarsa on the access-control queue."""
+
+    @property
+    def line_names(self) -> Sequence[str]:
+        """The names of the lines, each once."""
+        return (*(f"priority = {priority}" for priority in PRIORITIES), AVERAGE)
+
+    def run(
+        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
+    ) -> Result:
+        """Trains with every seed; the figure shows the average of their values."""
+        runs, seed, _ = self.check_arguments(runs, seed, threads)
+        started = time.perf_counter()
+        tables, averages = [], []
+        resolved = resolve("qtab/AccessControlQueue-v0", {**CONFIG, "seed": seed})
+        with ProgressBar(runs, "run", progress, self.name) as bar:
+            for number in range(runs):
+                trainer = _core.Trainer(resolved.spec(), seed + number)
+                trainer.advance(1)
+                tables.append(trainer.tables().reshape(SERVERS + 1, len(PRIORITIES), 2))
+                averages.append(trainer.average_reward() or 0.0)
+                bar.move_to(number + 1)
+        values = np.stack(tables).max(axis=-1)
+        samples = [*np.moveaxis(values, -1, 0), np.array(averages)[:, None]]
+        lines = []
+        for name, sample in zip(self.line_names, samples, strict=True):
+            points = sample.shape[1]
+            error = sample.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(points, np.nan)
+            none = np.zeros(points, np.int64)
+            x = np.arange(float(points))
+            lines.append(Line(name, x, sample.mean(axis=0), error, runs, none, none, drawn=name != AVERAGE))
+        surfaces = {"policy": np.mean(tables, axis=0).argmax(axis=-1).astype(np.float64)}
+        return Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_queue, surfaces)
+
+
+EXPERIMENT = AccessControl(
+    name="figure-10.5",
+    title="differential Sarsa on the access-control queuing task",
+    book="10 servers, priorities 1, 2, 4 and 8 with equal probability, a busy server becomes free with probability "
+    "0.06; α = β = 0.01, ε = 0.1, initial values and average reward of zero, 2,000,000 steps",
+    unspecified="how ties are broken (at random here). The values are the average of 30 runs; the policy is greedy for "
+    "this average",
+    runs=30,
+    x_label="number of free servers",
+    y_label="differential value",
+)

@@ -1,0 +1,33 @@
+"""The settings that an algorithm brings along, where nobody asks for others: the book's."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from qtab.config.options import AVERAGE_REWARD, is_set
+
+_AVERAGES: Mapping[str, Any] = {"learning_rate": 1.0, "learning_rate_schedule": "visits"}
+"""Values are averages of returns."""
+
+_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
+    "monte_carlo": _AVERAGES,
+    "monte_carlo_es": {**_AVERAGES, "epsilon": 0.0},  # exploring starts are the only exploration
+    "off_policy_monte_carlo": _AVERAGES,
+    **{algorithm: {"discount": 1.0} for algorithm in AVERAGE_REWARD},
+}
+"""The settings of each algorithm that differ from those of :class:`qtab.Config`."""
+
+
+def algorithm_defaults(preset: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the settings that the algorithm asked for brings along, over those of a preset for another algorithm.
+
+    A learning rate that is asked for stays constant, except where the algorithm needs averages.
+    """
+    algorithm = asked.get("algorithm")
+    if not isinstance(algorithm, str) or preset.get("algorithm") == algorithm:
+        return {}
+    own = {name: value for name, value in _DEFAULTS.get(algorithm, {}).items() if not is_set(asked.get(name))}
+    rate_is_asked_for = is_set(asked.get("learning_rate")) or is_set(asked.get("learning_rate_schedule"))
+    if rate_is_asked_for and algorithm != "off_policy_monte_carlo":
+        for name in _AVERAGES:
+            own.pop(name, None)
+    return own

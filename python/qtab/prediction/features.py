@@ -1,0 +1,85 @@
+"""The features of state values: a table, groups of states, tilings of numbered states, or given rows."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qtab._utils import checks
+from qtab._utils.shown import shown
+
+Rows = NDArray[np.uint32]
+"""(states, n_active): the active rows of each state."""
+
+
+def state_aggregation(states: int, size: int) -> Rows:
+    """Returns the features of groups of consecutive states, which share a value (Sutton & Barto, section 9.3).
+
+    Args:
+        states: The number of states.
+        size: The number of states of a group; the last one may be smaller.
+
+    Returns:
+        (states, 1) uint32: the group of each state.
+
+    Raises:
+        TypeError: for an argument that is no integer.
+        ValueError: for an argument below 1.
+    """
+    states, size = checks.count("states", states, least=1), checks.count("size", size, least=1)
+    return (np.arange(states, dtype=np.uint32) // size)[:, None]
+
+
+def tile_coding(states: int, width: int, tilings: int = 1, offset: int = 0) -> Rows:
+    """Returns the features of several tilings of numbered states (Sutton & Barto, Figure 9.10).
+
+    Tiling t is shifted by t * ``offset`` states to the left.
+
+    Args:
+        states: The number of states.
+        width: The number of states of a tile.
+        tilings: The number of tilings.
+        offset: The number of states by which each tiling is shifted against the one before.
+
+    Returns:
+        (states, tilings) uint32: the tile of each state in each tiling.
+
+    Raises:
+        TypeError: for an argument that is no integer.
+        ValueError: for an argument that is too small, or shifts of more than a tile in all.
+    """
+    states, width = checks.count("states", states, least=1), checks.count("width", width, least=1)
+    tilings, offset = checks.count("tilings", tilings, least=1), checks.count("offset", offset, least=0)
+    if (tilings - 1) * offset >= width:
+        raise ValueError(f"offset must shift the {tilings} tilings by less than the width {width} in all, got {offset}")
+    shift = np.arange(tilings) * offset
+    tiles = -(-(states + int(shift[-1])) // width)
+    numbers = (np.arange(states)[:, None] + shift) // width + np.arange(tilings) * tiles
+    return numbers.astype(np.uint32)
+
+
+def feature_rows(features: ArrayLike | None, states: int) -> tuple[Rows, int]:
+    """Returns the active rows of each state, and the number of weights.
+
+    Args:
+        features: None for a table; or (states,) or (states, n_active) integers from 0.
+        states: The number of states.
+
+    Raises:
+        TypeError: if they are no integers.
+        ValueError: if they have another shape, or a negative number.
+    """
+    if features is None:
+        return np.arange(states, dtype=np.uint32)[:, None], states
+    try:
+        given: NDArray[Any] = np.asarray(features)
+    except ValueError:  # rows of different lengths
+        given = np.asarray(None)
+    if given.dtype.kind not in "iu":
+        raise TypeError(f"features must be None or an array of integers, got {shown(features)}")
+    if given.ndim not in (1, 2) or len(given) != states or given.size == 0:
+        raise ValueError(f"features must have a row of numbers for each of the {states} states, got {given.shape}")
+    if int(given.min()) < 0 or int(given.max()) >= 2**31:
+        raise ValueError(f"features must hold numbers from 0, got {int(given.min())} to {int(given.max())}")
+    rows = np.ascontiguousarray(given.reshape(states, -1).astype(np.uint32))
+    return rows, int(rows.max()) + 1

@@ -1,0 +1,37 @@
+"""The picture of estimated values."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.plots.axes import axes_or_new
+from qtab.plots.labels import finish
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from qtab.prediction.estimates import ValueEstimates
+
+
+def draw_values(estimates: "ValueEstimates", ax: "Axes | None", truth: NDArray[np.float64] | None) -> "Axes":
+    """Draws the mean values over the states; see :meth:`qtab.ValueEstimates.plot`."""
+    ax = axes_or_new(ax)
+    title = f"{estimates.env}: values by {estimates.settings.method}"
+    mean = estimates.mean
+    if mean.ndim == 1:
+        states = np.arange(len(mean))
+        error = 2 * np.nan_to_num(estimates.standard_error)
+        (line,) = ax.plot(
+            states, mean, linewidth=1.6, marker="o" if len(mean) <= 40 else "", markersize=4, label="mean"
+        )
+        ax.fill_between(states, mean - error, mean + error, color=line.get_color(), alpha=0.25, linewidth=0)
+        if truth is not None:
+            ax.plot(states, truth, color="0.5", linestyle="--", linewidth=1.2, label="true values")
+        return finish(ax, "state", "value", title)
+    while mean.ndim > 2:
+        mean = mean[..., mean.shape[-1] // 2]
+    image = ax.imshow(mean, aspect="auto", origin="lower")
+    ax.figure.colorbar(image, ax=ax, label="value")
+    ax.set(xlabel="second component", ylabel="first component", title=title)
+    return ax

@@ -1,0 +1,157 @@
+"""How values are estimated: the methods, the options of each, and the checks of their values."""
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias, get_args
+
+from qtab._utils import checks
+from qtab._utils.fields import with_fields
+from qtab._utils.shown import shown
+from qtab.config.choices import BitGenerator, OnTruncation
+from qtab.config.options import listed
+
+Method: TypeAlias = Literal[
+    "td",
+    "n_step_td",
+    "td_lambda",
+    "true_online_td_lambda",
+    "offline_lambda_return",
+    "monte_carlo",
+    "importance_sampling",
+    "batch_td",
+]
+METHODS: tuple[str, ...] = get_args(Method)
+"""The names of the methods."""
+
+ONE_STEP_SIZE = ("td_lambda", "true_online_td_lambda")
+"""The methods with traces, which need one step size for all weights."""
+AVERAGES_ONLY = ("importance_sampling", "batch_td")
+"""The methods without a learning rate."""
+
+_OPTIONS: Mapping[str, tuple[tuple[str, ...], Any]] = {
+    "n_steps": (("n_step_td",), None),
+    "trace_decay": (("td_lambda", "true_online_td_lambda", "offline_lambda_return"), None),
+    "first_visit": (("monte_carlo", "importance_sampling"), False),
+    "weighted": (("importance_sampling",), True),
+}
+"""The methods that an option applies to, and its default there; None if it must be given."""
+
+
+@with_fields
+@dataclass(frozen=True)
+class PredictionSettings:
+    """How values are estimated. An option that does not apply to the method is None, and giving it is an error.
+
+    Raises:
+        TypeError: for a value of the wrong type.
+        ValueError: for a value that is out of range, missing, or does not apply to the method.
+    """
+
+    method: Method = "td"
+    """The method: td is TD(0), equation 6.2; n_step_td equation 7.2; td_lambda and true_online_td_lambda the boxes in
+    sections 12.2 and 12.5; offline_lambda_return equation 12.4; monte_carlo equation 6.1 and the box in section 5.1;
+    importance_sampling equations 5.5 and 5.6, off-policy; batch_td section 6.3 (batch Monte Carlo is monte_carlo
+    without a learning rate)."""
+    episodes: int = 100
+    """The number of episodes."""
+    learning_rate: float | None = None
+    """α: the fraction of the error that an update corrects, in [0, 2]; the active features share it. None takes 1 / n
+    at the n-th visit of a feature, so that Monte Carlo values are averages of returns."""
+    discount: float = 1.0
+    """γ: the discount factor, in [0, 1]."""
+    n_steps: int | None = None
+    """n: the number of rewards in a target of n_step_td."""
+    trace_decay: float | None = None
+    """λ: the decay of traces and of λ-returns, in [0, 1]."""
+    first_visit: bool | None = None
+    """Whether only the first visit of a state in an episode counts, for monte_carlo and importance_sampling."""
+    weighted: bool | None = None
+    """Whether importance sampling is weighted (equation 5.6, the default) or ordinary (equation 5.5)."""
+    initial_value: float = 0.0
+    """The value of every state before the first episode."""
+    on_truncation: OnTruncation = "bootstrap"
+    """Where the time limit ends an episode: the returns continue with the value of the last state (bootstrap), or end
+    there (terminate)."""
+    bit_generator: BitGenerator = "PCG64"
+    """The random generator of the policy: PCG64 as in np.random.default_rng, or MT19937 as in np.random.seed."""
+
+    def __post_init__(self) -> None:
+        """Checks the values, fills in the defaults of options, and turns NumPy's numbers into Python's."""
+        method = checks.choice("method", self.method, METHODS)
+        given = vars(self)
+        checked: dict[str, Any] = {
+            "method": method,
+            "episodes": checks.count("episodes", self.episodes, least=1),
+            "learning_rate": _learning_rate(method, self.learning_rate),
+            "discount": checks.real("discount", self.discount, 0.0, 1.0),
+            "initial_value": checks.finite("initial_value", self.initial_value),
+            "on_truncation": checks.choice("on_truncation", self.on_truncation, get_args(OnTruncation)),
+            "bit_generator": checks.choice("bit_generator", self.bit_generator, get_args(BitGenerator)),
+        }
+        for name, (methods, default) in _OPTIONS.items():
+            value = given[name]
+            if method not in methods:
+                if value is not None:
+                    raise ValueError(
+                        f"{name} applies to method {listed(methods)}, not to {method!r}, got {shown(value)}"
+                    )
+                continue
+            if value is None and default is None:
+                raise ValueError(f"{name} must be given for method {method!r}, got None")
+            checked[name] = default if value is None else _option(name, value)
+        given.update(checked)
+
+    def replace(self, **changes: Any) -> "PredictionSettings":
+        """Returns a copy with some settings changed.
+
+        Raises:
+            TypeError: for an unknown setting, or a value of the wrong type.
+            ValueError: for a value that is out of range or does not apply.
+        """
+        return dataclasses.replace(self, **changes)
+
+    def method_spec(self) -> dict[str, Any]:
+        """Returns the method and its options as the extension takes them."""
+        options = {name: getattr(self, name) for name, (methods, _) in _OPTIONS.items() if self.method in methods}
+        return {"type": self.method, **options}
+
+    def config(self) -> dict[str, Any]:
+        """Returns the settings of :class:`qtab.Config` that the task and the learning rate are made from."""
+        by_visits = self.learning_rate is None
+        return {
+            "algorithm": "q_learning",
+            "episodes": self.episodes,
+            "learning_rate": 1.0 if self.learning_rate is None else min(self.learning_rate, 1.0),
+            "learning_rate_schedule": "visits" if by_visits else "constant",
+            "min_learning_rate": None,
+            "learning_rate_decay": None,
+            "learning_rate_warm_up": None,
+            "discount": self.discount,
+            "initial_q": 0.0,
+            "terminal_update": "target",
+            "on_truncation": self.on_truncation,
+            "exploration": "epsilon_greedy",
+            "epsilon": 0.0,
+            "epsilon_schedule": "constant",
+            "bit_generator": self.bit_generator,
+            "action_mask": False,
+        }
+
+
+def _learning_rate(method: str, value: Any) -> float | None:
+    if value is None:
+        if method in ONE_STEP_SIZE:
+            raise ValueError(f"learning_rate must be given for method {method!r}, got None")
+        return None
+    if method in AVERAGES_ONLY:
+        raise ValueError(f"learning_rate must be None for method {method!r}, which averages, got {shown(value)}")
+    return checks.real("learning_rate", value, 0.0, 2.0)
+
+
+def _option(name: str, value: Any) -> Any:
+    if name == "n_steps":
+        return checks.count(name, value, least=1)
+    if name == "trace_decay":
+        return checks.real(name, value, 0.0, 1.0)
+    return checks.boolean(name, value)

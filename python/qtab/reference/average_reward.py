@@ -1,0 +1,24 @@
+"""The average reward of a continuing task (Sutton & Barto, 2nd ed., section 10.3)."""
+
+from qtab.reference.task import Rows, Table, Task, value
+
+
+class AverageReward:
+    """R̄, and the last step of an episode, whose update waits for the first state of the next one."""
+
+    def __init__(self, task: Task, Q: Table, step_size: float) -> None:
+        self.task, self.Q, self.step_size = task, Q, step_size
+        self.value = 0.0
+        self.waiting: tuple[Rows, int, float] | None = None
+
+    def learn(self, state: Rows, action: int, reward: float, following: float) -> None:
+        """δ = R - R̄ + following - Q(S, A), R̄ <- R̄ + β δ, Q(S, A) <- Q(S, A) + α δ."""
+        target = (reward - self.value) + following
+        self.value += self.step_size * (target - value(self.Q, state, action))
+        self.task.update(self.Q, state, action, target)
+
+    def begin_episode(self, following: float) -> None:
+        """Makes the update that waits: a reset counts as a transition from the terminal state, without a step."""
+        if self.waiting is not None:
+            self.learn(*self.waiting, following)
+            self.waiting = None

@@ -1,0 +1,80 @@
+"""The return that tree backup and Q(σ) back up (Sutton & Barto, 2nd ed., equations 7.16 and 7.17)."""
+
+from collections.abc import Callable
+
+import gymnasium as gym
+import numpy as np
+
+from qtab.config import Config
+from qtab.reference.expected_sarsa import expected_value
+from qtab.reference.task import Result, Rows, Table, Task, value
+
+Weight = Callable[[float, float], float]
+"""From π(A | S) and the importance sampling ratio ρ to the weight of what follows A."""
+
+
+def n_step_backups(
+    env: gym.Env, config: Config, stop_after: int | None, n: int, greedy: bool, weight: Weight
+) -> Result:
+    """Trains towards returns over n steps. The target policy π is greedy, or else the behaviour policy."""
+    task = Task(env, config, stop_after)
+    Q = task.table()
+
+    def chosen(state: Rows) -> tuple[int, float]:
+        """An action by the behaviour policy b, and ρ = π(A | S) / b(A | S)."""
+        values = task.values(Q, state)
+        action = task.policy.choose(values, state)
+        ratio = (
+            probability(task, Q, state, action, greedy) / task.policy.probabilities(values, state)[action]
+            if greedy
+            else 1.0
+        )
+        return action, ratio
+
+    for _ in task.episodes():
+        states, rewards = [task.reset()], [0.0]
+        action, ratio = chosen(states[0])
+        actions, ratios = [action], [ratio]
+        t, last_step, terminal = 0, None, False
+        tau = 1 - n
+        while last_step is None or tau < last_step:
+            if last_step is None:
+                step = task.step(actions[t])
+                states.append(step.state)
+                rewards.append(step.reward)
+                if step.over:
+                    last_step, terminal = t + 1, step.terminal
+                if not step.terminal:  # at a time-out, drawn but not taken
+                    action, ratio = chosen(step.state)
+                    actions.append(action)
+                    ratios.append(ratio)
+
+            tau = t - n + 1
+            if tau >= 0:
+                end = tau + n if last_step is None else min(tau + n, last_step)
+                G, following = 0.0, None
+                for k in range(end, tau, -1):
+                    if k < end:
+                        share = probability(task, Q, states[k], actions[k], greedy)
+                        correction = weight(share, ratios[k]) * (G - value(Q, states[k], actions[k]))
+                        following = expected(task, Q, states[k], greedy) + correction
+                    elif not (terminal and end == last_step):  # nothing follows a terminal state
+                        following = expected(task, Q, states[k], greedy)
+                    G = rewards[k] if following is None else rewards[k] + task.discount * following
+                task.observer.target(tau, rewards[tau + 1], following)
+                task.update(Q, states[tau], actions[tau], G)
+            t += 1
+            tau += 1
+
+    return task.result(Q)
+
+
+def expected(task: Task, Q: Table, state: Rows, greedy: bool) -> float:
+    """Σ π(a | S) Q(S, a)."""
+    return float(np.max(task.values(Q, state))) if greedy else expected_value(task, Q, state)
+
+
+def probability(task: Task, Q: Table, state: Rows, action: int, greedy: bool) -> float:
+    """π(A | S). An action that ties for the maximum is greedy."""
+    values = task.values(Q, state)
+    return float(values[action] == np.max(values)) if greedy else task.policy.probabilities(values, state)[action]

@@ -1,0 +1,29 @@
+"""Off-policy Monte Carlo prediction in plain NumPy (Sutton & Barto, 2nd ed., equations 5.5 to 5.8)."""
+
+import numpy as np
+
+from qtab.reference.prediction.common import Prediction
+from qtab.reference.prediction.monte_carlo import returns_of
+
+
+def importance_sampling(prediction: Prediction) -> None:
+    """Averages of ρ G (ordinary), or averages of G weighted by ρ."""
+    settings = prediction.settings
+    C = np.zeros_like(prediction.w)
+    for episode in prediction.episodes():
+        visits = list(episode)
+        returns = returns_of(prediction, visits)
+        states = [visit.state for visit in visits]
+        rho = 1.0
+        for t in reversed(range(len(visits))):
+            state, action = states[t], visits[t].action
+            rho *= float(prediction.target[state, action]) / float(prediction.behavior[state, action])
+            if settings.first_visit and state in states[:t]:
+                continue
+            [row] = prediction.rows[state]
+            if not settings.weighted:
+                C[row] += 1.0
+                prediction.w[row] += (rho * returns[t] - prediction.w[row]) / C[row]
+            elif rho != 0.0:
+                C[row] += rho
+                prediction.w[row] += rho / C[row] * (returns[t] - prediction.w[row])

@@ -1,0 +1,69 @@
+//! The trait of the models that Dyna-Q plans with.
+
+use super::{Model, ModelEntry, PlanningProgress};
+use crate::checkpoint::{CheckpointError, Persist};
+use crate::memory::AllocationError;
+use crate::random::Rng;
+
+/// A model of the environment, learned from its transitions.
+pub trait DynaModel: Persist {
+    /// The number of actions.
+    fn num_actions(&self) -> usize;
+
+    /// Learns from a transition.
+    fn record(&mut self, row: u32, action: usize, entry: ModelEntry);
+
+    /// A random row among those visited.
+    fn sample_state(&self, rng: &mut impl Rng) -> u32;
+
+    /// A random action among those tried in a visited row.
+    fn sample_action(&self, row: u32, rng: &mut impl Rng) -> usize;
+
+    /// What follows a pair according to the model; `None` if it was never tried.
+    fn sample(&self, row: u32, action: usize, rng: &mut impl Rng) -> Option<ModelEntry>;
+
+    /// Makes room for so many transitions more.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    fn reserve(&mut self, transitions: u64) -> Result<(), AllocationError> {
+        let _ = transitions;
+        Ok(())
+    }
+
+    /// Refuses planning that is unfinished although nothing was tried yet.
+    ///
+    /// # Errors
+    /// `Invalid`.
+    fn check_planning(&self, progress: &PlanningProgress) -> Result<(), CheckpointError>;
+}
+
+impl DynaModel for Model {
+    fn num_actions(&self) -> usize {
+        Self::num_actions(self)
+    }
+
+    #[inline]
+    fn record(&mut self, row: u32, action: usize, entry: ModelEntry) {
+        Self::record(self, row, action, entry);
+    }
+
+    #[inline]
+    fn sample_state(&self, rng: &mut impl Rng) -> u32 {
+        Self::sample_state(self, rng)
+    }
+
+    #[inline]
+    fn sample_action(&self, row: u32, rng: &mut impl Rng) -> usize {
+        Self::sample_action(self, row, rng)
+    }
+
+    #[inline]
+    fn sample(&self, row: u32, action: usize, _rng: &mut impl Rng) -> Option<ModelEntry> {
+        self.entry(row, action)
+    }
+
+    fn check_planning(&self, progress: &PlanningProgress) -> Result<(), CheckpointError> {
+        Self::check_planning(self, progress)
+    }
+}

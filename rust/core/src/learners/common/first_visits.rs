@@ -1,0 +1,94 @@
+//! First-visit Monte Carlo: the returns of an episode, each averaged in where its pair first occurred.
+
+use super::{Agent, EpisodeSteps, row_work, single_row};
+use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::memory::{AllocationError, filled};
+use crate::random::Rng;
+use crate::tasks::Next;
+
+/// The steps of an episode, and how often each state-action pair occurs in those that are left.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::learners) struct FirstVisits {
+    steps: EpisodeSteps<()>,
+    occurrences: Vec<u32>,
+}
+
+impl FirstVisits {
+    /// Before the first episode of at most `limit` steps, on a table of so many pairs.
+    pub(in crate::learners) fn new(pairs: usize, limit: u64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        Ok(Self { steps: EpisodeSteps::new(limit), occurrences: filled(&0, pairs, stop)? })
+    }
+
+    /// Keeps a step, learns from the episode if it is over, and returns the next action. If it was truncated, the returns
+    /// end with the value of an action that is sampled and never taken.
+    #[inline]
+    pub(in crate::learners) fn learn<R: Copy + AsRef<[u32]>>(
+        &mut self,
+        agent: &mut Agent,
+        (row, action, reward): (u32, usize, f64),
+        next: Next<R>,
+        rng: &mut impl Rng,
+    ) -> usize {
+        self.steps.push(row, action, reward, (), agent.work());
+        self.occurrences[agent.table.weight_index(row, action)] += 1;
+        let following = agent.sample_next(next, rng);
+        if !matches!(next, Next::NonTerminal(_)) {
+            self.steps.begin(following.map_or(0.0, |(rows, action)| agent.value(rows, action)));
+            self.finish(agent);
+        }
+        following.map_or(0, |(_, next_action)| next_action)
+    }
+
+    /// G ← γ G + R and, where the pair does not occur earlier, Q(S, A) ← Q(S, A) + α [G - Q(S, A)].
+    pub(in crate::learners) fn finish(&mut self, agent: &mut Agent) {
+        let work = row_work(agent.table.num_actions());
+        let Self { steps, occurrences } = self;
+        steps.finish(work, |following, step| {
+            *following = agent.discount * *following + step.reward;
+            let earlier = &mut occurrences[agent.table.weight_index(step.row, step.action as usize)];
+            *earlier -= 1;
+            if *earlier == 0 {
+                agent.update([step.row], step.action as usize, *following);
+            }
+            true
+        });
+    }
+
+    pub(in crate::learners) fn steps(&self) -> &EpisodeSteps<()> {
+        &self.steps
+    }
+
+    pub(in crate::learners) fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
+        self.steps.reserve(work)
+    }
+
+    /// Forgets the steps of an episode that is given up.
+    pub(in crate::learners) fn abandon(&mut self, agent: &Agent) {
+        for step in self.steps.iter() {
+            self.occurrences[agent.table.weight_index(step.row, step.action as usize)] = 0;
+        }
+        self.steps.abandon();
+    }
+
+    pub(in crate::learners) fn persist(
+        &mut self,
+        shape: (usize, usize),
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        self.steps.persist(shape, checkpoint)?;
+        if checkpoint.is_restoring() {
+            self.occurrences.fill(0);
+            for step in self.steps.iter() {
+                self.occurrences[step.row as usize * shape.1 + step.action as usize] += 1;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The row of a step's state, its action and its reward.
+#[inline]
+pub(in crate::learners) fn step_of<R: AsRef<[u32]>>(state: &R, action: usize, reward: f64) -> (u32, usize, f64) {
+    (single_row(state), action, reward)
+}

@@ -1,0 +1,103 @@
+//! On-policy first-visit Monte Carlo control (Sutton & Barto, the box in section 5.4).
+
+use super::common::{Agent, FirstVisits, UpdateRule, step_of};
+use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::memory::AllocationError;
+use crate::random::Rng;
+use crate::tasks::Next;
+
+/// After an episode, from its last step backwards:
+///
+/// 1. G ← γ G + R;
+/// 2. unless the pair S, A occurs earlier in the episode: Q(S, A) ← Q(S, A) + α [G - Q(S, A)].
+///
+/// With α = 1/n at the n-th visit of a pair, Q is the average of the returns, as in the book. The returns of an episode that
+/// was truncated end with the value of a sampled action in its last state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MonteCarlo {
+    visits: FirstVisits,
+}
+
+impl MonteCarlo {
+    /// An update rule before the first episode of at most `max_episode_steps` steps, on a table of so many pairs.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn new(pairs: usize, max_episode_steps: u64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        Ok(Self { visits: FirstVisits::new(pairs, max_episode_steps, stop)? })
+    }
+}
+
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarlo {
+    #[inline]
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        state: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        rng: &mut impl Rng,
+    ) -> usize {
+        self.visits.learn(agent, step_of(&state, action, reward), next, rng)
+    }
+
+    #[inline]
+    fn work(&self, _agent: &Agent) -> u64 {
+        self.visits.steps().work()
+    }
+
+    fn reserve(&mut self, _agent: &mut Agent, work: u64) -> Result<(), AllocationError> {
+        self.visits.reserve(work)
+    }
+
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.visits.steps().is_finishing()
+    }
+
+    fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
+        self.visits.finish(agent);
+        0
+    }
+
+    fn end_episode(&mut self, _agent: &mut Agent) {}
+
+    fn abandon_episode(&mut self, agent: &mut Agent) {
+        self.visits.abandon(agent);
+    }
+
+    fn persist(&mut self, shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.visits.persist(shape, checkpoint)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learners::common::test_support::{agent, rng};
+    use crate::learners::common::{Learner, TdLearner};
+
+    #[test]
+    fn only_the_first_visit_of_a_pair_is_updated() {
+        let rule = MonteCarlo::new(4, 9, &StopFlag::new()).expect("a few pairs");
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
+        for (state, reward) in [(0, -1.0), (1, -2.0), (0, -4.0)] {
+            learner.learn([state], 0, reward, Next::NonTerminal([1]), &mut rng());
+            assert_eq!(learner.agent.table.values(), [1.0, 0.0, 2.0, 3.0]);
+        }
+        learner.learn([1], 1, -8.0, Next::Terminal, &mut rng());
+        // The returns, backwards: -8; -4 - 4 = -8 (state 0 again: not its first visit); -2 - 4 = -6; -1 - 3 = -4.
+        assert_eq!(learner.agent.table.values(), [-1.5, 0.0, -2.0, -2.5]);
+    }
+
+    #[test]
+    fn a_truncated_episode_ends_with_the_value_of_its_last_state() {
+        let rule = MonteCarlo::new(4, 9, &StopFlag::new()).expect("a few pairs");
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
+        learner.learn([0], 0, -1.0, Next::Truncated([1]), &mut rng());
+        // 1 + 0.5 (-1 + 0.5 · 3 - 1)
+        assert_eq!(learner.agent.table.values()[0], 0.75);
+    }
+}

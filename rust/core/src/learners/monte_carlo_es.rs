@@ -1,0 +1,95 @@
+//! Monte Carlo control with exploring starts (Sutton & Barto, the box in section 5.3).
+
+use super::common::{Agent, FirstVisits, UpdateRule, step_of};
+use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::memory::AllocationError;
+use crate::random::Rng;
+use crate::tasks::Next;
+
+/// The first action of an episode is random, with equal probabilities, whatever the policy; the environment draws the
+/// first state. After an episode, from its last step backwards:
+///
+/// 1. G ← γ G + R;
+/// 2. unless the pair S, A occurs earlier in the episode: Q(S, A) ← Q(S, A) + α [G - Q(S, A)].
+///
+/// With α = 1/n at the n-th visit of a pair, Q is the average of the returns, as in the book, whose policy is greedy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MonteCarloEs {
+    visits: FirstVisits,
+}
+
+impl MonteCarloEs {
+    /// An update rule before the first episode of at most `max_episode_steps` steps, on a table of so many pairs.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn new(pairs: usize, max_episode_steps: u64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        Ok(Self { visits: FirstVisits::new(pairs, max_episode_steps, stop)? })
+    }
+}
+
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarloEs {
+    fn first_action(&mut self, agent: &mut Agent, state: R, rng: &mut impl Rng) -> Option<usize> {
+        Some(agent.sample_action(state, rng))
+    }
+
+    #[inline]
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        state: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        rng: &mut impl Rng,
+    ) -> usize {
+        self.visits.learn(agent, step_of(&state, action, reward), next, rng)
+    }
+
+    #[inline]
+    fn work(&self, _agent: &Agent) -> u64 {
+        self.visits.steps().work()
+    }
+
+    fn reserve(&mut self, _agent: &mut Agent, work: u64) -> Result<(), AllocationError> {
+        self.visits.reserve(work)
+    }
+
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.visits.steps().is_finishing()
+    }
+
+    fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
+        self.visits.finish(agent);
+        0
+    }
+
+    fn end_episode(&mut self, _agent: &mut Agent) {}
+
+    fn abandon_episode(&mut self, agent: &mut Agent) {
+        self.visits.abandon(agent);
+    }
+
+    fn persist(&mut self, shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.visits.persist(shape, checkpoint)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learners::common::test_support::{agent, rng};
+    use crate::learners::common::{Learner, TdLearner};
+
+    #[test]
+    fn the_first_action_is_random_and_the_others_are_greedy() {
+        let rule = MonteCarloEs::new(4, 9, &StopFlag::new()).expect("a few pairs");
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
+        let mut rng = rng();
+        let first = (0..100).filter(|_| learner.first_action([0], &mut rng) == 0).count();
+        assert!((20..80).contains(&first));
+        assert!((0..8).all(|_| learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng) == 1));
+    }
+}

@@ -1,0 +1,135 @@
+//! Batch TD(0) (Sutton & Barto, section 6.3): all episodes so far, presented again and again until the values settle.
+
+use std::collections::HashMap;
+
+use super::{LinearValues, PredictionRule, PredictionStep};
+use crate::tasks::Next;
+
+/// The values have settled when a presentation changes none by more than this fraction of the largest value or reward so far.
+const SETTLED: f64 = 1e-12;
+/// How many transitions are read in one call. A step that needs more is left unfinished.
+const MAX_TRANSITIONS_PER_CALL: u64 = 65_536;
+/// How many transitions are read in the time that counts as a work of 1.
+const TRANSITIONS_PER_WORK: u64 = 4;
+
+/// The reward and the next row, which is `None` at a terminal state.
+type Outcome = (f64, Option<u32>);
+
+/// After each episode, until the values settle: v(s) ← v(s) + the mean of R + γ v(S′) - v(s) over all visits of s so far.
+///
+/// The book sums the errors times a small α instead. Both settle at the same values, those of the maximum-likelihood model
+/// of the data. Equal transitions are counted, and read once a presentation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BatchTd {
+    /// Each transition with the number of its occurrences, in the order of the first ones.
+    transitions: Vec<(u32, Outcome, f64)>,
+    /// Where each transition is in the list: by its row, the bits of its reward, and its next row plus 1, or 0.
+    places: HashMap<(u32, u64, u64), usize>,
+    /// How often each row was visited.
+    visits: Vec<f64>,
+    /// The sum of the errors of each row in this presentation.
+    errors: Vec<f64>,
+    /// The largest magnitude of a value or a reward so far.
+    scale: f64,
+    unfinished: bool,
+    work: u64,
+}
+
+impl BatchTd {
+    /// Without an episode. `rows` is the number of rows.
+    pub fn new(rows: usize) -> Self {
+        Self {
+            transitions: Vec::new(),
+            places: HashMap::new(),
+            visits: vec![0.0; rows],
+            errors: vec![0.0; rows],
+            scale: 0.0,
+            unfinished: false,
+            work: 1,
+        }
+    }
+
+    /// Presents all transitions once. Returns whether the values have settled.
+    fn present(&mut self, values: &mut LinearValues) -> bool {
+        self.errors.fill(0.0);
+        for &(row, (reward, next), count) in &self.transitions {
+            let next_value = next.map_or(0.0, |next| values.weights[next as usize]);
+            self.errors[row as usize] += count * (reward + values.discount * next_value - values.weights[row as usize]);
+        }
+        let mut change = 0.0_f64;
+        for ((value, error), &visits) in values.weights.iter_mut().zip(&self.errors).zip(&self.visits) {
+            if visits > 0.0 {
+                let increment = error / visits;
+                *value += increment;
+                change = change.max(increment.abs());
+                self.scale = self.scale.max(value.abs());
+            }
+        }
+        values.check_finite(change);
+        change <= SETTLED * self.scale || values.diverged()
+    }
+}
+
+impl PredictionRule for BatchTd {
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+        self.work = 1;
+        let row = values.rows.first(step.state) as u32;
+        let next = match step.next {
+            Next::NonTerminal(next) | Next::Truncated(next) => Some(values.rows.first(next) as u32),
+            Next::Terminal => None,
+        };
+        let key = (row, step.reward.to_bits(), next.map_or(0, |next| u64::from(next) + 1));
+        let place = *self.places.entry(key).or_insert(self.transitions.len());
+        if place == self.transitions.len() {
+            self.transitions.push((row, (step.reward, next), 0.0));
+        }
+        self.transitions[place].2 += 1.0;
+        self.scale = self.scale.max(step.reward.abs());
+        self.visits[row as usize] += 1.0;
+        if step.is_last() {
+            self.scale = values.weights.iter().fold(self.scale, |scale, value| scale.max(value.abs()));
+            self.resume(values);
+        }
+    }
+
+    fn work(&self) -> u64 {
+        self.work
+    }
+
+    fn is_unfinished(&self) -> bool {
+        self.unfinished
+    }
+
+    fn resume(&mut self, values: &mut LinearValues) {
+        let (mut read, each) = (0, (self.transitions.len() + self.visits.len()) as u64);
+        self.unfinished = true;
+        while self.unfinished && read < MAX_TRANSITIONS_PER_CALL {
+            self.unfinished = !self.present(values);
+            read += each;
+        }
+        self.work = 1 + read / TRANSITIONS_PER_WORK;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prediction::test_support::{last, predictor, step};
+
+    /// Example 6.4: eight episodes. Batch TD finds V(A) = 3/4, where the average of the returns is 0.
+    #[test]
+    fn you_are_the_predictor() {
+        let mut learner = predictor(&[0.0, 0.0], BatchTd::new(2));
+        learner.values.discount = 1.0;
+        let episodes = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0];
+        learner.rule.learn(&mut learner.values, step(0, 0.0, 1));
+        learner.rule.learn(&mut learner.values, last(1, 0.0));
+        for reward in episodes {
+            learner.rule.learn(&mut learner.values, last(1, reward));
+        }
+        assert!(!learner.rule.is_unfinished());
+        for value in learner.values.weights {
+            assert!((value - 0.75).abs() < 1e-11, "{value}");
+        }
+    }
+}

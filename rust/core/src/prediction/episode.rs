@@ -1,0 +1,86 @@
+//! The steps of an episode, for methods that learn at its end.
+
+use super::{LinearValues, PredictionStep};
+use crate::memory::{AllocationError, reserve};
+use crate::tasks::Next;
+
+/// A step of an episode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Visit {
+    pub(super) state: u32,
+    pub(super) action: u32,
+    /// Whether the state had not been visited before in this episode.
+    pub(super) first: bool,
+    pub(super) reward: f64,
+}
+
+/// The steps of an episode, and its returns once it is over.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Episode {
+    pub(super) visits: Vec<Visit>,
+    /// G of each step, once the episode is over.
+    pub(super) returns: Vec<f64>,
+    /// For each state the number of the episode, from 1, that visited it last.
+    last_visits: Vec<u64>,
+    number: u64,
+    /// The number of steps of the last finished episode, if no step followed.
+    finished: u64,
+}
+
+impl Episode {
+    /// Without a step. `states` is their number.
+    pub(super) fn new(states: usize) -> Self {
+        Self { last_visits: vec![0; states], number: 1, ..Self::default() }
+    }
+
+    /// Adds a step. Returns whether the episode is over.
+    #[inline]
+    pub(super) fn push(&mut self, step: PredictionStep) -> bool {
+        self.finished = 0;
+        let first = std::mem::replace(&mut self.last_visits[step.state as usize], self.number) != self.number;
+        self.visits.push(Visit { state: step.state, action: step.action as u32, first, reward: step.reward });
+        step.is_last()
+    }
+
+    /// Computes the λ-returns G of all steps, from the last one to the first, with the values as they are (Sutton & Barto,
+    /// equations 12.2 and 12.3): G = R + γ [(1 - λ) v(S′) + λ G′]. With λ = 1 they are the returns themselves. The return
+    /// of an episode that its time limit cut off ends with the value of the last state.
+    pub(super) fn compute_returns(&mut self, values: &LinearValues, next: Next<u32>, trace_decay: f64) {
+        let bootstrap = match next {
+            Next::NonTerminal(state) | Next::Truncated(state) => values.value(state),
+            Next::Terminal => 0.0,
+        };
+        let (mut following, mut value) = (bootstrap, bootstrap);
+        self.returns.resize(self.visits.len(), 0.0);
+        for (visit, target) in self.visits.iter().zip(&mut self.returns).rev() {
+            if trace_decay != 1.0 {
+                following = (1.0 - trace_decay) * value + trace_decay * following;
+                value = values.value(visit.state);
+            }
+            following = visit.reward + values.discount * following;
+            *target = following;
+        }
+    }
+
+    /// Forgets the steps, for the next episode.
+    #[inline]
+    pub(super) fn clear(&mut self) {
+        self.finished = self.visits.len() as u64;
+        self.visits.clear();
+        self.number += 1;
+    }
+
+    /// The work of the last step.
+    #[inline]
+    pub(super) fn work(&self) -> u64 {
+        1 + self.finished
+    }
+
+    /// Makes room for so many more steps.
+    pub(super) fn reserve(&mut self, steps: u64) -> Result<(), AllocationError> {
+        let (steps, count) = (usize::try_from(steps).unwrap_or(usize::MAX), self.visits.len());
+        reserve(&mut self.visits, steps)?;
+        let missing = (count + steps).saturating_sub(self.returns.len());
+        reserve(&mut self.returns, missing)
+    }
+}

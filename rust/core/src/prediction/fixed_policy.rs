@@ -1,0 +1,98 @@
+//! A given policy, which does not change.
+
+use std::sync::Arc;
+
+use crate::random::Rng;
+
+/// The probability of each action in each state. Clones share them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FixedPolicy {
+    num_actions: usize,
+    probabilities: Arc<[f64]>,
+    /// For each state the sums of the probabilities from left to right, with infinity from the last possible action on.
+    thresholds: Arc<[f64]>,
+    /// The action of each state, if none has two.
+    actions: Option<Arc<[u32]>>,
+}
+
+impl FixedPolicy {
+    /// `probabilities` holds π(a|s), the actions of state 0 first.
+    ///
+    /// # Panics
+    /// If a state has no action with a positive probability.
+    pub fn new(probabilities: Arc<[f64]>, num_actions: usize) -> Self {
+        let (mut thresholds, mut actions) = (Vec::with_capacity(probabilities.len()), Vec::new());
+        let mut deterministic = true;
+        for (state, row) in probabilities.chunks(num_actions).enumerate() {
+            let last = row.iter().rposition(|&probability| probability > 0.0);
+            let Some(last) = last else { panic!("state {state} must have an action") };
+            let mut sum = 0.0;
+            for (action, probability) in row.iter().enumerate() {
+                sum += probability;
+                thresholds.push(if action >= last { f64::INFINITY } else { sum });
+            }
+            deterministic &= row[..last].iter().all(|&probability| probability == 0.0);
+            actions.push(last as u32);
+        }
+        let actions = deterministic.then(|| actions.into());
+        Self { num_actions, probabilities, thresholds: thresholds.into(), actions }
+    }
+
+    /// Samples an action: the first whose sum of probabilities exceeds one `random()`. A policy that is deterministic in
+    /// every state draws nothing.
+    #[inline]
+    pub fn choose(&self, state: u32, rng: &mut impl Rng) -> usize {
+        match &self.actions {
+            Some(actions) => actions[state as usize] as usize,
+            None => {
+                let thresholds = &self.thresholds[state as usize * self.num_actions..][..self.num_actions];
+                let random = rng.random();
+                if let &[first, _] = thresholds {
+                    return usize::from(first <= random);
+                }
+                thresholds.iter().take_while(|&&threshold| threshold <= random).count()
+            }
+        }
+    }
+
+    /// π(a|s).
+    #[inline]
+    pub fn probability(&self, state: u32, action: usize) -> f64 {
+        self.probabilities[state as usize * self.num_actions + action]
+    }
+
+    /// The number of actions.
+    pub fn num_actions(&self) -> usize {
+        self.num_actions
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learners::Learner;
+    use crate::prediction::test_support::{predictor, rng};
+    use crate::prediction::{PredictionRule, TdZero};
+    use crate::random::NoRng;
+
+    #[test]
+    fn actions_of_probability_zero_are_never_chosen() {
+        let policy = FixedPolicy::new([0.0, 0.3, 0.7, 0.0].into(), 4);
+        let mut rng = rng();
+        let mut counts = [0; 4];
+        for _ in 0..10_000 {
+            counts[policy.choose(0, &mut rng)] += 1;
+        }
+        assert_eq!((counts[0], counts[3]), (0, 0));
+        assert!((2_800..3_200).contains(&counts[1]), "{counts:?}");
+    }
+
+    #[test]
+    fn a_deterministic_policy_draws_nothing() {
+        let policy = FixedPolicy::new([0.0, 1.0, 1.0, 0.0].into(), 2);
+        assert_eq!([policy.choose(0, &mut NoRng), policy.choose(1, &mut NoRng)], [1, 0]);
+        let mut learner = predictor(&[0.0; 2], TdZero);
+        assert_eq!(Learner::<[u32; 1]>::first_action(&mut learner, [0], &mut NoRng), 0);
+        assert!(!PredictionRule::is_unfinished(&learner.rule));
+    }
+}

@@ -1,0 +1,98 @@
+//! Off-policy Monte Carlo prediction by importance sampling (Sutton & Barto, equations 5.3 to 5.8).
+
+use super::episode::Episode;
+use super::{FixedPolicy, LinearValues, PredictionRule, PredictionStep};
+use crate::memory::AllocationError;
+
+/// At the end of an episode, for its steps from the last to the first, with the importance-sampling ratio
+/// ρ = Π π(A|S) / b(A|S) from that step on:
+///
+/// - ordinary: C ← C + 1, v(S) ← v(S) + (ρ G - v(S)) / C
+/// - weighted: C ← C + ρ, v(S) ← v(S) + ρ / C (G - v(S))
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportanceSampling {
+    weighted: bool,
+    first_visit: bool,
+    target: FixedPolicy,
+    behavior: FixedPolicy,
+    /// C of each row.
+    weights: Vec<f64>,
+    episode: Episode,
+}
+
+impl ImportanceSampling {
+    /// Estimates the values of `target` from episodes of `behavior`. `shape` is the number of states and of rows.
+    pub fn new(
+        weighted: bool,
+        first_visit: bool,
+        target: FixedPolicy,
+        behavior: FixedPolicy,
+        (states, rows): (usize, usize),
+    ) -> Self {
+        Self { weighted, first_visit, target, behavior, weights: vec![0.0; rows], episode: Episode::new(states) }
+    }
+}
+
+impl PredictionRule for ImportanceSampling {
+    #[inline]
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+        if !self.episode.push(step) {
+            return;
+        }
+        self.episode.compute_returns(values, step.next, 1.0);
+        let mut ratio = 1.0;
+        for (visit, &target) in self.episode.visits.iter().zip(&self.episode.returns).rev() {
+            let action = visit.action as usize;
+            ratio *= self.target.probability(visit.state, action) / self.behavior.probability(visit.state, action);
+            if self.first_visit && !visit.first {
+                continue;
+            }
+            let row = values.rows.first(visit.state);
+            let error = if self.weighted {
+                if ratio == 0.0 {
+                    break; // all ratios before it are 0, too
+                }
+                self.weights[row] += ratio;
+                ratio / self.weights[row] * (target - values.weights[row])
+            } else {
+                self.weights[row] += 1.0;
+                (ratio * target - values.weights[row]) / self.weights[row]
+            };
+            values.check_finite(error);
+            values.weights[row] += error;
+        }
+        self.episode.clear();
+    }
+
+    #[inline]
+    fn work(&self) -> u64 {
+        self.episode.work()
+    }
+
+    fn reserve(&mut self, steps: u64) -> Result<(), AllocationError> {
+        self.episode.reserve(steps)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prediction::test_support::predictor;
+    use crate::tasks::Next;
+
+    #[test]
+    fn two_episodes_by_hand() {
+        for (weighted, values) in [(false, [3.0, 1.5]), (true, [3.0, 3.0])] {
+            let (target, behavior) = (FixedPolicy::new([1.0, 0.0].into(), 2), FixedPolicy::new([0.5, 0.5].into(), 2));
+            let rule = ImportanceSampling::new(weighted, true, target, behavior, (1, 1));
+            let mut learner = predictor(&[0.0], rule);
+            let rewards = if weighted { [3.0, 9.0] } else { [1.5, 9.0] };
+            // The target policy takes the first action only, so ρ is 2 and then 0.
+            for ((action, reward), value) in rewards.into_iter().enumerate().zip(values) {
+                let step = PredictionStep { state: 0, action, reward, next: Next::Terminal };
+                learner.rule.learn(&mut learner.values, step);
+                assert_eq!(learner.values.weights, [value]);
+            }
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The trait of all prediction methods.
+
+use super::LinearValues;
+use crate::memory::AllocationError;
+use crate::tasks::Next;
+
+/// A step: the state, the action taken in it, the reward and what followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PredictionStep {
+    /// The number of the state.
+    pub state: u32,
+    /// The action.
+    pub action: usize,
+    /// The reward.
+    pub reward: f64,
+    /// What followed.
+    pub next: Next<u32>,
+}
+
+impl PredictionStep {
+    /// Whether the episode ends here, in a terminal state or by its time limit.
+    #[inline]
+    pub fn is_last(&self) -> bool {
+        !matches!(self.next, Next::NonTerminal(_))
+    }
+}
+
+/// How a method changes the values. It draws no random numbers.
+pub trait PredictionRule {
+    /// Learns from one step.
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep);
+
+    /// The work of the last call, as [`Budget`](crate::Budget) counts it. At least 1.
+    fn work(&self) -> u64 {
+        1
+    }
+
+    /// Whether the last step still has work to do, which `resume` continues.
+    fn is_unfinished(&self) -> bool {
+        false
+    }
+
+    /// Continues to learn from the last step.
+    fn resume(&mut self, _values: &mut LinearValues) {}
+
+    /// Called after the last step of every episode.
+    fn end_episode(&mut self, _values: &mut LinearValues) {}
+
+    /// Makes room for what so many steps store.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    fn reserve(&mut self, _steps: u64) -> Result<(), AllocationError> {
+        Ok(())
+    }
+}
+
+impl PredictionRule for Box<dyn PredictionRule + Send> {
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+        (**self).learn(values, step);
+    }
+
+    fn work(&self) -> u64 {
+        (**self).work()
+    }
+
+    fn is_unfinished(&self) -> bool {
+        (**self).is_unfinished()
+    }
+
+    fn resume(&mut self, values: &mut LinearValues) {
+        (**self).resume(values);
+    }
+
+    fn end_episode(&mut self, values: &mut LinearValues) {
+        (**self).end_episode(values);
+    }
+
+    fn reserve(&mut self, steps: u64) -> Result<(), AllocationError> {
+        (**self).reserve(steps)
+    }
+}

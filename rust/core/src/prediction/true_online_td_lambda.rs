@@ -1,0 +1,75 @@
+//! True online TD(λ), with dutch traces (H. van Seijen and R. Sutton, 2014; Sutton & Barto, the box in section 12.5).
+
+use super::td_lambda::Traces;
+use super::{LinearValues, PredictionRule, PredictionStep};
+use crate::tasks::Next;
+
+/// With the weights w, the traces z, the binary features x of S, V = wᵀx and V′ = wᵀx′:
+///
+/// - δ = R + γ V′ - V
+/// - z ← γλ z + (1 - αγλ zᵀx) x
+/// - w ← w + α (δ + V - Vₒ) z - α (V - Vₒ) x
+/// - Vₒ ← V′
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrueOnlineTdLambda {
+    trace_decay: f64,
+    traces: Traces,
+    v_old: f64,
+}
+
+impl TrueOnlineTdLambda {
+    /// `trace_decay` is λ, and `weights` the number of weights.
+    pub fn new(trace_decay: f64, weights: usize) -> Self {
+        Self { trace_decay, traces: Traces::new(weights), v_old: 0.0 }
+    }
+}
+
+impl PredictionRule for TrueOnlineTdLambda {
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+        let next_value = match step.next {
+            Next::NonTerminal(next) | Next::Truncated(next) => values.value(next),
+            Next::Terminal => 0.0,
+        };
+        let value = values.value(step.state);
+        let error = step.reward + values.discount * next_value - value;
+        values.check_finite(error);
+        let (step_size, decay) = (values.step_size(), values.discount * self.trace_decay);
+        let overlap = values.rows.of(step.state).iter().fold(0.0, |sum, &row| sum + self.traces.values[row as usize]);
+        self.traces.decay(decay);
+        for &row in values.rows.of(step.state) {
+            self.traces.add(row, 1.0 - step_size * decay * overlap);
+        }
+        let change = value - self.v_old;
+        self.traces.apply(&mut values.weights, step_size * (error + change));
+        for &row in values.rows.of(step.state) {
+            values.weights[row as usize] -= step_size * change;
+        }
+        self.v_old = next_value;
+    }
+
+    fn work(&self) -> u64 {
+        self.traces.work()
+    }
+
+    fn end_episode(&mut self, _values: &mut LinearValues) {
+        self.v_old = 0.0;
+        self.traces.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prediction::test_support::{last, predictor, step};
+
+    #[test]
+    fn an_episode_by_hand() {
+        let mut learner = predictor(&[1.0, 3.0], TrueOnlineTdLambda::new(0.5, 2));
+        // z = 1; δ = -1 + 0.5 · 3 - 1; 1 + 0.5 (δ + 1 - 0) - 0.5 (1 - 0)
+        learner.rule.learn(&mut learner.values, step(0, -1.0, 1));
+        assert_eq!(learner.values.weights, [0.75, 3.0]);
+        // z = 1/4 and 1, V = V_old = 3; δ = -1 - 3
+        learner.rule.learn(&mut learner.values, last(1, -1.0));
+        assert_eq!(learner.values.weights, [0.25, 1.0]);
+    }
+}

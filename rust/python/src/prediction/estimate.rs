@@ -1,0 +1,151 @@
+//! Estimates with many seeds in one call, on threads of the call's own where Rust steps the environment.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+
+use numpy::{PyReadonlyArray1, PyReadwriteArray3, PyUntypedArrayMethods};
+use pyo3::exceptions::PyOverflowError;
+use pyo3::prelude::*;
+use qtab_core::{Budget, StopFlag};
+
+use super::PredictionSpec;
+use crate::convert::{Seed, Seeds};
+use crate::error::{RunError, invalid};
+use crate::interrupt::run_interruptible;
+use crate::runs::{Run, RunFactory, python_run};
+use crate::spec::{Fields, RunSpec};
+use crate::training::{EnvironmentSpec, WORK_BETWEEN_CHECKS};
+
+/// How many episodes are logged at once. Their returns are of no further use.
+const EPISODES_AT_ONCE: u64 = 1 << 16;
+
+/// The index of a run that failed, and why.
+type FailedRun = (usize, PyErr);
+
+/// A run, and the part of the results that is its own: a row of weights for each recorded episode.
+type Rows<'a> = std::iter::Enumerate<std::slice::ChunksMut<'a, f64>>;
+
+/// Estimates values with one run for each seed on `threads` threads, and writes the weights after each of the ascending
+/// numbers of `episodes` into `weights`, (seeds, episodes, weights). Returns the runs that failed; what they had not reached
+/// is left as it was.
+#[pyfunction]
+pub(crate) fn estimate_values(
+    py: Python<'_>,
+    spec: &Bound<'_, PyAny>,
+    prediction: &Bound<'_, PyAny>,
+    seeds: Seeds,
+    episodes: PyReadonlyArray1<'_, u64>,
+    mut weights: PyReadwriteArray3<'_, f64>,
+    threads: usize,
+) -> PyResult<Vec<FailedRun>> {
+    let fields = Fields::new(spec)?;
+    let mut run_spec = RunSpec::parse(&fields)?;
+    let prediction = PredictionSpec::parse(&Fields::new(prediction)?, run_spec.num_actions)?;
+    let (Seeds(seeds), episodes) = (seeds, episodes.as_slice()?);
+    let expected = [seeds.len(), episodes.len(), prediction.n_weights()];
+    if weights.shape() != expected || episodes.is_empty() {
+        let got = format!("{:?}", weights.shape());
+        return Err(invalid("weights", format!("an array of shape {expected:?}, none of them 0"), got));
+    }
+    let size = expected[1] * expected[2];
+    run_spec.prediction = Some(Arc::new(prediction));
+    let run_spec = Arc::new(run_spec);
+    let mut rows = weights.as_slice_mut()?.chunks_mut(size.max(1)).enumerate();
+    match EnvironmentSpec::parse(&fields.nested("env")?)? {
+        EnvironmentSpec::Native(env) => {
+            let factory = env.runs(&run_spec, 0)?;
+            let work =
+                Work { factory: &*factory, seeds: &seeds, episodes, rows: Mutex::new(rows), failed: Mutex::default() };
+            run_interruptible(py, |stop| {
+                thread::scope(|scope| {
+                    // This thread is one of the workers.
+                    for _ in 1..threads.min(seeds.len()) {
+                        // Threads may run out. Those that there are then do all the work.
+                        if thread::Builder::new().spawn_scoped(scope, || work.run_worker(stop)).is_err() {
+                            break;
+                        }
+                    }
+                    work.run_worker(stop);
+                });
+            })?;
+            let mut failed = work.failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+            failed.sort_by_key(|&(index, _)| index);
+            Ok(failed)
+        }
+        EnvironmentSpec::Python(env) => {
+            let [seed] = &seeds[..] else { return Err(invalid("seeds", "one, where Python steps", seeds.len())) };
+            let mut run = python_run(py, env, &run_spec, seed, (0, &StopFlag::new()))?.run;
+            let Some((_, row)) = rows.next() else { return Ok(Vec::new()) };
+            let check = || py.check_signals().map_err(RunError::from);
+            advance(&mut *run, episodes, row, check).map_err(as_python)?;
+            Ok(Vec::new())
+        }
+    }
+}
+
+/// What the threads of one call share.
+struct Work<'a> {
+    factory: &'a dyn RunFactory,
+    seeds: &'a [Seed],
+    episodes: &'a [u64],
+    rows: Mutex<Rows<'a>>,
+    failed: Mutex<Vec<FailedRun>>,
+}
+
+impl Work<'_> {
+    /// What one thread does: one run after the other, until none is left.
+    fn run_worker(&self, stop: &StopFlag<'_>) {
+        while !stop.is_set() {
+            let Some((index, row)) = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
+            let check = || if stop.is_set() { Err(RunError::Allocation(STOPPED)) } else { Ok(()) };
+            let done = self
+                .factory
+                .build(&self.seeds[index], stop)
+                .and_then(|mut built| advance(&mut *built.run, self.episodes, row, check).map_err(as_python));
+            if let Err(error) = done {
+                self.failed.lock().unwrap_or_else(PoisonError::into_inner).push((index, error));
+            }
+        }
+    }
+}
+
+const STOPPED: qtab_core::memory::AllocationError = qtab_core::memory::AllocationError::Stopped;
+
+/// Runs to each of these numbers of episodes, and writes the weights then.
+fn advance(
+    run: &mut dyn Run,
+    episodes: &[u64],
+    row: &mut [f64],
+    check: impl Fn() -> Result<(), RunError>,
+) -> Result<(), RunError> {
+    let width = row.len() / episodes.len();
+    let mut finished = 0;
+    for (&point, weights) in episodes.iter().zip(row.chunks_mut(width.max(1))) {
+        while finished < point {
+            let goal = (point - finished).min(EPISODES_AT_ONCE);
+            while (run.episodes().returns.len() as u64) < goal {
+                let budget = Budget { episodes: goal as usize, work: WORK_BETWEEN_CHECKS };
+                run.advance(budget).map_err(|error| match error {
+                    RunError::Diverged { episode } => RunError::Diverged { episode: episode + finished as usize },
+                    error => error,
+                })?;
+                check()?;
+            }
+            run.take_episodes();
+            finished += goal;
+        }
+        weights.copy_from_slice(run.tables()[0]);
+    }
+    Ok(())
+}
+
+/// The error as Python raises it.
+fn as_python(error: RunError) -> PyErr {
+    match error {
+        RunError::Diverged { episode } => PyOverflowError::new_err(format!(
+            "the values overflowed in episode {episode} (counted from 0): the updates grow instead of settling; a smaller \
+             learning_rate or trace_decay helps"
+        )),
+        error => error.into(),
+    }
+}

@@ -1,0 +1,67 @@
+"""The checks of the built site find what they are for."""
+
+import importlib.util
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from support.repository import ROOT
+
+
+def load(path: str) -> Any:
+    spec = importlib.util.spec_from_file_location(Path(path).stem, ROOT / path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize(
+    ("html", "problem"),
+    [
+        ('<img src="a.png">', "no description"),
+        ('<img src="a.png" alt="">', "no description"),
+        ('<img src="a.png" alt="../_images/a.png">', "no description"),  # what Sphinx writes without one
+        ('<svg role="img"></svg>', "no description"),
+        ('<iframe src="playground/index.html"></iframe>', "no description"),
+        ('<script src="https://cdn.example/x.js"></script>', "loads https://cdn.example/x.js"),
+        ('<link rel="stylesheet" href="//fonts.example/a.css">', "loads //fonts.example/a.css"),
+        ('<img alt="A curve" srcset="a.png 1x, https://example.com/b.png 2x">', "loads https://example.com/b.png"),
+        ("<style>@import 'https://example.com/a.css';</style>", "loads https://example.com/a.css"),
+        ('<p style="background: url(http://example.com/a.png)">', "loads http://example.com/a.png"),
+    ],
+)
+def test_a_bad_page_is_found(tmp_path: Path, html: str, problem: str) -> None:
+    (tmp_path / "page.html").write_text(html, encoding="utf-8")
+    (found,) = load("docs/_checks/static.py").problems(tmp_path)
+    assert found.startswith(f"page.html: {problem}")
+
+
+def test_a_bad_style_sheet_is_found(tmp_path: Path) -> None:
+    (tmp_path / "site.css").write_text("a { background: url(https://example.com/a.png) }", encoding="utf-8")
+    assert load("docs/_checks/static.py").problems(tmp_path) == ["site.css: loads https://example.com/a.png"]
+
+
+def test_a_good_page_is_left_in_peace(tmp_path: Path) -> None:
+    page = """<link rel="canonical" href="https://example.com"><a href="https://example.com">elsewhere</a>
+    <img class="logo__image" src="icon.svg" alt=""><svg aria-hidden="true" role="img"></svg>
+    <img src="data:image/png;base64,AAAA" alt="A learning curve"><script src="_static/a.js"></script>"""
+    (tmp_path / "page.html").write_text(page, encoding="utf-8")
+    assert load("docs/_checks/static.py").problems(tmp_path) == []
+
+
+def test_links_out_of_the_documentation_become_pages_of_the_site() -> None:
+    pytest.importorskip("sphinx")
+    links = load("docs/_extensions/outside_links.py")
+    text = "[a](../../examples/study.ipynb) [b](../../CONTRIBUTING.md#tasks) [c](spaces.md) ![d](../gallery/x.png)"
+    assert links.rewrite(text, "docs/how_to") == (
+        "[a](../notebooks/study.ipynb) [b](../reference/contributing.md) [c](spaces.md) ![d](../gallery/x.png)"
+    )
+    assert (
+        links.rewrite_notebook("[e](chapter_6.ipynb) [f](../docs/book.md#x)")
+        == "[e](chapter_6.ipynb) [f](../book.md#x)"
+    )
+    with pytest.raises(Exception, match="not a file of the repository"):
+        links.rewrite("[g](../../nothing.md)", "docs/how_to")
