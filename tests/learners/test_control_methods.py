@@ -95,6 +95,7 @@ def test_a_count_bonus_falls_with_the_visits_and_is_no_part_of_the_returns() -> 
     env = qtab.TabularEnv(table, [1.0, 0.0])
     settings: dict[str, Any] = {"learning_rate": 1.0, "epsilon": 1.0, "episodes": 30, "seed": 0}
     run = qtab.train(env, **settings, count_bonus=3.0, visits=True)
+    assert run.visits is not None
     counts = run.visits[0]
     assert counts.min() > 5
     assert run.q_table[0].tolist() == [action + 3.0 / np.sqrt(count) for action, count in enumerate(counts)]

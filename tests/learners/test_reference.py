@@ -41,6 +41,8 @@ def test_random_settings_give_the_identical_table(algorithm: Any, env: str) -> N
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_long_episode_gives_the_identical_table(algorithm: Any, seed: int) -> None:
+    exploration: dict[str, Any] = {} if algorithm in PREFERENCES else {"epsilon": 0.1}
+    cells: dict[str, Any] = {"scale": (10, 100)} if algorithm in TABLES_ONLY else {"discretizer": "tiles"}
     run = qtab.train(
         "MountainCar-v0",
         algorithm=algorithm,
@@ -50,8 +52,8 @@ def test_a_long_episode_gives_the_identical_table(algorithm: Any, seed: int) -> 
         learning_rate=0.3,
         discount=1.0,
         initial_q=0.0,
-        **({} if algorithm in PREFERENCES else {"epsilon": 0.1}),
-        **({"scale": (10, 100)} if algorithm in TABLES_ONLY else {"discretizer": "tiles"}),
+        **exploration,
+        **cells,
     )
     assert qtab.verify(run).equal
 

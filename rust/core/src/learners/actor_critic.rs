@@ -91,9 +91,9 @@ mod tests {
         let mut learner = PolicyGradientLearner { agent, critic: Some(critic), rule: ActorCritic::new() };
         // δ = 3 + 0.5 · 4 - 1
         learner.learn([0], 0, 3.0, Next::NonTerminal([1]), &mut rng());
-        assert_eq!(learner.tables(), [&[1.0, -1.0, 0.0, 0.0], &[2.0, 2.0, 4.0, 4.0]]);
+        assert_eq!(Learner::<[u32; 1]>::tables(&learner), [&[1.0, -1.0, 0.0, 0.0], &[2.0, 2.0, 4.0, 4.0]]);
         // δ = 8 - 4, and I = 0.5
         learner.learn([1], 0, 8.0, Next::Terminal, &mut rng());
-        assert_eq!(learner.tables(), [&[1.0, -1.0, 0.5, -0.5], &[2.0, 2.0, 5.0, 5.0]]);
+        assert_eq!(Learner::<[u32; 1]>::tables(&learner), [&[1.0, -1.0, 0.5, -0.5], &[2.0, 2.0, 5.0, 5.0]]);
     }
 }

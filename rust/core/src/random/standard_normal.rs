@@ -10,7 +10,7 @@ const LAYERS: usize = 256;
 /// Where the tail begins: the right end of the lowest layer.
 const TAIL: f64 = 3.654_152_885_361_009;
 /// 1 / `TAIL`, as `NumPy` rounds it.
-const TAIL_INVERSE: f64 = 0.273_661_237_329_758_27;
+const TAIL_INVERSE: f64 = 0.273_661_237_329_758_3;
 /// The area of a layer, as far as it can be told from `NumPy`'s tables.
 const AREA: f64 = 0.004_928_673_233_974_652;
 /// 2⁵², the number of values that a coordinate can have.

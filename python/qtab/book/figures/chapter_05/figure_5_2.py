@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from qtab._utils.checks import required
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing.blackjack import DEALER, USABLE, draw_blackjack
 from qtab.book.experiment import Experiment
@@ -33,14 +34,16 @@ CONFIG: dict[str, Any] = {
 def values_of(table: FloatArray) -> FloatArray:
     """Returns (actions, usable ace, sums, dealer's cards) of a table of Gymnasium's observations."""
     shape = (32, 11, 2, 2)
-    return table.reshape(shape)[SUMS.start : SUMS.stop, 1:].transpose(3, 2, 0, 1)
+    values: FloatArray = table.reshape(shape)[SUMS.start : SUMS.stop, 1:].transpose(3, 2, 0, 1)
+    return values
 
 
 def lowest_stick(values: FloatArray) -> FloatArray:
     """Returns (usable ace, dealer's cards): the lowest sum from which on the greedy policy sticks."""
     sticks = values.argmax(axis=0) == STICK
     from_here_on = np.flip(np.cumprod(np.flip(sticks, axis=1), axis=1), axis=1)
-    return SUMS.stop - from_here_on.sum(axis=1).astype(np.float64)
+    lowest: FloatArray = SUMS.stop - from_here_on.sum(axis=1).astype(np.float64)
+    return lowest
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -63,7 +66,7 @@ class ExploringStarts(Experiment):
             for first in range(0, runs, threads):
                 seeds = range(seed + first, seed + min(first + threads, runs))
                 trained = train_many(**CONFIG, seeds=seeds, tables=True, threads=threads, progress=False)
-                tables += [values_of(table) for table in trained.tables]
+                tables += [values_of(table) for table in required("tables", trained.tables)]
                 bar.move_to(len(tables))
         thresholds = np.stack([lowest_stick(values) for values in tables])
         error = thresholds.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(thresholds.shape[1:], np.nan)

@@ -69,8 +69,8 @@ def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
         lower.fill_between(line.x, line.mean - 2 * error, line.mean + 2 * error, color=hue, alpha=0.25, linewidth=0)
         lower.plot(line.x, line.mean, color=hue, marker="o", markersize=4)
         top = int(line.mean.argmax())
-        where = line.x[top], line.mean[top]
-        lower.annotate(line.name, where, (8, 0), textcoords="offset points", va="center", color=hue)
+        peak = line.x[top], line.mean[top]
+        lower.annotate(line.name, peak, (8, 0), textcoords="offset points", va="center", color=hue)
     lower.axhline(0, color="0.6", linewidth=0.8)
     lower.set_xlim(-0.5, SERVERS + 0.5)
     lower.set_xticks(free)

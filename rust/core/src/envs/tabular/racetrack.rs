@@ -62,7 +62,7 @@ impl Racetrack {
 
     /// The cell that the car reaches from a cell with these velocities; `None` where it leaves the track. The path is a
     /// straight line, looked at once for each cell of its longer side, rounded to the nearest cell.
-    fn move_by(&self, cell: u32, up: u32, right: u32) -> Option<(u32, bool)> {
+    fn cell_reached(&self, cell: u32, up: u32, right: u32) -> Option<(u32, bool)> {
         let (row, column, steps) = (cell / self.columns, cell % self.columns, up.max(right));
         let mut reached = cell;
         for step in 1..=steps {
@@ -112,7 +112,7 @@ impl Env for Racetrack {
         // The car stands still on the starting line only.
         let stands = wanted == (0, 0) && self.ground[cell as usize] != Ground::Start;
         let (up, right) = if stands { (up, right) } else { wanted };
-        let (state, terminated) = match self.move_by(cell, up, right) {
+        let (state, terminated) = match self.cell_reached(cell, up, right) {
             Some((cell, finished)) => ((cell * VELOCITIES + up) * VELOCITIES + right, finished),
             None => (self.start(rng), false),
         };
