@@ -2,7 +2,7 @@
 
 use super::{
     ActorCritic, ActorCriticLambda, Agent, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
-    DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarlo, MonteCarloEs, NStepQSigma, NStepSarsa,
+    DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarloControl, MonteCarloEs, NStepQSigma, NStepSarsa,
     NStepTreeBackup, OffPolicyMonteCarlo, PolicyGradientLearner, PolicyGradientRule, PrioritizedSweeping, QLearning,
     Reinforce, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceOptions, Traces,
     TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
@@ -55,7 +55,7 @@ pub enum AnyAlgorithm {
         /// The updates from the model after each step.
         planning_steps: u32,
     },
-    /// [`MonteCarlo`]
+    /// [`MonteCarloControl`]
     MonteCarlo {
         /// The most steps of an episode.
         max_episode_steps: u64,
@@ -241,7 +241,7 @@ impl AnyAlgorithm {
                 with_rule(agent, DynaQ::new(model, planning_steps), visitor)
             }
             Self::MonteCarlo { max_episode_steps } => {
-                with_rule(agent, MonteCarlo::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)
+                with_rule(agent, MonteCarloControl::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)
             }
             Self::MonteCarloEs { max_episode_steps } => {
                 with_rule(agent, MonteCarloEs::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)

@@ -41,7 +41,7 @@ pub use dyna_q::DynaQ;
 pub use dyna_q_plus::DynaQPlus;
 pub use expected_sarsa::ExpectedSarsa;
 pub use gradient_bandit::GradientBandit;
-pub use monte_carlo::MonteCarlo;
+pub use monte_carlo::MonteCarloControl;
 pub use monte_carlo_es::MonteCarloEs;
 pub use n_step_q_sigma::{NStepQSigma, QSigma};
 pub use n_step_sarsa::{NStepReturn, NStepSarsa};

@@ -15,11 +15,11 @@ use crate::tasks::Next;
 /// With α = 1/n at the n-th visit of a pair, Q is the average of the returns, as in the book. The returns of an episode that
 /// was truncated end with the value of a sampled action in its last state.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MonteCarlo {
+pub struct MonteCarloControl {
     visits: FirstVisits,
 }
 
-impl MonteCarlo {
+impl MonteCarloControl {
     /// An update rule before the first episode of at most `max_episode_steps` steps, on a table of so many pairs.
     ///
     /// # Errors
@@ -29,7 +29,7 @@ impl MonteCarlo {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarlo {
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarloControl {
     #[inline]
     fn learn(
         &mut self,
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn only_the_first_visit_of_a_pair_is_updated() {
-        let rule = MonteCarlo::new(4, 9, &StopFlag::new()).expect("a few pairs");
+        let rule = MonteCarloControl::new(4, 9, &StopFlag::new()).expect("a few pairs");
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         for (state, reward) in [(0, -1.0), (1, -2.0), (0, -4.0)] {
             learner.learn([state], 0, reward, Next::NonTerminal([1]), &mut rng());
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn a_truncated_episode_ends_with_the_value_of_its_last_state() {
-        let rule = MonteCarlo::new(4, 9, &StopFlag::new()).expect("a few pairs");
+        let rule = MonteCarloControl::new(4, 9, &StopFlag::new()).expect("a few pairs");
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         learner.learn([0], 0, -1.0, Next::Truncated([1]), &mut rng());
         // 1 + 0.5 (-1 + 0.5 · 3 - 1)
