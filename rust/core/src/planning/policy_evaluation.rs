@@ -152,7 +152,7 @@ mod tests {
                 if right { (state + 1 == states, state + 1) } else { (state == 0, state.wrapping_sub(1)) };
             let reward = f64::from(u8::from(end && right));
             let state = if end { state } else { next };
-            vec![Outcome { probability: 1.0, state: state as i64, reward, terminated: end }]
+            vec![Outcome { probability: 1.0, state: (state as u64).cast_signed(), reward, terminated: end }]
         };
         let pairs: Vec<_> = (0..states).flat_map(|state| [step(state, false), step(state, true)]).collect();
         let start: Vec<f64> = (0..states).map(|state| f64::from(u8::from(state == states / 2))).collect();

@@ -22,9 +22,11 @@ pub(crate) const ALGORITHMS: &[Variant<AnyAlgorithm>] = &[
     ("watkins_q_lambda", |fields| trace_options(fields).map(AnyAlgorithm::WatkinsQLambda)),
     ("dyna_q", |fields| {
         let planning_steps = fields.get("planning_steps")?;
-        Ok(match fields.word("model", &[("deterministic", false), ("stochastic", true)])? {
-            false => AnyAlgorithm::DynaQ { planning_steps },
-            true => AnyAlgorithm::StochasticDynaQ { planning_steps },
+        let is_stochastic = fields.word("model", &[("deterministic", false), ("stochastic", true)])?;
+        Ok(if is_stochastic {
+            AnyAlgorithm::StochasticDynaQ { planning_steps }
+        } else {
+            AnyAlgorithm::DynaQ { planning_steps }
         })
     }),
     ("dyna_q_plus", |fields| {
