@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 import qtab
 from qtab.config.choices import CHOICES
+from qtab.config.options import PREFERENCES
 from qtab.config.presets import _PRESETS
 
 AXES = Figure().subplots()
@@ -32,7 +33,8 @@ def check(env: str, preset: Mapping[str, Any], exploration: Mapping[str, Any], r
     AXES.clear()
     ax = qtab.plot(run, AXES)
     notes = ax.get_title("right") + "".join(text.get_text() for text in ax.texts)
-    assert ("τ = 0.5" if exploration is SOFTMAX else "ε = ") in notes
+    greedy = preset.get("algorithm") not in PREFERENCES
+    assert ("τ = 0.5" if exploration is SOFTMAX else "ε = " if greedy else "τ = 1") in notes
     assert ax.get_legend() is not None
 
 
@@ -42,7 +44,8 @@ def test_every_preset_is_plotted_with_every_way_of_exploring(env: str) -> None:
     for preset in qtab.presets(env).values():
         # Missing actions, which -inf stands for, have no softmax.
         has_all_actions = not np.isneginf(np.array(preset.get("initial_q", 0.0))).any()
-        for exploration in EXPLORATIONS if has_all_actions else [{}]:
+        explorations = EXPLORATIONS if preset.get("algorithm") not in PREFERENCES else [{}, SOFTMAX]
+        for exploration in explorations if has_all_actions else [{}]:
             check(env if env in gym.registry else f"qtab/{env}", preset, exploration, next(rates))
 
 
