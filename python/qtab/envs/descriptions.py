@@ -122,13 +122,15 @@ DESCRIPTIONS: Mapping[str, Description] = {
     "qtab/AccessControlQueue": Description(_STATE, ("reject", "accept")),
     "qtab/BlockingMaze": Description(_STATE, ("up", "right", "down", "left")),
     "qtab/DynaMaze": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/Racetrack": Description(_STATE),
+    "qtab/Racetrack": Description(
+        _STATE, tuple(f"{up:+} up, {right:+} right" for up in (-1, 0, 1) for right in (-1, 0, 1))
+    ),
     "qtab/ShortcutMaze": Description(_STATE, ("up", "right", "down", "left")),
     "qtab/GamblersProblem": Description((Quantity("capital", "$"),), tuple(f"stake {stake}" for stake in range(1, 51))),
     "qtab/GridWorld4x4": Description(_STATE, ("up", "right", "down", "left")),
     "qtab/GridWorld5x5": Description(_STATE, ("up", "right", "down", "left")),
     "qtab/JacksCarRental": Description(_STATE, tuple(f"move {moved}" for moved in range(-5, 6))),
-    "qtab/RandomMdp": Description(_STATE),
+    "qtab/RandomMdp": Description(_STATE, ("first", "second")),
     "qtab/RandomWalk": Description(_STATE, ("left", "right")),
     "qtab/KArmedBandit": Description(
         (Quantity("state", values=("bandit",)),), tuple(f"arm {number}" for number in range(1, 11))
