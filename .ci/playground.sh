@@ -32,7 +32,7 @@ find_chromium() {
     [ -z "$CHROMIUM" ] || return 0
     local sudo=
     [ "$(id -u)" = 0 ] || sudo=sudo
-    $sudo apt-get install --yes --quiet chromium && CHROMIUM=$(type -P chromium)
+    { $sudo apt-get update --quiet=2 || true; } && $sudo apt-get install --yes --quiet chromium && CHROMIUM=$(type -P chromium)
 }
 
 # The playground in Chromium: the module built anew, its tables compared with Python's, the page's controls.
