@@ -37,6 +37,7 @@ SHORT = {
         "numpy.ndarray",
         "numpy.typing.ArrayLike",
         "numpy.typing.NDArray",
+        "numpy.uint32",
         "numpy.uint8",
         "os.PathLike",
         "pandas.DataFrame",
@@ -53,9 +54,9 @@ SHORT = {
     "stable_baselines3.common.vec_env.base_vec_env.VecEnv": "stable_baselines3.common.vec_env.VecEnv",
 }
 """The full names of the types in signatures, which show them by their last part, and of those defined elsewhere."""
-WITHOUT_A_PAGE = ("SharedSettings", "WhatIf")
+WITHOUT_A_PAGE = ("SharedSettings", "ValuesVerification", "WhatIf")
 """Types of this package that have no page and are named by strings."""
-MODULES = ("book", "callbacks", "designs", "planning", "playground", "plots", "stats")
+MODULES = ("book", "callbacks", "designs", "planning", "playground", "plots", "prediction", "stats")
 """The modules among the public names, whose own names are public too."""
 
 

@@ -20,7 +20,7 @@ def state_aggregation(states: int, size: int) -> Rows:
         size: The number of states of a group; the last one may be smaller.
 
     Returns:
-        (states, 1) uint32: the group of each state.
+        The group of each state, (states, 1) uint32.
 
     Raises:
         TypeError: for an argument that is no integer.
@@ -42,7 +42,7 @@ def tile_coding(states: int, width: int, tilings: int = 1, offset: int = 0) -> R
         offset: The number of states by which each tiling is shifted against the one before.
 
     Returns:
-        (states, tilings) uint32: the tile of each state in each tiling.
+        The tile of each state in each tiling, (states, tilings) uint32.
 
     Raises:
         TypeError: for an argument that is no integer.
