@@ -51,13 +51,13 @@ def free_memory() -> int:
     if sys.platform == "win32":
         free.append(windows_memory()[1] or sys.maxsize)
     with suppress(OSError, ValueError, StopIteration):
-        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+        lines = Path("/proc/meminfo").read_text(encoding="utf-8").splitlines()
         available = next(line for line in lines if line.startswith("MemAvailable:"))
         free.append(1024 * int(available.split()[1]))
     for limit, usage in _CONTROL_GROUPS:
         # "max" stands for no limit.
         with suppress(OSError, ValueError):
-            free.append(int(Path(limit).read_text(encoding="ascii")) - int(Path(usage).read_text(encoding="ascii")))
+            free.append(int(Path(limit).read_text(encoding="utf-8")) - int(Path(usage).read_text(encoding="utf-8")))
     return max(min(free), 0)
 
 
