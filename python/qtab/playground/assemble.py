@@ -3,12 +3,14 @@
 import base64
 import json
 from importlib.resources import files
-from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from qtab.playground.bundle import bundle
 from qtab.playground.definitions import definitions
+
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable  # Python 3.11 and later
 
 BUILD_COMMAND = "rustup target add wasm32-unknown-unknown && python rust/web/build_backend.py"
 """What builds the WebAssembly module in a checkout."""
@@ -85,7 +87,7 @@ def wasm() -> bytes:
         ) from None
 
 
-def _folder() -> Traversable:
+def _folder() -> "Traversable":
     return files("qtab.playground") / "page"
 
 
