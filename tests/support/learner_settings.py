@@ -35,9 +35,12 @@ KEYWORDS: dict[str, tuple[str, list[Any]]] = {
 TRAINED = [
     pytest.param(
         env,
-        marks=pytest.mark.skipif(
-            not _core.matches_numpy(ENTRIES[env].name), reason=f"Rust does not compute as NumPy here: {MACHINE}"
-        ),
+        marks=[
+            pytest.mark.skipif(
+                not _core.matches_numpy(ENTRIES[env].name), reason=f"Rust does not compute as NumPy here: {MACHINE}"
+            ),
+            *[pytest.mark.slow] * (env != CAR),  # many examples more of what MountainCar shows of each algorithm
+        ],
     )
     for env in LIMITS
 ]
