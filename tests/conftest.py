@@ -50,7 +50,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Starts the slow tests first where several processes share the tests."""
     processes = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
     if processes > 1:
-        items[:] = selection.slow_first(items, [item.get_closest_marker("slow") is not None for item in items], processes)
+        items[:] = selection.slow_first(
+            items, [item.get_closest_marker("slow") is not None for item in items], processes
+        )
 
 
 def pytest_collection_finish() -> None:
