@@ -35,7 +35,8 @@ pytestmark = [
 
 def make(name: str, **kwargs: Any) -> gym.Env:
     """Makes an environment; the only one with millions of transitions, which take a second, with fewer of them."""
-    return gym.make(name, **({"cars": 4} if "JacksCarRental" in name else {}), **kwargs)
+    smaller: dict[str, Any] = {"cars": 4} if "JacksCarRental" in name else {}
+    return gym.make(name, **smaller, **kwargs)
 
 
 def walk(env: gym.Env, steps: int = 25, seed: int | None = 7) -> list[Any]:
