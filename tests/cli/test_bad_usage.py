@@ -76,6 +76,7 @@ def test_it_is_refused_in_one_line(tmp_path: Path, line: str, said: str) -> None
     assert len(answer) < 1000
 
 
+@pytest.mark.slow
 def test_the_frame_of_a_terminal_is_taken_off(tmp_path: Path) -> None:
     done = qtab("train", "--learnig-rate", "3", cwd=tmp_path, PYTHONIOENCODING="utf-8", LC_ALL="C.UTF-8")
     said = "unknown option --learnig-rate (did you mean --learning-rate?); see qtab train --help"
