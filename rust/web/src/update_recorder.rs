@@ -1,8 +1,7 @@
 //! A learner whose updates are seen from outside, so that it stays the same.
 
-use qtab_core::Learner;
+use qtab_core::{Learner, delegate_learner};
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
-use qtab_core::memory::AllocationError;
 use qtab_core::random::Rng;
 use qtab_core::tasks::Next;
 
@@ -25,9 +24,7 @@ impl<L> UpdateRecorder<L> {
 }
 
 impl<R: Copy + AsRef<[u32]>, L: Learner<R>> Learner<R> for UpdateRecorder<L> {
-    fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
-        self.learner.first_action(state, rng)
-    }
+    delegate_learner!(rest R, learner in Self { learner, .. });
 
     #[inline]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
@@ -47,18 +44,6 @@ impl<R: Copy + AsRef<[u32]>, L: Learner<R>> Learner<R> for UpdateRecorder<L> {
         next_action
     }
 
-    fn work(&self) -> u64 {
-        self.learner.work()
-    }
-
-    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
-        self.learner.reserve(work)
-    }
-
-    fn is_unfinished(&self) -> bool {
-        self.learner.is_unfinished()
-    }
-
     fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
         self.learner.resume(next, rng)
     }
@@ -70,35 +55,7 @@ impl<R: Copy + AsRef<[u32]>, L: Learner<R>> Learner<R> for UpdateRecorder<L> {
         }
     }
 
-    fn complete_tables(&mut self) {
-        self.learner.complete_tables();
-    }
-
-    fn tables(&self) -> Vec<&[f64]> {
-        self.learner.tables()
-    }
-
-    fn tables_mut(&mut self) -> Vec<&mut [f64]> {
-        self.learner.tables_mut()
-    }
-
-    fn shape(&self) -> (usize, usize) {
-        self.learner.shape()
-    }
-
-    fn skip_episodes(&mut self, episodes: usize) {
-        self.learner.skip_episodes(episodes);
-    }
-
-    fn abandon_episode(&mut self) {
-        self.learner.abandon_episode();
-    }
-
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.learner.persist(checkpoint)
-    }
-
-    fn diverged(&self) -> bool {
-        self.learner.diverged()
     }
 }
