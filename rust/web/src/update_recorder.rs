@@ -1,9 +1,9 @@
 //! A learner whose updates are seen from outside, so that it stays the same.
 
-use qtab_core::{Learner, delegate_learner};
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
 use qtab_core::random::Rng;
 use qtab_core::tasks::Next;
+use qtab_core::{Learner, delegate_learner};
 
 use crate::updates::{ObservedStep, Watch};
 
@@ -28,7 +28,10 @@ impl<R: Copy + AsRef<[u32]>, L: Learner<R>> Learner<R> for UpdateRecorder<L> {
 
     #[inline]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
-        let Some(watch) = &mut self.watch else { return self.learner.learn(state, action, reward, next, rng) };
+        let begun = self.watch.as_mut().map(|watch| (watch.begin_step(state.as_ref()), watch));
+        let Some((true, watch)) = begun else { return self.learner.learn(state, action, reward, next, rng) };
+        // Traces keep values outside the tables.
+        self.learner.complete_tables();
         let (next_rows, truncated) = match &next {
             Next::NonTerminal(rows) => (rows.as_ref(), false),
             Next::Truncated(rows) => (rows.as_ref(), true),
@@ -36,7 +39,6 @@ impl<R: Copy + AsRef<[u32]>, L: Learner<R>> Learner<R> for UpdateRecorder<L> {
         };
         let before = watch.before(&self.learner.tables(), state.as_ref(), action, next_rows);
         let next_action = self.learner.learn(state, action, reward, next, rng);
-        // Traces keep values outside the tables.
         self.learner.complete_tables();
         let chosen = matches!(next, Next::NonTerminal(_)).then_some(next_action);
         let step = ObservedStep { state: state.as_ref(), action, reward, next_rows, truncated, next_action: chosen };
