@@ -11,7 +11,7 @@ from qtab.training.train import train
 TITLE = "Bandits, prediction and control, one thread"
 
 BANDIT = "ε-greedy, 10-armed bandit"
-_PROBLEMS, _CHOICES = 500, 1000
+PROBLEMS, STEPS = 500, 1000
 _UCB = {**SAMPLE_AVERAGES, "initial_q": 0.0, "exploration": "ucb", "ties": "random"}
 _BANDITS: dict[str, dict[str, Any]] = {
     BANDIT: {**GREEDY, **SAMPLE_AVERAGES, "epsilon": 0.1},
@@ -21,10 +21,11 @@ _BANDITS: dict[str, dict[str, Any]] = {
 
 WALK = "Q-learning, 19-state random walk"
 _WALK = "qtab/RandomWalk-v0"
-_EPISODES = 5000
-_LENGTH: dict[str, Any] = {"episodes": _EPISODES, "max_episode_steps": 10_000}
-_WALK_STEPS = 100
-"""The mean number of steps of an episode: the product of the distances to both ends."""
+EPISODES = 5000
+"""How many episodes of the walk and of the cliff are timed."""
+MAX_EPISODE_STEPS = 10_000
+WALK_STEPS = 100
+"""The mean number of steps of an episode of the walk: the product of the distances to both ends."""
 _METHODS: dict[str, tuple[Method, dict[str, Any]]] = {
     "TD(0), 19-state random walk": ("td", {}),
     "4-step TD, the same walk": ("n_step_td", {"n_steps": 4}),
@@ -64,10 +65,10 @@ def lines(timings: Timings) -> list[list[str]]:
 
 
 def _bandit(config: dict[str, Any]) -> Benchmark:
-    whole = {"max_episode_steps": 1, "discount": 1.0, "episodes": _CHOICES, **config}
+    whole = {"max_episode_steps": 1, "discount": 1.0, "episodes": STEPS, **config}
 
     def choose(index: int) -> int:
-        rewards, _ = run_testbeds(whole, range(index * _PROBLEMS, (index + 1) * _PROBLEMS), 1)
+        rewards, _ = run_testbeds(whole, range(index * PROBLEMS, (index + 1) * PROBLEMS), 1)
         return rewards.size
 
     return choose
@@ -75,25 +76,30 @@ def _bandit(config: dict[str, Any]) -> Benchmark:
 
 def _walk(index: int) -> int:
     # Random actions, so that the episodes are those of the random policy.
-    random: dict[str, Any] = {
-        "exploration": "epsilon_greedy",
-        "epsilon": 1.0,
-        "epsilon_schedule": "constant",
-        "discount": 1.0,
-    }
-    run = train(_WALK, seed=index, learning_rate=0.1, initial_q=0.0, progress=False, **random, **_LENGTH)
+    settings = {**GREEDY, "epsilon": 1.0, "discount": 1.0, "learning_rate": 0.1, "episodes": EPISODES}
+    run = train(_WALK, seed=index, progress=False, **{**settings, "max_episode_steps": MAX_EPISODE_STEPS})
     return int(run.episode_lengths.sum())
 
 
 def _prediction(method: Method, options: dict[str, Any]) -> Benchmark:
     def estimate(index: int) -> int:
-        settings = {"record": _EPISODES, "learning_rate": 0.1, "seeds": [index], **_LENGTH, **options}
-        estimate_values(_WALK, "random", method=method, threads=1, **settings)
-        return _EPISODES * _WALK_STEPS
+        estimate_values(
+            _WALK,
+            "random",
+            method=method,
+            learning_rate=0.1,
+            episodes=EPISODES,
+            record=EPISODES,
+            seeds=[index],
+            max_episode_steps=MAX_EPISODE_STEPS,
+            threads=1,
+            **options,
+        )
+        return EPISODES * WALK_STEPS
 
     return estimate
 
 
 def _control(config: dict[str, Any]) -> Benchmark:
-    settings = {"episodes": 5000, "max_episode_steps": 200, "initial_q": 0.0, "discount": 1.0, **config}
+    settings = {"episodes": EPISODES, "max_episode_steps": 200, "initial_q": 0.0, "discount": 1.0, **config}
     return lambda index: int(train("CliffWalking-v1", seed=index, progress=False, **settings).episode_lengths.sum())

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use pyo3::prelude::*;
 use qtab_core::learners::LearnerVisitor;
 use qtab_core::random::Pcg64;
 use qtab_core::tasks::NativeTask;
