@@ -17,7 +17,7 @@ use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{AgentRng, Pcg64, Rng, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
 use qtab_core::tasks::{BoxedTask, NativeTask};
-use qtab_core::{Budget, Learner, QTable, Task, Trainer};
+use qtab_core::{Budget, Env, Learner, QTable, Task, Trainer};
 
 const EPISODES: usize = 100;
 const MAX_EPISODE_STEPS: u64 = 10_000;

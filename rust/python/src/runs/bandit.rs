@@ -8,10 +8,11 @@ use qtab_core::policies::{Policy, SingleStateEpsilonGreedy, SingleStateUcb, Ucb}
 use qtab_core::random::Pcg64;
 use qtab_core::schedules::{StepSize, VisitRate};
 use qtab_core::tasks::{KArmedBandit, Testbed};
-use qtab_core::{Learner, QTable, StopFlag, Trainer};
+use qtab_core::{QTable, StopFlag};
 
 use super::factory::{Batching, Factory};
-use super::{AnyRecordings, Run, RunFactory, boxed_factory};
+use super::pending::PendingRun;
+use super::{AnyRecordings, RunFactory, boxed_factory};
 use crate::convert::Seed;
 use crate::error::{allocation, invalid};
 use crate::rng::{BitGenerator, agent_pcg64, environment_rng};
@@ -28,24 +29,10 @@ pub(crate) fn bandit_runs(testbed: Testbed, spec: &Arc<RunSpec>, record: usize) 
     }
     let spec = Arc::clone(spec);
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
-        let run = with_learner(&spec, seed, stop, |rng| BoxRun { task: new_task(seed), rng })?;
+        let run = with_learner(&spec, seed, stop, |rng| PendingRun { task: new_task(seed), rng })?;
         Ok((run, AnyRecordings::None))
     };
     Box::new(Factory { build, batching: Batching::one_by_one() })
-}
-
-/// Boxes a run.
-struct BoxRun {
-    task: KArmedBandit,
-    rng: Pcg64,
-}
-
-impl LearnerVisitor<[u32; 1]> for BoxRun {
-    type Output = Box<dyn Run>;
-
-    fn visit<L: Learner<[u32; 1]> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
-        Box::new(Trainer::new(self.task, learner, self.rng))
-    }
 }
 
 /// Whether [`with_learner`] has the learner of a spec.

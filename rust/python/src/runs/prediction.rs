@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use qtab_core::learners::LearnerVisitor;
-use qtab_core::random::Pcg64;
 use qtab_core::tasks::NativeTask;
-use qtab_core::{Env, Features, Learner, StopFlag, Trainer};
+use qtab_core::{Env, Features, StopFlag};
 
 use super::factory::{Batching, Factory};
-use super::{AnyRecordings, Run, RunFactory};
+use super::pending::PendingRun;
+use super::{AnyRecordings, RunFactory};
 use crate::convert::Seed;
 use crate::prediction::PredictionSpec;
 use crate::rng::{BitGenerator, agent_pcg64, environment_rng};
@@ -34,26 +33,8 @@ where
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
         prediction.check_states(features.len())?;
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
-        let run = prediction.visit(&spec, stop, BoxRun { task, rng: agent_pcg64(seed) })?;
+        let run = prediction.visit(&spec, stop, PendingRun { task, rng: agent_pcg64(seed) })?;
         Ok((run, AnyRecordings::None))
     };
     Box::new(Factory { build, batching: Batching::one_by_one() })
-}
-
-/// Boxes a run.
-struct BoxRun<E, F> {
-    task: NativeTask<E, F>,
-    rng: Pcg64,
-}
-
-impl<E, F> LearnerVisitor<[u32; 1]> for BoxRun<E, F>
-where
-    E: Env<Action = usize, State: Send> + Send + 'static,
-    F: Features<E::Observation, Active = [u32; 1]> + Send + 'static,
-{
-    type Output = Box<dyn Run>;
-
-    fn visit<L: Learner<[u32; 1]> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
-        Box::new(Trainer::new(self.task, learner, self.rng))
-    }
 }
