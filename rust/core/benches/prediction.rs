@@ -29,7 +29,7 @@ type Method = Box<dyn PredictionRule + Send>;
 /// A table whose step from a state by an action is given, until it leads to one of the terminal states.
 fn table(states: i64, start: usize, terminal: &[i64], actions: usize, step: impl Fn(i64, usize) -> i64) -> TabularMdp {
     let row = |pair: usize| {
-        let (state, action) = ((pair / actions) as i64, pair % actions);
+        let (state, action) = ((pair / actions).cast_signed() as i64, pair % actions);
         let next = if terminal.contains(&state) { state } else { step(state, action) };
         vec![Outcome { probability: 1.0, state: next, reward: -1.0, terminated: terminal.contains(&next) }]
     };
