@@ -11,7 +11,7 @@ import numpy as np
 
 from qtab._utils.memory import memory_limit
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import draw_lines
+from qtab.book.drawing import draw_lines, title_figure
 from qtab.book.experiment import Experiment
 from qtab.book.result import Draw, Line, Result
 from qtab.book.runner import FloatArray
@@ -176,7 +176,7 @@ def draw_panels(panels: Sequence[Panel]) -> Draw:
             experiment = dataclasses.replace(result.experiment, **panel.layout)
             ax = draw_in_range(dataclasses.replace(result, experiment=experiment, lines=lines), part)
             ax.set_title(panel.title, loc="left")
-        figure.suptitle(result.experiment.heading)
+        title_figure(figure, result.experiment.heading)
         assert ax is not None  # noqa: S101 - there are panels
         return ax
 
