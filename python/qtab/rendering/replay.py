@@ -94,8 +94,9 @@ def replay_episode(env: gym.Env, recording: Recording) -> float:
 def replay_all(env: gym.Env, run: Run, progress: bool | None = None) -> int:
     """Replays all recorded episodes of a run in ``env``, and returns the number with another return than in training.
 
-    The environment is seeded first, as for the run. One with a method ``resume_after`` is told before each episode how many steps the run had taken until
-    then. A return can differ if the environment keeps other state between episodes beside that of its ``np_random``.
+    The environment is seeded first, as for the run. One with a method ``resume_after`` is told before each episode how
+    many steps the run had taken until then. A return can differ if the environment keeps other state between episodes
+    beside that of its ``np_random``.
     """
     different = 0
     if run.recordings:
