@@ -160,7 +160,8 @@ EXPERIMENT = UpdatesToOptimum(
     book=f"mazes of the same structure and of more and more cells; at most n = {PLANNING_STEPS} updates per step",
     unspecified="all other settings: here α = 1, ε = 0.1, γ = 0.95, θ = 0.0001, ties are broken at random, and there "
     "are 10 runs. The greedy policy is looked at between episodes, with every 2 % of updates; it is optimal if it "
-    "takes a shortest way. Runs that take none after 20,000 episodes count with all of their updates. The one that Dyna-Q makes from each real step counts",
+    "takes a shortest way. A run that takes none after 20,000 episodes counts with all of its updates. The update that "
+    "Dyna-Q makes from each real step counts",
     runs=10,
     x_label="number of states",
     y_label="updates until the policy is optimal",
