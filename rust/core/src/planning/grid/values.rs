@@ -64,21 +64,21 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
 
     /// Value iteration in place: v(s) ← maxₐ r + γ v(s′).
     fn converge(&mut self, stop: &StopFlag<'_>) -> Result<(), PlanningError> {
-        let actions = self.task.num_actions();
-        let successors = collect((0..self.values.len() * actions).map(|pair| {
-            let step = self.task.transition(self.state(pair / actions), pair % actions);
-            let (point, fractions) = if step.terminated { (TERMINAL, [0.0; D]) } else { self.position(step.state) };
-            Successor { reward: step.reward as f32, point, fractions }
+        let num_actions = self.task.num_actions();
+        let successors = collect((0..self.values.len() * num_actions).map(|pair| {
+            let taken = self.task.transition(self.state(pair / num_actions), pair % num_actions);
+            let (point, fractions) = if taken.terminated { (TERMINAL, [0.0; D]) } else { self.position(taken.state) };
+            Successor { reward: taken.reward as f32, point, fractions }
         }))?;
         let last = self.values.len() - 1;
         loop {
             let mut change = 0.0_f64;
             // Forwards and backwards, so that changes spread in both directions.
             for point in (0..=last).chain((0..=last).rev()) {
-                let possible = successors[point * actions..][..actions].iter();
-                let outcomes = possible.map(|successor| {
-                    let value = self.interpolate(successor.point, successor.fractions);
-                    f64::from(successor.reward) + T::DISCOUNT * value
+                let possible = successors[point * num_actions..][..num_actions].iter();
+                let outcomes = possible.map(|outcome| {
+                    let value = self.interpolate(outcome.point, outcome.fractions);
+                    f64::from(outcome.reward) + T::DISCOUNT * value
                 });
                 let best = outcomes.fold(self.lowest, f64::max);
                 change = change.max((best - self.values[point]).abs());
