@@ -156,7 +156,7 @@ fn with<E: Parameters>(mut env: E, (parameters, flags): (Vec<(String, f64)>, Vec
 
 fn values<T, const D: usize>(py: Python<'_>, task: T, max_steps: u64) -> PyResult<GridValues<T, D>>
 where
-    T: GridTask<D> + Send,
+    T: GridTask<D> + Send + Sync,
 {
     let values = run_interruptible(py, |stop| GridValues::new(task, max_steps, 1, stop))?;
     values.map_err(|error| to_py_err(error, 1.0))
