@@ -19,6 +19,7 @@ from qtab.discretizers.identity import Identity, integer_bounds
 from qtab.discretizers.rounding import Rounding
 from qtab.discretizers.sparse import Sparse
 from qtab.discretizers.tile_coding import TileCoding
+from qtab.discretizers.time_aware import TimeAware
 
 DISCRETIZERS: Mapping[DiscretizerName, type[Discretizer]] = {
     "round": Rounding,
@@ -36,6 +37,8 @@ MAX_AXES = 62
 
 def build(space: Any, config: Config, n_actions: int) -> Discretizer:
     """Returns the discretizer of a config over an observation space; see :meth:`Discretizer.build`."""
+    if config.time_aware:
+        return TimeAware.build(space, config, n_actions)
     built = _class_of(config, plain=is_plain(space)).build(space, config, n_actions)
     if n_actions and len(built.shape) > MAX_AXES:
         owner = "shape" if isinstance(built, Function) else "the observation space"
@@ -48,6 +51,8 @@ def build(space: Any, config: Config, n_actions: int) -> Discretizer:
 
 def restore(config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> Discretizer:
     """Returns the discretizer of a saved run; see :meth:`Discretizer.restore`."""
+    if config.time_aware:
+        return TimeAware.restore(config, arrays, n_rows)
     return _class_of(config, plain="layout" not in arrays).restore(config, arrays, n_rows)
 
 
@@ -80,6 +85,7 @@ __all__ = [
     "Rounding",
     "Sparse",
     "TileCoding",
+    "TimeAware",
     "build",
     "is_plain",
     "restore",

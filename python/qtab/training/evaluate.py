@@ -14,6 +14,7 @@ from qtab._utils import checks, html, svg
 from qtab._utils.fields import with_fields
 from qtab._utils.frames import episode_frame
 from qtab._utils.progress import check_progress
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.options import OPTIONS
 from qtab.config.unknown import suggesting
@@ -35,6 +36,7 @@ TABLE_SETTINGS = (
     *(name for name, option in OPTIONS.items() if option.choice == "discretizer"),
     "actions",
     "action_mask",
+    "time_aware",
 )
 """The settings that say what the rows and columns of a table stand for."""
 
@@ -149,6 +151,11 @@ def evaluate(
     check_progress(progress)
     check_env(env)
     config = run.config
+    if config.time_aware and max_episode_steps not in (None, config.max_episode_steps):
+        raise ValueError(
+            f"max_episode_steps must be {config.max_episode_steps} for a run with time_aware=True, whose policy is "
+            f"that of its time limit, got {shown(max_episode_steps)}"
+        )
     if env is None:
         spec: EnvSpec | None = spec_of_run(config.env)
     elif isinstance(env, gym.Env):

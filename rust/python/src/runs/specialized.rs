@@ -70,7 +70,7 @@ where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active = [u32; 1]> + Clone + Send + Sync + 'static,
 {
-    if spec.prediction.is_some() {
+    if spec.prediction.is_some() || spec.time_aware {
         return generic(env, features, spec, record);
     }
     let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else {
