@@ -64,7 +64,8 @@ def stationary_policy(
     if len(planner.rows) * planner.n_actions * max_episode_steps > MAX_PAIR_UPDATES:
         return None
     n_outcomes = sum(map(len, planner.transitions()))
-    sweeps = min(SWEEPS_PER_STEP * max_episode_steps, MAX_UPDATES // (len(DISCOUNTS) * n_outcomes))
+    sweeps = max(SWEEPS_PER_STEP * max_episode_steps, LEAST_SWEEPS)
+    sweeps = min(sweeps, MAX_UPDATES // (len(DISCOUNTS) * n_outcomes))
     if sweeps < LEAST_SWEEPS:
         return None
     _, _, optimal = planner.finite_horizon(1.0, max_episode_steps)
