@@ -39,9 +39,7 @@ def at_step(run: AnyRun, step: Any = 0) -> AnyRun:
         TypeError: if ``step`` is not an integer.
         ValueError: if it is negative or not before the time limit, or not 0 without ``time_aware``.
     """
-    from qtab.results.run import Run
-
-    discretizer = run.discretizer
+    discretizer: Any = run.discretizer
     step = checked_step(discretizer, step)
     if not isinstance(discretizer, TimeAware):
         return run
@@ -57,13 +55,15 @@ def at_step(run: AnyRun, step: Any = 0) -> AnyRun:
         "tables": None if run.tables is None else run.tables[..., part, :],
     }
     if run.action_masks is not None:
-        axis = 0 if isinstance(run, Run) else 1
+        # Of many runs the axis of the runs comes before that of the steps.
+        axis = run.action_masks.ndim - len(discretizer.shape) - 1
         changes["action_masks"] = np.take(run.action_masks, step, axis=axis)
-    if isinstance(run, Run):
-        if run.visits is not None:
-            changes["visits"] = run.visits[step]
-        if run.snapshots is not None:
-            changes["snapshots"] = Snapshots(run.snapshots.episodes, run.snapshots.tables[..., part, :])
+    own: Any = run  # what one run has, and many have not
+    if getattr(own, "visits", None) is not None:
+        changes["visits"] = own.visits[step]
+    if getattr(own, "snapshots", None) is not None:
+        changes["snapshots"] = Snapshots(own.snapshots.episodes, own.snapshots.tables[..., part, :])
+    if hasattr(own, "recordings"):
         changes |= {"recordings": (), "state": None}
     return replace(run, **changes)
 
@@ -73,11 +73,11 @@ def over_all_steps(run: Any) -> Any:
 
     Anything else is returned as it is.
     """
-    from qtab.results.run import Run
-
-    if not isinstance(run, Run) or not run.config.time_aware or run.visits is None:
+    visits = getattr(run, "visits", None)
+    if visits is None or not isinstance(run.discretizer, TimeAware):
         return run
-    return replace(at_step(run), visits=run.visits.sum(axis=0))
+    changed: Any = replace(at_step(run), visits=visits.sum(axis=0))
+    return changed
 
 
 def rows_of(run: "Run", observation: Any, steps: Any) -> Any:

@@ -11,6 +11,7 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.checks import required
 from qtab._utils.fields import with_fields
 from qtab._utils.frames import episode_frame
 from qtab._utils.progress import check_progress
@@ -19,6 +20,7 @@ from qtab.config import Config
 from qtab.config.options import OPTIONS
 from qtab.config.unknown import suggesting
 from qtab.discretizers import Sparse
+from qtab.envs.matching import time_limit
 from qtab.envs.registry import spec_of
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
@@ -161,6 +163,12 @@ def evaluate(
     elif isinstance(env, gym.Env):
         spec = env.spec
         check_spaces(run, env)
+        limit = time_limit(env)
+        if config.time_aware and limit is not None and limit < required("max_episode_steps", config.max_episode_steps):
+            raise ValueError(
+                f"env must have a time limit of at least {config.max_episode_steps} steps, that of the run with "
+                f"time_aware=True, got {limit}"
+            )
     else:
         spec = env if isinstance(env, EnvSpec) else spec_of(env)
         with closing(gym.make(env, **(env_kwargs or {}))) as made:
