@@ -175,3 +175,22 @@ def test_the_limit_is_part_of_the_task_whatever_a_preset_or_a_config_says() -> N
     assert (aware.config.time_aware, aware.config.on_truncation) == (True, "terminate")
     assert qtab.Config(LAKE, time_aware=True).on_truncation == "terminate"
     assert run.config.replace(time_aware=True).on_truncation == "terminate"
+
+
+@pytest.mark.slow
+def test_the_preset_comes_within_half_a_percent_of_the_optimum() -> None:
+    best = qtab.optimum(LAKE)
+    known = best.stationary
+    assert known is not None
+    runs = qtab.train_many(LAKE, [40_000, 40_001], preset="time_aware", tables=True)
+    returns = best.gap(runs).greedy_return
+    assert (returns >= 0.995 * best.expected_return).all()
+    # No policy that ignores the time is as good.
+    assert (returns > known.expected_return).all()
+
+
+def test_the_presets_are_those_of_the_lakes() -> None:
+    for env in (LAKE, "FrozenLake8x8-v1"):
+        run = qtab.train(env, preset="time_aware", episodes=2, seed=0)
+        assert run.config.time_aware
+        assert run.config.on_truncation == "terminate"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from qtab._discretizer_spec import DiscretizerSpec
 from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.config.config import replace_checked
+from qtab.discretizers import named
 from qtab.discretizers.base import Discretizer, check_table_size
 
 
@@ -36,10 +36,8 @@ class TimeAware(Discretizer):
         Raises:
             ValueError: if the space or an option does not fit, or the table would be too large.
         """
-        from qtab.discretizers import build
-
         limit = required("max_episode_steps", config.max_episode_steps)
-        cells = build(space, replace_checked(config, time_aware=False), n_actions)
+        cells = named.build(space, config, n_actions)
         size = f"True with {cells.n_rows:,} cells and {limit:,} steps"
         check_table_size("time_aware", size, float(cells.n_rows) * limit * n_actions)
         return cls(cells.low, cells.high, cells, limit)
@@ -47,12 +45,10 @@ class TimeAware(Discretizer):
     @classmethod
     def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "TimeAware":
         """Returns the cells of a saved run; see :meth:`Discretizer.restore`."""
-        from qtab.discretizers import restore
-
         limit = required("max_episode_steps", config.max_episode_steps)
         if n_rows % limit:
             raise ValueError("its table has another number of rows than cells for each step")
-        cells = restore(replace_checked(config, time_aware=False), arrays, n_rows // limit)
+        cells = named.restore(config, arrays, n_rows // limit)
         return cls(cells.low, cells.high, cells, limit)
 
     @property
