@@ -55,10 +55,9 @@ class Gap(Generic[Number]):
             ("last 100 episodes of training", *map(_shown, (self.final_return, self.final))),
             (self.label, f"{self.optimum:.4g}", ""),
         ]
-        if self.stationary is not None:
-            rows.append(
-                ("best known stationary policy", *map(_shown, (self.stationary, self.optimum - self.stationary)))
-            )
+        stationary = self.stationary
+        if stationary is not None:
+            rows.append(("best known stationary policy", _shown(stationary), _shown(self.optimum - stationary)))
         return html.listing(heading, ("", "return", "gap"), rows)
 
     def __str__(self) -> str:
