@@ -41,7 +41,7 @@ def lake_settings(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
-@settings(max_examples=settings.default.max_examples // 2)
+@settings(max_examples=settings().max_examples // 2)
 @given(lake_settings())
 def test_random_settings_give_the_table_of_the_reference(chosen: dict[str, Any]) -> None:
     run = qtab.train(LAKE, time_aware=True, preset="tuned", backend="rust", **chosen)
@@ -88,7 +88,8 @@ class Cell:
 def test_the_wrapper_of_gymnasium_around_the_environment_gives_the_identical_table(
     env: str, shape: tuple[int, ...], algorithm: Any
 ) -> None:
-    limit, chosen = 25, {"seed": 3, "episodes": 8, "epsilon": 0.5, "initial_q": (0.0, 0.1), "discount": 0.9}
+    limit = 25
+    chosen: dict[str, Any] = {"seed": 3, "episodes": 8, "epsilon": 0.5, "initial_q": (0.0, 0.1), "discount": 0.9}
     run = qtab.train(env, algorithm=algorithm, time_aware=True, preset=None, max_episode_steps=limit, **chosen)
     wrapped: Any = TimeAwareObservation(gym.make(env, max_episode_steps=limit), flatten=False)
     other = qtab.train(

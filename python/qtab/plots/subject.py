@@ -103,7 +103,8 @@ def subject_of(name: str, source: Any, step: Any = 0) -> Subject:
         ValueError: for runs whose tables were not kept, or a step that there is not.
     """
     if isinstance(source, Run | Runs) and source.config.time_aware:
-        subject = subject_of(name, at_step(source, step))
+        known: Any = source  # one run or many
+        subject = subject_of(name, at_step(known, step))
         return replace(subject, name=f"{subject.name}, step {step}")
     checked_step(None, step)
     if isinstance(source, Run):
