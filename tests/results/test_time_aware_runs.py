@@ -131,3 +131,21 @@ def test_pictures_show_a_step(run: qtab.Run) -> None:
     assert str(whole.sum(axis=(0, 2))[14]) in drawn
     with pytest.raises(ValueError, match="step must be 0 for a run without time_aware=True, got 1"):
         qtab.plots.policy(run.at_step(0), step=1)
+
+
+def test_what_would_ignore_the_steps_is_refused(run: qtab.Run) -> None:
+    shorter = gym.make(LAKE, max_episode_steps=LIMIT - 1)
+    with pytest.raises(ValueError, match="env must have a time limit of at least 20 steps, that of the run with"):
+        qtab.evaluate(run, 5, env=shorter)
+    with pytest.raises(ValueError, match="policy must not depend on the number of steps taken, got a run with"):
+        qtab.policy_values(LAKE, run)
+
+
+def test_the_command_line_trains_it(tmp_path: Path) -> None:
+    from qtab.cli import main
+
+    path = str(tmp_path / "run.npz")
+    assert (
+        main(["train", LAKE, "--time-aware", "True", "--episodes", "3", "--seed", "0", "--save", path, "--quiet"]) == 0
+    )
+    assert qtab.load(path).q_table.shape == (100, 16, 4)
