@@ -26,7 +26,7 @@ _MODULES = {
     "Playback": "qtab.rendering.play",
     "PolicyValues": "qtab.planning.policy_values",
     "Progress": "qtab.training.callbacks",
-    "Recording": "qtab.results.run",
+    "Recording": "qtab.results.recording",
     "Run": "qtab.results.run",
     "Runs": "qtab.results.runs",
     "RunsProgress": "qtab.training.runs_progress",
@@ -99,7 +99,7 @@ if TYPE_CHECKING:
     from qtab.rendering.play import Playback as Playback
     from qtab.rendering.play import play as play
     from qtab.results.axes import Axis as Axis
-    from qtab.results.run import Recording as Recording
+    from qtab.results.recording import Recording as Recording
     from qtab.results.run import Run as Run
     from qtab.results.runs import Runs as Runs
     from qtab.results.runs_storage import load_runs as load_runs

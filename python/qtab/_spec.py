@@ -166,6 +166,8 @@ class RunSpec(TypedDict):
     discretizer: DiscretizerSpec
     num_actions: int
     max_episode_steps: int
+    time_aware: bool
+    """Whether the number of steps taken in the episode is part of the state."""
     algorithm: AlgorithmSpec
     policy: PolicySpec
     learning_rate: LearningRateSpec

@@ -18,7 +18,7 @@ FACTS = (
     *("env", "env_kwargs", "max_episode_steps", "discount", "method", "exact", "label"),
     *("expected_return", "reward_threshold", "seconds"),
 )
-"""What the JSON object holds."""
+"""What the JSON object holds, beside the stationary policy of a transition table."""
 
 
 @dataclass(frozen=True)
@@ -52,4 +52,7 @@ def run(arguments: list[str]) -> int:
             )
         report.text(str(result))
         report.add(**{name: getattr(result, name) for name in FACTS})
+        stationary = result.stationary
+        if stationary is not None:
+            report.add(stationary_return=stationary.expected_return, stationary_proven=stationary.proven)
     return 0

@@ -31,6 +31,7 @@ _BY_NAME: Mapping[str, Any] = {
     "actions": ("COUNT|ACTION ACTION ...", "*", constructors.read_actions),
     "action_mask": ("{True,False}", 1, constructors.read_flag),
     "baseline": ("{True,False}", 1, constructors.read_flag),
+    "time_aware": ("{True,False}", 1, constructors.read_flag),
     "initial_q": ("LOW HIGH|VALUE|FILE", "*", constructors.read_initial_q),
 }
 _BY_TYPE: Mapping[Any, Any] = {

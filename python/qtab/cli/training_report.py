@@ -39,7 +39,10 @@ def _has_quick_optimum(resolved: ResolvedRun) -> bool:
     environment = resolved.environment
     if not isinstance(environment, NativeEnvironment) or not environment.entry.knows_transitions:
         return False
-    return resolved.discretizer.n_rows * len(resolved.actions) * resolved.max_episode_steps <= MAX_QUICK_UPDATES
+    rows = resolved.discretizer.n_rows
+    if not resolved.config.time_aware:  # which has rows for each step already
+        rows *= resolved.max_episode_steps
+    return rows * len(resolved.actions) <= MAX_QUICK_UPDATES
 
 
 @dataclass(frozen=True)

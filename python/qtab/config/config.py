@@ -61,6 +61,10 @@ class Config:
     """Keyword arguments for the environment's constructor."""
     max_episode_steps: int | None = None
     """The time limit of an episode, in steps. None takes the environment's own, or 10,000 if it has none."""
+    time_aware: bool = False
+    """Whether the number of steps taken in the episode is part of the state, as in Gymnasium's TimeAwareObservation:
+    the table has cells for each step before the time limit, and can learn the policy that is optimal under it. For
+    discretizers with cells."""
     backend: Backend = "auto"
     """Where the environment is stepped: in Rust, in Python by Gymnasium, or (auto) in Rust where that is possible."""
 
@@ -130,7 +134,8 @@ class Config:
     reward (assign, as in the well-known article)."""
     on_truncation: OnTruncation = "bootstrap"
     """The update where the time limit ends an episode: bootstrap from the next state (correct), or terminate, as if the
-    next state were terminal (a common mistake)."""
+    next state were terminal (a common mistake). With time_aware, where the limit is part of the task, nothing follows
+    the last step: terminate is correct there, and the default."""
 
     # Exploration
 
@@ -231,7 +236,9 @@ class Config:
             ValueError: for a value that is out of range, or that does not apply beside the others.
         """
         check_names(changes, DEFAULTS)
-        given: Mapping[str, Any] = changes
+        given: dict[str, Any] = dict(changes)
+        if given.get("time_aware"):
+            given.setdefault("on_truncation", "terminate")
         return dataclasses.replace(self, **given)
 
 
@@ -267,6 +274,8 @@ def _suggesting(init: Callable[..., None]) -> Callable[..., None]:
         check_names(settings, DEFAULTS, "Config")
         if settings.get("algorithm") in PREFERENCES:
             settings.setdefault("exploration", "softmax")
+        if settings.get("time_aware"):
+            settings.setdefault("on_truncation", "terminate")
         init(self, *args, **settings)
 
     return checked

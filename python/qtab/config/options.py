@@ -88,6 +88,13 @@ TABLES_ONLY = ("dyna_q", "dyna_q_plus", *MONTE_CARLO, "prioritized_sweeping", "g
 """The algorithms that do not work with tile coding."""
 
 
+_CHECKED = (
+    *("terminal_update", "learning_rate_schedule", "discount", "algorithm", "exploration", "action_mask"),
+    *("time_aware", "on_truncation"),
+)
+"""The settings, no options, of which some values exclude each other."""
+
+
 def n_tables(algorithm: str) -> int:
     """Returns how many tables an algorithm learns."""
     return 2 if algorithm in ("double_q_learning", *WITH_STATE_VALUES) else 1
@@ -102,7 +109,7 @@ def check_options(fields: Mapping[str, Any]) -> None:
     for name in OPTIONS:
         if is_set(fields[name]) and (reason := mismatch(name, fields[name], fields)):
             raise ValueError(reason)
-    for name in ("terminal_update", "learning_rate_schedule", "discount", "algorithm", "exploration", "action_mask"):
+    for name in _CHECKED:
         if reason := mismatch(name, fields[name], fields):
             raise ValueError(reason)
 
@@ -139,6 +146,15 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
     if name == "action_mask" and value is not False and algorithm in PREFERENCES and with_tiles:
         # They update states after the next one is seen, and only the mask of the last one is known.
         return f"action_mask must be False for algorithm {algorithm!r} with discretizer 'tiles', got {shown(value)}"
+    if (name, value) == ("on_truncation", "bootstrap") and fields["time_aware"]:
+        return "on_truncation must be 'terminate' for time_aware=True, whose last step nothing follows, got 'bootstrap'"
+    if name == "time_aware" and value and with_tiles:
+        return (
+            "time_aware must be False for discretizer 'tiles', which has no cells, got True; "
+            "gymnasium.wrappers.TimeAwareObservation makes the time a component that it can tile"
+        )
+    if name == "time_aware" and value and fields["max_rows"] is not None:
+        return f"time_aware must be False with max_rows, got True and max_rows={fields['max_rows']}"
     if (name, value) == ("exploration", "ucb") and with_tiles:
         return other_choice(name, value, ("ucb",), "for discretizer 'tiles'")
     if (name, value) == ("exploration", "ucb") and algorithm in WITH_PROBABILITIES:

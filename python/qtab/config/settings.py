@@ -43,6 +43,7 @@ class EnvironmentSettings(TypedDict, total=False):
 
     env_kwargs: Mapping[str, Any]
     max_episode_steps: Integer | None
+    time_aware: bool
     backend: Backend
 
 

@@ -10,6 +10,7 @@ from qtab.config.options import OPTIONS
 ADDED = (
     *("action_mask", "shape", "max_rows", "baseline", "value_learning_rate", "confidence"),
     *("sigma", "target_policy", "model", "priority_threshold", "reward_learning_rate", "count_bonus"),
+    "time_aware",
 )
 """Settings that earlier versions do not have: files hold them only where they differ from their defaults."""
 

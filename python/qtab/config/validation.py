@@ -246,6 +246,7 @@ _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     "action_mask": mask_setting,
     "initial_q": _initial_q,
     "max_episode_steps": _count,
+    "time_aware": _flag,
     "preset": _text,
 }
 _OPTIONAL = OPTIONS.keys() - {"scale"} | {"actions", "max_episode_steps", "preset"}

@@ -73,6 +73,7 @@ def _tiles(facts: Facts) -> tuple[Mapping[str, Any], ...]:
     discretizer: Any = facts.run.discretizer
     if (
         facts.config.algorithm in TABLES_ONLY
+        or facts.config.time_aware
         or not (np.isfinite(discretizer.low) & np.isfinite(discretizer.high)).all()
     ):
         return ()

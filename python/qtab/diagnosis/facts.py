@@ -19,6 +19,7 @@ from qtab.planning.solve import optimum as solve
 from qtab.reference.streams import agent_stream
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES
+from qtab.results.time_steps import at_step
 from qtab.training.evaluate import Evaluation, evaluate
 from qtab.training.extensions import repeatable
 from qtab.training.train import train
@@ -112,7 +113,7 @@ class Facts:
         if self.given_optimum is not None:
             return self.given_optimum
         entry = entry_for_id(self.config.env)
-        updates = self.run.discretizer.n_rows * len(self.run.actions) * (self.config.max_episode_steps or 0)
+        updates = at_step(self.run).discretizer.n_rows * len(self.run.actions) * (self.config.max_episode_steps or 0)
         if not self.can_repeat or entry is None or not entry.knows_transitions or updates > MAX_QUICK_UPDATES:
             return None
         return solve(self.run)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from qtab.discretizers.composite_actions import flat
 from qtab.results.run import Run
+from qtab.results.time_steps import rows_of
 from qtab.training.run_env import make_run_env
 from qtab.training.train import train
 
@@ -52,7 +53,7 @@ def sample_steps(run: Run) -> Sample:
         callback_every=finished,
     )
     env = make_run_env(run.config)
-    visited, taken, following, rewards = [], [], [], []
+    visited, taken, following, rewards, steps = [], [], [], [], []
     try:
         plain: Any = env.unwrapped
         for recording in repeated.recordings:
@@ -60,7 +61,8 @@ def sample_steps(run: Run) -> Sample:
             bit_generator.state = dict(recording.start)  # type: ignore[assignment]
             plain.np_random = np.random.Generator(bit_generator)
             observation, _ = plain.reset()
-            for action in recording.actions[:SAMPLE_STEPS]:
+            for step, action in enumerate(recording.actions[:SAMPLE_STEPS]):
+                steps.append(step)
                 visited.append(observation)
                 taken.append(action)
                 observation, reward, *_ = plain.step(action)
@@ -69,11 +71,12 @@ def sample_steps(run: Run) -> Sample:
     finally:
         env.close()
     observations = np.array(visited)
-    active = run.discretizer.active_rows
+    before = np.array(steps, np.int64)
     known = np.array([flat(run.actions[column]) for column in range(len(run.actions))])
     columns = (
         (np.array([flat(action) for action in taken]).reshape(-1, 1, known.shape[1]) == known)
         .all(axis=-1)
         .argmax(axis=-1)
     )
-    return Sample(active(observations), columns, active(np.array(following)), np.array(rewards), observations)
+    rows, next_rows = rows_of(run, observations, before), rows_of(run, np.array(following), before + 1)
+    return Sample(rows, columns, next_rows, np.array(rewards), observations)

@@ -7,7 +7,7 @@ from qtab.diagnosis.finding import Finding, percent
 def truncation(facts: Facts) -> Finding | None:
     """Finds time-outs that are treated as terminal states."""
     timed_out = int((~facts.run.terminated).sum())
-    if facts.config.on_truncation != "terminate" or timed_out == 0:
+    if facts.config.on_truncation != "terminate" or facts.config.time_aware or timed_out == 0:
         return None
     share = timed_out / len(facts.run.terminated)
     return Finding(

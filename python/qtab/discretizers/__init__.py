@@ -3,70 +3,31 @@
 from collections.abc import Mapping
 from typing import Any
 
-from gymnasium import spaces
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.config.choices import DiscretizerName
-from qtab.config.discretizer import FUNCTION, MAPPING, kind
-from qtab.discretizers.actions import FLOATS
+from qtab.discretizers import named
 from qtab.discretizers.base import Discretizer
 from qtab.discretizers.bins import Bins
 from qtab.discretizers.composite import Composite
 from qtab.discretizers.edges import Edges
 from qtab.discretizers.function import Function
-from qtab.discretizers.identity import Identity, integer_bounds
+from qtab.discretizers.identity import Identity
+from qtab.discretizers.named import DISCRETIZERS, is_plain
 from qtab.discretizers.rounding import Rounding
 from qtab.discretizers.sparse import Sparse
 from qtab.discretizers.tile_coding import TileCoding
-
-DISCRETIZERS: Mapping[DiscretizerName, type[Discretizer]] = {
-    "round": Rounding,
-    "bins": Bins,
-    "edges": Edges,
-    "tiles": TileCoding,
-    "identity": Identity,
-}
-"""The class of each value of the setting ``discretizer``, for the spaces that the extension reads by itself."""
-
-
-MAX_AXES = 62
-"""A table of many runs also has an axis for the runs and one for the actions, and an array of NumPy at most 64."""
+from qtab.discretizers.time_aware import TimeAware
 
 
 def build(space: Any, config: Config, n_actions: int) -> Discretizer:
     """Returns the discretizer of a config over an observation space; see :meth:`Discretizer.build`."""
-    built = _class_of(config, plain=is_plain(space)).build(space, config, n_actions)
-    if n_actions and len(built.shape) > MAX_AXES:
-        owner = "shape" if isinstance(built, Function) else "the observation space"
-        raise ValueError(
-            f"{owner} must give the table at most {MAX_AXES} axes, as many as NumPy's arrays have beside those of runs "
-            f"and actions; max_rows= assigns rows only to the observations that are seen, got {len(built.shape)}"
-        )
-    return built
+    return (TimeAware.build if config.time_aware else named.build)(space, config, n_actions)
 
 
 def restore(config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> Discretizer:
     """Returns the discretizer of a saved run; see :meth:`Discretizer.restore`."""
-    return _class_of(config, plain="layout" not in arrays).restore(config, arrays, n_rows)
-
-
-def is_plain(space: Any) -> bool:
-    """Returns whether the extension reads the observations of a space by itself."""
-    is_box = isinstance(space, spaces.Box) and len(space.shape) == 1 and space.dtype in FLOATS
-    return is_box or integer_bounds(space) is not None
-
-
-def _class_of(config: Config, *, plain: bool) -> type[Discretizer]:
-    chosen = kind(config.discretizer)
-    if config.max_rows is not None:
-        return Sparse
-    if chosen == FUNCTION:
-        return Function
-    if chosen == MAPPING or not plain:
-        return Composite
-    name: Any = config.discretizer
-    return DISCRETIZERS[name]
+    return (TimeAware.restore if config.time_aware else named.restore)(config, arrays, n_rows)
 
 
 __all__ = [
@@ -80,6 +41,7 @@ __all__ = [
     "Rounding",
     "Sparse",
     "TileCoding",
+    "TimeAware",
     "build",
     "is_plain",
     "restore",

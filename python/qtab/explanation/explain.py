@@ -22,6 +22,7 @@ from qtab.reference import LEARNERS
 from qtab.reference.observer import observed_by
 from qtab.reference.schedules import LearningRate
 from qtab.results.run import Run
+from qtab.results.time_steps import rows_of
 from qtab.training.extensions import repeatable
 from qtab.training.run_env import make_run_env
 
@@ -206,7 +207,7 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
     ) -> None:
         super().__init__(env)
         self._run, self._watcher, self._episodes, self._progress = run, watcher, episodes, progress
-        self._begun = 0
+        self._begun = self._steps = 0
         self._observation: Any = None
         self._rows: tuple[int, ...] = ()
 
@@ -223,6 +224,7 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
             kwargs = {}
         observation, info = self.env.reset(**kwargs)
         if self._watcher.active:
+            self._steps = 0
             self._observation, self._rows = observation, self._active_rows(observation)
         return observation, info
 
@@ -230,6 +232,7 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
         observation, reward, terminated, truncated, info = self.env.step(action)
         if self._watcher.active:
             config = self._run.config
+            self._steps += 1
             rows = self._active_rows(observation)
             terminal = terminated or (truncated and config.on_truncation == "terminate")
             self._watcher.record(
@@ -248,4 +251,4 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
         return observation, reward, terminated, truncated, info
 
     def _active_rows(self, observation: Any) -> tuple[int, ...]:
-        return tuple(self._run.discretizer.active_rows(observation).tolist())
+        return tuple(rows_of(self._run, observation, self._steps).tolist())

@@ -5,6 +5,7 @@ from qtab.planning.gap import Gap
 from qtab.planning.optimum import Optimum
 from qtab.planning.policy_values import PolicyValues, policy_values
 from qtab.planning.solve import optimum
+from qtab.planning.stationary import StationaryPolicy
 from qtab.planning.sweeps import Improvement, policy_evaluation, policy_iteration, value_iteration
 
 __all__ = [
@@ -13,6 +14,7 @@ __all__ = [
     "Improvement",
     "Optimum",
     "PolicyValues",
+    "StationaryPolicy",
     "optimum",
     "policy_evaluation",
     "policy_iteration",

@@ -28,6 +28,9 @@ class Gap(Generic[Number]):
     """The standard error of ``greedy_return``; 0 where that was computed exactly, from a transition table."""
     label: str = "optimum"
     """``"optimum"``, or ``"best known"`` where the optimum is not proven."""
+    stationary: float | None = None
+    """The expected return of the best policy known that does not depend on the number of steps taken, as the run's does
+    not; None where it is that of the optimum, or not known."""
 
     @property
     def final(self) -> Number:
@@ -52,6 +55,9 @@ class Gap(Generic[Number]):
             ("last 100 episodes of training", *map(_shown, (self.final_return, self.final))),
             (self.label, f"{self.optimum:.4g}", ""),
         ]
+        stationary = self.stationary
+        if stationary is not None:
+            rows.append(("best known stationary policy", _shown(stationary), _shown(self.optimum - stationary)))
         return html.listing(heading, ("", "return", "gap"), rows)
 
     def __str__(self) -> str:
@@ -59,7 +65,9 @@ class Gap(Generic[Number]):
             float(np.mean(value)) for value in (self.greedy_return, self.standard_error, self.greedy)
         )
         uncertainty = f" ± {standard_error:.2g}" if standard_error > 0 else ""
-        return f"greedy policy {greedy_return:.4g}{uncertainty}, {self.label} {self.optimum:.4g}, gap {gap:.2g}"
+        stationary = "" if self.stationary is None else f", best known stationary policy {self.stationary:.4g}"
+        optimum = f"{self.label} {self.optimum:.4g}"
+        return f"greedy policy {greedy_return:.4g}{uncertainty}, {optimum}, gap {gap:.2g}{stationary}"
 
 
 def _shown(value: float | NDArray[np.float64]) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Protocol, overload
 
 import gymnasium as gym
@@ -15,6 +16,8 @@ from qtab._utils.shown import shown
 from qtab.envs.registry import gymnasium_id, spec_of
 from qtab.planning.gap import Gap
 from qtab.planning.search import Search
+from qtab.planning.stationary import StationaryPolicy
+from qtab.planning.tabular import TabularSolver
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.results.summary import FINAL_EPISODES
@@ -80,6 +83,15 @@ class Optimum:
         """``"optimum"``, or ``"best known"`` where it is not exact."""
         return "optimum" if self.exact else "best known"
 
+    @cached_property
+    def stationary(self) -> StationaryPolicy | None:
+        """The best policy known that ignores the number of steps taken, as runs without ``time_aware`` learn.
+
+        The criterion is the undiscounted return under the time limit. It is searched when it is first read. None for an
+        optimum that was found by search itself, and for tables too large to search within seconds.
+        """
+        return self.solver.stationary() if isinstance(self.solver, TabularSolver) else None
+
     def predict(
         self,
         observation: ArrayLike,
@@ -142,10 +154,23 @@ class Optimum:
         if isinstance(run, Run):
             last = run.episode_returns[-FINAL_EPISODES:]
             final_return = float(last.mean()) if len(last) else float("nan")
-            return Gap(self.expected_return, final_return, *self.solver.greedy_return(run), label=self.label)
+            greedy_return = self.solver.greedy_return(run)
+            return Gap(
+                self.expected_return,
+                final_return,
+                *greedy_return,
+                label=self.label,
+                stationary=self._stationary_return(run),
+            )
         evaluated = [(float("nan"),) * 2] * len(run) if run.tables is None else map(self.solver.greedy_return, run)
         greedy, error = np.array(list(evaluated), dtype=np.float64).reshape(len(run), 2).T
-        return Gap(self.expected_return, run.final_returns(), greedy, error, label=self.label)
+        stationary = self._stationary_return(run)
+        return Gap(self.expected_return, run.final_returns(), greedy, error, label=self.label, stationary=stationary)
+
+    def _stationary_return(self, run: Run | Runs) -> float | None:
+        """What a run with a stationary policy can reach, where that is not the optimum."""
+        known = self.stationary
+        return None if known is None or known.proven or run.config.time_aware else known.expected_return
 
     def check_same_env(self, run: Run | Runs) -> None:
         """Checks that a run is on the environment of this optimum.
@@ -172,6 +197,10 @@ class Optimum:
             lengths = self.search.steps
             lines["episodes"] = f"{lengths.min()} to {lengths.max()} steps from {len(lengths):,} starts"
             lines["predict"] = f"mean return {self.search.predict_return:.6g} from the same starts"
+        if self.stationary is not None:
+            lines["stationary"] = (
+                f"{self.stationary.expected_return:.6g} by the {self.stationary.label} policy that ignores the time"
+            )
         lines["time"] = f"{self.seconds:.3g} s"
         return "\n".join([self.env, *(f"  {name:17}{text}" for name, text in lines.items())])
 
@@ -190,8 +219,10 @@ class Optimum:
             "method": f"{self.method}, discount {self.discount:g}",
             "threshold": "none" if self.reward_threshold is None else f"{self.reward_threshold:g}",
             "states": " × ".join(map(str, self.values.shape)) + f", {self.q_values.shape[-1]} actions",
-            "time": f"{self.seconds:.3g} s",
         }
+        if self.stationary is not None:
+            facts["stationary policy"] = f"{self.stationary.expected_return:.6g}, {self.stationary.label}"
+        facts["time"] = f"{self.seconds:.3g} s"
         values = self.values.reshape(-1) if self.values.ndim != 2 else self.values
         if values.ndim == 2:
             picture = svg.field(f"State values, {values.shape[0]} rows by {values.shape[1]} columns", values)

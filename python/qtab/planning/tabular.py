@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
-from qtab.discretizers import Identity
+from qtab.discretizers import Identity, TimeAware
 from qtab.discretizers.actions import Actions
+from qtab.planning.stationary import StationaryPolicy, stationary_policy
+from qtab.planning.time_dependent import time_dependent_return
 from qtab.results.run import Run
 
 METHODS = ("finite_horizon", "value_iteration", "policy_iteration")
@@ -90,14 +92,38 @@ class TabularSolver:
         Raises:
             ValueError: if the run's Q table has another shape than the environment, or rows that are not its states.
         """
+        if isinstance(run.discretizer, TimeAware):
+            return self._time_aware_return(run, run.discretizer), 0.0
         if not run.discretizer.has_component_axes:
             raise ValueError(
                 "run must have a table of the components of its observations, not of a function or of max_rows; "
                 "qtab.evaluate(run) estimates its return"
             )
-        shape = (*self._cells.shape, len(self._actions))
+        self._check_shape(run, self._cells.shape)
+        policy: Any = np.ascontiguousarray(run.policy.ravel() - run.actions.first)
+        return self._planner.policy_return(policy, self._max_episode_steps), 0.0
+
+    def _time_aware_return(self, run: Run, steps: TimeAware) -> float:
+        """The expected return of a policy that depends on the number of steps taken."""
+        if not steps.cells.has_component_axes:
+            raise ValueError(
+                "run must have a table of the components of its observations, not of a function; "
+                "qtab.evaluate(run) estimates its return"
+            )
+        self._check_shape(run, (self._max_episode_steps, *self._cells.shape))
+        policy: Any = run.policy.reshape(self._max_episode_steps, -1) - run.actions.first
+        return time_dependent_return(self._planner, policy)
+
+    def _check_shape(self, run: Run, cells: tuple[int, ...]) -> None:
+        shape = (*cells, len(self._actions))
         found = (*run.discretizer.shape, len(run.actions))
         if not run.discretizer.has_cells or found != shape:
             raise ValueError(f"run must have a table of shape {shape}, got {found}")
-        policy: Any = np.ascontiguousarray(run.policy.ravel() - run.actions.first)
-        return self._planner.policy_return(policy, self._max_episode_steps), 0.0
+
+    def stationary(self) -> StationaryPolicy | None:
+        """Returns the best policy known that does not depend on the number of steps taken; None for large tables."""
+        found = stationary_policy(self._planner, self._cells.n_rows, self._max_episode_steps)
+        if found is None:
+            return None
+        policy, expected, proven = found
+        return StationaryPolicy(policy.reshape(self._cells.shape) + self._actions.first, expected, proven)

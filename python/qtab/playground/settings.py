@@ -37,7 +37,7 @@ OFFERED: Mapping[str, tuple[str, ...]] = {
 LEFT_OUT = frozenset(
     (
         *("env", "env_kwargs", "backend", "seed", "preset", "action_mask", "shape", "max_rows", "hashed_rows"),
-        *("edges", "actions", "model", "count_bonus"),
+        *("edges", "actions", "model", "count_bonus", "time_aware"),
     )
 )
 """What the page does not offer: settings of Python environments, those too long for a control, and those that the page

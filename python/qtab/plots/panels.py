@@ -23,7 +23,11 @@ MAX_PANELS_IN_A_ROW = 3
 
 
 def arranged(
-    run: Drawable | Sequence[Drawable], at: Mapping[str, float] | None, layout: Layout | None, title: str | None
+    run: Drawable | Sequence[Drawable],
+    at: Mapping[str, float] | None,
+    layout: Layout | None,
+    title: str | None,
+    step: int = 0,
 ) -> list[tuple[Subject, Raster]]:
     """Returns what the panels of a picture show, each with where it shows which state.
 
@@ -32,6 +36,7 @@ def arranged(
         at: The components of the observation that are held fixed.
         layout: The map of an environment with numbered states; None takes the known one.
         title: The title of the picture, which is only checked.
+        step: Of which step of an episode, for runs with ``time_aware=True``.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -39,7 +44,7 @@ def arranged(
             fit the environment.
     """
     check_title(title)
-    subjects = _subjects_of("run", run)
+    subjects = _subjects_of("run", run, step)
     _check_same_environment("run", subjects)
     return [(subject, arrange(subject, at, layout)) for subject in subjects]
 
@@ -132,7 +137,7 @@ def cell_font_size(ax: "Axes", raster: Raster) -> float:
     return max(4.0, min(11.0, float(width) / 3.3, float(height) / 1.6))
 
 
-def _subjects_of(name: str, source: Any) -> list[Subject]:
+def _subjects_of(name: str, source: Any, step: int) -> list[Subject]:
     """Returns the subjects of one run, of Runs or of an optimum, or of a sequence of them.
 
     Raises:
@@ -140,10 +145,10 @@ def _subjects_of(name: str, source: Any) -> list[Subject]:
         ValueError: for an empty sequence, and runs whose tables were not kept.
     """
     if not isinstance(source, list | tuple):
-        return [subject_of(name, source)]
+        return [subject_of(name, source, step)]
     if not source:
         raise ValueError(f"{name} must hold at least one run, got an empty {type(source).__name__}")
-    return [subject_of(f"{name}[{index}]", one) for index, one in enumerate(source)]
+    return [subject_of(f"{name}[{index}]", one, step) for index, one in enumerate(source)]
 
 
 def _check_same_environment(name: str, subjects: Sequence[Subject]) -> None:

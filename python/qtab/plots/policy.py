@@ -26,6 +26,7 @@ def policy(
     layout: Layout | None = None,
     action_names: Sequence[str] | None = None,
     title: str | None = None,
+    step: int = 0,
 ) -> "Axes":
     """Draws the greedy action of each state: arrows on a map, colors with a legend elsewhere.
 
@@ -41,6 +42,7 @@ def policy(
         action_names: A name for each action; None takes ``run.action_names``. On a map the actions left, right, up and
             down, and west, east, north and south, are arrows.
         title: The title; None names the environment, the algorithm and the seed.
+        step: For runs with ``time_aware=True``, after how many steps of an episode.
 
     Returns:
         The axes, of several panels the first.
@@ -50,7 +52,7 @@ def policy(
         TypeError: for an argument of the wrong type.
         ValueError: for one that does not fit the environment, or runs without tables.
     """
-    panels = arranged(run, at, layout, title)
+    panels = arranged(run, at, layout, title, step)
     names = [checked_names(subject, action_names) for subject, _ in panels]
     axes = axes_for([raster for _, raster in panels], ax)
     for (subject, raster), panel, named in zip(panels, axes, names, strict=True):

@@ -1,7 +1,7 @@
 """What a picture of values shows: a run, the mean of several, or an optimum, in one form."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from qtab.results.action_values import read_by_policy
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.run import Run
 from qtab.results.runs import Runs
+from qtab.results.time_steps import at_step, checked_step
 
 Drawable = Run | Runs | Optimum
 """What the pictures show."""
@@ -89,13 +90,23 @@ class Subject:
         return chosen
 
 
-def subject_of(name: str, source: Any) -> Subject:
+def subject_of(name: str, source: Any, step: Any = 0) -> Subject:
     """Returns the subject of a run, of many runs or of an optimum.
+
+    Args:
+        name: The argument that gives it, for messages.
+        source: What to draw.
+        step: Of which step of an episode, for runs with ``time_aware=True``.
 
     Raises:
         TypeError: for anything else.
-        ValueError: for runs whose tables were not kept.
+        ValueError: for runs whose tables were not kept, or a step that there is not.
     """
+    if isinstance(source, Run | Runs) and source.config.time_aware:
+        known: Any = source  # one run or many
+        subject = subject_of(name, at_step(known, step))
+        return replace(subject, name=f"{subject.name}, step {step}")
+    checked_step(None, step)
     if isinstance(source, Run):
         return _of_runs(
             source,

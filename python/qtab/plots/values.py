@@ -26,6 +26,7 @@ def values(
     at: Mapping[str, float] | None = None,
     layout: Layout | None = None,
     title: str | None = None,
+    step: int = 0,
     numbers: bool = True,
 ) -> "Axes":
     """Draws the value of each state under the greedy policy: the largest action value.
@@ -45,6 +46,7 @@ def values(
         layout: A map for numbered states: rows of text as FrozenLake's ``desc``, with ``#`` for obstacles, or the
             numbers of rows and columns. None takes the environment's own.
         title: The title; None names the environment, the algorithm and the seed.
+        step: For runs with ``time_aware=True``, after how many steps of an episode.
         numbers: Whether to write the values into the cells of small maps.
 
     Returns:
@@ -56,7 +58,7 @@ def values(
         ValueError: for one that does not fit the environment, or runs without tables.
     """
     numbers = checks.boolean("numbers", numbers)
-    panels = arranged(run, at, layout, title)
+    panels = arranged(run, at, layout, title, step)
     grids = [subject.state_values(raster.rows) for subject, raster in panels]
     text = value_text if numbers else None
     return draw_heat_maps(panels, grids, ax, norm=common_norm, label=VALUE_LABEL, title=title, text=text)

@@ -12,6 +12,7 @@ from qtab.plots.heat_maps import draw_heat_maps
 from qtab.plots.panels import arranged
 from qtab.plots.subject import Subject
 from qtab.results.run import Run
+from qtab.results.time_steps import over_all_steps
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +29,8 @@ def visits(
 ) -> "Axes":
     """Draws how often training visited each state, on a logarithmic scale. Grey states were never visited.
 
-    With tile coding the number at a point is the mean over the tiles that it lies in.
+    With tile coding the number at a point is the mean over the tiles that it lies in, with ``time_aware=True`` the sum
+    over the steps of an episode.
 
     Args:
         run: A run trained with ``visits=True``; a sequence of them makes panels with one scale of colors.
@@ -46,7 +48,8 @@ def visits(
         TypeError: for an argument of the wrong type.
         ValueError: for a run without visits, or an argument that does not fit the environment.
     """
-    panels = arranged(run, at, layout, title)
+    shown = [over_all_steps(one) for one in run] if isinstance(run, list | tuple) else over_all_steps(run)
+    panels = arranged(shown, at, layout, title)
     counts = [_counts(subject, raster) for subject, raster in panels]
     return draw_heat_maps(panels, counts, ax, norm=_norm, label="visits", title=title, text=_short)
 

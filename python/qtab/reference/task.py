@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -54,7 +55,10 @@ class Task:
         self.observer.masks(self.masks)
         self.rng = self.observer.stream(agent_stream(self.seed, config.bit_generator))
         self.discretizer = discretizer(env, config)
-        self.n_rows = int(np.prod(self.discretizer.shape))
+        # With time_aware each step before the time limit has rows of its own, those of the first step first.
+        self.limit = required("max_episode_steps", config.max_episode_steps) if config.time_aware else None
+        self.shape = self.discretizer.shape if self.limit is None else (self.limit, *self.discretizer.shape)
+        self.n_rows = int(np.prod(self.shape))
         self.policy = self.observer.policy(policy(config, self.rng))
         self.learning_rate = self.new_learning_rate()
         self.visits = np.zeros((self.n_rows, self.n_actions), dtype=int)
@@ -104,10 +108,18 @@ class Task:
     def reset(self) -> Rows:
         """Starts an episode. Only the first reset seeds the environment."""
         observation, info = self.env.reset(seed=self.seed if len(self.returns) == 1 else None)
-        state = self.discretizer.rows(observation)
+        state = self.rows(observation)
         self.masks.see(state, observation, info)
         self.state = state
         return state
+
+    def rows(self, observation: Any) -> Rows:
+        """Returns the active rows of an observation at this step of the episode."""
+        rows = self.discretizer.rows(observation)
+        if self.limit is None:
+            return rows
+        step = min(self.lengths[-1], self.limit - 1)
+        return [step * math.prod(self.discretizer.shape) + row for row in rows]
 
     def step(self, action: int) -> Step:
         """Takes a step. At a time-out the state is not terminal, unless the config makes that mistake."""
@@ -115,8 +127,9 @@ class Task:
         self.returns[-1] += float(reward)
         self.lengths[-1] += 1
         terminal = terminated or (truncated and self.config.on_truncation == "terminate")
-        state = self.discretizer.rows(observation)
-        if not terminated:  # a terminal state may have no action
+        state = self.rows(observation)
+        # A terminal state may have no action; after the last step of time_aware there is no state.
+        if not terminated and self.lengths[-1] != self.limit:
             self.masks.see(state, observation, info)
         if self.config.count_bonus:
             reward = float(reward) + self.bonus(action)
@@ -166,7 +179,7 @@ class Task:
 
     def result(self, *tables: Table) -> Result:
         """Returns the table in the shape of the grid (two are stacked), the returns and the lengths."""
-        shape = (*self.discretizer.shape, self.n_actions)
+        shape = (*self.shape, self.n_actions)
         Q = tables[0].reshape(shape) if len(tables) == 1 else np.stack(tables).reshape(-1, *shape)
         return Q, np.array(self.returns), np.array(self.lengths)
 

@@ -14,6 +14,7 @@ from qtab.envs.stored import spec_of_run
 from qtab.planning.optimum import Optimum
 from qtab.rendering.replay import check_render_mode, render_env
 from qtab.results.run import Run
+from qtab.results.time_steps import rows_of
 from qtab.training.assigned_rows import greedy_table
 from qtab.training.given_env import check_env, check_spaces
 
@@ -58,13 +59,14 @@ def _greedy(run: Run) -> Callable[[Any, Any, Any], tuple[Any, Any]]:
     table = greedy_table(run)[0]
 
     def act(observation: Any, state: Any, mask: Any) -> tuple[Any, Any]:
-        rows = run.discretizer.active_rows(observation)
+        steps = 0 if state is None else state
+        rows = rows_of(run, observation, steps)
         values = table[rows[0]].copy()
         for row in rows[1:]:  # from left to right, as the learners add; np.sum would add in pairs
             values += table[row]
         if mask is not None:
             values[~mask] = -np.inf
-        return run.actions[int(np.argmax(values))], state
+        return run.actions[int(np.argmax(values))], steps + 1
 
     return act
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from qtab.config import Config
 from qtab.config.action_mask import FORGOTTEN, checked_mask
 from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
+from qtab.results.time_steps import rows_of
 
 if TYPE_CHECKING:
     from qtab.results.run import Run
@@ -29,21 +30,21 @@ def read_by_policy(config: Config, tables: NDArray[np.float64]) -> NDArray[np.fl
     return tables[:1] if config.algorithm in WITH_STATE_VALUES else tables
 
 
-def state_values(run: "Run", observation: Any) -> NDArray[np.float64]:
+def state_values(run: "Run", observation: Any, steps: Any = 0) -> NDArray[np.float64]:
     """Returns the () or (n,) values of observations under the policy that was learned.
 
     Raises:
         ValueError: of an algorithm that learns preferences alone.
     """
     if run.config.algorithm in WITH_STATE_VALUES:
-        active = np.moveaxis(run.discretizer.active_rows(observation), -1, 0)
+        active = np.moveaxis(rows_of(run, observation, steps), -1, 0)
         return summed(run.tables[1][row, 0] for row in active)
     if run.config.algorithm in PREFERENCES:
         raise ValueError(
             f"values needs an algorithm that learns values, got a run of {run.config.algorithm!r}, which learns "
             "preferences alone: run.q_values(observation) are those"
         )
-    return np.asarray(np.max(of_observations(run, observation), axis=-1) / len(run.tables))
+    return np.asarray(np.max(of_observations(run, observation, steps), axis=-1) / len(run.tables))
 
 
 def of_cells(run: "Run") -> NDArray[np.float64]:
@@ -52,22 +53,22 @@ def of_cells(run: "Run") -> NDArray[np.float64]:
     return values if run.action_masks is None else np.where(run.action_masks, values, -np.inf)
 
 
-def of_observations(run: "Run", observation: Any) -> NDArray[np.float64]:
-    """Returns the (actions,) values of an observation, or the (n, actions) values of n observations."""
-    rows = run.discretizer.active_rows(observation)
+def of_observations(run: "Run", observation: Any, steps: Any = 0) -> NDArray[np.float64]:
+    """Returns the (actions,) values of an observation, or the (n, actions) values of n, after a number of steps."""
+    rows = rows_of(run, observation, steps)
     values = _of_rows(run, rows)
     available = _available(run, observation, rows)
     return values if available is None else np.where(available, values, -np.inf)
 
 
-def to_choose_from(run: "Run", observation: Any, action_masks: Any) -> NDArray[np.float64]:
+def to_choose_from(run: "Run", observation: Any, action_masks: Any, steps: Any = 0) -> NDArray[np.float64]:
     """Returns the values of observations to choose an action by, masked by ``action_masks`` if they are given.
 
     Raises:
         TypeError: if the masks do not hold booleans or integers.
         ValueError: if they do not fit, or none are given and none are known.
     """
-    rows = run.discretizer.active_rows(observation)
+    rows = rows_of(run, observation, steps)
     values = _of_rows(run, rows)
     if action_masks is not None:
         given = np.asarray(action_masks)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.discretizers.actions import Actions
+from qtab.discretizers.time_aware import TimeAware
 from qtab.envs.descriptions import Quantity, describe, observation_quantities
 
 if TYPE_CHECKING:
@@ -42,8 +43,10 @@ class Axis:
 
 
 def axes_of(env: str, discretizer: "Discretizer") -> tuple[Axis, ...]:
-    """Returns an axis for each component of the observations of an environment."""
+    """Returns an axis for each component of the observations of an environment; the steps taken are the first one."""
     edges = discretizer.cell_edges()
+    if isinstance(discretizer, TimeAware):
+        return (Axis("steps taken", "", edges[0]), *axes_of(env, discretizer.cells))
     named = tuple(map(Quantity, discretizer.component_names))
     quantities = named or observation_quantities(env, len(edges))
     return tuple(

@@ -52,6 +52,11 @@ def write(run: "Run", path: Path) -> None:
         check_consistent(run)
     except ValueError as error:
         raise ValueError(f"this run cannot be written: {error}") from None
+    if run.config.time_aware:
+        raise ValueError(
+            "this run cannot be written: plain data describes policies without time_aware; "
+            "run.at_step(step).to_json(path) writes that of one step"
+        )
     if run.discretizer.reads_space:
         raise ValueError(
             "this run cannot be written: plain data describes discretizers of integers and of a Box of one axis of "

@@ -15,11 +15,12 @@ from qtab._utils.frames import episode_frame
 from qtab.config import Config
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
-from qtab.results import action_values, behaviour, plain_data, run_file, saving
+from qtab.results import action_values, behaviour, plain_data, run_file, saving, time_steps
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
 from qtab.results.page import WithPage
+from qtab.results.recording import Recording as Recording
 from qtab.results.run_state import RunState
 from qtab.results.snapshots import Snapshots
 from qtab.results.summary import FINAL_EPISODES, default_block
@@ -54,7 +55,7 @@ class Run(WithPage):
     """How long the training took, in wall-clock time."""
     versions: Mapping[str, str]
     """The versions of qtab, Gymnasium, NumPy and Python, and the platform."""
-    recordings: tuple["Recording", ...] = field(default=(), repr=False)
+    recordings: tuple[Recording, ...] = field(default=(), repr=False)
     """The last episodes, where ``record=`` asked for them, to be replayed. They are not saved."""
     unchecked: bool = field(default=False, repr=False)
     """True for a run from a file of an earlier version, which has no digest: damage to it may not have been noticed."""
@@ -113,7 +114,8 @@ class Run(WithPage):
     def q_table(self) -> NDArray[np.float64]:
         """(*cells, actions): the values that the greedy policy reads; of two tables the sum; -inf for masked actions.
 
-        Of a policy gradient method they are the preferences, of which the policy is the softmax.
+        With ``time_aware`` the axis of the steps comes first: ``q_table[t]`` are the values after t steps. Of a policy
+        gradient method they are the preferences, of which the policy is the softmax.
 
         Raises:
             ValueError: with tile coding, which has no cells.
@@ -150,49 +152,66 @@ class Run(WithPage):
                 f"run.{method}(observation) works"
             )
 
-    def q_values(self, observation: Any) -> NDArray[np.float64]:
+    def at_step(self, step: int) -> "Run":
+        """Returns a run with ``time_aware=True`` as it is at one step of the episode, to be looked at like any other.
+
+        Its tables, visits, masks and snapshots are those after ``step`` steps; its config has ``time_aware=False``. It
+        can neither be repeated nor resumed.
+
+        Raises:
+            TypeError: if ``step`` is not an integer.
+            ValueError: if it is negative or not before the time limit, or not 0 for a run without ``time_aware``.
+        """
+        return time_steps.at_step(self, step)
+
+    def q_values(self, observation: Any, step: int = 0) -> NDArray[np.float64]:
         """Returns the (actions,) values of an observation, or the (n, actions) values of n observations.
 
-        Of a policy gradient method they are preferences.
+        Of a policy gradient method they are preferences. With ``time_aware`` they are those after ``step`` steps.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
-            ValueError: if it has another shape than the space, or lies outside the space.
+            ValueError: if it has another shape than the space, or lies outside the space; or for a ``step`` as in
+                :meth:`at_step`.
         """
-        return action_values.of_observations(self, observation)
+        return action_values.of_observations(self, observation, time_steps.checked_step(self.discretizer, step))
 
-    def values(self, observation: Any) -> Any:
+    def values(self, observation: Any, step: int = 0) -> Any:
         """Returns the value of an observation under the greedy policy, or the (n,) values of n observations.
 
         It is the largest action value, as a float. Of Double Q-learning, whose :attr:`q_table` is the sum of two
         tables, it is half of that: the mean of two estimates. Of REINFORCE with baseline and of actor-critic methods it
-        is the state value that they learn.
+        is the state value that they learn. With ``time_aware`` it is that after ``step`` steps.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
             ValueError: if it has another shape than the space, or lies outside the space, or for an algorithm that
-                learns preferences without values.
+                learns preferences without values; or for a ``step`` as in :meth:`at_step`.
         """
-        values = action_values.state_values(self, observation)
+        step = time_steps.checked_step(self.discretizer, step)
+        values = action_values.state_values(self, observation, step)
         return values if values.ndim else float(values)
 
     def predict(
         self,
         observation: Any,
-        state: Any = None,  # noqa: ARG002 - Stable-Baselines3's signature
-        episode_start: Any = None,  # noqa: ARG002
+        state: Any = None,
+        episode_start: Any = None,
         deterministic: bool = True,
         action_masks: ArrayLike | None = None,
-    ) -> tuple[Any, None]:
-        """Returns the action of an observation as ``env.step`` takes it, and None, as Stable-Baselines3 does.
+    ) -> tuple[Any, Any]:
+        """Returns the action of an observation as ``env.step`` takes it, and the state of the policy, as SB3 does.
 
-        For n observations, an array with one more leading axis, it returns an array of n actions. ``state`` and
-        ``episode_start`` are accepted and ignored: the policy has no state.
+        For n observations, an array with one more leading axis, it returns an array of n actions. The policy of a run
+        with ``time_aware=True`` has a state, the number of steps taken in the episode, which the next call takes; from
+        the time limit on it acts as in the last step. Any other run returns None as the state.
 
         Args:
             observation: An observation, or n of them.
-            state: Ignored.
-            episode_start: Ignored.
+            state: The state that the last call returned, of n observations (n,) of them; None for the start of an
+                episode. Ignored without ``time_aware``.
+            episode_start: Whether an episode starts, of n observations (n,) booleans; None means no. Ignored without
+                ``time_aware``.
             deterministic: True takes the greedy action, which is the most likely one of preferences. False draws an
                 action from the behaviour policy, with the ε or the temperature that the last episode of the training
                 left: an ε that fell to 0 leaves the greedy action, as does exploration "ucb". The draws come from a
@@ -206,14 +225,16 @@ class Run(WithPage):
         """
         if not isinstance(deterministic, bool | np.bool_):
             raise TypeError(f"deterministic must be True or False, got {deterministic!r}")
-        values = action_values.to_choose_from(self, observation, action_masks)
+        steps = time_steps.steps_taken(self.discretizer, state, episode_start)
+        values = action_values.to_choose_from(self, observation, action_masks, steps)
         if deterministic:
             columns = np.argmax(values, axis=-1)
         else:
             rows = values.reshape(-1, values.shape[-1])
             probabilities = behaviour.action_probabilities(self.config, len(self.episode_returns), rows)
             columns = behaviour.sample(probabilities, self._generator).reshape(values.shape[:-1])
-        return (self.actions.take(columns) if columns.ndim else self.actions[int(columns)]), None
+        action = self.actions.take(columns) if columns.ndim else self.actions[int(columns)]
+        return action, time_steps.next_state(self.discretizer, steps, columns.shape)
 
     @cached_property
     def _generator(self) -> np.random.Generator:
@@ -274,18 +295,3 @@ class Run(WithPage):
             if self.state.extensions:
                 header["extensions"] = self.state.extensions
         saving.write(checks.path("path", path), run_file.RUN, self, header, arrays)
-
-
-@dataclass(frozen=True, repr=False)
-class Recording:
-    """One episode that can be replayed."""
-
-    episode: int
-    """The number of the episode in its run, from 0."""
-    start: Mapping[str, Any]
-    """The state of the environment's bit generator before the episode's reset."""
-    actions: tuple[Any, ...]
-    """What ``env.step`` was given: integers, with the start of a Discrete space added, or arrays."""
-
-    def __repr__(self) -> str:
-        return f"<Recording of episode {self.episode}: {len(self.actions):,} actions>"

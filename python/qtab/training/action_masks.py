@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import gymnasium as gym
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from qtab._spec import ActionMasksSpec, MaskSourceSpec
 from qtab.config.action_mask import FORGOTTEN, Mask, checked_mask
-from qtab.discretizers import Discretizer
+from qtab.discretizers import Discretizer, TimeAware
 from qtab.discretizers.identity import Identity
 
 MAX_KNOWN_STATES = 100_000
@@ -81,6 +81,11 @@ def known_masks(action_mask: Mask, env: gym.Env, discretizer: Discretizer, n_act
     Raises:
         Exception: whatever else the function raises, with a note of the observation where Python has notes.
     """
+    if isinstance(discretizer, TimeAware):
+        of_cells = known_masks(action_mask, env, discretizer.cells, n_actions)
+        if of_cells is None or of_cells.known is None:
+            return None
+        return replace(of_cells, known=np.tile(of_cells.known, (discretizer.max_episode_steps, 1)))
     function = action_mask if callable(action_mask) else getattr(env.unwrapped, "action_mask", None)
     if function is None or not isinstance(discretizer, Identity) or discretizer.n_rows > MAX_KNOWN_STATES:
         return None

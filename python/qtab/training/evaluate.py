@@ -11,13 +11,16 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.checks import required
 from qtab._utils.fields import with_fields
 from qtab._utils.frames import episode_frame
 from qtab._utils.progress import check_progress
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.options import OPTIONS
 from qtab.config.unknown import suggesting
 from qtab.discretizers import Sparse
+from qtab.envs.matching import time_limit
 from qtab.envs.registry import spec_of
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
@@ -35,6 +38,7 @@ TABLE_SETTINGS = (
     *(name for name, option in OPTIONS.items() if option.choice == "discretizer"),
     "actions",
     "action_mask",
+    "time_aware",
 )
 """The settings that say what the rows and columns of a table stand for."""
 
@@ -149,11 +153,22 @@ def evaluate(
     check_progress(progress)
     check_env(env)
     config = run.config
+    if config.time_aware and max_episode_steps not in (None, config.max_episode_steps):
+        raise ValueError(
+            f"max_episode_steps must be {config.max_episode_steps} for a run with time_aware=True, whose policy is "
+            f"that of its time limit, got {shown(max_episode_steps)}"
+        )
     if env is None:
         spec: EnvSpec | None = spec_of_run(config.env)
     elif isinstance(env, gym.Env):
         spec = env.spec
         check_spaces(run, env)
+        limit = time_limit(env)
+        if config.time_aware and limit is not None and limit < required("max_episode_steps", config.max_episode_steps):
+            raise ValueError(
+                f"env must have a time limit of at least {config.max_episode_steps} steps, that of the run with "
+                f"time_aware=True, got {limit}"
+            )
     else:
         spec = env if isinstance(env, EnvSpec) else spec_of(env)
         with closing(gym.make(env, **(env_kwargs or {}))) as made:

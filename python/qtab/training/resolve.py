@@ -142,6 +142,9 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     config = set_aside(env, request.config, request.asked)
     config = infer_discretizer(env.observation_space, config, request.asked)
     config = replace_checked(config, **defaults(vars(config)))
+    own_limit = config.max_episode_steps or request.time_limit
+    max_episode_steps = own_limit or UNLIMITED_MAX_EPISODE_STEPS
+    config = replace_checked(config, max_episode_steps=max_episode_steps)
     actions = choose_actions(env.action_space, config.actions)
     environment, python_reason = _environment(request, actions, owns_env)
     of_preset = preset(config.env, config.preset)[1] if config.preset else {}
@@ -160,14 +163,11 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         masks = observed_masks(config.action_mask, env)
     if not in_rust:
         environment = PythonEnvironment(env, actions, owns_env, masks)
-    own_limit = config.max_episode_steps or request.time_limit
-    max_episode_steps = own_limit or UNLIMITED_MAX_EPISODE_STEPS
     seed = int(np.random.SeedSequence().generate_state(1)[0]) if config.seed is None else config.seed
     config = replace_checked(
         config,
         **discretizer.settings(),
         initial_q=_fit_initial_q(config, discretizer, len(actions)),
-        max_episode_steps=max_episode_steps,
         seed=seed,
         backend="rust" if in_rust else "gymnasium",
     )

@@ -128,6 +128,7 @@ class ResolvedRun:
             "discretizer": self.discretizer.spec(),
             "num_actions": len(self.actions),
             "max_episode_steps": self.max_episode_steps,
+            "time_aware": config.time_aware,
             "algorithm": self.algorithm.spec(),
             "policy": self.policy.spec(),
             "learning_rate": self.learning_rate.spec(),

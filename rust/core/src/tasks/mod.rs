@@ -7,6 +7,7 @@ mod k_armed_bandit;
 mod native_task;
 mod rng_snapshot;
 mod task;
+mod time_aware;
 mod visit_counter;
 
 pub use boxed_task::BoxedTask;
@@ -16,4 +17,5 @@ pub use k_armed_bandit::{KArmedBandit, Testbed};
 pub use native_task::{NativeTask, TimedState};
 pub use rng_snapshot::RngSnapshot;
 pub use task::{Next, Task, Transition};
+pub use time_aware::TimeAware;
 pub use visit_counter::{CountedState, VisitCounter};

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
 use qtab_core::learners::{CountBonus, LearnerVisitor, TruncationHandling};
 use qtab_core::random::AgentRng;
-use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, VisitCounter};
+use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, TimeAware, VisitCounter};
 use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
 
 use super::agent::generic_agent;
@@ -121,14 +121,40 @@ where
     W::Snapshot: Send,
     RunError: From<W::Error> + From<TrainingError<W::Error>>,
 {
-    let (task, recordings) = if record == 0 {
-        (boxed_task(task, shape, spec, stop)?, AnyRecordings::None)
-    } else {
-        let (task, recordings) = EpisodeRecorder::new(task, record, spec.max_recorded_actions);
-        (boxed_task(task, shape, spec, stop)?, keep(recordings))
-    };
+    if record == 0 {
+        return Ok((run_of(task, shape, seed, spec, stop)?, AnyRecordings::None));
+    }
+    let (task, recordings) = EpisodeRecorder::new(task, record, spec.max_recorded_actions);
+    Ok((run_of(task, shape, seed, spec, stop)?, keep(recordings)))
+}
+
+/// A run of any learner, without recordings other than those that the task makes.
+fn run_of<W>(task: W, shape: (usize, usize), seed: &Seed, spec: &RunSpec, stop: &StopFlag<'_>) -> PyResult<Box<dyn Run>>
+where
+    W: Task<Active: Send, State: Send> + Send + 'static,
+    RunError: From<W::Error>,
+{
     let rng = spec.bit_generator.agent_rng(seed)?;
-    Ok((build_learner(task, shape, rng, spec, stop)?, recordings))
+    if spec.time_aware {
+        return time_aware_run(BoxedTask::new(task), shape.0, rng, spec, stop);
+    }
+    build_learner(boxed_task(task, shape, spec, stop)?, shape, rng, spec, stop)
+}
+
+/// A run with rows for each step. The task is boxed before, so that this is compiled once for each kind of active rows.
+fn time_aware_run<R: ActiveRows + Send + 'static>(
+    task: BoxedTask<R, RunError>,
+    n_rows: usize,
+    rng: AgentRng,
+    spec: &RunSpec,
+    stop: &StopFlag<'_>,
+) -> PyResult<Box<dyn Run>> {
+    let Some(task) = TimeAware::new(task, n_rows, spec.max_episode_steps) else {
+        let got = format!("{n_rows} cells of {} steps each", spec.max_episode_steps);
+        return Err(invalid("time_aware", "a table of fewer than 2**32 rows", got));
+    };
+    let shape = (task.n_rows(), 1);
+    build_learner(boxed_task(task, shape, spec, stop)?, shape, rng, spec, stop)
 }
 
 /// A boxed task, which counts visits if the spec asks for it.

@@ -77,6 +77,9 @@ where
         }
         return generic(env, features, spec, record);
     }
+    if spec.time_aware {
+        return generic(env, features, spec, record);
+    }
     let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else {
         return generic(env, features, spec, record);
     };

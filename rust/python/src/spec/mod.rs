@@ -34,6 +34,8 @@ pub(crate) struct RunSpec {
     pub(crate) discretizer: DiscretizerSpec,
     pub(crate) num_actions: usize,
     pub(crate) max_episode_steps: u64,
+    /// Whether the number of steps taken in the episode is part of the state.
+    pub(crate) time_aware: bool,
     pub(crate) algorithm: AnyAlgorithm,
     pub(crate) policy: PolicySpec,
     pub(crate) learning_rate: LearningRateSpec,
@@ -67,6 +69,7 @@ impl RunSpec {
             discretizer: DiscretizerSpec::parse(&fields.nested("discretizer")?)?,
             num_actions,
             max_episode_steps,
+            time_aware: fields.get("time_aware")?,
             algorithm: algorithm::algorithm(&fields.nested("algorithm")?, max_episode_steps, learning_rate)?,
             policy: PolicySpec::parse(&fields.nested("policy")?, episodes)?,
             learning_rate,
@@ -85,6 +88,7 @@ impl RunSpec {
         };
         spec.check_tile_coding()?;
         spec.check_preferences()?;
+        spec.check_time_aware()?;
         if spec.algorithm.needs_probabilities() && matches!(spec.policy, PolicySpec::Ucb { .. }) {
             return Err(invalid("policy", "'epsilon_greedy' or 'softmax' for this algorithm", "'ucb'"));
         }
@@ -104,6 +108,23 @@ impl RunSpec {
         }
         if matches!(self.policy, PolicySpec::Ucb { .. }) {
             return Err(invalid("policy", "'epsilon_greedy' or 'softmax' for tile coding", "'ucb'"));
+        }
+        Ok(())
+    }
+
+    /// Refuses what does not fit a state that the time limit ends.
+    fn check_time_aware(&self) -> PyResult<()> {
+        if !self.time_aware {
+            return Ok(());
+        }
+        if self.discretizer.is_tile_coding() {
+            return Err(invalid("discretizer", "one with cells for time_aware", "tile coding"));
+        }
+        if self.max_episode_steps == 0 {
+            return Err(invalid("max_episode_steps", "at least 1 for time_aware", 0));
+        }
+        if !self.terminate_on_truncation {
+            return Err(invalid("on_truncation", "'terminate' for time_aware", "'bootstrap'"));
         }
         Ok(())
     }

@@ -1,0 +1,147 @@
+//! The number of steps taken as a part of the state, as Gymnasium's `TimeAwareObservation` makes it (F. Pardo et al.,
+//! "Time limits in reinforcement learning", 2018).
+
+use super::{Next, Task, TimedState, Transition};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+
+/// A wrapper around a task with one active row, with rows of their own for each step before the time limit: the table has
+/// `max_episode_steps` times as many, those of an episode's first step first.
+///
+/// No rows follow the last step: there the next state of a truncated episode is reported with those of the last step, and
+/// a learner must take it as terminal.
+#[derive(Clone, Debug)]
+pub struct TimeAware<T> {
+    task: T,
+    /// The number of rows of the task.
+    rows: u32,
+    /// The time limit.
+    max_episode_steps: u64,
+    /// Whether the last step reached the time limit, where no state follows whose actions could be masked.
+    at_limit: bool,
+}
+
+impl<T> TimeAware<T> {
+    /// `rows` is the number of rows of `task`, which ends episodes after `max_episode_steps` at the latest. None if the
+    /// table would have 2³² rows or more.
+    pub fn new(task: T, rows: usize, max_episode_steps: u64) -> Option<Self> {
+        let all = (rows as u64).checked_mul(max_episode_steps)?;
+        u32::try_from(all).ok()?;
+        Some(Self { task, rows: u32::try_from(rows).ok()?, max_episode_steps, at_limit: false })
+    }
+
+    /// The number of rows of the table.
+    pub fn n_rows(&self) -> usize {
+        self.rows as usize * self.max_episode_steps as usize
+    }
+
+    /// The row of the task's row after so many steps.
+    fn at(&self, active: impl AsRef<[u32]>, elapsed: u64) -> [u32; 1] {
+        let step = elapsed.min(self.max_episode_steps - 1) as u32;
+        [step * self.rows + active.as_ref()[0]]
+    }
+}
+
+impl<T: Task> Task for TimeAware<T> {
+    type State = TimedState<T::State>;
+    type Active = [u32; 1];
+    type Error = T::Error;
+
+    fn reset(&mut self) -> Result<(Self::State, [u32; 1]), T::Error> {
+        let (state, active) = self.task.reset()?;
+        self.at_limit = false;
+        Ok((TimedState { state, elapsed: 0 }, self.at(active, 0)))
+    }
+
+    fn step(&mut self, timed: &mut Self::State, action: usize) -> Result<Transition<[u32; 1]>, T::Error> {
+        let Transition { reward, next } = self.task.step(&mut timed.state, action)?;
+        timed.elapsed += 1;
+        self.at_limit = timed.elapsed >= self.max_episode_steps;
+        let next = match next {
+            Next::NonTerminal(active) => Next::NonTerminal(self.at(active, timed.elapsed)),
+            Next::Truncated(active) => Next::Truncated(self.at(active, timed.elapsed)),
+            Next::Terminal => Next::Terminal,
+        };
+        Ok(Transition { reward, next })
+    }
+
+    #[inline]
+    fn step_work(&self) -> u64 {
+        self.task.step_work()
+    }
+
+    fn action_mask(&self) -> Option<&[bool]> {
+        if self.at_limit { None } else { self.task.action_mask() }
+    }
+
+    fn active_rows(&self, timed: &Self::State) -> Result<[u32; 1], T::Error> {
+        Ok(self.at(self.task.active_rows(&timed.state)?, timed.elapsed))
+    }
+
+    fn resumes_episodes(&self) -> bool {
+        self.task.resumes_episodes()
+    }
+
+    fn persist(
+        &mut self,
+        timed: Option<&mut Self::State>,
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        let Some(timed) = timed else { return self.task.persist(None, checkpoint) };
+        self.task.persist(Some(&mut timed.state), checkpoint)?;
+        timed.elapsed.persist(checkpoint)?;
+        if timed.elapsed >= self.max_episode_steps {
+            return Err(CheckpointError::Invalid("number of steps taken"));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::envs::tabular::{Outcome, TabularMdp};
+    use crate::features::{Identity, OutOfBounds};
+    use crate::random::{Pcg64, SeedSequence};
+    use crate::tasks::NativeTask;
+
+    /// Two states, one action, which leads to the other state; a time limit of 3 steps.
+    fn task() -> TimeAware<NativeTask<TabularMdp, Identity>> {
+        let to = |state| vec![Outcome { probability: 1.0, state, reward: 1.0, terminated: false }];
+        let table = TabularMdp::new(1, &[1.0, 0.0], &[to(1), to(0)]).expect("a valid table");
+        let task = NativeTask::new(table, Identity(2), Some(3), Pcg64::new(&SeedSequence::new(&[0])));
+        TimeAware::new(task, 2, 3).expect("a small table")
+    }
+
+    #[test]
+    fn each_step_before_the_limit_has_rows_of_its_own() -> Result<(), OutOfBounds> {
+        let mut task = task();
+        assert_eq!(task.n_rows(), 6);
+        for _ in 0..2 {
+            let (mut state, first) = task.reset()?;
+            assert_eq!(first, [0]);
+            assert_eq!(task.step(&mut state, 0)?.next, Next::NonTerminal([3]));
+            assert_eq!(task.step(&mut state, 0)?.next, Next::NonTerminal([4]));
+            assert_eq!(task.active_rows(&state), Ok([4]));
+            assert_eq!(task.step(&mut state, 0)?.next, Next::Truncated([5]));
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn the_number_of_steps_is_restored() -> Result<(), OutOfBounds> {
+        let (mut stopped, mut resumed, mut bytes) = (task(), task(), Vec::new());
+        let (mut state, _) = stopped.reset()?;
+        stopped.step(&mut state, 0)?;
+        stopped.persist(Some(&mut state), &mut Checkpoint::save(&mut bytes)).expect("memory suffices");
+        let (mut restored, _) = task().reset()?;
+        resumed.persist(Some(&mut restored), &mut Checkpoint::restore(&bytes)).expect("the bytes are complete");
+        assert_eq!(restored, state);
+        Ok(())
+    }
+
+    #[test]
+    fn a_table_of_too_many_rows_is_refused() {
+        assert!(TimeAware::new((), 1 << 20, 1 << 12).is_none());
+        assert!(TimeAware::new((), 2, u64::MAX).is_none());
+    }
+}
