@@ -1,0 +1,57 @@
+"""Settings of tile coding that solve tasks of classic control."""
+
+from qtab.config.settings import SharedSettings
+
+# Sarsa(λ) on tile coding, as in Sutton & Barto, Example 10.1 and Figure 12.10. It needs no exploration rate: values of
+# 0 are optimistic where every step costs 1.
+_TILES: SharedSettings = {
+    "algorithm": "sarsa_lambda",
+    "discretizer": "tiles",
+    "tilings": 8,
+    "tiles": (16,),
+    "learning_rate": 0.5,
+    "learning_rate_schedule": "linear",
+    "discount": 1.0,
+    "epsilon": 0.0,
+    "trace_decay": 0.9,
+    "trace_cutoff": 1e-3,
+    "initial_q": 0.0,
+    "episodes": 2000,
+}
+# Chosen on the seeds 20,000 to 20,199; docs/reference/environments.md reports others.
+SOLVED_MOUNTAIN_CAR: SharedSettings = {
+    **_TILES,
+    "algorithm": "true_online_sarsa_lambda",
+    "tilings": 32,
+    "tiles": (8,),
+    "learning_rate": 1.5,
+    "trace_decay": 0.85,
+    "episodes": 1000,
+}
+# Pushing costs energy: with initial values below 100 (12.5 in each tiling) the car learns to stand still.
+CONTINUOUS_MOUNTAIN_CAR: SharedSettings = {
+    **_TILES,
+    "actions": (-0.3, 0.3),
+    "learning_rate": 0.2,
+    "epsilon": 0.1,
+    "initial_q": 12.5,
+    "episodes": 500,
+}
+_TRACES: SharedSettings = {**_TILES, "trace_decay": 0.8, "epsilon": 0.1, "episodes": 1000}
+SOLVED_CART_POLE: SharedSettings = {
+    **_TRACES,
+    "tilings": 16,
+    "tiles": (4,),
+    "low": (-2.4, -2.5, -0.21, -3.5),
+    "high": (2.4, 2.5, 0.21, 3.5),
+    "discount": 0.999,
+}
+ACROBOT: SharedSettings = {
+    **_TRACES,
+    "tilings": 32,
+    "tiles": (4, 4, 4, 4, 5, 5),
+    "learning_rate_schedule": "constant",
+    "discount": 0.99,
+    "epsilon": 0.0,
+}
+PENDULUM: SharedSettings = {**_TRACES, "actions": 3, "tilings": 16, "tiles": (6,), "discount": 0.98}
