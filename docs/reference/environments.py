@@ -20,6 +20,11 @@ from qtab.results.summary import best_mean_returns
 ENVIRONMENTS = (*ENTRIES, "qtab/Racetrack-v0")
 SEEDS = {
     ("MountainCar-v0", "solved"): (200, 1_000),
+    ("CartPole-v1", "solved"): (32, 200),
+    ("Acrobot-v1", "solved"): (16, 60),
+    ("Pendulum-v1", "tuned"): (16, 120),
+    ("FrozenLake8x8-v1", "solved"): (16, 200),
+    ("qtab/Racetrack-v0", "solved"): (10, 100),
 }
 """On how many seeds a preset was chosen among others, and on how many fresh ones it was confirmed."""
 OTHERS = (0, 100)

@@ -87,7 +87,12 @@ _SOLVED_LAKE: SharedSettings = {
     "initial_q": 1.0,
     "episodes": 10_000,
 }
-_SOLVED_LARGE_LAKE: SharedSettings = {**_SOLVED_LAKE, "discount": 0.997}
+_SOLVED_LARGE_LAKE: SharedSettings = {
+    **_SOLVED_LAKE,
+    "learning_rate": 0.05,
+    "discount": 0.996,
+    "episodes": 100_000,
+}
 _SOLVED_CLIFF: SharedSettings = {
     "learning_rate": 1.0,
     "discount": 1.0,
