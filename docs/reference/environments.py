@@ -21,6 +21,7 @@ ENVIRONMENTS = (*ENTRIES, "qtab/Racetrack-v0")
 SEEDS = {
     ("MountainCar-v0", "solved"): (200, range(40_000, 41_000)),
     ("CartPole-v1", "solved"): (32, range(40_000, 40_200)),
+    ("CartPole-v0", "solved"): (0, range(40_000, 40_040)),
     ("Acrobot-v1", "solved"): (16, range(40_000, 40_060)),
     ("Pendulum-v1", "tuned"): (16, range(40_000, 40_120)),
     ("FrozenLake8x8-v1", "solved"): (16, range(40_000, 40_200)),
