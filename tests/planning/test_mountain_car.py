@@ -50,7 +50,7 @@ def test_the_same_search_is_not_made_again_and_its_results_cannot_be_changed(fou
     def refuse(*arguments: Any) -> Any:
         raise AssertionError(f"searched again: {arguments}")
 
-    monkeypatch.setattr("qtab._core.MountainCarSearch", refuse)
+    monkeypatch.setattr("qtab._core.GridSearch", refuse)
     again: Any = qtab.optimum("MountainCar-v0")
     for name in ("values", "q_values", "policy"):
         assert getattr(again, name).tobytes() == getattr(found, name).tobytes()
@@ -225,7 +225,7 @@ def test_the_command_prints_a_small_table(tmp_path: Path):
         "finite_horizon, discount 1: exact",
         "16, 4 actions",
     ]
-    assert "CartPole-v1 is not known" in refused("optimum", "CartPole-v1", cwd=tmp_path)
+    assert "MountainCarContinuous-v0 is not known" in refused("optimum", "MountainCarContinuous-v0", cwd=tmp_path)
     assert "discount must lie in [0, 1], got 2.0" in refused("optimum", "Taxi-v4", "--discount", "2", cwd=tmp_path)
 
 

@@ -214,7 +214,7 @@ DEFINITIONS: dict[str, dict[str, str]] = {
         "toys": "toy_text",
         "Transitions": "PyTransitionTable",
         "Unread": "Stale",
-        "Valley": "PyMountainCarSearch",
+        "Valley": "PyGridSearch",
         "Values": "StateArray",
         "whole": "specialized_run",
         "Work": "WorkQueue",

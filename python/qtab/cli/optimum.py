@@ -34,7 +34,7 @@ class Arguments(OutputFlags):
     discount: Annotated[float | None, OPTIONAL_FLOAT] = None
     """The discount of the values and the policy; by default 1, no discount."""
     method: str | None = None
-    """With a table, finite_horizon (the default), value_iteration or policy_iteration; for MountainCar-v0, search."""
+    """With a table, finite_horizon (the default), value_iteration or policy_iteration; for classic control, search."""
 
 
 def run(arguments: list[str]) -> int:

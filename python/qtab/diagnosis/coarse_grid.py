@@ -47,7 +47,9 @@ def mixed_cells(facts: Facts) -> float | None:
     if best is None or best.search is None or sample is None:
         return None
     # The best action of each state in the sample, at the nearest point of the optimum's grid.
-    axes = best.search.positions, best.search.velocities
+    axes = best.search.axes
+    if len(axes) != sample.observations.shape[1]:
+        return None
     points = tuple(
         np.abs(axis[np.newaxis] - sample.observations[::10, index, np.newaxis]).argmin(axis=1)
         for index, axis in enumerate(axes)

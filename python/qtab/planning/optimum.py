@@ -14,7 +14,7 @@ from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
 from qtab.envs.registry import gymnasium_id, spec_of
 from qtab.planning.gap import Gap
-from qtab.planning.mountain_car import Search
+from qtab.planning.search import Search
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.results.summary import FINAL_EPISODES
@@ -55,13 +55,14 @@ class Optimum:
     discount: float
     """The discount of ``values``, ``q_values`` and ``policy``; 1 means no discount."""
     values: NDArray[np.float64]
-    """(*cells,): the optimal state values, in the shape of a run's Q table without its last axis; for ``"search"`` on a
-    grid of positions and velocities. Where an observation hides part of the state, such as whether Taxi's fickle
-    passenger will change the destination, the values are those at the start of an episode."""
+    """(*cells,): the optimal state values, in the shape of a run's Q table without its last axis; for ``"search"`` on
+    the grid of ``search.axes``, of CartPole with a discount of 0.99. Where an observation hides part of the state, such
+    as whether Taxi's fickle passenger will change the destination, the values are those at the start of an episode."""
     q_values: NDArray[np.float64]
     """(*cells, actions): the optimal action values."""
     policy: NDArray[np.int64]
-    """(*cells,): the best action; for ``"finite_horizon"`` at the start of an episode."""
+    """(*cells,): the best action; for ``"finite_horizon"`` at the start of an episode. Of Pendulum the number of one of
+    21 torques, equally spaced from the lowest to the highest."""
     expected_return: float
     """The undiscounted expected return of the policy from the environment's first states under the time limit: the
     number to compare a run's returns with."""
@@ -70,7 +71,7 @@ class Optimum:
     seconds: float
     """The wall-clock time of the computation."""
     search: Search | None = field(repr=False)
-    """The routes that the search found; None for a transition table."""
+    """The episodes that the search found; None for a transition table."""
     solver: Solver = field(repr=False)
     """The solution behind :meth:`predict` and :meth:`gap`."""
 
@@ -169,7 +170,7 @@ class Optimum:
         }
         if self.search is not None:
             lengths = self.search.steps
-            lines["routes"] = f"{lengths.min()} to {lengths.max()} steps from {len(lengths):,} starts"
+            lines["episodes"] = f"{lengths.min()} to {lengths.max()} steps from {len(lengths):,} starts"
             lines["predict"] = f"mean return {self.search.predict_return:.6g} from the same starts"
         lines["time"] = f"{self.seconds:.3g} s"
         return "\n".join([self.env, *(f"  {name:17}{text}" for name, text in lines.items())])

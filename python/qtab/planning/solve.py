@@ -7,7 +7,6 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.envs.classic_control.mountain_car import MountainCarEnv
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
@@ -18,13 +17,13 @@ from qtab._utils.shown import shown
 from qtab.config.unknown import suggesting
 from qtab.discretizers import Identity
 from qtab.discretizers.actions import choose_actions
-from qtab.envs.classic_control import MountainCarEnv as RustMountainCarEnv
 from qtab.envs.matching import time_limit, unknown_wrapper
 from qtab.envs.native import table_env
 from qtab.envs.registry import spec_of, versioned
 from qtab.envs.stored import spec_of_run
-from qtab.planning.mountain_car import MountainCarSolver, Search, search_mountain_car
+from qtab.planning.classic_control import GridEnvironment, GridSolver, grid_environment, search_grid
 from qtab.planning.optimum import Optimum, Solver
+from qtab.planning.search import Search
 from qtab.planning.table import has_transition_table
 from qtab.planning.tabular import METHODS, TabularSolver, solve_table
 from qtab.results.run import Run
@@ -50,8 +49,9 @@ def optimum(
 
     The result is exact for every environment with a transition table: toy text, :class:`qtab.TabularEnv`, any other
     environment with ``P`` and ``initial_state_distrib``, and Blackjack, whose table follows from its rules. For
-    MountainCar-v0 it is the best known policy, found by a search over the exact dynamics: each route that it returns
-    reaches the goal, but none is proven to be the shortest.
+    MountainCar, CartPole, Acrobot and Pendulum it is the best known policy: value iteration on a fine grid, and for
+    MountainCar and Acrobot a search over the exact dynamics besides. Each route that it returns reaches the goal, but
+    none is proven to be the shortest. CartPole's never falls, so that no policy returns more.
 
     Args:
         env: A Gymnasium id, an ``EnvSpec`` or an environment, which is neither stepped nor closed; or a run, whose
@@ -61,7 +61,7 @@ def optimum(
         method: With a transition table, ``"finite_horizon"`` (the default; backward induction over the time limit, so
             no policy returns more), ``"value_iteration"`` (Sutton & Barto, 2nd ed., eq. 4.10) or
             ``"policy_iteration"`` (section 4.3). The last two give the best policy that ignores the time limit; without
-            a discount, policy iteration considers only policies that end the episode. For MountainCar-v0,
+            a discount, policy iteration considers only policies that end the episode. For classic control,
             ``"search"``.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
         progress: Whether to show a progress bar over the stages of the search. None shows one on a terminal or in a
@@ -137,18 +137,18 @@ def _optimum_for_env(
     if wrapper is not None:
         raise ValueError(f"env must have no wrapper that may change observations or rewards, got {wrapper}")
     discount = 1.0 if discount is None else checks.real("discount", discount, 0.0, 1.0)
-    is_mountain_car = type(unwrapped) in (MountainCarEnv, RustMountainCarEnv)
-    if not is_mountain_car and not has_transition_table(unwrapped):
+    on_grid = grid_environment(unwrapped)
+    if on_grid is None and not has_transition_table(unwrapped):
         raise ValueError(
-            "env must have a transition table P and an initial_state_distrib, or be Blackjack or MountainCar-v0: the "
-            f"optimum of {name} is not known"
+            "env must have a transition table P and an initial_state_distrib, or be Blackjack, MountainCar, CartPole, "
+            f"Acrobot or Pendulum: the optimum of {name} is not known"
         )
-    methods = (SEARCH,) if is_mountain_car else METHODS
+    methods = METHODS if on_grid is None else (SEARCH,)
     method = methods[0] if method is None else checks.choice("method", method, methods)
     steps = max_episode_steps or time_limit(env) or UNLIMITED_MAX_EPISODE_STEPS
-    with ProgressBar(SEARCH_STAGES if is_mountain_car else 1, "stage", progress, "optimum") as bar:
-        if is_mountain_car:
-            best = _search_mountain_car(unwrapped, discount, steps, bar)
+    with ProgressBar(1 if on_grid is None else SEARCH_STAGES, "stage", progress, "optimum") as bar:
+        if on_grid is not None:
+            best = _search_grid(unwrapped, on_grid, discount, steps, bar)
         else:
             best = _solve_table(unwrapped, method, discount, steps)
             bar.move_to(1)
@@ -157,7 +157,7 @@ def _optimum_for_env(
         env_kwargs={} if env.spec is None else dict(env.spec.kwargs),
         max_episode_steps=steps,
         method=method,
-        exact=not is_mountain_car,
+        exact=on_grid is None,
         discount=discount,
         values=best.values,
         q_values=best.q_values,
@@ -201,20 +201,19 @@ def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int)
     )
 
 
-def _search_mountain_car(env: Any, discount: float, max_episode_steps: int, bar: ProgressBar) -> _Best:
+def _search_grid(env: Any, known: GridEnvironment, discount: float, max_episode_steps: int, bar: ProgressBar) -> _Best:
     if discount != 1.0:
-        raise ValueError(f"discount must be 1 for method 'search', which counts steps, got {shown(discount)}")
-    constants = tuple(checks.finite(name, getattr(env, name)) for name in _core.parameter_names("MountainCar"))
-    searched, search = search_mountain_car(constants, max_episode_steps, on_values=lambda: bar.move_to(1))
+        raise ValueError(f"discount must be 1 for method 'search', got {shown(discount)}")
+    searched, search = search_grid(env, known, max_episode_steps, on_values=lambda: bar.move_to(1))
     bar.move_to(SEARCH_STAGES)
-    cost_to_go, action_costs_to_go = searched.steps()
-    shape = (len(search.positions), len(search.velocities))
-    q_values = -action_costs_to_go.reshape(*shape, -1)
+    values, action_values = searched.values()
+    shape = tuple(map(len, search.axes))
+    q_values = action_values.reshape(*shape, -1)
     return _Best(
-        values=-cost_to_go.reshape(shape),
+        values=values.reshape(shape),
         q_values=q_values,
         policy=np.argmax(q_values, axis=-1),
-        expected_return=-float(search.steps.mean()),
-        solver=MountainCarSolver(searched),
+        expected_return=float(search.returns.mean()),
+        solver=GridSolver(searched, known),
         search=search,
     )

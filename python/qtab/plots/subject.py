@@ -150,7 +150,13 @@ def _of_optimum(best: Optimum) -> Subject:
     shape = best.values.shape
     discretizer: Discretizer
     if best.search is not None:
-        points = best.search.positions, best.search.velocities
+        points = best.search.axes
+        components = best.solver.observation_shape[0]
+        if len(points) != components:
+            raise ValueError(
+                f"optimum must have values over the {components} components of an observation, got {best.env}'s over "
+                f"the {len(points)} components of its state: see optimum.search.axes"
+            )
         low, high = (np.array([axis[end] for axis in points], np.float64) for end in (0, -1))
         discretizer = Edges(low, high, tuple((axis[1:] + axis[:-1]) / 2 for axis in points))
     elif len(shape) == 1:

@@ -33,7 +33,7 @@ mod _core {
         numpy_uses_libm, parameter_names, step_cart_poles,
     };
     #[pymodule_export]
-    use super::planning::{PyExpectedUpdates, PyMdpSolver, PyMountainCarSearch};
+    use super::planning::{PyExpectedUpdates, PyGridSearch, PyMdpSolver};
     #[pymodule_export]
     use super::prediction::estimate_values;
     #[pymodule_export]

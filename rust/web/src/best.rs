@@ -2,8 +2,9 @@
 
 use std::cell::OnceCell;
 
-use qtab_core::envs::classic_control::{MountainCar, MountainCarState};
-use qtab_core::planning::{CostToGo, finite_horizon};
+use qtab_core::envs::classic_control::MountainCar;
+use qtab_core::planning::finite_horizon;
+use qtab_core::planning::grid::GridValues;
 use qtab_core::{Env, StopFlag};
 
 use crate::environment::{Environment, TableMap};
@@ -13,7 +14,7 @@ use crate::training::Training;
 
 /// The most backups that are computed: about a tenth of a second.
 const MAX_BACKUPS: u64 = 20_000_000;
-/// The stride of `MountainCar`'s grid of costs: 181 × 71 points.
+/// The stride of `MountainCar`'s grid of values: 181 × 71 points.
 const STRIDE: usize = 8;
 
 /// What is known to be good: values for the run's discount.
@@ -28,7 +29,7 @@ pub(crate) struct Best {
 /// What is computed once for all runs.
 #[derive(Default)]
 pub(crate) struct Planner {
-    mountain_car: OnceCell<Option<CostToGo>>,
+    mountain_car: OnceCell<Option<GridValues<MountainCar, 2>>>,
 }
 
 impl Planner {
@@ -43,18 +44,18 @@ impl Planner {
     }
 
     fn of_mountain_car(&self, car: MountainCar, settings: &Settings, cells: &Cells) -> Option<Best> {
-        let computed = self.mountain_car.get_or_init(|| CostToGo::coarse(car, 200, STRIDE, &StopFlag::new()).ok());
-        let costs = computed.as_ref()?;
+        let computed = self.mountain_car.get_or_init(|| GridValues::new(car, 200, STRIDE, &StopFlag::new()).ok());
+        let known = computed.as_ref()?;
         let discount = settings.discount;
         let (mut values, mut greedy) = (Vec::new(), Vec::new());
         for cell in 0..cells.count() {
             let observation = cells.observation(cell)?;
             let &[position, velocity] = observation.as_slice() else { return None };
-            let state = MountainCarState { position, velocity };
-            let steps = costs.steps(state);
+            let state = [position, velocity];
+            let steps = -known.value(state);
             // A reward of -1 in each step: 1 + γ + γ² + …
             values.push(if discount == 1.0 { -steps } else { -(1.0 - discount.powf(steps)) / (1.0 - discount) });
-            greedy.push(costs.best_action(state) as u8);
+            greedy.push(known.best_action(state) as u8);
         }
         Some(Best { kind: "best known", values, greedy, expected_return: None })
     }

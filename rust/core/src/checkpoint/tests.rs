@@ -7,9 +7,9 @@ use crate::envs::classic_control::MountainCar;
 use crate::features::{Axis, Features, Rounding, TileCoding};
 use crate::learners::{
     Agent, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model,
-    MonteCarloControl, MonteCarloEs, NStepQSigma, NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo,
-    PrioritizedSweeping, QLearning, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceKind, Traces,
-    TrueOnlineSarsaLambda, WatkinsQLambda,
+    MonteCarloControl, NStepQSigma, NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping, QLearning,
+    Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda,
+    WatkinsQLambda,
 };
 use crate::policies::{AnyPolicy, TieBreaking};
 use crate::q_table::TerminalUpdate;
@@ -154,10 +154,10 @@ proptest! {
         let sweeping = || PrioritizedSweeping::new(model(), planning, 1e-4, &stop).expect("a small model");
         setup.check(&grid, || TdLearner { agent: agent(), rule: sweeping() });
         let pairs = rows * ACTIONS;
-        let monte_carlo = || MonteCarloControl::new(pairs, LIMIT, &stop).expect("a few pairs");
-        setup.check(&grid, || TdLearner { agent: agent(), rule: monte_carlo() });
-        let exploring_starts = || MonteCarloEs::new(pairs, LIMIT, &stop).expect("a few pairs");
-        setup.check(&grid, || TdLearner { agent: agent(), rule: exploring_starts() });
+        for exploring_starts in [false, true] {
+            let rule = || MonteCarloControl::new(pairs, LIMIT, exploring_starts, &stop).expect("a few pairs");
+            setup.check(&grid, || TdLearner { agent: agent(), rule: rule() });
+        }
         let off_policy = || OffPolicyMonteCarlo::new(pairs, LIMIT, (1.0, 0.0), &stop).expect("a few pairs");
         setup.check(&grid, || TdLearner { agent: agent(), rule: off_policy() });
         let dyna_q_plus = || DynaQPlus::new(model(), planning, 1e-3, &StopFlag::new()).expect("a small model");

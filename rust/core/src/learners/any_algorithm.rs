@@ -2,7 +2,7 @@
 
 use super::{
     ActorCritic, ActorCriticLambda, Agent, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
-    DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarloControl, MonteCarloEs, NStepQSigma, NStepSarsa,
+    DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarloControl, NStepQSigma, NStepSarsa,
     NStepTreeBackup, OffPolicyMonteCarlo, PolicyGradientLearner, PolicyGradientRule, PrioritizedSweeping, QLearning,
     Reinforce, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceOptions, Traces,
     TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
@@ -60,7 +60,7 @@ pub enum AnyAlgorithm {
         /// The most steps of an episode.
         max_episode_steps: u64,
     },
-    /// [`MonteCarloEs`]
+    /// [`MonteCarloControl`] with exploring starts
     MonteCarloEs {
         /// The most steps of an episode.
         max_episode_steps: u64,
@@ -240,11 +240,10 @@ impl AnyAlgorithm {
                 let model = StochasticModel::new(n_rows, num_actions, stop)?;
                 with_rule(agent, DynaQ::new(model, planning_steps), visitor)
             }
-            Self::MonteCarlo { max_episode_steps } => {
-                with_rule(agent, MonteCarloControl::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)
-            }
-            Self::MonteCarloEs { max_episode_steps } => {
-                with_rule(agent, MonteCarloEs::new(n_rows * num_actions, max_episode_steps, stop)?, visitor)
+            Self::MonteCarlo { max_episode_steps } | Self::MonteCarloEs { max_episode_steps } => {
+                let exploring_starts = matches!(self, Self::MonteCarloEs { .. });
+                let rule = MonteCarloControl::new(n_rows * num_actions, max_episode_steps, exploring_starts, stop)?;
+                with_rule(agent, rule, visitor)
             }
             Self::OffPolicyMonteCarlo { max_episode_steps, learning_rate, min_learning_rate } => {
                 let rates = (learning_rate, min_learning_rate);

@@ -1,4 +1,4 @@
-//! On-policy first-visit Monte Carlo control (Sutton & Barto, the box in section 5.4).
+//! First-visit Monte Carlo control, on-policy or with exploring starts (Sutton & Barto, the boxes in sections 5.3 and 5.4).
 
 use super::common::{Agent, FirstVisits, UpdateRule, step_of};
 use crate::StopFlag;
@@ -14,9 +14,13 @@ use crate::tasks::Next;
 ///
 /// With α = 1/n at the n-th visit of a pair, Q is the average of the returns, as in the book. The returns of an episode that
 /// was truncated end with the value of a sampled action in its last state.
+///
+/// With exploring starts, the first action of an episode is random, with equal probabilities, whatever the policy, which is
+/// greedy in the book; the environment draws the first state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MonteCarloControl {
     visits: FirstVisits,
+    exploring_starts: bool,
 }
 
 impl MonteCarloControl {
@@ -24,12 +28,21 @@ impl MonteCarloControl {
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
-    pub fn new(pairs: usize, max_episode_steps: u64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
-        Ok(Self { visits: FirstVisits::new(pairs, max_episode_steps, stop)? })
+    pub fn new(
+        pairs: usize,
+        max_episode_steps: u64,
+        exploring_starts: bool,
+        stop: &StopFlag<'_>,
+    ) -> Result<Self, AllocationError> {
+        Ok(Self { visits: FirstVisits::new(pairs, max_episode_steps, stop)?, exploring_starts })
     }
 }
 
 impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarloControl {
+    fn first_action(&mut self, agent: &mut Agent, state: R, rng: &mut impl Rng) -> Option<usize> {
+        self.exploring_starts.then(|| agent.sample_action(state, rng))
+    }
+
     #[inline]
     fn learn(
         &mut self,
@@ -81,7 +94,7 @@ mod tests {
 
     #[test]
     fn only_the_first_visit_of_a_pair_is_updated() {
-        let rule = MonteCarloControl::new(4, 9, &StopFlag::new()).expect("a few pairs");
+        let rule = MonteCarloControl::new(4, 9, false, &StopFlag::new()).expect("a few pairs");
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         for (state, reward) in [(0, -1.0), (1, -2.0), (0, -4.0)] {
             learner.learn([state], 0, reward, Next::NonTerminal([1]), &mut rng());
@@ -94,10 +107,20 @@ mod tests {
 
     #[test]
     fn a_truncated_episode_ends_with_the_value_of_its_last_state() {
-        let rule = MonteCarloControl::new(4, 9, &StopFlag::new()).expect("a few pairs");
+        let rule = MonteCarloControl::new(4, 9, false, &StopFlag::new()).expect("a few pairs");
         let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
         learner.learn([0], 0, -1.0, Next::Truncated([1]), &mut rng());
         // 1 + 0.5 (-1 + 0.5 · 3 - 1)
         assert_eq!(learner.agent.table.values()[0], 0.75);
+    }
+
+    #[test]
+    fn exploring_starts_draw_the_first_action_and_no_other() {
+        let rule = MonteCarloControl::new(4, 9, true, &StopFlag::new()).expect("a few pairs");
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule };
+        let mut rng = rng();
+        let first = (0..100).filter(|_| learner.first_action([0], &mut rng) == 0).count();
+        assert!((20..80).contains(&first));
+        assert!((0..8).all(|_| learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng) == 1));
     }
 }

@@ -1,10 +1,9 @@
-//! Planning: dynamic programming over a table (Sutton & Barto, 2nd ed., chapter 4), and a search for `MountainCar`.
+//! Planning: dynamic programming over a table (Sutton & Barto, 2nd ed., chapter 4), and over grids for classic control.
 
-mod beam_search;
 mod bellman;
-mod cost_to_go;
 mod expected_updates;
 mod finite_horizon;
+pub mod grid;
 mod mdp;
 mod planning_error;
 mod policy_evaluation;
@@ -17,9 +16,6 @@ mod sweep;
 mod tests;
 mod value_iteration;
 
-pub use beam_search::{BEAM, STARTS, beam_search, greedy_rollout, starts};
-
-pub use cost_to_go::CostToGo;
 pub use expected_updates::{ExpectedUpdates, UpdateDistribution};
 pub use finite_horizon::{FiniteHorizon, PolicyChange, finite_horizon, policy_return};
 pub use mdp::Mdp;

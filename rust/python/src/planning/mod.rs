@@ -1,8 +1,8 @@
-//! Optimal policies: dynamic programming on a transition table, and the search over `MountainCar`'s dynamics.
+//! Optimal policies: dynamic programming on a transition table, and searches over the dynamics of classic control.
 
 mod expected_updates;
+mod grid_search;
 mod mdp_solver;
-mod mountain_car_search;
 
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
@@ -11,8 +11,8 @@ use qtab_core::planning::PlanningError;
 use crate::error::out_of_memory;
 
 pub(crate) use expected_updates::PyExpectedUpdates;
+pub(crate) use grid_search::PyGridSearch;
 pub(crate) use mdp_solver::PyMdpSolver;
-pub(crate) use mountain_car_search::PyMountainCarSearch;
 
 fn to_py_err(error: PlanningError, discount: f64) -> PyErr {
     if error == PlanningError::Stopped {
