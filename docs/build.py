@@ -7,7 +7,6 @@ The checks: no warning of Sphinx, no broken link or anchor, no picture without a
 """
 
 import argparse
-import os
 import shutil
 import subprocess
 import sys
@@ -16,7 +15,6 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 SITE = HERE / "_build" / "html"
-TOOLS = HERE.parent / "target" / "tools" / "bin"
 GENERATED = (HERE / "_build", HERE / "notebooks", HERE / "reference" / "api" / "generated")
 
 
@@ -34,15 +32,6 @@ def sphinx(quick: bool) -> int:
     return returncode
 
 
-def links() -> int:
-    """Checks every link and anchor within the site with hyperlink, a program in Rust that takes a moment."""
-    program = shutil.which("hyperlink", path=f"{TOOLS}{os.pathsep}{os.environ.get('PATH', '')}")
-    if program is None:
-        print("no link checker: cargo install hyperlink --version 0.3.2 --locked --root target/tools")
-        return 1
-    return subprocess.run([program, "--check-anchors", str(SITE)], check=False).returncode  # noqa: S603
-
-
 def main() -> None:
     """Runs the steps; the exit code is 1 if any of them finds something."""
     parser = argparse.ArgumentParser()
@@ -52,17 +41,18 @@ def main() -> None:
     quick = asked.quick
     sys.path.insert(0, str(HERE / "_checks"))
     import browser
+    import links
     import static
 
     began = time.perf_counter()
     failed = sphinx(quick) != 0
     print(f"built in {time.perf_counter() - began:.0f} s", flush=True)
-    failed |= links() != 0
-    problems = static.problems(SITE)
+    pages = static.read(SITE)
+    problems = [*static.problems(SITE, pages), *links.problems(SITE, pages)]
     if asked.browser and not quick:
         problems += browser.problems(SITE)
     print(*problems, sep="\n")
-    print(f"{len(list(SITE.rglob('*.html')))} pages, {len(problems)} problems, {time.perf_counter() - began:.0f} s")
+    print(f"{len(pages)} pages, {len(problems)} problems, {time.perf_counter() - began:.0f} s")
     sys.exit(failed or bool(problems))
 
 

@@ -16,6 +16,8 @@ os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 
 from hypothesis import settings
 
+from support import selection
+
 settings.register_profile("local", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True)
 settings.register_profile("fuzz", deadline=None, max_examples=1000, print_blob=True)  # --hypothesis-profile fuzz
@@ -36,6 +38,21 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
         return 0
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return cores + 1
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Leaves out the tests that need other libraries than the extra ``test`` installs, unless ``-m`` names them."""
+    config.option.markexpr = selection.without_unnamed(config.option.markexpr)
+
+
+@pytest.hookimpl(trylast=True)  # after -m has left tests out
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Starts the slow tests first where several processes share the tests."""
+    processes = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    if processes > 1:
+        items[:] = selection.slow_first(
+            items, [item.get_closest_marker("slow") is not None for item in items], processes
+        )
 
 
 def pytest_collection_finish() -> None:

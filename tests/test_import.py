@@ -74,6 +74,7 @@ def test_every_public_name_resolves_and_is_documented(name):
     assert name in dir(qtab)
 
 
+@pytest.mark.slow
 def test_no_module_shadows_a_public_name():
     code = """
 import importlib, pkgutil, types, qtab

@@ -85,7 +85,7 @@ class Executed:
     """The outputs of a notebook that ran."""
 
     def __init__(self, cells: Sequence[Any]) -> None:
-        self._cells = {cell.id.rpartition("--")[2]: cell.outputs for cell in cells if cell.cell_type == "code"}
+        self._cells = {cell.id: cell.outputs for cell in cells if cell.cell_type == "code"}
 
     def shown(self, cell: str, kind: str) -> list[str]:
         """What a cell shows of a MIME type; the text that it prints counts as plain."""
@@ -199,38 +199,27 @@ CHECKS: dict[str, Callable[[Executed], None]] = {
 }
 
 
-def between(folder: Path) -> str:
-    """What is run before each notebook: it starts with an empty namespace, in a folder of its own."""
-    return f"%reset -f\nimport os\nos.makedirs({str(folder)!r})\nos.chdir({str(folder)!r})"
-
-
-@pytest.fixture(scope="module")
-def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Executed]:
-    """All notebooks, executed one after the other in one kernel, whose start takes as long as many cells."""
+def execute(name: str, folder: Path) -> Executed:
+    """Executes a notebook in a kernel and a folder of its own."""
     nbclient = pytest.importorskip("nbclient")
     pytest.importorskip("ipykernel")
-    folder = tmp_path_factory.mktemp("notebooks")
-    cells: dict[str, list[Any]] = {}
-    for name in PICTURES:
-        cells[name] = [nbformat.v4.new_code_cell(between(folder / name)), *copy.deepcopy(stored(name)).cells]
-        for cell in cells[name]:
-            cell.id = f"{name}--{cell.id}"  # two notebooks have cells of the same name
-    every = nbformat.v4.new_notebook(cells=[cell for of_one in cells.values() for cell in of_one])
+    notebook = copy.deepcopy(stored(name))
     # The kernel chooses its own backend, as it does for a reader.
     with pytest.MonkeyPatch.context() as environment:
         environment.delenv("MPLBACKEND", raising=False)
         environment.setenv("IPYTHONDIR", str(folder / "ipython"))
-        # A cell that fails is reported with its notebook, and the next notebook runs.
-        client = nbclient.NotebookClient(every, timeout=300, kernel_name="python3", allow_errors=True)
+        # A cell that fails is reported with all others of its notebook.
+        client = nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3", allow_errors=True)
         client.execute(cwd=str(folder))
-    return {name: Executed(of_one) for name, of_one in cells.items()}
+    return Executed(notebook.cells)
 
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of Jupyter's libraries
 @pytest.mark.parametrize("name", PICTURES)
-def test_a_notebook_runs_and_shows_what_it_says(name: str, request: pytest.FixtureRequest) -> None:
-    shown: Executed = request.getfixturevalue("executed")[name]
+def test_a_notebook_runs_and_shows_what_it_says(name: str, tmp_path: Path) -> None:
+    # Every test executes its own notebook: what several tests share would be executed by each of pytest's processes.
+    shown = execute(name, tmp_path)
     assert shown.errors == []
     assert {cell: len(shown.shown(cell, PNG)) for cell in PICTURES[name].split()} == dict.fromkeys(
         PICTURES[name].split(), 1

@@ -95,6 +95,7 @@ def test_the_python_of_a_page_runs(page: Path) -> None:
     CHECKS.get(name, lambda _: None)(namespace)
 
 
+@pytest.mark.slow
 def test_the_readmes_python_runs(tmp_path: Path) -> None:
     """With fewer seeds and snapshots."""
     page = ROOT / "README.md"

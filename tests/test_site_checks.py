@@ -18,6 +18,17 @@ def load(path: str) -> Any:
     return module
 
 
+def problems(site: Path) -> list[str]:
+    static = load("docs/_checks/static.py")
+    found: list[str] = static.problems(site, static.read(site))
+    return found
+
+
+def broken_links(site: Path) -> list[str]:
+    pages = load("docs/_checks/static.py").read(site)
+    return list(load("docs/_checks/links.py").problems(site, pages))
+
+
 @pytest.mark.parametrize(
     ("html", "problem"),
     [
@@ -35,13 +46,13 @@ def load(path: str) -> Any:
 )
 def test_a_bad_page_is_found(tmp_path: Path, html: str, problem: str) -> None:
     (tmp_path / "page.html").write_text(html, encoding="utf-8")
-    (found,) = load("docs/_checks/static.py").problems(tmp_path)
+    (found,) = problems(tmp_path)
     assert found.startswith(f"page.html: {problem}")
 
 
 def test_a_bad_style_sheet_is_found(tmp_path: Path) -> None:
     (tmp_path / "site.css").write_text("a { background: url(https://example.com/a.png) }", encoding="utf-8")
-    assert load("docs/_checks/static.py").problems(tmp_path) == ["site.css: loads https://example.com/a.png"]
+    assert problems(tmp_path) == ["site.css: loads https://example.com/a.png"]
 
 
 def test_a_good_page_is_left_in_peace(tmp_path: Path) -> None:
@@ -49,7 +60,45 @@ def test_a_good_page_is_left_in_peace(tmp_path: Path) -> None:
     <img class="logo__image" src="icon.svg" alt=""><svg aria-hidden="true" role="img"></svg>
     <img src="data:image/png;base64,AAAA" alt="A learning curve"><script src="_static/a.js"></script>"""
     (tmp_path / "page.html").write_text(page, encoding="utf-8")
-    assert load("docs/_checks/static.py").problems(tmp_path) == []
+    assert problems(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("address", "problem"),
+    [
+        ("other.html", "no file"),
+        ("../guide/nothing.html#a", "no file"),
+        ("../../../etc", "no file"),
+        ("page.html#c", "no anchor of guide/page.html"),
+        ("#c", "no anchor of guide/page.html"),
+        ("/#a", "no anchor of index.html"),
+        ("../#b", "no anchor of index.html"),
+    ],
+)
+def test_a_broken_link_is_found(tmp_path: Path, address: str, problem: str) -> None:
+    folder = tmp_path / "site" / "guide"
+    folder.mkdir(parents=True)
+    (folder.parent / "index.html").write_text("<h1 id='top-of-all'>", encoding="utf-8")
+    (folder / "page.html").write_text(f'<h1 id="a"><a href="{address}">x</a>', encoding="utf-8")
+    assert broken_links(folder.parent) == [f"guide/page.html: {address} leads to {problem}"]
+
+
+def test_links_that_lead_somewhere_are_left_in_peace(tmp_path: Path) -> None:
+    (tmp_path / "play ground").mkdir()
+    (tmp_path / "play ground" / "index.html").write_text("<a name='b'></a>", encoding="utf-8")
+    addresses = [
+        "",
+        "#a",
+        "#",
+        "page.html?v=1#a",
+        "play%20ground/#b",
+        "play%20ground/index.html#env=grid",
+        "/page.html",
+    ]
+    addresses += ["mailto:someone@example.com", "https://example.com/x#y", "#%C3%A9", "#top"]
+    html = "".join(f'<a href="{address}">x</a>' for address in addresses)
+    (tmp_path / "page.html").write_text(f'<h1 id="a"><p id="é">{html}', encoding="utf-8")
+    assert broken_links(tmp_path) == []
 
 
 def test_links_out_of_the_documentation_become_pages_of_the_site() -> None:

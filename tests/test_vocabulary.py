@@ -72,11 +72,12 @@ def variables(path: Path, text: str) -> Iterator[Found]:
 def old_words(name: str, path: Path) -> Iterator[str]:
     """A line for each old word in a file, with the word to use instead."""
     text = path.read_text(encoding="utf-8")
+    used = {path.stem, *re.findall(r"\w+", text)}
     for folder in WORDS:
         if name.startswith(f"{folder}/") or path.suffix == ".md":
             for table, search in (WORDS, words), (DEFINITIONS, definitions), (VARIABLES, variables):
                 instead = table.get(folder, {})
-                if any(word in text or word == path.stem for word in instead):
+                if not used.isdisjoint(instead):
                     for number, word in search(path, text):
                         if word in instead and (name, word) not in ALLOWED:
                             yield f"{name}:{number}: {word!r}, use {instead[word]!r}"

@@ -1,4 +1,4 @@
-"""What can be said of a built page without opening it: its pictures, and where it loads things from."""
+"""What can be said of a built page without opening it: its pictures, its links, and where it loads things from."""
 
 import re
 from collections.abc import Iterator
@@ -27,11 +27,13 @@ CSS_URL = re.compile(r"url\(\s*['\"]?([^'\")]+)|@import\s+['\"]([^'\"]+)")
 
 @dataclass
 class Page(HTMLParser):
-    """What a page loads, and its pictures without a description."""
+    """What a page loads, what it links to and can be linked at, and its pictures without a description."""
 
     path: Path
     loaded: list[str] = field(default_factory=list)
     undescribed: list[str] = field(default_factory=list)
+    links: list[str] = field(default_factory=list)
+    anchors: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         super().__init__()
@@ -42,6 +44,9 @@ class Page(HTMLParser):
         """Takes note of an element."""
         given = {name: value or "" for name, value in attrs}
         self._in_style = tag == "style"
+        self.anchors |= {given[name] for name in ("id", "name") if name in given}
+        if tag in ("a", "area", "link") and "href" in given:
+            self.links.append(given["href"])
         if tag == "link" and LOADING_RELS & set(given.get("rel", "").split()):
             self.loaded.append(given.get("href", ""))
         for name in LOADED.get(tag, ()):
@@ -83,14 +88,19 @@ def is_foreign(address: str) -> bool:
     return bool(parts.netloc) or parts.scheme not in ("", "data", "blob")
 
 
-def problems(site: Path) -> list[str]:
+def read(site: Path) -> list[Page]:
+    """Returns what the pages of a built site hold."""
+    return [Page(path) for path in sorted(site.rglob("*.html"))]
+
+
+def problems(site: Path, pages: list[Page]) -> list[str]:
     """Returns a line for each undescribed picture and foreign address of a built site."""
-    return [*_page_problems(site), *_css_problems(site)]
+    return [*_page_problems(site, pages), *_css_problems(site)]
 
 
-def _page_problems(site: Path) -> Iterator[str]:
-    for path in sorted(site.rglob("*.html")):
-        name, page = path.relative_to(site), Page(path)
+def _page_problems(site: Path, pages: list[Page]) -> Iterator[str]:
+    for page in pages:
+        name = page.path.relative_to(site)
         for address in page.loaded:
             if is_foreign(address):
                 yield f"{name}: loads {address}"

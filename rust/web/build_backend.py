@@ -12,6 +12,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 MODULE = ROOT / "python/qtab/playground/page/qtab.wasm"
 TARGET = "wasm32-unknown-unknown"
+# What rustc uses and all browsers have. `--all-features` would let wasm-opt write what some of them do not know yet.
+FEATURES = ["bulk-memory", "multivalue", "mutable-globals", "nontrapping-float-to-int"]
+FEATURES += ["reference-types", "sign-ext", "simd"]
 
 
 def has_target():
@@ -36,7 +39,8 @@ def build_module():
     built = ROOT / folder / TARGET / "web/qtab_web.wasm"
     new = MODULE.with_suffix(".new")
     if optimizer := shutil.which("wasm-opt"):
-        subprocess.run([optimizer, "-O3", "--all-features", str(built), "-o", str(new)], check=True)
+        features = [f"--enable-{feature}" for feature in FEATURES]
+        subprocess.run([optimizer, "-O3", *features, str(built), "-o", str(new)], check=True)
     else:
         shutil.copyfile(built, new)
     new.replace(MODULE)

@@ -30,8 +30,8 @@ from support.command import qtab_here, refused
 
 
 def test_the_numba_loop_equals_the_articles_loop_to_the_bit() -> None:
-    run = package.train("MountainCar-v0", episodes=300, seed=4, bit_generator="MT19937", backend="rust")
-    starts = np.random.default_rng(4).uniform(-0.6, -0.4, 300)
+    run = package.train("MountainCar-v0", episodes=100, seed=4, bit_generator="MT19937", backend="rust")
+    starts = np.random.default_rng(4).uniform(-0.6, -0.4, 100)
     table, returns, steps = article_numba.q_learning(starts, 4, 0.2, 0.9, 0.8, 0.0)
     assert table.tobytes() == run.q_table.tobytes()
     assert returns.tobytes() == run.episode_returns.tobytes()
@@ -113,6 +113,7 @@ def test_every_benchmark_counts_its_steps() -> None:
     assert [loop(0) for loop in overhead.python_stepping().values()] == [idle, idle]
 
 
+@pytest.mark.slow
 def test_vector_benchmarks_count_all_steps_and_are_compared_within_their_environment() -> None:
     steps = vector_envs.stepping()
     assert steps[vector_envs.QTAB_POLES](0) == 200 * 4096
@@ -155,6 +156,7 @@ def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(report, "footprint", lambda: footprint.footprint(repeats=1))
 
 
+@pytest.mark.slow
 def test_the_bench_prints_its_tables_with_versions_and_build(small_rounds: None) -> None:
     printed = str(report.bench(rounds=1, progress=False))
     names = (

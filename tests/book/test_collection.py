@@ -42,6 +42,7 @@ def test_each_experiment_has_a_table_its_points_and_a_picture(tmp_path):
     assert written["figure-8.2.csv"] == (tmp_path / "points.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_only_what_is_missing_is_run_again(tmp_path, monkeypatch):
     def interrupt(*_arguments, **_settings):
         raise KeyboardInterrupt

@@ -69,7 +69,9 @@ def test_the_shortest_path_through_the_maze_takes_fourteen_steps():
     assert env.P[17][up] == [(1.0, 8, 1.0, True)]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name == "figure-8.2")) for name in NAMES]
+)
 def test_an_experiment_equals_the_reference(name):
     experiment = training_experiment(name)
     lines = {setting.line: setting for setting in experiment.settings}
@@ -196,6 +198,7 @@ def test_without_traces_sarsa_lambda_is_one_step_sarsa():
     assert traces.tobytes() == steps.tobytes()
 
 
+@pytest.mark.slow
 def test_true_online_learns_fastest_and_accumulating_traces_diverge():
     result = qtab.book.run("12.11", runs=10)
     true_online, clearing, replacing, accumulating = result.lines

@@ -10,7 +10,11 @@ import qtab
 from qtab.book.exact_experiment import ExactExperiment
 from qtab.book.figures.chapter_08.figure_8_8 import Tasks, UpdateDistributions
 
-EXACT = [name for name, one in qtab.book.EXPERIMENTS.items() if isinstance(one, ExactExperiment)]
+EXACT = [
+    pytest.param(name, marks=[pytest.mark.slow] * (name == "figure-4.2"))  # millions of transitions
+    for name, one in qtab.book.EXPERIMENTS.items()
+    if isinstance(one, ExactExperiment)
+]
 SEVERAL_AXES = {"example-3.5": 1, "example-3.8": 2, "figure-4.1": 12, "figure-4.2": 7, "figure-4.3": 2}
 
 
@@ -51,6 +55,7 @@ def test_the_values_after_each_sweep_are_the_books():
         np.testing.assert_allclose(found[name].mean[:4], row, atol=5e-4)
 
 
+@pytest.mark.slow
 def test_the_policies_of_the_rental_have_the_books_shape():
     found = lines("4.2")
     last, values = (found[name].mean.reshape(21, 21) for name in ("π4", "value of π4"))

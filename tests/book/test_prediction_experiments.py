@@ -37,7 +37,14 @@ def line(result: Result, name: str) -> Line:
     return next(line for line in result.lines if line.name == name)
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name != "figure-5.1"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] * (name == "figure-9.1"))  # a thousand states
+        for name in NAMES
+        if name != "figure-5.1"
+    ],
+)
 def test_an_experiment_is_estimated_verified_and_drawn(name: str) -> None:
     experiment = short(name)
     # The first and the last line are enough.

@@ -80,6 +80,7 @@ sys.exit(main(["book", "6.3", "--plot", "cliff.png"]))
 """
 
 
+@pytest.mark.slow
 @posix_only
 def test_ctrl_c_stops_an_experiment_and_leaves_no_file(tmp_path):
     done = subprocess.run(

@@ -270,8 +270,8 @@ def test_ctrl_c_saves_and_plots_what_was_learned_so_far(tmp_path: Path) -> None:
 
 
 def test_verify_reports_equality_and_exits_with_0(tmp_path: Path) -> None:
-    package.train("MountainCar-v0", seed=0, episodes=40).save(tmp_path / "run.npz")
-    for arguments, count in ((["run.npz"], 40), (["run.npz", "--episodes", "10"], 10)):
+    package.train("MountainCar-v0", seed=0, episodes=12).save(tmp_path / "run.npz")
+    for arguments, count in ((["run.npz"], 12), (["run.npz", "--episodes", "5"], 5)):
         done = qtab_here("verify", *arguments, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         assert f"seed 0, {count} episodes against Gymnasium and NumPy" in done.stdout

@@ -109,6 +109,7 @@ def test_blackjack_is_played_close_to_the_optimum():
     assert gap.greedy.max() < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("env", ["MountainCar-v0", "FrozenLake-v1", "Taxi-v4"])
 def test_the_solved_preset_verifies(env):
     run = qtab.train(env, preset="solved", seed=0)

@@ -153,6 +153,7 @@ def test_nan_in_an_observation_is_refused_with_its_index() -> None:
     assert run_of(caught.value).completed is False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "chosen",
     [

@@ -84,6 +84,7 @@ def test_a_space_is_refused_with_what_would_fit(space: Any, settings: Any, messa
         qtab.train(Still(space), **settings, **SHORT)
 
 
+@pytest.mark.slow
 def test_62_axes_are_served() -> None:
     runs = qtab.train_many(lambda: Still(spaces.MultiDiscrete([1] * 62)), 2, threads=1, tables=True, episodes=2)
     assert runs[1].q_table.ndim == 63

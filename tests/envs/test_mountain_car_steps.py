@@ -58,6 +58,7 @@ def test_random_walks_equal_gymnasiums(seed):
     assert assert_same_walk(*pair(), random_policy, seed, STEPS_PER_SEED)["time"] > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_walks_of_the_energy_policy_equal_gymnasiums(seed):
     assert assert_same_walk(*pair(), pumping_policy, seed, STEPS_PER_SEED)["goal"] > 50

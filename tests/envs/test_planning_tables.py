@@ -47,6 +47,7 @@ def test_the_gambler_wins_with_the_known_probability():
     np.testing.assert_allclose(fair.values[1:10], np.arange(1, 10) / 10, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_rental_has_the_income_and_the_cars_of_a_simulation():
     env, rng, days = jacks_car_rental(), np.random.default_rng(0), 200_000
     for first, second, action in ((20, 20, 3), (3, 15, 9), (0, 2, 0)):

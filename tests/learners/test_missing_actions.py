@@ -43,6 +43,7 @@ def settings(draw):
     }
 
 
+@pytest.mark.slow
 @given(settings())
 def test_runs_with_missing_actions_equal_the_reference(config):
     run = qtab.train(BIAS, **config)

@@ -211,6 +211,7 @@ def test_training_continues_from_the_tables_of_a_run(algorithm: Any, settings: d
     assert qtab.verify(more).equal
 
 
+@pytest.mark.slow
 def test_treating_truncation_as_termination_hurts_learning() -> None:
     right, wrong = (
         np.mean([qtab.train("MountainCar-v0", seed=seed, on_truncation=way).mean_returns(100)[-1] for seed in range(8)])

@@ -29,6 +29,7 @@ def drive(env: gym.Env, position: float, actions: Any) -> list[bool]:
     return [bool(inner.step(int(action))[2]) for action in actions]
 
 
+@pytest.mark.slow
 def test_every_route_reaches_the_goal_in_gymnasium_with_its_last_action(found):
     env = gym.make("MountainCar-v0", disable_env_checker=True)
     search = found.search
@@ -118,6 +119,7 @@ def test_notebooks_show_its_values_in_a_short_picture(found):
     assert len(shown) < 20_000
 
 
+@pytest.mark.slow
 def test_the_goal_velocity_is_used():
     slower: Any = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.04})
     env = gym.make("MountainCar-v0", goal_velocity=0.04)
@@ -154,6 +156,7 @@ def test_a_car_that_cannot_move_has_no_route(edit):
             assert drive(env, float(start), route)[-1]
 
 
+@pytest.mark.slow
 def test_a_time_limit_ends_every_episode():
     short: Any = qtab.optimum("MountainCar-v0", max_episode_steps=90)
     assert short.search.steps.max() == 90
@@ -229,6 +232,7 @@ def test_the_command_prints_a_small_table(tmp_path: Path):
     assert "discount must lie in [0, 1], got 2.0" in refused("optimum", "Taxi-v4", "--discount", "2", cwd=tmp_path)
 
 
+@pytest.mark.slow
 def test_training_reports_the_gap_to_the_optimum(tmp_path: Path):
     done = qtab_here("train", "CliffWalking-v1", "--seed", "0", "--plot", "curve.png", cwd=tmp_path)
     assert "Greedy policy -13, optimum -13, gap 0" in done.stdout.splitlines()

@@ -43,6 +43,7 @@ def test_values_equal_numpys_to_the_last_bit(name, kwargs):
         assert found.q_values.tobytes() == np.array(by_action).tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "kwargs"), VARIANTS)
 def test_policy_iteration_finds_the_values_of_value_iteration(name, kwargs):
     for discount in (0.9, 1.0):

@@ -91,6 +91,12 @@ def test_the_theme_follows_the_system_and_the_button(window: Playground) -> None
     assert window.page.locator("#curve").screenshot() != pixels
     button.click()
     assert window.page.evaluate(paper) == dark
+    button.click()
+    assert button.inner_text() == "System colors"
+    window.page.emulate_media(color_scheme="light")
+    window.page.wait_for_function(f"({paper})() !== '{dark}'")
+    window.page.wait_for_timeout(100)
+    assert window.page.locator("#curve").screenshot() != pixels
 
 
 def test_every_environment_and_preset_has_an_example(playground: Playground) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
+from matplotlib.figure import Figure
 
 import qtab
 from qtab import plots
@@ -42,12 +43,15 @@ def test_pyplot_holds_the_figure_that_a_plot_makes(draw: Any) -> None:
     assert len(plt.get_fignums()) == 2
 
 
-def test_pyplot_does_not_learn_of_axes_that_are_given_or_of_figures_for_files(tmp_path: Path) -> None:
-    from matplotlib.figure import Figure
-
+def test_pyplot_does_not_learn_of_axes_that_are_given_or_of_figures_that_are_not_shown() -> None:
     plots.distribution(RETURNS[:, 0], Figure().subplots())
     with not_shown():
         plots.distribution(RETURNS[:, 0])
+    assert plt.get_fignums() == []
+
+
+@pytest.mark.slow
+def test_pyplot_does_not_learn_of_figures_for_files(tmp_path: Path) -> None:
     assert main(["train", "MountainCar-v0", "--episodes", "5", "--plot", str(tmp_path / "a.png")]) == 0
     assert main(["book", "example-6.5", "--runs", "2", "--plot", str(tmp_path / "b.png")]) == 0
     store = tmp_path / "a.db"

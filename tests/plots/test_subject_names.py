@@ -21,6 +21,7 @@ def test_a_title_has_the_name(algorithm: Any) -> None:
     assert title == f"FrozenLake-v1: {ALGORITHM_NAMES[algorithm]}, seed 3"
 
 
+@pytest.mark.slow
 def test_the_page_of_a_run_has_the_name(tmp_path: Path) -> None:
     run = qtab.train("FrozenLake-v1", algorithm="watkins_q_lambda", seed=3, episodes=2)
     run.to_html(tmp_path / "run.html", optimum=1.0)

@@ -27,6 +27,7 @@ def cliff() -> qtab.Run:
     return qtab.train("CliffWalking-v1", max_episode_steps=100, **SETTINGS)
 
 
+@pytest.mark.slow
 def test_an_animation_has_a_picture_of_each_snapshot_in_every_format(cliff: qtab.Run, tmp_path: Path) -> None:
     import imageio_ffmpeg  # type: ignore[import-untyped]
 

@@ -92,6 +92,7 @@ def test_without_snapshots_and_a_renderer_it_has_the_final_tables_only(tmp_path:
     assert "There is no video: the run&#x27;s environment &#x27;TabularEnv&#x27; is not registered" in page.source
 
 
+@pytest.mark.slow
 def test_many_snapshots_and_long_episodes_are_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run_page, "MAX_SNAPSHOTS", 3)
     monkeypatch.setattr(run_page, "MAX_FRAMES", 5)

@@ -216,6 +216,7 @@ def test_a_mutated_file_is_the_saved_run_or_is_refused(contents, tmp_path_factor
         assert_equal(loaded, RUNS[name])
 
 
+@pytest.mark.slow
 @given(data=st.data())
 def test_a_file_that_is_only_checked_for_its_meaning_is_a_possible_run_or_is_refused(contents, tmp_path_factory, data):
     name = data.draw(st.sampled_from(sorted(RUNS)))

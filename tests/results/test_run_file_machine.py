@@ -98,6 +98,7 @@ TestRunFile: Any = RunFileMachine.TestCase
 TestRunFile.settings = settings(
     max_examples=max(settings().max_examples // 2, 1), stateful_step_count=12, deadline=None
 )
+TestRunFile.pytestmark = [pytest.mark.slow]
 
 
 @pytest.mark.parametrize("episodes", [1, EPISODES])

@@ -35,9 +35,12 @@ KEYWORDS: dict[str, tuple[str, list[Any]]] = {
 TRAINED = [
     pytest.param(
         env,
-        marks=pytest.mark.skipif(
-            not _core.matches_numpy(ENTRIES[env].name), reason=f"Rust does not compute as NumPy here: {MACHINE}"
-        ),
+        marks=[
+            pytest.mark.skipif(
+                not _core.matches_numpy(ENTRIES[env].name), reason=f"Rust does not compute as NumPy here: {MACHINE}"
+            ),
+            *[pytest.mark.slow] * (env != CAR),  # many examples more of what MountainCar shows of each algorithm
+        ],
     )
     for env in LIMITS
 ]
@@ -168,6 +171,7 @@ def run_settings(draw: st.DrawFn, algorithm: str, env: str = CAR) -> dict[str, A
     settings: dict[str, Any] = {**draw(features(algorithm, env)), **draw(environments(env))}
     # Full steps of tile coding may diverge; another test covers that.
     most = 0.5 if "tiles" in settings else 1.0
+    limit = draw(st.sampled_from([1, 7, 40]))
     return {
         **settings,
         **draw(learning_rates(most, by_visits=algorithm not in BY_EPISODE, algorithm=algorithm)),
@@ -178,7 +182,8 @@ def run_settings(draw: st.DrawFn, algorithm: str, env: str = CAR) -> dict[str, A
         "initial_q": draw(st.sampled_from([0.0, 1.5, (-1.0, 1.0), (-0.001, 0.0)])),
         "on_truncation": draw(st.sampled_from(["bootstrap", "terminate"])),
         "bit_generator": draw(st.sampled_from(["PCG64", "MT19937"])),
-        "max_episode_steps": draw(st.sampled_from([1, 7, 40])),
+        "max_episode_steps": limit,
         "seed": draw(st.integers(0, 2**32 - 1)),
-        "episodes": draw(st.integers(4, 8)),
+        # The reference takes most of the time of a long run: few long episodes, or more short ones.
+        "episodes": draw(st.integers(4, 8 if limit < 40 else 5)),
     }

@@ -7,7 +7,9 @@ SETTLED = """() => {
   const { training, view } = globalThis.playground ?? {};
   const done = ["paused", "finished", "diverged"];
   return view?.result && !view.isStale && !view.waiting && view.result.id === training.id
-    && done.includes(training.state) && done.includes(view.result.state);
+    && done.includes(training.state) && done.includes(view.result.state)
+    && (training.cell === null || training.inspectedRun !== training.id
+      || view.result.inspection?.cell === training.cell);
 }"""
 """Whether the result of the newest choices is drawn."""
 

@@ -60,7 +60,7 @@ def test_threads_and_stores_do_not_change_the_results(tmp_path, small_chunks, th
     assert_equal(study, qtab.sweep(CAR, GRID, **SMALL))
 
 
-@pytest.mark.parametrize("make", [ThreadPoolExecutor, ProcessPoolExecutor])
+@pytest.mark.parametrize("make", [ThreadPoolExecutor, pytest.param(ProcessPoolExecutor, marks=pytest.mark.slow)])
 def test_executors_do_not_change_the_results(small_chunks, make):
     extra = {"mp_context": multiprocessing.get_context("spawn")} if make is ProcessPoolExecutor else {}
     with make(2, **extra) as executor:
@@ -135,6 +135,7 @@ def test_ctrl_c_keeps_the_finished_runs_and_releases_the_others(tmp_path, small_
     assert_equal(whole, qtab.sweep(CAR, GRID, **SMALL))
 
 
+@pytest.mark.slow
 def test_two_processes_share_a_store(tmp_path, small_chunks):
     path = tmp_path / "study.db"
     both = [start(path, seeds=150) for _ in range(2)]

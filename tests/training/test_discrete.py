@@ -58,7 +58,7 @@ def test_every_algorithm_learns_the_same(name, algorithm):
     ],
 )
 def test_every_constructor_argument_has_its_effect(name, env_kwargs):
-    same_everywhere(name, env_kwargs=env_kwargs, episodes=200, max_episode_steps=100, epsilon=0.9)
+    same_everywhere(name, env_kwargs=env_kwargs, episodes=80, max_episode_steps=100, epsilon=0.9)
 
 
 @pytest.fixture(scope="module")

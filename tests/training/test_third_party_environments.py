@@ -32,7 +32,9 @@ def test_a_tuple_and_an_array_are_the_same_observation() -> None:
     assert_same_run(one, other)
 
 
-@pytest.mark.parametrize("algorithm", ["q_learning", "sarsa_lambda", "dyna_q"])
+@pytest.mark.parametrize(
+    "algorithm", ["q_learning", *(pytest.param(name, marks=pytest.mark.slow) for name in ("sarsa_lambda", "dyna_q"))]
+)
 def test_a_slippery_room_is_learned_saved_loaded_and_verified(algorithm: Any, tmp_path: Any) -> None:
     run = qtab.train("qtab-tests/Room-v0", env_kwargs={"slip": 0.1}, algorithm=algorithm, **ROOM)
     run.save(tmp_path / "run.npz")

@@ -3,6 +3,7 @@
 //! A request and a response are JSON texts in the memory of the module; see [`Playground::call`]. Nothing that a page can
 //! send panics: what is wrong with a request is the text of an error.
 
+mod any_learner;
 mod best;
 mod environment;
 mod episode;

@@ -4,12 +4,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
 use qtab_core::features::{Features, Identity, OutOfBounds};
-use qtab_core::learners::{Learner, LearnerVisitor, TruncationHandling};
+use qtab_core::learners::TruncationHandling;
 use qtab_core::memory::AllocationError;
-use qtab_core::random::{AgentRng, Pcg64, SeedSequence};
+use qtab_core::random::{Pcg64, SeedSequence};
 use qtab_core::tasks::{BoxedTask, NativeTask, TimedState, Transition, VisitCounter};
 use qtab_core::{Env, StopFlag, Task, Trainer, TrainingError};
 
+use crate::any_learner::AnyLearner;
 use crate::environment::Environment;
 use crate::episode::{Episode, greedy_action};
 use crate::run::Run;
@@ -150,9 +151,10 @@ where
         };
         let mut rng = settings.rng(seed);
         let (agent, second_table) = settings.agent(shape, self.n_active, &mut rng)?;
-        let unstarted = UnstartedRun { task, rng, terminate: settings.terminate_on_truncation, watch };
-        let run = settings.algorithm.learner::<F::Active, _>(agent, second_table, &stop, unstarted)?;
-        let run = run.ok_or_else(|| Failure("algorithm must be one without a model for several active rows".into()))?;
+        let algorithm = settings.algorithm;
+        let learner = AnyLearner::<F::Active>::new(algorithm, shape, agent, second_table, &stop)?;
+        let learner = TruncationHandling { learner, terminate: settings.terminate_on_truncation, bonus: None };
+        let run = Box::new(Trainer::new(task, UpdateRecorder::new(learner, watch), rng));
         let env = self.env.clone();
         let observation = move || {
             let state = *last_state.lock().unwrap_or_else(PoisonError::into_inner);
@@ -184,23 +186,6 @@ where
         }
         episode.end(self.env.observe(&state).numbers());
         Some(episode)
-    }
-}
-
-/// All of a run but its learner.
-struct UnstartedRun<R> {
-    task: BoxedTask<R, Failure>,
-    rng: AgentRng,
-    terminate: bool,
-    watch: Option<Watch>,
-}
-
-impl<R: qtab_core::features::ActiveRows + Send + 'static> LearnerVisitor<R> for UnstartedRun<R> {
-    type Output = Box<dyn Run>;
-
-    fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
-        let learner = TruncationHandling { learner, terminate: self.terminate, bonus: None };
-        Box::new(Trainer::new(self.task, UpdateRecorder::new(learner, self.watch), self.rng))
     }
 }
 

@@ -1,10 +1,9 @@
 //! A learner whose updates are seen from outside, so that it stays the same.
 
-use qtab_core::Learner;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
-use qtab_core::memory::AllocationError;
 use qtab_core::random::Rng;
 use qtab_core::tasks::Next;
+use qtab_core::{Learner, delegate_learner};
 
 use crate::updates::{ObservedStep, Watch};
 
@@ -25,13 +24,14 @@ impl<L> UpdateRecorder<L> {
 }
 
 impl<R: Copy + AsRef<[u32]>, L: Learner<R>> Learner<R> for UpdateRecorder<L> {
-    fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
-        self.learner.first_action(state, rng)
-    }
+    delegate_learner!(rest R, learner in Self { learner, .. });
 
     #[inline]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
-        let Some(watch) = &mut self.watch else { return self.learner.learn(state, action, reward, next, rng) };
+        let begun = self.watch.as_mut().map(|watch| (watch.begin_step(state.as_ref()), watch));
+        let Some((true, watch)) = begun else { return self.learner.learn(state, action, reward, next, rng) };
+        // Traces keep values outside the tables.
+        self.learner.complete_tables();
         let (next_rows, truncated) = match &next {
             Next::NonTerminal(rows) => (rows.as_ref(), false),
             Next::Truncated(rows) => (rows.as_ref(), true),
@@ -39,24 +39,11 @@ impl<R: Copy + AsRef<[u32]>, L: Learner<R>> Learner<R> for UpdateRecorder<L> {
         };
         let before = watch.before(&self.learner.tables(), state.as_ref(), action, next_rows);
         let next_action = self.learner.learn(state, action, reward, next, rng);
-        // Traces keep values outside the tables.
         self.learner.complete_tables();
         let chosen = matches!(next, Next::NonTerminal(_)).then_some(next_action);
         let step = ObservedStep { state: state.as_ref(), action, reward, next_rows, truncated, next_action: chosen };
         watch.observe(&step, &before, &self.learner.tables());
         next_action
-    }
-
-    fn work(&self) -> u64 {
-        self.learner.work()
-    }
-
-    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
-        self.learner.reserve(work)
-    }
-
-    fn is_unfinished(&self) -> bool {
-        self.learner.is_unfinished()
     }
 
     fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
@@ -70,35 +57,7 @@ impl<R: Copy + AsRef<[u32]>, L: Learner<R>> Learner<R> for UpdateRecorder<L> {
         }
     }
 
-    fn complete_tables(&mut self) {
-        self.learner.complete_tables();
-    }
-
-    fn tables(&self) -> Vec<&[f64]> {
-        self.learner.tables()
-    }
-
-    fn tables_mut(&mut self) -> Vec<&mut [f64]> {
-        self.learner.tables_mut()
-    }
-
-    fn shape(&self) -> (usize, usize) {
-        self.learner.shape()
-    }
-
-    fn skip_episodes(&mut self, episodes: usize) {
-        self.learner.skip_episodes(episodes);
-    }
-
-    fn abandon_episode(&mut self) {
-        self.learner.abandon_episode();
-    }
-
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.learner.persist(checkpoint)
-    }
-
-    fn diverged(&self) -> bool {
-        self.learner.diverged()
     }
 }

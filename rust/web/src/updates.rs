@@ -60,7 +60,8 @@ pub(crate) struct Watch {
     /// How often each action was taken in the state.
     visits: Vec<u32>,
     episode: usize,
-    step: usize,
+    /// The steps of the episode that have begun.
+    steps: usize,
     updates: VecDeque<Update>,
 }
 
@@ -75,7 +76,7 @@ impl Watch {
             learning_rate: settings.learning_rate,
             visits: vec![0; num_actions],
             episode: 0,
-            step: 0,
+            steps: 0,
             updates: VecDeque::with_capacity(KEPT),
         }
     }
@@ -162,6 +163,13 @@ pub(crate) struct ValuesBefore {
 }
 
 impl Watch {
+    /// Counts a step, and returns whether it may update the state: by itself, or through a return or a model.
+    pub(crate) fn begin_step(&mut self, state: &[u32]) -> bool {
+        use AnyAlgorithm::{DynaQ, DynaQPlus, NStepSarsa};
+        self.steps += 1;
+        matches!(self.algorithm, NStepSarsa { .. } | DynaQ { .. } | DynaQPlus { .. }) || self.is_near(state)
+    }
+
     pub(crate) fn before(&self, tables: &[&[f64]], state: &[u32], action: usize, next_rows: &[u32]) -> ValuesBefore {
         let value = |tables: &[&[f64]], rows: &[u32], action| {
             action_value(tables, rows, self.num_actions, action).unwrap_or(f64::NAN)
@@ -187,7 +195,6 @@ impl Watch {
         if !self.has_traces() {
             self.other_updates(step, before, tables, own);
         }
-        self.step += 1;
     }
 
     /// The update of the step itself. Returns the index of the value that it explains, and its new value.
@@ -224,7 +231,7 @@ impl Watch {
         self.push(Update {
             kind,
             episode: self.episode,
-            step: self.step,
+            step: self.steps - 1,
             action: step.action,
             table,
             old,
@@ -264,7 +271,7 @@ impl Watch {
             self.push(Update {
                 kind,
                 episode: self.episode,
-                step: self.step,
+                step: self.steps - 1,
                 action,
                 table: index / self.num_actions,
                 old,
@@ -286,6 +293,6 @@ impl Watch {
             *current = schedule;
         }
         self.episode += 1;
-        self.step = 0;
+        self.steps = 0;
     }
 }

@@ -1,5 +1,7 @@
 // Numbers as text.
 
+const WHOLE = new Intl.NumberFormat("en-US", { maximumFractionDigits: 0 });
+
 /** A number with up to so many significant digits, a true minus sign, and words for what is not finite. */
 export function number(value, digits = 4) {
   if (Number.isNaN(value)) return "not a number";
@@ -10,7 +12,7 @@ export function number(value, digits = 4) {
     magnitude >= 1e6 || magnitude < 1e-4
       ? value.toExponential(Math.max(digits - 2, 1)).replace(/\.?0+e/, "e").replace("e+", "e")
       : magnitude >= 10 ** digits
-        ? value.toLocaleString("en-US", { maximumFractionDigits: 0 })
+        ? WHOLE.format(value)
         : String(Number(value.toPrecision(digits)));
   return text.replace(/-/g, "−");
 }
@@ -26,7 +28,7 @@ export function distinguished(values) {
 
 /** A whole number with separators. */
 export function count(value) {
-  return value.toLocaleString("en-US").replace("-", "−");
+  return WHOLE.format(value).replace("-", "−");
 }
 
 /** A count with its noun: 1 step, 2 steps. */

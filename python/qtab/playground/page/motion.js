@@ -35,7 +35,7 @@ export class Motion {
   /** Sets the environment: {drawing, layout, wind, rewards, actions}. */
   setWorld(world) {
     this.world = world;
-    this.episode = null;
+    this.episode = this.described = null;
     this.time = 0;
     this.scene = SCENES[world.drawing] ?? gridWorld;
     this.draw();
@@ -45,6 +45,7 @@ export class Motion {
   show(episode) {
     const same = this.episode && !this.episode.current && sameEpisode(this.episode, episode);
     this.episode = episode;
+    this.described = null;
     this.slider.disabled = false;
     this.slider.max = episode.actions.length;
     if (!same) this.time = 0;
@@ -57,6 +58,7 @@ export class Motion {
   /** Shows a single moment of the episode in training. */
   showCurrent(current, text) {
     const { observation, cell, action } = current;
+    this.described = null;
     this.episode = { current: true, observations: observation, components: observation.length, cells: [cell] };
     this.episode.actions = action === null ? [] : [action];
     this.time = 0;
@@ -96,12 +98,22 @@ export class Motion {
     const moment = this.moment();
     if (!moment) return;
     this.scene.draw(g, width, height, moment);
-    this.canvas.setAttribute("aria-label", `The agent: ${this.scene.alternative(moment)}.`);
-    if (!this.episode || this.episode.current) return;
+    if (!this.episode || this.episode.current) {
+      this.describe(moment);
+      return;
+    }
     const step = Math.floor(Math.min(this.time, this.episode.actions.length));
+    // Several frames show a step; the words for it change with the step alone.
+    if (this.episode === this.described && step === this.describedStep) return;
+    Object.assign(this, { described: this.episode, describedStep: step });
+    this.describe(moment);
     this.slider.value = step;
     this.slider.setAttribute("aria-valuetext", `step ${step} of ${this.episode.actions.length}`);
     this.onStep(step);
+  }
+
+  describe(moment) {
+    this.canvas.setAttribute("aria-label", `The agent: ${this.scene.alternative(moment)}.`);
   }
 
   /** What the scene shows at this time: an observation and the action there, and the cells on a grid. */

@@ -68,7 +68,9 @@ export function showLegend(place, palette, low, high, unvisited = false) {
   bar.style.background = gradient(palette);
   const parts = [low, bar, high];
   if (unvisited) {
-    parts.push(Object.assign(document.createElement("span"), { className: "unvisited" }), "pale: never visited");
+    const key = Object.assign(document.createElement("span"), { className: "key" });
+    key.append(Object.assign(document.createElement("span"), { className: "unvisited" }), "pale: never visited");
+    parts.push(key);
   }
   place.replaceChildren(...parts);
 }

@@ -5,11 +5,29 @@ import { themeColors } from "./theme.js";
 
 export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', sans-serif";
 
-/** Clears a canvas and returns its context, scaled so that a unit is a CSS pixel, and its size in such pixels. */
-export function surface(canvas) {
+/** The sizes of canvases on the page, in CSS pixels: asking for one makes the browser lay out the page, in each frame. */
+let sizes = new WeakMap();
+
+/** Measures all canvases anew when they are drawn next, as the page around them has changed. */
+export function forgetSizes() {
+  sizes = new WeakMap();
+}
+
+function sizeOf(canvas) {
+  if (sizes.has(canvas)) return sizes.get(canvas);
+  const size = { width: canvas.clientWidth, height: canvas.clientHeight };
+  sizes.set(canvas, size);
+  return size;
+}
+
+/**
+ * Clears a canvas and returns its context, scaled so that a unit is a CSS pixel, and its size in such pixels. It is as
+ * large as `shown`, a canvas on the page that `onResize` watches.
+ */
+export function surface(canvas, shown = canvas) {
   const ratio = Math.min(globalThis.devicePixelRatio || 1, 3);
-  const width = Math.max(canvas.clientWidth, 1);
-  const height = Math.max(canvas.clientHeight, 1);
+  const size = sizeOf(shown);
+  const [width, height] = [Math.max(size.width, 1), Math.max(size.height, 1)];
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
@@ -26,7 +44,10 @@ export function surface(canvas) {
 
 /** Draws again whenever one of the canvases has another size. */
 export function onResize(canvases, draw) {
-  const observer = new ResizeObserver(() => requestAnimationFrame(draw));
+  const observer = new ResizeObserver((changes) => {
+    for (const { target } of changes) sizes.delete(target);
+    requestAnimationFrame(draw);
+  });
   for (const canvas of canvases) observer.observe(canvas);
 }
 

@@ -15,10 +15,17 @@ export function shownTheme() {
 /** The colors of style.css by their names without dashes, for canvases. */
 export function themeColors() {
   if (!colors) {
-    const style = getComputedStyle(document.documentElement);
+    // The computed value of a variable is its text, with both colors; that of `color` is the one that is shown.
+    const probe = document.body.appendChild(document.createElement("i"));
+    const shown = getComputedStyle(probe);
+    const colorOf = (name) => {
+      probe.style.color = `var(--${name})`;
+      return shown.color;
+    };
     const names = ["paper", "card", "ink", "muted", "line", "accent", "warm", "good", "sky", "ground", "wall"];
-    colors = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+    colors = Object.fromEntries(names.map((name) => [name, colorOf(name)]));
     colors.isDark = shownTheme() === "dark";
+    probe.remove();
   }
   return colors;
 }

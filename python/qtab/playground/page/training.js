@@ -30,8 +30,8 @@ export class Training {
     } else if (message.type === "result") {
       this.state = message.state;
       this.at = message.current?.cell ?? null;
-      if (message.state !== "training") this.keepInspecting(message);
       this.onResult(message);
+      if (message.state !== "training") this.inspectSoon(message);
     } else if (message.type === "inspection") {
       this.onResult({ type: "inspection", inspection: message });
     }
@@ -68,6 +68,12 @@ export class Training {
     this.cell = cell;
     this.inspectedRun = this.id;
     this.engine.inspect(cell);
+  }
+
+  /** Inspects a result after it was drawn: the engine repeats the run for it, which would slow the drawing down. */
+  inspectSoon(result) {
+    const { id } = this;
+    requestAnimationFrame(() => setTimeout(() => id === this.id && this.keepInspecting(result)));
   }
 
   /** Inspects the cell that was chosen in a new run, too, if its map has it; else the start of the greedy episode. */

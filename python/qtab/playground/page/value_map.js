@@ -14,6 +14,7 @@ const KEYS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDo
 export class StateMap {
   constructor(canvas, { name, describe, onPick }) {
     this.canvas = canvas;
+    this.states = document.createElement("canvas");
     this.name = name;
     this.describe = describe;
     this.onPick = onPick;
@@ -48,18 +49,26 @@ export class StateMap {
   /** Shows the agent at a place: [x, y] in the plane's units, or a cell; null hides it. */
   showAgent(place) {
     this.agent = place;
-    this.draw();
+    if (this.frame) this.drawMarks();
   }
 
   select(cell) {
     this.selected = cell;
     if (cell !== null) this.focused = cell;
-    this.draw();
+    if (this.frame) this.drawMarks();
+    this.placeCell();
   }
 
   draw() {
     if (!this.content) return;
-    const { g, width, height } = surface(this.canvas);
+    this.drawStates();
+    this.drawMarks();
+    this.placeCell();
+  }
+
+  /** Draws all but the agent and the selection, which move often, aside. */
+  drawStates() {
+    const { g, width, height } = surface(this.states, this.canvas);
     const { map, plane, layout, rewards, greedy, palette, path } = this.content;
     const frame = frameOf(map, plane, width, height);
     this.frame = frame;
@@ -69,9 +78,14 @@ export class StateMap {
     if (layout) drawLetters(g, frame, layout);
     if (rewards) drawRewards(g, frame, map.columns, rewards);
     if (path) drawPath(g, frame, path.map((place) => this.point(frame, place)));
-    if (this.agent !== null) drawDot(g, this.point(frame, this.agent), 6, themeColors().warm);
-    if (this.selected !== null) drawOutline(g, frame.cell(this.selected));
-    this.placeCell();
+  }
+
+  drawMarks() {
+    const { g } = surface(this.canvas);
+    const { a: ratio } = g.getTransform();
+    g.drawImage(this.states, 0, 0, this.states.width / ratio, this.states.height / ratio);
+    if (this.agent !== null) drawDot(g, this.point(this.frame, this.agent), 6, themeColors().warm);
+    if (this.selected !== null) drawOutline(g, this.frame.cell(this.selected));
   }
 
   point(frame, place) {

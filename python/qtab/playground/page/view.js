@@ -9,13 +9,14 @@ import { Painter } from "./painter.js";
 import { bestContent, learnedContent, pathOf, showLegend, valueRange, visitsContent } from "./results.js";
 import { DIVERGED, spokenResult, statusText } from "./status.js";
 import { PAINTED } from "./store.js";
+import { forgetSizes } from "./surface.js";
 import { onThemeChange } from "./theme.js";
 import { StateMap } from "./value_map.js";
 import { Marks } from "./marks.js";
 
 const element = (id) => document.getElementById(id);
 
-/** Shows results; the newest one is drawn, once for each frame of the screen. */
+/** Shows results: the last one of a run at once, of those during training the newest one in each frame of the screen. */
 export class View {
   constructor(store, announce, inspect) {
     Object.assign(this, { store, announce, inspect });
@@ -61,11 +62,15 @@ export class View {
     else if (this.result && this.world !== this.worldOf()) this.episode = null;
     this.result = message;
     this.isStale = false;
+    if (message.state !== "training") {
+      this.draw();
+      return;
+    }
     if (this.waiting) return;
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
-      if (!this.isStale) this.draw();
+      if (!this.isStale && this.result.state === "training") this.draw();
     });
   }
 
@@ -179,8 +184,12 @@ export class View {
     const { map } = result;
     if (frame.layout && (frame.layout.length !== map.rows || frame.layout[0].length !== map.columns)) return;
     const aspect = frame.plane ? 1.08 : map.columns / map.rows;
-    document.querySelector(".three").style.setProperty("--aspect", String(Math.min(Math.max(aspect, 0.6), 5)));
-    document.querySelector(".three").classList.toggle("large-first", this.store.state.environment === PAINTED);
+    const place = document.querySelector(".three");
+    place.style.setProperty("--aspect", String(Math.min(Math.max(aspect, 0.6), 5)));
+    place.classList.toggle("large-first", this.store.state.environment === PAINTED);
+    place.classList.toggle("only-two", !result.best);
+    element("best-panel").hidden = !result.best;
+    forgetSizes();
     const path = result.current && result.state === "paused" ? null : pathOf(this.episode, frame.plane);
     this.values.show(learnedContent(result, frame, path));
     const visits = visitsContent(result, frame);
@@ -196,8 +205,6 @@ export class View {
     const { best } = result;
     const { discount } = this.store.state.settings;
     element("best-title").textContent = best?.kind === "optimal" ? "The optimum" : "The best known";
-    element("best-panel").hidden = !best;
-    document.querySelector(".three").classList.toggle("only-two", !best);
     if (!best) return;
     this.best.show(bestContent(result, frame));
     showLegend(element("best-legend"), "values", low, high);

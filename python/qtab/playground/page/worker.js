@@ -1,6 +1,7 @@
 // The worker: trains in WebAssembly, in slices, so that a newer request stops an older one within a few milliseconds.
 
 const SLICE = 10; // milliseconds of training between two looks at the messages
+const FIRST_REPORT = 100; // milliseconds of training before a result is sent: drawing one would delay a run that takes no longer
 const REPORT_EVERY = 45; // milliseconds between two results while training
 const EPISODE_EVERY = 250; // milliseconds between two greedy episodes while training
 
@@ -68,7 +69,7 @@ function begin({ id, request, inspected, later }) {
   run = {
     ...described, id, seeds, episodes: settings.episodes, goal: request.run === false ? 0 : Infinity,
     state: request.run === false ? "paused" : "training", work: 20000, seconds: 0, begun: now, reported: now,
-    episodeReported: -Infinity, bestSent: false, inspected: null,
+    nextReport: now + FIRST_REPORT, episodeReported: -Infinity, bestSent: false, inspected: null,
   };
   if (run.state === "paused") report();
   if (inspected !== null) run.inspected = inspected;
@@ -102,6 +103,7 @@ function report() {
   const answer = call({ call: "report", returns: true, map: true, episode: withEpisode, best: withBest });
   const arrays = arraysOf(answer);
   run.reported = performance.now();
+  run.nextReport = run.reported + REPORT_EVERY;
   if (withEpisode) run.episodeReported = run.reported;
   run.bestSent ||= withBest;
   const { returns, lengths, terminated, actionValues, visits, greedy, values, xEdges = null, yEdges = null } = arrays;
@@ -155,7 +157,7 @@ async function work() {
         begin(request);
       } else if (run?.state === "training") {
         advance();
-        if (run.state !== "training" || performance.now() - run.reported > REPORT_EVERY) report();
+        if (run.state !== "training" || performance.now() > run.nextReport) report();
       } else if (run && run.inspected !== null && !(run.inspectedAt >= run.reported)) {
         await inspect();
       } else {
@@ -192,7 +194,7 @@ const handlers = {
     }
   },
   run() {
-    if (run?.state === "paused") Object.assign(run, { goal: Infinity, state: "training", reported: performance.now() });
+    if (run?.state === "paused") Object.assign(run, { goal: Infinity, state: "training" });
   },
   stop() {
     if (run?.state !== "training") return;

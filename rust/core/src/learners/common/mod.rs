@@ -5,6 +5,7 @@ mod agent;
 mod average_reward;
 mod count_bonus;
 mod critic;
+mod delegate_learner;
 mod dyna_model;
 mod eligible_weights;
 mod episode_steps;

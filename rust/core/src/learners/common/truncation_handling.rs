@@ -3,7 +3,7 @@
 
 use super::{CountBonus, Learner};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::memory::AllocationError;
+use crate::delegate_learner;
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -31,10 +31,7 @@ impl<L> TruncationHandling<L> {
 }
 
 impl<R: AsRef<[u32]>, L: Learner<R>> Learner<R> for TruncationHandling<L> {
-    #[inline]
-    fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
-        self.learner.first_action(state, rng)
-    }
+    delegate_learner!(rest R, learner in Self { learner, .. });
 
     #[inline]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
@@ -46,77 +43,18 @@ impl<R: AsRef<[u32]>, L: Learner<R>> Learner<R> for TruncationHandling<L> {
         self.learner.learn(state, action, reward, next, rng)
     }
 
-    #[inline]
-    fn set_action_mask(&mut self, state: R, mask: &[bool]) {
-        self.learner.set_action_mask(state, mask);
-    }
-
-    fn action_masks(&self) -> Option<&[bool]> {
-        self.learner.action_masks()
-    }
-
-    #[inline]
-    fn work(&self) -> u64 {
-        self.learner.work()
-    }
-
-    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
-        self.learner.reserve(work)
-    }
-
-    #[inline]
-    fn is_unfinished(&self) -> bool {
-        self.learner.is_unfinished()
-    }
-
     fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
         let next = self.as_learned(next);
         self.learner.resume(next, rng)
-    }
-
-    fn planning_updates(&self) -> Option<u64> {
-        self.learner.planning_updates()
-    }
-
-    fn average_reward(&self) -> Option<f64> {
-        self.learner.average_reward()
     }
 
     fn end_episode(&mut self) {
         self.learner.end_episode();
     }
 
-    fn complete_tables(&mut self) {
-        self.learner.complete_tables();
-    }
-
-    fn tables(&self) -> Vec<&[f64]> {
-        self.learner.tables()
-    }
-
-    fn tables_mut(&mut self) -> Vec<&mut [f64]> {
-        self.learner.tables_mut()
-    }
-
-    fn shape(&self) -> (usize, usize) {
-        self.learner.shape()
-    }
-
-    fn skip_episodes(&mut self, episodes: usize) {
-        self.learner.skip_episodes(episodes);
-    }
-
-    fn abandon_episode(&mut self) {
-        self.learner.abandon_episode();
-    }
-
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.learner.persist(checkpoint)?;
         self.bonus.as_mut().map_or(Ok(()), |bonus| bonus.persist(checkpoint))
-    }
-
-    fn diverged(&self) -> bool {
-        self.learner.diverged()
     }
 }
 

@@ -1,0 +1,93 @@
+//! The learner of an algorithm that the page offers.
+//!
+//! [`AnyAlgorithm::learner`] would link the learners of all algorithms, and a training loop for each. Here is one loop
+//! for all of them: the module, which a page loads, stays small.
+
+use qtab_core::features::ActiveRows;
+use qtab_core::learners::{
+    Agent, AnyAlgorithm, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa,
+    SarsaLambda, TdLearner, TraceOptions, Traces, TrueOnlineSarsaLambda, WatkinsQLambda,
+};
+use qtab_core::{Learner, QTable, StopFlag, delegate_learner};
+
+use crate::subject::Failure;
+
+/// One of the learners for states with active rows `R`.
+pub(crate) enum AnyLearner<R: ActiveRows> {
+    QLearning(TdLearner<QLearning>),
+    Sarsa(TdLearner<Sarsa>),
+    ExpectedSarsa(TdLearner<ExpectedSarsa>),
+    DoubleQLearning(DoubleQLearning),
+    NStepSarsa(TdLearner<NStepSarsa<R>>),
+    SarsaLambda(TdLearner<SarsaLambda>),
+    TrueOnlineSarsaLambda(TdLearner<TrueOnlineSarsaLambda>),
+    WatkinsQLambda(TdLearner<WatkinsQLambda>),
+    DynaQ(TdLearner<DynaQ>),
+    DynaQPlus(TdLearner<DynaQPlus>),
+}
+
+impl<R: ActiveRows> AnyLearner<R> {
+    /// The learner of an algorithm that learns with an agent, whose table has so many rows and actions; `second_table` is
+    /// the other table of Double Q-learning.
+    pub(crate) fn new(
+        algorithm: AnyAlgorithm,
+        (n_rows, num_actions): (usize, usize),
+        agent: Agent,
+        second_table: Option<QTable>,
+        stop: &StopFlag<'_>,
+    ) -> Result<Self, Failure> {
+        if algorithm.needs_single_rows() && size_of::<R>() != size_of::<u32>() {
+            return Err(Failure("algorithm must be one without a model for several active rows".into()));
+        }
+        let new_model = || Model::new(n_rows, num_actions, stop);
+        let new_traces = |cutoff: f64| Traces::new(n_rows * num_actions, cutoff, stop);
+        Ok(match algorithm {
+            AnyAlgorithm::QLearning => Self::QLearning(TdLearner { agent, rule: QLearning }),
+            AnyAlgorithm::Sarsa => Self::Sarsa(TdLearner { agent, rule: Sarsa }),
+            AnyAlgorithm::ExpectedSarsa => Self::ExpectedSarsa(TdLearner { agent, rule: ExpectedSarsa }),
+            AnyAlgorithm::DoubleQLearning => {
+                let second_table = second_table.ok_or_else(|| Failure("algorithm must have a second table".into()))?;
+                Self::DoubleQLearning(DoubleQLearning::new(agent, second_table))
+            }
+            AnyAlgorithm::NStepSarsa { n_steps } => {
+                Self::NStepSarsa(TdLearner { agent, rule: NStepSarsa::new(n_steps) })
+            }
+            AnyAlgorithm::SarsaLambda(TraceOptions { kind, decay, cutoff }) => {
+                let rule = SarsaLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay };
+                Self::SarsaLambda(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::TrueOnlineSarsaLambda { trace_decay, trace_cutoff } => {
+                let rule = TrueOnlineSarsaLambda::new(new_traces(trace_cutoff)?, trace_decay);
+                Self::TrueOnlineSarsaLambda(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::WatkinsQLambda(TraceOptions { kind, decay, cutoff }) => {
+                let rule = WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay };
+                Self::WatkinsQLambda(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::DynaQ { planning_steps } => {
+                Self::DynaQ(TdLearner { agent, rule: DynaQ::new(new_model()?, planning_steps) })
+            }
+            AnyAlgorithm::DynaQPlus { planning_steps, time_weight } => {
+                let rule = DynaQPlus::new(new_model()?, planning_steps, time_weight, stop)?;
+                Self::DynaQPlus(TdLearner { agent, rule })
+            }
+            _ => return Err(Failure("algorithm must be one of the playground's".into())),
+        })
+    }
+}
+
+impl<R: ActiveRows> Learner<R> for AnyLearner<R> {
+    delegate_learner!(
+        all R, learner in
+        Self::QLearning(learner),
+        Self::Sarsa(learner),
+        Self::ExpectedSarsa(learner),
+        Self::DoubleQLearning(learner),
+        Self::NStepSarsa(learner),
+        Self::SarsaLambda(learner),
+        Self::TrueOnlineSarsaLambda(learner),
+        Self::WatkinsQLambda(learner),
+        Self::DynaQ(learner),
+        Self::DynaQPlus(learner)
+    );
+}
