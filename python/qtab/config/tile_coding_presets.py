@@ -66,8 +66,8 @@ PENDULUM: SharedSettings = {
     "episodes": 2000,
 }
 
-# The limits are those of the usual states; the bounds of the space are wider. Found with one seed, 20,000: a mean of 194
-# over the last 100 episodes, where 200 is the threshold.
+# The limits are those of the usual states; the bounds of the space are wider. Found with one seed, 20,000: a mean of
+# 194 over the last 100 episodes, where 200 is the threshold.
 LUNAR_LANDER: SharedSettings = {
     **_TILES,
     "algorithm": "true_online_sarsa_lambda",
