@@ -39,7 +39,8 @@ def test_the_dyna_maze_of_the_figure_is_the_registered_one() -> None:
 
 def test_the_queue_has_the_settings_of_its_figure_in_shorter_episodes() -> None:
     env, length = "qtab/AccessControlQueue-v0", ("episodes", "max_episode_steps")
-    preset, figure = dict(qtab.presets(env)["book"]), dict(figure_10_5.CONFIG)
+    preset: dict[str, Any] = dict(qtab.presets(env)["book"])
+    figure = dict(figure_10_5.CONFIG)
     steps = [config["episodes"] * config["max_episode_steps"] for config in (preset, figure)]
     assert steps == [figure_10_5.STEPS] * 2
     for config in (preset, figure):
@@ -48,4 +49,4 @@ def test_the_queue_has_the_settings_of_its_figure_in_shorter_episodes() -> None:
     assert merge(env, preset) == merge(env, figure)
     # Its greedy policy receives up to 2.75 per step, and one that always accepts 1.8.
     run = qtab.train(env, episodes=10, seed=0)
-    assert run.episode_returns[-1] > 2.4 * run.config.max_episode_steps
+    assert run.episode_returns[-1] > 2.4 * run.episode_lengths[-1]
