@@ -14,6 +14,7 @@ from qtab._utils.versions import versions
 from qtab.bench import (
     article,
     article_numba,
+    book,
     environments,
     footprint,
     learners,
@@ -113,6 +114,18 @@ def test_every_benchmark_counts_its_steps() -> None:
     assert [loop(0) for loop in overhead.python_stepping().values()] == [idle, idle]
 
 
+def test_the_benchmarks_of_the_book_count_their_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(book, "EPISODES", 2000)
+    monkeypatch.setattr(book, "PROBLEMS", 2)
+    training = book.training()
+    assert set(training) == {name for _, names in book.GROUPS for name in names}
+    assert training[book.BANDIT](1) == 2 * book.STEPS
+    # The lengths of episodes have a standard deviation of 80.
+    steps = training[book.WALK](0)
+    assert abs(steps / 2000 - book.WALK_STEPS) < 4 * 80 / 2000**0.5
+    assert training["TD(0), 19-state random walk"](0) == 2000 * book.WALK_STEPS
+
+
 @pytest.mark.slow
 def test_vector_benchmarks_count_all_steps_and_are_compared_within_their_environment() -> None:
     steps = vector_envs.stepping()
@@ -143,7 +156,7 @@ def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
     def train_many(env: Any, seeds: int, **settings: Any) -> package.Runs:
         return package.train_many(env, seeds // 8, **settings, episodes=20)
 
-    for module in (mountain_car, environments, learners, overhead):
+    for module in (mountain_car, environments, learners, overhead, book):
         monkeypatch.setattr(module, "train", train)
     for module in (mountain_car, environments):
         monkeypatch.setattr(module, "train_many", train_many)
@@ -151,6 +164,8 @@ def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
     for module in (article_numba, sarsa_numba):
         monkeypatch.setattr(module, "EPISODES", 5)
     monkeypatch.setitem(sys.modules, "numba", SimpleNamespace(njit=lambda function: function))
+    monkeypatch.setattr(book, "EPISODES", 20)
+    monkeypatch.setattr(book, "PROBLEMS", 2)
     monkeypatch.setattr(mountain_car, "STEPS", 1_000)
     monkeypatch.setattr(vector_envs, "NUM_ENVS", 8)
     monkeypatch.setattr(report, "footprint", lambda: footprint.footprint(repeats=1))
@@ -168,7 +183,7 @@ def test_the_bench_prints_its_tables_with_versions_and_build(small_rounds: None)
     )
     for name in (*names, vector_envs.SYNC, vector_envs.QTAB_CARS, vector_envs.QTAB_POLES, vector_envs.QTAB_ONE):
         assert f"\n{name}  " in printed
-    for name in (environments.FIRST, *learners.SETTINGS):
+    for name in (environments.FIRST, *learners.SETTINGS, *(name for _, names in book.GROUPS for name in names)):
         assert f"\n{name}  " in printed
     assert "learning adds" in printed
     assert "import qtab adds" in printed

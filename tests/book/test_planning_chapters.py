@@ -99,6 +99,7 @@ def small():
     return dataclasses.replace(experiment, tasks=(Tasks(60, 1, 600), Tasks(90, 3, 900)), parts=parts)
 
 
+@pytest.mark.slow
 def test_updates_on_policy_are_better_at_first_and_worse_in_the_end(small):
     result = small.run(40, seed=5)
     on_policy, uniform = (line.mean for line in result.lines[:2])

@@ -47,6 +47,17 @@ def test_an_experiment_makes_a_table_and_a_picture(name: str) -> None:
     assert [line.mean.tobytes() for line in threads.lines] == [line.mean.tobytes() for line in result.lines]
 
 
+def test_the_exemplary_problem_is_the_one_of_its_seed() -> None:
+    result = qtab.book.run("2.1", seed=4)
+    [line] = result.lines
+    assert line.mean.tobytes() == np.random.default_rng(4).standard_normal(10).tobytes()
+    assert "the problem of seed 4" in str(result)
+    assert "std. error" not in str(result)
+    ax = result.plot()
+    assert len(ax.collections) == 10 + 1  # the distributions and the true values
+    assert [tick.get_text() for tick in ax.get_xticklabels()] == [str(action) for action in range(1, 11)]
+
+
 def test_figures_of_several_panels_need_axes_of_their_own() -> None:
     result = qtab.book.run("figure-2.2", runs=2)
     with pytest.raises(ValueError, match=r"^ax must be None for figure-2\.2, which creates 2 axes"):

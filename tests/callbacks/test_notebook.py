@@ -58,6 +58,7 @@ def test_one_picture_is_replaced_in_place(screen: Screen) -> None:
     assert 0.001 < (first != last).mean() < 0.2  # the curve grew, and the axes stayed
 
 
+@pytest.mark.slow
 def test_the_clock_limits_the_pictures_but_the_end_is_always_drawn(screen: Screen) -> None:
     live = LivePlot(1, seconds=1e6)
     qtab.train("MountainCar-v0", callback=live, **SHORT)

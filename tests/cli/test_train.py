@@ -98,6 +98,7 @@ def test_training_continues_from_the_table_of_a_file(tmp_path: Path) -> None:
         assert package.load(tmp_path / "more.npz").q_table.tobytes() == more.q_table.tobytes()
 
 
+@pytest.mark.slow
 def test_the_header_reports_python_stepping_and_the_default_time_limit(tmp_path: Path) -> None:
     done = qtab("train", "toys:Walk-v0", "--scale", "1", "--episodes", "3", "--seed", "0", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -121,6 +122,7 @@ def test_an_id_without_a_version_means_the_newest_with_its_preset(tmp_path: Path
     assert done.stdout.startswith("CliffWalking-v1 in Rust, preset tuned, 2 episodes, seed ")
 
 
+@pytest.mark.slow
 def test_the_version_that_was_chosen_is_reported(tmp_path: Path) -> None:
     done = qtab("train", "CliffWalking", "--episodes", "2", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -203,6 +205,7 @@ def test_version_and_help(tmp_path: Path) -> None:
     assert qtab_here(cwd=tmp_path).returncode == 2
 
 
+@pytest.mark.slow
 def test_a_failing_environment_saves_the_run_and_prints_one_line(tmp_path: Path) -> None:
     done = qtab(
         *("train", "toys:Walk-v0", "--scale", "1", "--episodes", "5000", "--env-kwargs", "fail_after", "2000"),
@@ -231,6 +234,7 @@ def heed_ctrl_c() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
+@pytest.mark.slow
 @posix_only
 def test_ctrl_c_saves_and_plots_what_was_learned_so_far(tmp_path: Path) -> None:
     process = subprocess.Popen(

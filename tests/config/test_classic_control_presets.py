@@ -45,6 +45,7 @@ def test_the_default_preset_of_cart_pole_is_a_grid_that_solves_it() -> None:
     assert best_average(run) >= 475
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("env", ["CartPole-v1", "MountainCarContinuous-v0"])
 def test_the_presets_verify(env: str) -> None:
     run = qtab.train(env, preset=SOLVED[env][0], seed=0)

@@ -116,6 +116,23 @@ def test_visits_tell_untried_actions_from_values_that_stayed_the_same() -> None:
     assert guessed["coverage"].title.endswith("or their values never changed.")
 
 
+def test_preferences_are_diagnosed_without_the_checks_of_action_values() -> None:
+    run = qtab.train(LAKE, algorithm="actor_critic", seed=1, episodes=300, max_episode_steps=60)
+    diagnosis = qtab.diagnose(run, seeds=0)
+    assert diagnosis.names == ("not solved",)
+    # The policy is the softmax, of which the most likely actions are only a part: episodes are played, not computed.
+    assert diagnosis["not solved"].evidence["greedy policy"] == qtab.evaluate(run, 100, seed=0).mean_return
+    assert {"divergence", "coverage", "noisy values"} < set(diagnosis.not_made)
+    assert "Not checked, as it learned preferences instead of action values" in str(diagnosis)
+
+
+@pytest.mark.parametrize("algorithm", ["monte_carlo", "off_policy_monte_carlo", "differential_sarsa"])
+def test_the_checks_compare_other_methods_with_random_actions(algorithm: Any) -> None:
+    run = qtab.train(LAKE, algorithm=algorithm, seed=1, episodes=100, epsilon=0.0, max_episode_steps=30)
+    found = qtab.diagnose(run, seeds=0)["exploration"]
+    assert 0.0 < found.evidence["by random actions"] < 0.1
+
+
 def test_more_seeds_than_fit_into_memory_are_refused_before_there_is_a_list_of_them(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -77,6 +77,7 @@ def test_a_planted_fault_is_found_alone(fault: Fault) -> None:
 MENDED_AT_ONCE = "exploration", "slow learning", "too optimistic", "time-outs treated as terminal"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "fault", [fault for fault in FAULTS if fault.finding in MENDED_AT_ONCE], ids=lambda fault: fault.finding
 )

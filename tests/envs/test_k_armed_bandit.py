@@ -53,6 +53,20 @@ def test_a_problem_lasts_until_the_next_seed() -> None:
         assert info["optimal"] is bool(action == np.argmax(second))
 
 
+@pytest.mark.parametrize("chosen", [{"epsilon": 0.3, "ties": "random"}, {"exploration": "ucb"}], ids=str)
+@pytest.mark.parametrize("by_visits", [True, False])
+def test_a_resumed_run_chooses_as_an_uninterrupted_one(chosen: dict[str, Any], by_visits: bool) -> None:
+    settings: dict[str, Any] = {"seed": 3, "max_episode_steps": 1, "epsilon_schedule": "constant", **chosen}
+    if "exploration" in chosen:
+        del settings["epsilon_schedule"]
+    if by_visits:
+        settings |= {"learning_rate": 1.0, "learning_rate_schedule": "visits"}
+    whole = qtab.train(BANDIT, episodes=300, **settings)
+    resumed = qtab.resume(qtab.train(BANDIT, episodes=150, **settings), 300)
+    assert resumed.episode_returns.tobytes() == whole.episode_returns.tobytes()
+    assert resumed.q_table.tobytes() == whole.q_table.tobytes()
+
+
 def test_sample_averages_are_the_means_of_the_rewards() -> None:
     run = qtab.train(BANDIT, seed=2, episodes=50, epsilon=1.0, visits=True, record=50, max_episode_steps=1)
     actions = np.array([one.actions[0] for one in run.recordings])

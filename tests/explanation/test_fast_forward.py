@@ -8,12 +8,12 @@ from hypothesis import given, settings
 
 import qtab
 from qtab.explanation import explain as module
-from qtab.explanation.explain import EXPLAINED
 from qtab.explanation.fast_forward import Start, start_of
+from support.explained_algorithms import STEP_BY_STEP, WITH_TILES
 from support.learner_settings import run_settings
 
 CAR = "MountainCar-v0"
-ALGORITHMS = EXPLAINED
+ALGORITHMS = (*STEP_BY_STEP, *WITH_TILES)
 EXAMPLES = max(1, (settings.default or settings()).max_examples // 20)
 
 

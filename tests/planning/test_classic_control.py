@@ -101,6 +101,7 @@ def test_an_acrobot_with_noise_has_no_route() -> None:
         qtab.optimum(env)
 
 
+@pytest.mark.slow
 def test_constants_and_the_time_limit_are_used() -> None:
     env: Any = gym.make("CartPole-v1", max_episode_steps=30)
     assert qtab.optimum(env).expected_return == 30

@@ -100,6 +100,7 @@ def test_progress_must_be_true_false_or_none() -> None:
         qtab.train("MountainCar-v0", episodes=5, progress="yes")  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="it has no pseudo-terminals")
 def test_progress_bar_and_printed_lines_do_not_overlap_on_a_terminal(tmp_path: Path) -> None:
     import fcntl

@@ -54,6 +54,29 @@ def test_episodes_that_differ_are_counted() -> None:
     assert replay_all(gym.make("MountainCar-v0"), run) == 1
 
 
+@pytest.mark.parametrize(
+    ("env", "settings"),
+    [
+        ("qtab/BlockingMaze-v0", {"env_kwargs": {"change_after": 40}, "episodes": 12, "max_episode_steps": 30}),
+        ("qtab/KArmedBandit-v0", {"episodes": 12, "max_episode_steps": 1}),
+    ],
+)
+def test_environments_that_change_or_draw_a_problem_are_replayed_as_they_were(env: str, settings: Any) -> None:
+    run = package.train(env, seed=4, record=3, epsilon=1.0, epsilon_schedule="constant", **settings)
+    made = gym.make(env, max_episode_steps=run.config.max_episode_steps, **run.config.env_kwargs)
+    steps: list[int] = []
+    take = made.unwrapped.step
+
+    def watched(action: Any) -> Any:
+        steps.append(getattr(made.unwrapped, "total_steps", 0))
+        return take(action)
+
+    made.unwrapped.step = watched  # type: ignore[method-assign]
+    assert replay_all(made, run) == 0
+    if "Maze" in env:
+        assert steps[0] == run.episode_lengths[:9].sum() > 40
+
+
 def test_the_render_environment_has_the_time_limit_and_keyword_arguments_of_the_run() -> None:
     config = package.train("MountainCar-v0", episodes=1, max_episode_steps=7, env_kwargs={"goal_velocity": 0.01}).config
     env = make_render_env(config, "rgb_array")

@@ -1,4 +1,4 @@
-"""Tables whose rows are given out as observations are met: `max_rows`."""
+"""Tables whose rows are assigned as observations are seen: `max_rows`."""
 
 from pathlib import Path
 from typing import Any
@@ -21,8 +21,8 @@ def test_a_sparse_table_learns_what_a_full_one_does() -> None:
     sparse = qtab.train(Tutorial(3), max_rows=81, **SETTINGS)
     assert sparse.tables.shape == (1, 82, 4)
     assert full.episode_returns.tobytes() == sparse.episode_returns.tobytes()
-    met = sparse.discretizer.n_met  # type: ignore[attr-defined]
-    assert met == np.unique(full.tables[0].nonzero()[0]).size + np.count_nonzero(~sparse.tables[0][:met].any(axis=1))
+    seen = sparse.discretizer.n_seen  # type: ignore[attr-defined]
+    assert seen == np.unique(full.tables[0].nonzero()[0]).size + np.count_nonzero(~sparse.tables[0][:seen].any(axis=1))
     for agent in np.ndindex(3, 3):
         observation = {"agent": np.array(agent), "target": np.array([2, 1])}
         assert np.array_equal(sparse.q_values(observation), full.q_values(observation))
@@ -37,16 +37,16 @@ def test_what_was_not_met_has_the_initial_values_of_the_last_row() -> None:
     assert run.discretizer.row(observation) == 100
     assert np.array_equal(run.q_values(observation), run.tables[0][100])
     assert run.predict(np.stack([observation] * 3))[0].tolist() == [run.predict(observation)[0]] * 3
-    assert qtab.evaluate(run, episodes=20, seed=9, env=env).lengths.sum() > 100  # most of which was not met
+    assert qtab.evaluate(run, episodes=20, seed=9, env=env).lengths.sum() > 100  # most of which was not seen
 
 
 def test_a_full_table_is_refused_with_what_was_learned() -> None:
     with pytest.raises(
-        ValueError, match=r"^max_rows must be more than 7: all rows are given out, and yet another"
+        ValueError, match=r"^max_rows must be more than 7: all rows are assigned, and training saw another"
     ) as caught:
         qtab.train(Sampled(Box(0, 255, (5,), np.uint8)), max_rows=7, **SETTINGS)
     run = caught.value.run  # type: ignore[attr-defined]
-    assert run.discretizer.n_met == 7
+    assert run.discretizer.n_seen == 7
     assert run.predict(np.zeros(5, np.uint8))
 
 
@@ -62,7 +62,7 @@ def test_a_saved_run_keeps_its_rows_and_is_resumed_with_them(tmp_path: Path) -> 
 
     part = qtab.train(make(), callback=stop, callback_every=4, **settings)
     assert 0 < len(part.episode_returns) < 30
-    assert part.discretizer.n_met < whole.discretizer.n_met  # type: ignore[attr-defined]
+    assert part.discretizer.n_seen < whole.discretizer.n_seen  # type: ignore[attr-defined]
     part.save(tmp_path / "part.npz")
     loaded = qtab.load(tmp_path / "part.npz")
     space = make().observation_space
@@ -72,7 +72,7 @@ def test_a_saved_run_keeps_its_rows_and_is_resumed_with_them(tmp_path: Path) -> 
     resumed = qtab.resume(loaded, env=make())
     assert_same_run(resumed, whole)
     assert resumed.discretizer.arrays()["met"].tolist() == whole.discretizer.arrays()["met"].tolist()
-    assert part.discretizer.n_met < whole.discretizer.n_met  # type: ignore[attr-defined]
+    assert part.discretizer.n_seen < whole.discretizer.n_seen  # type: ignore[attr-defined]
 
 
 def test_a_function_without_a_shape_names_cells_by_any_integers() -> None:
@@ -80,7 +80,7 @@ def test_a_function_without_a_shape_names_cells_by_any_integers() -> None:
         return (*observation["agent"].tolist(), -(10**12))
 
     run = qtab.train(Tutorial(3), discretizer=place, max_rows=9, **SETTINGS)
-    assert run.discretizer.n_met == 9  # type: ignore[attr-defined]
+    assert run.discretizer.n_seen == 9  # type: ignore[attr-defined]
     assert qtab.verify(run, env=Tutorial(3)).equal
     with pytest.raises(ValueError, match="discretizer must return the same number of integers each time, got"):
         qtab.train(Tutorial(3), discretizer=lambda o: [0] * (1 + o["agent"][0]), max_rows=9, **SETTINGS)
@@ -122,9 +122,9 @@ def test_the_tables_of_many_runs_have_different_rows_and_are_not_kept() -> None:
 
 def test_a_verified_run_leaves_its_rows_as_they_are() -> None:
     run = qtab.train(Tutorial(3), max_rows=81, **SETTINGS)
-    met = run.discretizer.n_met  # type: ignore[attr-defined]
+    seen = run.discretizer.n_seen  # type: ignore[attr-defined]
     assert qtab.verify(run, 3, env=Tutorial(3)).equal
-    assert run.discretizer.n_met == met  # type: ignore[attr-defined]
+    assert run.discretizer.n_seen == seen  # type: ignore[attr-defined]
     assert_same_run(run, qtab.train(Tutorial(3), config=run.config))
 
 

@@ -44,9 +44,9 @@ def test_a_room_of_minigrid_needs_a_row_for_what_is_met() -> None:
     def filtered() -> gym.Env:
         return FilterObservation(gym.make(GRID), ["direction", "image"])
 
-    run = check(filtered, "max_rows= gives rows only to the images that are met", max_rows=500)
+    run = check(filtered, "max_rows= assigns rows only to the images that are seen", max_rows=500)
     assert run.episode_returns.tobytes() == whole.episode_returns.tobytes()
-    assert 10 < run.discretizer.n_met == whole.discretizer.n_met < 100  # type: ignore[attr-defined]
+    assert 10 < run.discretizer.n_seen == whole.discretizer.n_seen < 100  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("wrapper", SYMBOLS)

@@ -39,12 +39,13 @@ KWARGS: dict[str, list[dict[str, Any]]] = {
 }
 SMALLER: dict[str, dict[str, Any]] = {"qtab/JacksCarRental-v0": {"cars": 4}}
 """Arguments that spare an environment most of its millions of transitions, which take a second."""
+VARIANTS: list[dict[str, Any]] = [{}, {"max_episode_steps": 17}, {"disable_env_checker": True}]
 MADE = [
-    (env, SMALLER.get(env, {}) | kwargs)
+    (env, {**SMALLER.get(env, {}), **kwargs})
     for name in [*ENTRIES, *EXTRA]
     for env in dict.fromkeys([name, f"qtab/{name.removeprefix('qtab/')}"])
     if env in gym.registry
-    for kwargs in [{}, {"max_episode_steps": 17}, {"disable_env_checker": True}, *KWARGS.get(name, [])]
+    for kwargs in [*VARIANTS, *KWARGS.get(name, [])]
 ]
 
 

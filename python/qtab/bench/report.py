@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from qtab._utils import checks
 from qtab._utils.versions import versions
-from qtab.bench import environments, learners, mountain_car, overhead, vector_envs
+from qtab.bench import book, environments, learners, mountain_car, overhead, vector_envs
 from qtab.bench.footprint import Footprint, footprint
 from qtab.bench.timing import Benchmark, Timings, measure
 
@@ -19,6 +19,7 @@ PARTS: Mapping[str, Callable[[], dict[str, Benchmark]]] = {
     ),
     "environments": environments.training,
     "learners": learners.training,
+    "book": book.training,
 }
 """The groups of benchmarks, each of which can be run alone."""
 
@@ -41,6 +42,7 @@ class Report:
             vector_envs.SYNC: self._vectors,
             environments.FIRST: self._environments,
             learners.Q_LEARNING: self._learners,
+            book.BANDIT: self._book,
         }
         lines = self._warning()
         for name, part in parts.items():
@@ -103,6 +105,11 @@ class Report:
         head = _line(learners.TITLE, "ns/step", "rel. time", "× numba")
         lines = [head, *(_line(*columns) for columns in learners.lines(self.timings))]
         return [*lines, "  (rel. time: relative to Q-learning on the grid)"]
+
+    def _book(self) -> list[str]:
+        head = _line(book.TITLE, "ns/step", "rel. time")
+        lines = [head, *(_line(*columns) for columns in book.lines(self.timings))]
+        return [*lines, "  (rel. time: relative to the first in the same environment)"]
 
     def _footprint(self) -> list[str]:
         cost = self.footprint

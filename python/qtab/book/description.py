@@ -29,6 +29,8 @@ class Description:
     """Whether the x axis is logarithmic."""
     x_ticks: tuple[float, ...] | None = None
     """Where the x axis is labeled; None lets matplotlib choose."""
+    x_tick_labels: tuple[str, ...] | None = None
+    """The labels of ``x_ticks``; None writes the numbers."""
     log_y: bool = False
     """Whether the y axis is logarithmic."""
     x_range: tuple[float, float] | None = None

@@ -11,7 +11,7 @@ import numpy as np
 
 from qtab._utils.memory import memory_limit
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import draw_lines
+from qtab.book.drawing import draw_lines, title_figure
 from qtab.book.experiment import Experiment
 from qtab.book.result import Draw, Line, Result
 from qtab.book.runner import FloatArray
@@ -85,17 +85,27 @@ class PredictionExperiment(Experiment):
         runs, seed, threads = self.check_arguments(runs, seed, threads)
         started = time.perf_counter()
         parts: dict[str, list[Line]] = {}
-        with ProgressBar(len(self.settings), "setting", progress, self.name) as bar:
-            for done, setting in enumerate(self.settings):
-                task, count = setting.task(), min(runs, setting.max_runs or runs)
-                estimates, diverged = _estimate(task, setting.arguments, range(seed, seed + count), threads)
-                samples = setting.measure(estimates, task.true_values)
+        counts = [min(runs, setting.max_runs or runs) for setting in self.settings]
+        with ProgressBar(sum(counts), "run", progress, self.name) as bar:
+            done = 0
+            for setting, count in zip(self.settings, counts, strict=True):
+                task = setting.task()
+                # Runs that are lines of their own are long: the bar moves as often as all threads are through with one.
+                size = threads if setting.each_run else count
+                measured, diverged = [], 0
+                for first in range(0, count, size):
+                    seeds = range(seed + first, seed + min(first + size, count))
+                    estimates, failed = _estimate(task, setting.arguments, seeds, threads)
+                    measured.append(setting.measure(estimates, task.true_values))
+                    diverged += failed
+                    done += len(seeds)
+                    bar.move_to(done)
+                samples = np.concatenate(measured)
                 for number, row in enumerate(samples if setting.each_run else ()):
                     name = f"{setting.line} {number + 1}"
                     parts[name] = [dataclasses.replace(_line(setting, row[None], diverged), name=name)]
                 if not setting.each_run:
                     parts.setdefault(setting.line, []).append(_line(setting, samples, diverged))
-                bar.move_to(done + 1)
         lines = tuple(map(_joined, parts.values()))
         return Result(self, lines, runs, seed, time.perf_counter() - started, self.draw)
 
@@ -176,7 +186,7 @@ def draw_panels(panels: Sequence[Panel]) -> Draw:
             experiment = dataclasses.replace(result.experiment, **panel.layout)
             ax = draw_in_range(dataclasses.replace(result, experiment=experiment, lines=lines), part)
             ax.set_title(panel.title, loc="left")
-        figure.suptitle(result.experiment.heading)
+        title_figure(figure, result.experiment.heading)
         assert ax is not None  # noqa: S101 - there are panels
         return ax
 

@@ -22,7 +22,7 @@ class Arguments:
     rounds: Annotated[int | None, OPTIONAL_INT] = None
     """The number of rounds; by default as many as fit into the duration."""
     part: str | None = None
-    """Run only this part: training, stepping, vectors, environments or learners."""
+    """Run only this part: training, stepping, vectors, environments, learners or book."""
 
 
 def run(arguments: list[str]) -> int:

@@ -172,8 +172,8 @@ class Config:
     shape: tuple[int, ...] | None = None
     """The shape of the table without its actions, in which the indices lie that a function returns."""
     max_rows: int | None = None
-    """The number of rows of a table whose rows are given out as observations are met, for spaces of more cells than a
-    table can have. One row more stands for what was not met."""
+    """The number of rows of a table whose rows are assigned as observations are seen, for spaces of more cells than a
+    table can have. One row more stands for what was not seen."""
     scale: tuple[float, ...] = ()
     """Cells per unit of each component of the observation: (10, 100) rounds to multiples of 0.1 and 0.01."""
     tilings: int | None = None

@@ -93,19 +93,6 @@ def n_tables(algorithm: str) -> int:
     return 2 if algorithm in ("double_q_learning", *WITH_STATE_VALUES) else 1
 
 
-def check_learns_values(config: Any) -> None:
-    """Refuses the config of a run that learned preferences, where action values are needed.
-
-    Raises:
-        ValueError: names the algorithm.
-    """
-    if config.algorithm in PREFERENCES:
-        raise ValueError(
-            f"run must be of an algorithm that learns action values, got one of {config.algorithm!r}, which learns "
-            "preferences"
-        )
-
-
 def check_options(fields: Mapping[str, Any]) -> None:
     """Refuses options that do not apply to the choices made, and choices that do not go together.
 

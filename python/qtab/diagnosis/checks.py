@@ -28,21 +28,24 @@ class Check:
     """Whether it repeats the run, for which Rust must step the environment."""
     if_solved: bool = False
     """Whether it is also made for a run that solved its environment."""
+    reads_values: bool = False
+    """Whether it reads action values, or advises on exploration that compares them: not for a run that learned
+    preferences, whose policy is their softmax."""
 
 
 CHECKS: Mapping[str, Check] = {
     "not solved": Check(not_solved),
-    "divergence": Check(divergence, if_solved=True),
+    "divergence": Check(divergence, if_solved=True, reads_values=True),
     "horizon": Check(horizon),
     "grid too coarse": Check(coarse_grid, repeats=True),
-    "coverage": Check(coverage),
-    "exploration": Check(exploration, repeats=True),
+    "coverage": Check(coverage, reads_values=True),
+    "exploration": Check(exploration, repeats=True, reads_values=True),
     "lasting exploration": Check(lasting_exploration),
-    "slow learning": Check(slow_learning),
-    "noisy values": Check(noisy_values, repeats=True),
+    "slow learning": Check(slow_learning, reads_values=True),
+    "noisy values": Check(noisy_values, repeats=True, reads_values=True),
     "too short": Check(too_short),
-    "too optimistic": Check(too_optimistic),
-    "too pessimistic": Check(too_pessimistic),
+    "too optimistic": Check(too_optimistic, reads_values=True),
+    "too pessimistic": Check(too_pessimistic, reads_values=True),
     "time-outs treated as terminal": Check(truncation, if_solved=True),
     "unlucky seed": Check(unlucky_seed, repeats=True),
 }

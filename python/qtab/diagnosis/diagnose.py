@@ -5,7 +5,7 @@ import time
 import numpy as np
 
 from qtab._utils import checks
-from qtab.config.options import check_learns_values
+from qtab.config.options import PREFERENCES
 from qtab.diagnosis.checks import CHECKS
 from qtab.diagnosis.diagnosis import Diagnosis
 from qtab.diagnosis.facts import Facts
@@ -31,11 +31,9 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
     Raises:
         MemoryError: if the runs of so many ``seeds`` would take more than half of the machine's memory.
         TypeError: for an argument of the wrong type.
-        ValueError: for a run without a finished episode, one of an algorithm that learns preferences, or the
-            optimum of another environment.
+        ValueError: for a run without a finished episode, or the optimum of another environment.
     """
     checks.instance("run", run, Run)
-    check_learns_values(run.config)
     if optimum is not None:
         checks.instance("optimum", optimum, Optimum)
         optimum.check_same_env(run)
@@ -50,7 +48,8 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
         for name, check in CHECKS.items():
             if facts.solved and not check.if_solved:
                 continue
-            if check.repeats and not facts.can_repeat:
+            without_values = check.reads_values and run.config.algorithm in PREFERENCES
+            if without_values or (check.repeats and not facts.can_repeat):
                 not_made.append(name)
                 continue
             finding = check.find(facts)

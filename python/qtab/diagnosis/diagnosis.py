@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from qtab._utils import html
+from qtab.config.options import PREFERENCES
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import COLUMNS, Finding
 from qtab.diagnosis.what_if import WhatIf, try_changes
@@ -25,7 +26,8 @@ class Diagnosis:
     unremarkable: tuple[str, ...]
     """The checks that found nothing."""
     not_made: tuple[str, ...]
-    """The checks that could not be made, because Rust does not step the environment."""
+    """The checks that could not be made: those that repeat the run, where Rust does not step the environment, and those
+    of action values, for a run that learned preferences."""
     facts: Facts = field(repr=False)
     """The run and what follows from it."""
     seconds: float = field(repr=False)
@@ -99,5 +101,8 @@ class Diagnosis:
         elif self.unremarkable:
             lines.append(f"Nothing to report on: {', '.join(self.unremarkable)}.")
         if self.not_made:
-            lines.append(f"Not checked, as Rust cannot repeat this run: {', '.join(self.not_made)}.")
+            reasons = [] if self.facts.can_repeat else ["Rust cannot repeat this run"]
+            if self.run.config.algorithm in PREFERENCES:
+                reasons.append("it learned preferences instead of action values")
+            lines.append(f"Not checked, as {' and '.join(reasons)}: {', '.join(self.not_made)}.")
         return lines

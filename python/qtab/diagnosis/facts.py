@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from qtab._utils.memory import memory_limit
 from qtab.config import Config
+from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES
 from qtab.diagnosis.sample import Sample, sample_steps
 from qtab.envs.registry import entry_for_id, gymnasium_id, spec_of
 from qtab.envs.stored import spec_of_run
@@ -82,8 +83,11 @@ class Facts:
         """Episodes of a policy that chooses all actions at random; None where they cannot be played quickly."""
         if not self.can_repeat:
             return None
+        # These algorithms do not take all of the settings below; what chooses at random does not depend on its values.
+        special = self.config.algorithm in (*PREFERENCES, *MONTE_CARLO, *AVERAGE_REWARD)
         return train(
             config=self.config,
+            algorithm="q_learning" if special else self.config.algorithm,
             exploration="epsilon_greedy",
             epsilon=1.0,
             epsilon_schedule="constant",
@@ -148,8 +152,12 @@ class Facts:
 
     @cached_property
     def greedy_is_exact(self) -> bool:
-        """Whether the return of a greedy policy is computed exactly, from a transition table."""
-        return self.optimum is not None and self.optimum.exact and self.is_finite
+        """Whether the return of a greedy policy is computed exactly, from a transition table.
+
+        What counts of preferences is the policy that was trained, their softmax, not the greedy one.
+        """
+        is_softmax = self.config.algorithm in PREFERENCES
+        return self.optimum is not None and self.optimum.exact and self.is_finite and not is_softmax
 
     @cached_property
     def greedy_return(self) -> float:

@@ -41,7 +41,7 @@ def build(space: Any, config: Config, n_actions: int) -> Discretizer:
         owner = "shape" if isinstance(built, Function) else "the observation space"
         raise ValueError(
             f"{owner} must give the table at most {MAX_AXES} axes, as many as NumPy's arrays have beside those of runs "
-            f"and actions; max_rows= gives rows only to the observations that are met, got {len(built.shape)}"
+            f"and actions; max_rows= assigns rows only to the observations that are seen, got {len(built.shape)}"
         )
     return built
 

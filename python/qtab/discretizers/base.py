@@ -38,7 +38,7 @@ class Discretizer(ABC):
     has_cells: ClassVar[bool] = True
     """Whether exactly one row is active, the cell of an observation, so that the table has an axis per component."""
     has_component_axes: ClassVar[bool] = True
-    """Whether what it divides are the components of the observation: not what a function returns, or rows given out."""
+    """Whether what it divides are the components of the observation: not what a function returns, or assigned rows."""
 
     def __repr__(self) -> str:
         """One line: the number of cells along each component, or the number of rows."""

@@ -25,7 +25,7 @@ class Function(Discretizer):
     function: Callable[[Any], Any]
     """From an observation to its indices within the shape, or to one integer, the number of its row."""
     cell_shape: tuple[int, ...] | None
-    """The shape of the table without its actions; None where rows are given out for any integers."""
+    """The shape of the table without its actions; None where rows are assigned for any integers."""
     observation_shape: tuple[int, ...] | None
     """The shape of an observation, by which a batch of them is recognized; None where the space has none."""
 

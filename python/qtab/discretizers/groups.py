@@ -46,7 +46,7 @@ def choose_groups(layout: Layout, config: Config, n_actions: int) -> tuple[Group
     Args:
         layout: The layout.
         config: The config, with the defaults of its options filled in.
-        n_actions: How many values a row of the table has; 0 if only the rows that are met are made.
+        n_actions: How many values a row of the table has; 0 if rows are made only for what is seen.
 
     Raises:
         ValueError: if the discretizer does not fit the layout.
@@ -150,8 +150,8 @@ def _group(layout: Layout, parts: list[Part], config: Config, n_actions: int, ke
     if many is not None and config.discretizer == "round" and not config.scale:
         found = f"integers from {min(many.low)} to {max(many.high)}" if many.is_bounded else "integers without bounds"
         raise ValueError(
-            f"{many.name} holds {found}, too many for a row each: max_rows= gives rows only to the observations that "
-            "are met, and discretizer='bins' or 'tiles' with low= and high= divides a range of them"
+            f"{many.name} holds {found}, too many for a row each: max_rows= assigns rows only to the observations "
+            "that are seen, and discretizer='bins' or 'tiles' with low= and high= divides a range of them"
         )
     box = spaces.Box(*bounds, dtype=dtype)
     discretizer = OF_BOXES[str(config.discretizer)].build(box, config, n_actions)

@@ -34,10 +34,10 @@ def too_large(parts: Any) -> str:
     image = any(part.kind == "integer" and len(part.shape) in (2, 3) and part.size >= 64 for part in parts)
     if image:
         return (
-            " (it holds an image: max_rows= gives rows only to the images that are met; "
+            " (it holds an image: max_rows= assigns rows only to the images that are seen; "
             "gymnasium.wrappers.TransformObservation or a function as discretizer= with shape= makes less of it)"
         )
     return (
-        " (max_rows= gives rows only to the observations that are met; "
+        " (max_rows= assigns rows only to the observations that are seen; "
         "a function as discretizer= with shape= makes fewer of them)"
     )

@@ -1,4 +1,4 @@
-"""Rows that are given out as observations are met, for spaces of more cells than a table can have."""
+"""Rows that are assigned as observations are first seen, for spaces of more cells than a table can have."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -14,12 +14,15 @@ from qtab.discretizers.base import Discretizer, check_table_size
 from qtab.discretizers.composite import Composite
 from qtab.discretizers.function import Function, rows_of
 
+_STORED = "met"
+"""The name in files of the cells that were seen."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sparse(Discretizer):
-    """A table of ``max_rows`` rows, which the cells get in the order in which they are met during training.
+    """A table of ``max_rows`` rows, which are assigned to cells in the order in which training first sees them.
 
-    One row more is never given out: it keeps the initial values, and stands for every cell that was not met.
+    One row more is never assigned: it keeps the initial values, and stands for every cell that was not seen.
     """
 
     reads_space = True
@@ -28,15 +31,15 @@ class Sparse(Discretizer):
     cells: Composite | Function
     """Finds the cell of an observation."""
     max_rows: int
-    met: dict[bytes, int] = field(repr=False)
-    """The row of each cell that was met, by the bytes of its int64 indices. Training adds to it; :meth:`as_learned`
+    seen: dict[bytes, int] = field(repr=False)
+    """The row of each cell that was seen, by the bytes of its int64 indices. Training adds to it; :meth:`as_learned`
     returns a copy."""
-    gives_out: bool = True
-    """Whether :meth:`observe` gives a row to a cell that was not met."""
+    assigns_rows: bool = True
+    """Whether :meth:`observe` assigns a row to a cell that was not seen before."""
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Sparse":
-        """Returns a table in which nothing was met.
+        """Returns a table in which nothing was seen.
 
         Raises:
             ValueError: if the space or an option does not fit, or the table would be too large.
@@ -48,36 +51,38 @@ class Sparse(Discretizer):
         return cls._of(cells, max_rows, {})
 
     @classmethod
-    def _of(cls, cells: Any, max_rows: int, met: dict[bytes, int]) -> "Sparse":
+    def _of(cls, cells: Any, max_rows: int, seen: dict[bytes, int]) -> "Sparse":
         if isinstance(cells, Composite) and not cells.has_cells:
             raise ValueError("max_rows does not apply to discretizer 'tiles', which has no cells; hashed_rows= does")
-        return cls(np.array(0), np.array(max_rows), cells, max_rows, met)
+        return cls(np.array(0), np.array(max_rows), cells, max_rows, seen)
 
     @classmethod
     def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Sparse":
         """Returns the table of a saved run; see :meth:`Discretizer.restore`."""
         max_rows = required("max_rows", config.max_rows)
-        met = arrays["met"]
+        seen = arrays[_STORED]
         cells = (Function if callable(config.discretizer) else Composite).restore(config, arrays, n_rows)
-        if n_rows != max_rows + 1 or met.dtype != np.int64 or met.ndim != 2 or len(met) > max_rows:
+        if n_rows != max_rows + 1 or seen.dtype != np.int64 or seen.ndim != 2 or len(seen) > max_rows:
             raise ValueError("its table has another number of rows than max_rows")
-        rows = {cell.tobytes(): row for row, cell in enumerate(met)}
-        if len(rows) != len(met) or (isinstance(cells, Composite) and met.size and met.shape[1] != cells.layout.size):
+        rows = {cell.tobytes(): row for row, cell in enumerate(seen)}
+        if len(rows) != len(seen) or (
+            isinstance(cells, Composite) and seen.size and seen.shape[1] != cells.layout.size
+        ):
             raise ValueError("its rows are not those of different cells")
         return cls._of(cells, max_rows, rows)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Returns the arrays to save."""
-        met = np.frombuffer(b"".join(self.met), np.int64).reshape(len(self.met), -1 if self.met else 0)
-        return {**self.cells.arrays(), "met": met}
+        seen = np.frombuffer(b"".join(self.seen), np.int64).reshape(len(self.seen), -1 if self.seen else 0)
+        return {**self.cells.arrays(), _STORED: seen}
 
     def settings(self) -> dict[str, Any]:
         """Returns the settings that followed from the space, for the config of the run."""
         return self.cells.settings()
 
     def as_learned(self) -> "Sparse":
-        """Returns the table with what was met until now."""
-        return replace(self, met=dict(self.met), gives_out=True)
+        """Returns the table with what was seen until now."""
+        return replace(self, seen=dict(self.seen), assigns_rows=True)
 
     def with_function(self, function: Callable[[Any], Any]) -> "Sparse":
         """Returns the table with another function, if it has one."""
@@ -85,17 +90,17 @@ class Sparse(Discretizer):
         return replace(self, cells=cells.with_function(function) if isinstance(cells, Function) else cells)
 
     def as_played(self) -> "Sparse":
-        """Returns the table for a policy that only plays: what was not met shares the last row."""
-        return replace(self, gives_out=False)
+        """Returns the table for a policy that only plays: what was not seen shares the last row."""
+        return replace(self, assigns_rows=False)
 
     @property
-    def n_met(self) -> int:
-        """How many rows were given out."""
-        return len(self.met)
+    def n_seen(self) -> int:
+        """How many rows were assigned."""
+        return len(self.seen)
 
     @property
     def shape(self) -> tuple[int]:
-        """The number of rows, and one more for what was not met."""
+        """The number of rows, and one more for what was not seen."""
         return (self.max_rows + 1,)
 
     @property
@@ -112,37 +117,37 @@ class Sparse(Discretizer):
         return {"type": "identity", "first": [0], "counts": [self.n_rows], "scalar": True}
 
     def observe(self, observation: Any) -> int:
-        """Returns the row of an observation, a new one if its cell was not met before.
+        """Returns the row of an observation, a new one if its cell was not seen before.
 
         Raises:
             TypeError: if it does not hold numbers (integers for what is discrete).
-            ValueError: if it lies outside the space, or all rows are given out.
+            ValueError: if it lies outside the space, or all rows are assigned.
         """
         cell = _key(self.cells.cells(observation))
-        row = self.met.get(cell)
-        if row is None and not self.gives_out:
+        row = self.seen.get(cell)
+        if row is None and not self.assigns_rows:
             return self.max_rows
         if row is None:
-            row = len(self.met)
+            row = len(self.seen)
             if row == self.max_rows:
                 raise ValueError(
-                    f"max_rows must be more than {row}: all rows are given out, and yet another observation was met"
+                    f"max_rows must be more than {row}: all rows are assigned, and training saw another observation"
                 )
-            first = next(iter(self.met), cell)
+            first = next(iter(self.seen), cell)
             if len(cell) != len(first):
                 raise ValueError(
                     "discretizer must return the same number of integers each time, "
                     f"got {len(first) // 8} and then {len(cell) // 8}"
                 )
-            self.met[cell] = row
+            self.seen[cell] = row
         return row
 
     def along_axes(self, observation: Any) -> NDArray[Any]:
-        """Returns (1,): the row of an observation; the last for what was not met."""
+        """Returns (1,): the row of an observation; the last for what was not seen."""
         return self.active_rows(observation)
 
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
-        """Returns the (1,) row of an observation, or the (n, 1) rows of n observations; the last for what was not met.
+        """Returns the (1,) row of an observation, or the (n, 1) rows of n observations; the last for what was not seen.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for what is discrete).
@@ -151,11 +156,11 @@ class Sparse(Discretizer):
         if isinstance(self.cells, Function):
             return rows_of(self._known_row, observation, self.cells.observation_shape)
         flat = self.cells.flat(observation)
-        rows = [self.met.get(_key(self.cells.cells_of(numbers)), self.max_rows) for numbers in np.atleast_2d(flat)]
+        rows = [self.seen.get(_key(self.cells.cells_of(numbers)), self.max_rows) for numbers in np.atleast_2d(flat)]
         return np.array(rows, np.int64).reshape(*flat.shape[:-1], 1)
 
     def _known_row(self, observation: Any) -> int:
-        return self.met.get(_key(self.cells.cells(observation)), self.max_rows)
+        return self.seen.get(_key(self.cells.cells(observation)), self.max_rows)
 
     def same_space(self, other: Discretizer) -> bool:
         """Whether another discretizer has as many rows, for observations with the same components."""

@@ -29,6 +29,9 @@ class ChangingMazeEnv(TabularEnv):
     where an obstacle appears can leave it. Each reset and each step draws one ``np_random.random()``, as
     :class:`qtab.TabularEnv` does. The reward is 1 at the goal and 0 elsewhere.
 
+    :func:`qtab.evaluate` seeds its environment, and therefore begins with the first maze: with
+    ``env_kwargs={"change_after": 0}`` it plays in the second one.
+
     Args:
         before: The map of the maze for the first steps, as :func:`qtab.book.grid_world` takes it.
         after: The map of the maze for all later steps.
@@ -63,7 +66,7 @@ class ChangingMazeEnv(TabularEnv):
         return super().step(action)
 
     def resume_after(self, total_steps: int) -> None:
-        """Continues as after so many steps; :func:`qtab.resume` calls it."""
+        """Continues as after so many steps; :func:`qtab.resume` and replays call it."""
         self.total_steps = total_steps
 
 

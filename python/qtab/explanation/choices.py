@@ -47,6 +47,21 @@ class ObservedPolicy:
         return action
 
 
+def exploring_start(policy: Policy, values: NDArray[np.float64], action: int, valid: int) -> Choice:
+    """Returns why the first action of an episode was taken that is drawn among all valid ones."""
+    return Choice(
+        action=action,
+        reason="exploring start",
+        values=tuple(values.tolist()),
+        probability=1.0 / valid,
+        drawn=float("nan"),
+        tied=int(np.count_nonzero(values == np.max(values))),
+        epsilon=policy.epsilon.value if isinstance(policy, EpsilonGreedy) else None,
+        temperature=policy.temperature if isinstance(policy, Softmax) else None,
+        random_ties=True,
+    )
+
+
 def explained(
     policy: Policy, values: NDArray[np.float64], state: list[int], bounds: list[float], action: int, drawn: float
 ) -> Choice:

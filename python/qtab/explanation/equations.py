@@ -12,10 +12,18 @@ BOOTSTRAP = {
     "watkins_q_lambda": "max Q(S', a)",
     "dyna_q": "max Q(S', a)",
     "dyna_q_plus": "max Q(S', a)",
+    "prioritized_sweeping": "max Q(S', a)",
+    "monte_carlo": "G'",
+    "monte_carlo_es": "G'",
+    "off_policy_monte_carlo": "G'",
+    "differential_sarsa": "Q(S', A')",
+    "differential_q_learning": "max Q(S', a)",
     "n_step_tree_backup": "[Σ π(a | S') Q(S', a) + π(A' | S') (G' - Q(S', A'))]",
     "n_step_q_sigma": "[Σ π(a | S') Q(S', a) + (σ ρ + (1 - σ) π(A' | S')) (G' - Q(S', A'))]",
 }
-"""The value of the next state in the target of each algorithm; Double Q-learning names its tables as well."""
+"""The value of the next state in the target of each algorithm; Double Q-learning names its tables as well.
+
+G' is the return from the next step on."""
 SHOWN_REWARDS = 4
 """The longer sums of n-step Sarsa are shortened."""
 
@@ -58,6 +66,24 @@ def target_equation(
     if len(numbers) > 1:
         numbers[-1] += f" = {number(target)}"
     return f"target = {' + '.join(symbols)}", f"target = {' + '.join(numbers)}"
+
+
+def differential_equations(
+    symbol: str, reward: float, average: float, bootstrap: float, target: float, before: float, step_size: float
+) -> list[tuple[str, str]]:
+    """Returns the equations of a differential target and of the average reward R̄, with their numbers."""
+    error = target - before
+    return [
+        (
+            f"target = R - R̄ + {symbol}",
+            f"target = {number(reward)} - {term(average)} + {term(bootstrap)} = {number(target)}",
+        ),
+        (
+            "R̄ <- R̄ + β [target - Q(S, A)]",
+            f"R̄ <- {number(average)} + {number(step_size)} · [{number(target)} - {term(before)}]"
+            f" = {number(average + step_size * error)}",
+        ),
+    ]
 
 
 def power(base: str, exponent: int, times: str = " ") -> str:

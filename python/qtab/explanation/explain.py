@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
-from qtab.config.options import check_learns_values, listed
-from qtab.explanation.equations import BOOTSTRAP
+from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO
 from qtab.explanation.explanation import Explanation
 from qtab.explanation.fast_forward import Start, start_of
 from qtab.explanation.records import ExplainedStep
@@ -26,8 +25,8 @@ from qtab.results.run import Run
 from qtab.training.extensions import repeatable
 from qtab.training.run_env import make_run_env
 
-EXPLAINED = (*BOOTSTRAP, "double_q_learning")
-"""The algorithms whose updates can be explained."""
+N_STEP = ("n_step_sarsa", "n_step_tree_backup", "n_step_q_sigma")
+"""The algorithms whose updates wait for n steps."""
 
 
 def explain(
@@ -44,8 +43,8 @@ def explain(
     The reference learner in plain NumPy repeats the episode, with the same numbers to the last bit. Rust trains up to
     its start, and the agent's random numbers are drawn up to there; values and actions are compared with Rust's. Where
     only the steps before tell what was drawn or counted (ties broken at random, missing actions, a learning rate by
-    visits, Dyna-Q, environments in Python), the reference also repeats all episodes before, which takes tens of
-    microseconds per step, with traces over many tiles hundreds.
+    visits, methods with a model, Monte Carlo and differential methods, environments in Python), the reference also
+    repeats all episodes before, which takes tens of microseconds per step, with traces over many tiles hundreds.
 
     Args:
         run: The run.
@@ -58,16 +57,10 @@ def explain(
     Raises:
         RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, and for a run of an algorithm that learns preferences or is not
-            explained: Monte Carlo control, prioritized sweeping, differential Sarsa and Q-learning. Of a run that was
-            resumed with more episodes while a rate fell, only the episodes before can be explained.
+        ValueError: for an argument out of range. Of a run that was resumed with more episodes while a rate fell, only
+            the episodes before can be explained.
     """
     checks.instance("run", run, Run)
-    check_learns_values(run.config)
-    if run.config.algorithm not in EXPLAINED:
-        raise ValueError(
-            f"run must be one of algorithm {listed(EXPLAINED)} to be explained, got {run.config.algorithm!r}"
-        )
     finished = len(run.episode_returns)
     if finished == 0:
         raise ValueError("run must have a finished episode, got one that was stopped during its first")
@@ -159,7 +152,9 @@ def _learning_rate(config: Config, episode: int) -> float:
 
 def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> ExplainedStep:
     step, choice = watcher.steps[index], watcher.choices[index]
-    updated = sum(len(seen.updates) for seen in watcher.steps[: index + 1])
+    pending: tuple[int, ...] = ()
+    if run.config.algorithm in N_STEP:
+        pending = tuple(range(sum(len(seen.updates) for seen in watcher.steps[: index + 1]), index + 1))
     env = run.config.env
     return ExplainedStep(
         step=index,
@@ -178,11 +173,29 @@ def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> E
         terminated=step.terminated,
         truncated=step.truncated,
         updates=tuple(step.updates),
+        policy_updates=tuple(step.policy_updates),
         planning=tuple(step.planning),
         traces=step.traces,
         n_traces=step.n_traces,
-        pending=tuple(range(updated, index + 1)),
+        pending=pending,
+        future_return=step.future_return,
+        note=_note(run.config.algorithm, step),
     )
+
+
+def _note(algorithm: str, step: SeenStep) -> str:
+    """Returns why a step changed no value, where it changed none."""
+    if any(update.step != -1 for update in step.updates) or step.policy_updates:
+        return ""
+    if algorithm in N_STEP:
+        return "none yet: n steps are not complete"
+    if algorithm == "off_policy_monte_carlo":
+        return "none: a later action of the episode is not greedy"
+    if algorithm in MONTE_CARLO:
+        return "none: the same action was taken in the same cell before in the episode, and first visits count"
+    if algorithm in AVERAGE_REWARD:
+        return "none yet: it waits for the first state of the next episode"
+    return "only those that were planned" if step.planning else "none: no error is large enough for the queue"
 
 
 class _Watched(gym.Wrapper[Any, Any, Any, Any]):

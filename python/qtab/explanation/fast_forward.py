@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab.config.options import TABLES_ONLY, n_tables
+from qtab.config.options import AVERAGE_REWARD, PREFERENCES, TABLES_ONLY, WITH_STATE_VALUES, n_tables
 from qtab.reference.schedules import epsilon_schedule
 from qtab.reference.streams import AgentStream, agent_stream
 from qtab.rendering.replay import generator_states
 from qtab.results.run import Run
 from qtab.training.resolve import resolve
 
-CHOOSE_FIRST = ("q_learning", "expected_sarsa", "double_q_learning")
+CHOOSE_FIRST = ("q_learning", "expected_sarsa", "double_q_learning", *PREFERENCES)
 """The algorithms that choose an action before each step; the others choose the next one after it."""
 
 
@@ -48,7 +48,7 @@ def start_of(run: Run, episode: int) -> Start | None:
         or config.action_mask is not False
         or (isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q).any())
     )
-    if config.backend != "rust" or config.algorithm in TABLES_ONLY or by_values:
+    if config.backend != "rust" or config.algorithm in (*TABLES_ONLY, *AVERAGE_REWARD) or by_values:
         return None
     if episode == 0 or config.learning_rate_schedule == "visits":
         return None
@@ -78,7 +78,8 @@ def _agent_stream(run: Run, episode: int) -> AgentStream:
     config, n_actions = run.config, len(run.actions)
     stream = agent_stream(config.seed or 0, config.bit_generator)
     if isinstance(config.initial_q, tuple):
-        for _ in range(n_tables(config.algorithm)):
+        # State values are 0 at first, not drawn.
+        for _ in range(1 if config.algorithm in WITH_STATE_VALUES else n_tables(config.algorithm)):
             stream.uniform(*config.initial_q, size=run.tables.shape[1:])
     epsilon = None if config.exploration == "softmax" else epsilon_schedule(config)
     lengths, terminated = run.episode_lengths.tolist(), run.terminated.tolist()

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from qtab._utils import html
+from qtab.explanation.policy_update import PolicyUpdate
 
-Reason = Literal["greedy", "tie broken", "explored", "softmax", "upper bound"]
+Reason = Literal["greedy", "tie broken", "explored", "exploring start", "softmax", "upper bound"]
 
 
 @dataclass(frozen=True)
@@ -17,14 +18,16 @@ class Choice:
     reason: Reason
     """``"greedy"``: it has the largest value. ``"tie broken"``: several have. ``"explored"``: drawn at random, as
     happens with probability epsilon. ``"softmax"``: drawn with the probabilities of the softmax policy.
-    ``"upper bound"``: it has the largest upper confidence bound."""
+    ``"upper bound"``: it has the largest upper confidence bound. ``"exploring start"``: drawn as the first action of an
+    episode."""
     values: tuple[float, ...]
     """(actions,): the values that the policy compared; the sum of both tables for Double Q-learning, the bounds for
     upper confidence bounds."""
     probability: float
     """How likely the policy was to choose this action."""
     drawn: float
-    """The random number in [0, 1) that decided; NaN for upper confidence bounds, which draw none."""
+    """The random number in [0, 1) that decided; NaN where none is compared: for upper confidence bounds and
+    exploring starts."""
     tied: int
     """The number of actions with the largest value."""
     epsilon: float | None
@@ -39,6 +42,8 @@ class Choice:
             chosen = f"upper bound: Q + c √(ln t / N) = {self.values[self.action]:.6g} is the largest"
             how = "a random one" if self.random_ties else "the first"
             return chosen if self.tied == 1 else f"{chosen}, {how} of {self.tied}"
+        if self.reason == "exploring start":
+            return f"exploring start: drawn with probability {self.probability:.3g}"
         if self.epsilon is None:
             return f"softmax: drawn with probability {self.probability:.3g} at temperature {self.temperature:.6g}"
         if self.reason == "explored":
@@ -55,7 +60,8 @@ class Update:
     """A change of Q(S, A) towards a target. Its numbers are exact: from them follows the table, bit for bit."""
 
     step: int | None
-    """The step of S and A, counted from 0 in the episode: for n-step Sarsa an earlier one. None in planning."""
+    """The step of S and A, counted from 0 in the episode: for n-step methods an earlier one. -1 is the last step of the
+    episode before, whose update differential methods make when the next one begins. None in planning."""
     table: int
     """Which table changed: 0, or 1 for the second one of Double Q-learning."""
     rows: tuple[int, ...]
@@ -65,9 +71,10 @@ class Update:
     action: int
     """The column of A."""
     rewards: tuple[float, ...]
-    """The rewards in the target: one, or up to n for n-step Sarsa; none in planning, whose target is shown alone."""
+    """The rewards in the target: one, or up to n for n-step methods; none in planning, whose target is shown alone."""
     bootstrap: float | None
-    """The value of the next state in the target; None where the next state is terminal, and in planning."""
+    """The value of the next state in the target, or for Monte Carlo methods the return from the next step on; None
+    where the next state is terminal, and in planning."""
     target: float
     error: float
     """The TD error: the target minus ``before``."""
@@ -77,6 +84,8 @@ class Update:
     """(n_active,): the eligibility trace of each weight; empty for algorithms without traces."""
     old_value: float | None
     """Q_old of true online Sarsa(lambda): the value of S and A before the last update. None for others."""
+    average_reward: float | None
+    """The average reward in the target of a differential method, (R - average reward) + bootstrap. None for others."""
     before: float
     """Q(S, A) before the update: the sum of ``weights_before``."""
     after: float
@@ -135,15 +144,25 @@ class ExplainedStep:
     terminated: bool
     truncated: bool
     updates: tuple[Update, ...]
-    """The updates that followed the step: one; for n-step Sarsa none at first and several at the end of the episode."""
+    """The updates that followed the step: one; for n-step methods none at first and several at the end of the episode.
+    For Monte Carlo methods the update of this step, if it has one: they are made after the episode, from its last step
+    to its first."""
+    policy_updates: tuple[PolicyUpdate, ...]
+    """How a policy gradient method changed the preferences of the step's state: one. REINFORCE makes them after the
+    episode, from its first step to its last."""
     planning: tuple[Update, ...]
-    """The planning updates of Dyna-Q and Dyna-Q+, in their order."""
+    """The planning updates of Dyna-Q and Dyna-Q+ and those of prioritized sweeping, in their order."""
     traces: tuple[Trace, ...]
     """The largest eligibility traces when the values changed, at most eight."""
     n_traces: int
     """The number of values with a trace, all of which changed."""
     pending: tuple[int, ...]
-    """The steps that n-step Sarsa has not updated yet."""
+    """The steps that an n-step method has not updated yet."""
+    future_return: float | None
+    """G: the discounted rewards from this step on, for Monte Carlo methods and REINFORCE; None for others, and with
+    off-policy Monte Carlo control before the last action that is not greedy."""
+    note: str
+    """Why no value changed, where none did."""
 
     def _repr_html_(self) -> str:
         """The step as a table, for notebooks."""
@@ -158,24 +177,33 @@ class ExplainedStep:
             equations = zip(update.equations, update.numbers, strict=True)
             rows.append(("update", "\n".join(f"{symbols}\n{numbers}" for symbols, numbers in equations)))
             rows.append(("value", f"{update.before:.6g} -> {update.after:.6g}, TD error {update.error:.6g}"))
+        for change in self.policy_updates:
+            equations = zip(change.equations, change.numbers, strict=True)
+            rows.append(("update", "\n".join(f"{symbols}\n{numbers}" for symbols, numbers in equations)))
+            rows.append(("policy", change.policy))
         return html.report(f"Step {self.step}", (), rows)
+
+    @property
+    def _first(self) -> Update | None:
+        """The first update that is not one of the episode before."""
+        return next((update for update in self.updates if update.step != -1), None)
 
     @property
     def target(self) -> float | None:
         """The target of the first update; None where there is none."""
-        return self.updates[0].target if self.updates else None
+        return None if self._first is None else self._first.target
 
     @property
     def td_error(self) -> float | None:
         """The TD error of the first update; None where there is none."""
-        return self.updates[0].error if self.updates else None
+        return None if self._first is None else self._first.error
 
     @property
     def before(self) -> float | None:
         """The value before the first update; None where there is none."""
-        return self.updates[0].before if self.updates else None
+        return None if self._first is None else self._first.before
 
     @property
     def after(self) -> float | None:
         """The value after the first update; None where there is none."""
-        return self.updates[0].after if self.updates else None
+        return None if self._first is None else self._first.after

@@ -4,7 +4,9 @@ from collections.abc import Sequence
 
 from qtab._utils.html import report
 from qtab.explanation.equations import number
+from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.records import ExplainedStep, Update
+from qtab.explanation.updates import total
 
 SHOWN_ROWS = 4
 """With more active rows, only the first ones are listed."""
@@ -36,10 +38,14 @@ def details(step: ExplainedStep) -> list[tuple[str, str]]:
         ("why", str(step.choice)),
         ("reward", f"{number(step.reward)}, then {step.next_state}; {ending(step)}"),
     ]
+    if step.future_return is not None:
+        lines.append(("return", f"G = {number(step.future_return)}, the discounted rewards from here on"))
     for update in step.updates:
         lines += update_lines(step, update)
-    if not step.updates:
-        lines.append(("update", f"none yet: n steps are not complete; waiting: {steps_waiting(step)}"))
+    for change in step.policy_updates:
+        lines += policy_lines(change)
+    if step.note:
+        lines.append(("update", step.note + (f"; waiting: {steps_waiting(step)}" if step.pending else "")))
     elif step.pending:
         lines.append(("waiting", steps_waiting(step)))
     if step.n_traces:
@@ -55,10 +61,24 @@ def details(step: ExplainedStep) -> list[tuple[str, str]]:
     return lines
 
 
+def policy_lines(update: PolicyUpdate) -> list[tuple[str, str]]:
+    """Returns the lines of an update of preferences: its equations, with their numbers below, and the policy."""
+    lines = []
+    names = ("error", "update")[-len(update.equations) :]
+    for name, symbols, numbers in zip(names, update.equations, update.numbers, strict=True):
+        lines += [(name, symbols), ("", numbers)]
+    lines.append(("policy", update.policy))
+    if update.value_before is not None and update.value_after is not None:
+        lines.append(("state value", f"v(S): {number(update.value_before)} -> {number(update.value_after)}"))
+    return lines
+
+
 def update_lines(step: ExplainedStep, update: Update) -> list[tuple[str, str]]:
     """Returns the lines of an update: its equations, with their numbers below."""
     name = "update" if update.step == step.step else f"update of step {update.step}"
     lines = []
+    if update.step == -1:
+        lines, name = [("update", "of the last step of the episode before:")], ""
     for symbols, numbers in zip(update.equations, update.numbers, strict=True):
         lines += [(name, symbols), ("", numbers)]
         name = ""
@@ -96,7 +116,7 @@ def ending(step: ExplainedStep) -> str:
 
 
 def steps_waiting(step: ExplainedStep) -> str:
-    """Returns which steps n-step Sarsa has not updated yet."""
+    """Returns which steps an n-step method has not updated yet."""
     first, last = step.pending[0], step.pending[-1]
     return f"step {first}" if first == last else f"steps {first} to {last}"
 
@@ -107,6 +127,9 @@ def _cells(step: ExplainedStep) -> list[str]:
     numbers = ["", "", "", ""]
     if update is not None:
         numbers = [number(value) for value in (update.target, update.error, update.before, update.after)]
+    for change in step.policy_updates:
+        before, after = (total(tuple(row[change.action] for row in rows)) for rows in (change.before, change.after))
+        numbers = [number(value) for value in (change.target, change.error, before, after)]
     lines = details(step)[4:]
     equation = "\n".join(f"{name}: {line}" if name else line for name, line in lines)
     state = f"{step.state}; {place(step.rows, step.cell)}"

@@ -2,8 +2,15 @@
 
 from dataclasses import dataclass
 
+from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.explanation.equations import bootstrap_symbol, target_equation, true_online_equation, update_equation
+from qtab.explanation.equations import (
+    bootstrap_symbol,
+    differential_equations,
+    target_equation,
+    true_online_equation,
+    update_equation,
+)
 from qtab.explanation.records import Update
 
 ActionValues = tuple[tuple[float, ...], ...]
@@ -25,6 +32,7 @@ class UnfinishedUpdate:
     step_sizes: tuple[float, ...] = ()
     traces: tuple[float, ...] = ()
     old_value: float | None = None
+    average_reward: float | None = None
 
 
 def finish_update(
@@ -36,7 +44,14 @@ def finish_update(
     before, after = total(weights_before), total(weights_after)
     name = f"Q{unfinished.table + 1}(S, A)" if config.algorithm == "double_q_learning" else "Q(S, A)"
     lines = []
-    if unfinished.step is not None:
+    if unfinished.average_reward is not None and unfinished.bootstrap is not None:
+        reward, average, following = unfinished.rewards[0], unfinished.average_reward, unfinished.bootstrap
+        symbol, step_size = (
+            bootstrap_symbol(config.algorithm, 0),
+            required("reward_learning_rate", config.reward_learning_rate),
+        )
+        lines += differential_equations(symbol, reward, average, following, unfinished.target, before, step_size)
+    elif unfinished.step is not None:
         symbol = bootstrap_symbol(config.algorithm, unfinished.table)
         lines.append(
             target_equation(symbol, unfinished.rewards, config.discount, unfinished.bootstrap, unfinished.target)
@@ -59,6 +74,7 @@ def finish_update(
         step_sizes=unfinished.step_sizes,
         traces=unfinished.traces,
         old_value=unfinished.old_value,
+        average_reward=unfinished.average_reward,
         before=before,
         after=after,
         weights_before=weights_before,

@@ -8,8 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.explanation.choices import ObservedPolicy, ObservedStream, explained
+from qtab.config.options import MONTE_CARLO
+from qtab.explanation.choices import ObservedPolicy, ObservedStream, explained, exploring_start
 from qtab.explanation.fast_forward import Start
+from qtab.explanation.policy_update import PolicyUpdate
+from qtab.explanation.policy_watcher import SHOWN_TRACES, PolicyWatcher
 from qtab.explanation.records import Choice, Trace, Update
 from qtab.explanation.targets import bootstrap, discounted
 from qtab.explanation.updates import UnfinishedUpdate, finish_update
@@ -21,7 +24,6 @@ from qtab.reference.streams import AgentStream
 
 Table = NDArray[np.float64]
 Cell = tuple[int, ...] | None
-SHOWN_TRACES = 8
 
 
 @dataclass
@@ -38,9 +40,11 @@ class SeenStep:
     terminal: bool
     """Whether the learner takes the next state as terminal, so that its value is zero."""
     updates: list[Update] = field(default_factory=list)
+    policy_updates: list[PolicyUpdate] = field(default_factory=list)
     planning: list[Update] = field(default_factory=list)
     traces: tuple[Trace, ...] = ()
     n_traces: int = 0
+    future_return: float | None = None
 
 
 class Watcher(Observer):
@@ -59,10 +63,13 @@ class Watcher(Observer):
         self._unfinished: UnfinishedUpdate | None = None
         self._draws: list[float] = []
         self._given: tuple[int, tuple[float, ...], float | None] | None = None
+        self._average_reward: float | None = None
+        self._before_the_first: list[Update] = []
+        self._policy_watcher = PolicyWatcher(config, cell)
 
     def masks(self, masks: ActionMasks) -> None:
         """Keeps the action masks, which are filled in as states are seen."""
-        self._masks = masks
+        self._masks = self._policy_watcher.masks = masks
 
     def stream(self, stream: AgentStream) -> AgentStream:
         """Returns a stream that keeps the last number that decided."""
@@ -71,7 +78,7 @@ class Watcher(Observer):
 
     def policy(self, policy: Policy) -> Policy:
         """Returns a policy that keeps what it chooses."""
-        self._policy = policy
+        self._policy = self._policy_watcher.policy = policy
         self._skip(policy)
         return ObservedPolicy(policy, self._chose)
 
@@ -95,10 +102,57 @@ class Watcher(Observer):
         """Receives a step of the environment, before the learner learns from it."""
         self.finish()
         self.steps.append(step)
+        step.updates += self._before_the_first
+        self._before_the_first.clear()
 
     def target(self, step: int, reward: float, following: float | None) -> None:
         """Keeps what the target of the next update is made of."""
         self._given = step, (reward,), following
+
+    def returned(self, step: int, target: float) -> None:
+        """Keeps the return of a step."""
+        if self.active:
+            self.steps[step].future_return = target
+
+    def average_reward(self, average: float) -> None:
+        """Keeps the average reward in the target of the next update."""
+        self._average_reward = average
+
+    def exploring_start(self, values: Table, action: int, valid: int) -> None:
+        """Records a first action that no policy chose."""
+        if self.active and self._policy is not None:
+            self.choices.append(exploring_start(self._policy, values, action, valid))
+
+    def advantage(self, step: int, state: Sequence[int], target: float, reference: float, power: float) -> None:
+        """Keeps what an action was worth."""
+        if self.active:
+            _, rewards, following = self._given or (step, (), None)
+            if self.config.algorithm == "gradient_bandit":
+                rewards = (target,)
+            parts = (rewards[0] if rewards else None, following)
+            self._policy_watcher.advantage(step, self.tables, state, parts, target, reference, power)
+            self._given = None
+
+    def before_ascent(
+        self,
+        H: Table,  # noqa: N803 - the book's name
+        state: Sequence[int],
+        action: int,
+        step_size: float,
+        gradient: Sequence[float],
+        z: Table | None,
+    ) -> None:
+        """Begins an update of preferences."""
+        if self.active:
+            self._policy_watcher.begin(H, state, action, step_size, gradient, z)
+
+    def after_ascent(self, H: Table) -> None:  # noqa: N803, ARG002
+        """Ends it."""
+        if self.active:
+            update, traces, n_traces = self._policy_watcher.end(self.tables)
+            seen = self.steps[update.step]
+            seen.policy_updates.append(update)
+            seen.traces, seen.n_traces = traces, n_traces
 
     def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:  # noqa: N803
         """Begins an update: of this step, of an earlier one for n-step Sarsa, or in planning."""
@@ -107,7 +161,9 @@ class Watcher(Observer):
         table = next(index for index, known in enumerate(self.tables) if known is Q)
         step: int | None
         rewards: tuple[float, ...]
-        if self.config.algorithm in ("dyna_q", "dyna_q_plus") and self.steps[-1].updates:
+        algorithm = self.config.algorithm
+        planned = algorithm in ("dyna_q", "dyna_q_plus") and self.steps[-1].updates
+        if planned or algorithm == "prioritized_sweeping":
             step, rewards, following = None, (), None  # planning
         else:
             step, rewards, following = self._given or self._target(table)
@@ -115,6 +171,7 @@ class Watcher(Observer):
         self._unfinished = UnfinishedUpdate(
             step, table, tuple(state), action, rewards, following, target, self._weights(table, state)
         )
+        self._unfinished.average_reward, self._average_reward = self._average_reward, None
 
     def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:  # noqa: N803, ARG002
         """Ends it."""
@@ -191,4 +248,10 @@ class Watcher(Observer):
             update = finish_update(
                 unfinished, self.config, self.cell(unfinished.rows[0]), self._weights(unfinished.table, unfinished.rows)
             )
-            (self.steps[-1].planning if unfinished.step is None else self.steps[-1].updates).append(update)
+            if unfinished.step == -1:
+                self._before_the_first.append(update)
+            elif unfinished.step is None:
+                self.steps[-1].planning.append(update)
+            else:
+                by_episode = self.config.algorithm in MONTE_CARLO
+                self.steps[unfinished.step if by_episode else -1].updates.append(update)

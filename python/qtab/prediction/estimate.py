@@ -15,11 +15,13 @@ from qtab import _core
 from qtab._utils import checks
 from qtab._utils.memory import check_memory, memory_limit
 from qtab._utils.shown import shown
+from qtab.config.choices import LearningRateSchedule
 from qtab.config.unknown import suggesting
 from qtab.planning.policies import GivenPolicy, probabilities
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.features import feature_rows
-from qtab.prediction.settings import AVERAGES_ONLY, Method, PredictionSettings
+from qtab.prediction.learning_rates import AVERAGES_ONLY
+from qtab.prediction.settings import Method, PredictionSettings
 from qtab.results.run import Run
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
@@ -37,6 +39,10 @@ def estimate_values(
     method: Method = "td",
     episodes: int = 100,
     learning_rate: float | None = None,
+    learning_rate_schedule: LearningRateSchedule | None = None,
+    min_learning_rate: float | None = None,
+    learning_rate_decay: float | None = None,
+    learning_rate_warm_up: int | None = None,
     discount: float = 1.0,
     n_steps: int | None = None,
     trace_decay: float | None = None,
@@ -70,6 +76,12 @@ def estimate_values(
         episodes: The number of episodes.
         learning_rate: α, in [0, 2]: the fraction of the error that an update corrects; the active features share it.
             None takes 1 / n at the n-th visit of a feature, so that Monte Carlo values are averages of returns.
+        learning_rate_schedule: How it falls: ``"linear"`` or ``"exponential"`` over the episodes, or ``"visits"``, as
+            learning_rate / n at the n-th visit of a feature, for methods without traces; None means ``"constant"``, or
+            ``"visits"`` without a learning rate.
+        min_learning_rate: The lowest learning rate of a schedule, in [0, learning_rate]; None means 0.
+        learning_rate_decay: The factor of ``"exponential"`` after each episode, in [0, 1]; None means 0.999.
+        learning_rate_warm_up: The number of episodes before ``"linear"`` or ``"exponential"`` begins; None means 0.
         discount: γ, in [0, 1].
         n_steps: n, at least 1: the number of rewards in a target of ``"n_step_td"``.
         trace_decay: λ, in [0, 1]: the decay of traces and of λ-returns.
@@ -104,6 +116,10 @@ def estimate_values(
         method=method,
         episodes=episodes,
         learning_rate=learning_rate,
+        learning_rate_schedule=learning_rate_schedule,
+        min_learning_rate=min_learning_rate,
+        learning_rate_decay=learning_rate_decay,
+        learning_rate_warm_up=learning_rate_warm_up,
         discount=discount,
         n_steps=n_steps,
         trace_decay=trace_decay,
@@ -186,9 +202,7 @@ def run_prediction(
     check_memory(f"{len(seeds)} runs with {len(points)} recorded episodes (record= keeps fewer)", size, limit)
     weights = np.full((len(seeds), len(points), n_weights), np.nan)
     began = time.perf_counter()
-    spec: Any = resolved.spec()
-    if settings.learning_rate is not None:
-        spec = {**spec, "learning_rate": {"type": "constant", "value": settings.learning_rate}}
+    spec: Any = {**resolved.spec(), "learning_rate": settings.schedule().spec()}
     initial = np.full(n_weights, settings.initial_value / n_active)
     prediction: Any = {
         "method": settings.method_spec(),

@@ -12,6 +12,7 @@ from qtab._utils import checks, html, svg
 from qtab._utils.fields import with_fields
 from qtab._utils.files import replacing
 from qtab.config import Config
+from qtab.prediction.learning_rates import OPTIONS
 from qtab.prediction.settings import PredictionSettings
 
 if TYPE_CHECKING:
@@ -149,7 +150,12 @@ class ValueEstimates:
         Raises:
             OSError: if the file cannot be written.
         """
-        settings = asdict(self.settings)
+        # Schedules only where there are any, so that earlier versions can read the others.
+        settings = {
+            name: value
+            for name, value in asdict(self.settings).items()
+            if value is not None or name not in ("learning_rate_schedule", *OPTIONS)
+        }
         about = {"format": FORMAT, "env": self.env, "settings": settings, "seeds": list(self.seeds)}
         text = np.array(json.dumps({**about, "seconds": self.seconds}))
         with replacing(checks.path("path", path)) as temporary, temporary.open("wb") as file:

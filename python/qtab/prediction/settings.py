@@ -8,8 +8,10 @@ from typing import Any, Literal, TypeAlias, get_args
 from qtab._utils import checks
 from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
-from qtab.config.choices import BitGenerator, OnTruncation
+from qtab.config.choices import BitGenerator, LearningRateSchedule, OnTruncation
 from qtab.config.options import listed
+from qtab.config.schedules import LearningRate
+from qtab.prediction.learning_rates import checked_learning_rate, schedule_of
 
 Method: TypeAlias = Literal[
     "td",
@@ -23,11 +25,6 @@ Method: TypeAlias = Literal[
 ]
 METHODS: tuple[str, ...] = get_args(Method)
 """The names of the methods."""
-
-ONE_STEP_SIZE = ("td_lambda", "true_online_td_lambda")
-"""The methods with traces, which need one step size for all weights."""
-AVERAGES_ONLY = ("importance_sampling", "batch_td")
-"""The methods without a learning rate."""
 
 _OPTIONS: Mapping[str, tuple[tuple[str, ...], Any]] = {
     "n_steps": (("n_step_td",), None),
@@ -58,6 +55,15 @@ class PredictionSettings:
     learning_rate: float | None = None
     """α: the fraction of the error that an update corrects, in [0, 2]; the active features share it. None takes 1 / n
     at the n-th visit of a feature, so that Monte Carlo values are averages of returns."""
+    learning_rate_schedule: LearningRateSchedule | None = None
+    """How the learning rate falls: linearly or exponentially over the episodes, or (visits) as learning_rate / n at the
+    n-th visit of a feature. None means constant, or visits without a learning rate."""
+    min_learning_rate: float | None = None
+    """The lowest learning rate of a schedule, in [0, learning_rate]."""
+    learning_rate_decay: float | None = None
+    """The factor of the exponential schedule after each episode, in [0, 1]."""
+    learning_rate_warm_up: int | None = None
+    """The number of episodes before the linear or exponential schedule begins."""
     discount: float = 1.0
     """γ: the discount factor, in [0, 1]."""
     n_steps: int | None = None
@@ -80,10 +86,11 @@ class PredictionSettings:
         """Checks the values, fills in the defaults of options, and turns NumPy's numbers into Python's."""
         method = checks.choice("method", self.method, METHODS)
         given = vars(self)
+        episodes = checks.count("episodes", self.episodes, least=1)
         checked: dict[str, Any] = {
             "method": method,
-            "episodes": checks.count("episodes", self.episodes, least=1),
-            "learning_rate": _learning_rate(method, self.learning_rate),
+            "episodes": episodes,
+            **checked_learning_rate(method, episodes, given),
             "discount": checks.real("discount", self.discount, 0.0, 1.0),
             "initial_value": checks.finite("initial_value", self.initial_value),
             "on_truncation": checks.choice("on_truncation", self.on_truncation, get_args(OnTruncation)),
@@ -116,14 +123,17 @@ class PredictionSettings:
         options = {name: getattr(self, name) for name, (methods, _) in _OPTIONS.items() if self.method in methods}
         return {"type": self.method, **options}
 
+    def schedule(self) -> LearningRate:
+        """Returns the learning rate, complete."""
+        return schedule_of(vars(self))
+
     def config(self) -> dict[str, Any]:
-        """Returns the settings of :class:`qtab.Config` that the task and the learning rate are made from."""
-        by_visits = self.learning_rate is None
+        """Returns the settings of :class:`qtab.Config` for the task. The learning rate is not made from them."""
         return {
             "algorithm": "q_learning",
             "episodes": self.episodes,
-            "learning_rate": 1.0 if self.learning_rate is None else min(self.learning_rate, 1.0),
-            "learning_rate_schedule": "visits" if by_visits else "constant",
+            "learning_rate": 1.0,
+            "learning_rate_schedule": "constant",
             "min_learning_rate": None,
             "learning_rate_decay": None,
             "learning_rate_warm_up": None,
@@ -137,16 +147,6 @@ class PredictionSettings:
             "bit_generator": self.bit_generator,
             "action_mask": False,
         }
-
-
-def _learning_rate(method: str, value: Any) -> float | None:
-    if value is None:
-        if method in ONE_STEP_SIZE:
-            raise ValueError(f"learning_rate must be given for method {method!r}, got None")
-        return None
-    if method in AVERAGES_ONLY:
-        raise ValueError(f"learning_rate must be None for method {method!r}, which averages, got {shown(value)}")
-    return checks.real("learning_rate", value, 0.0, 2.0)
 
 
 def _option(name: str, value: Any) -> Any:

@@ -22,7 +22,7 @@ def actor_critic(env: gym.Env, config: Config, stop_after: int | None = None) ->
             step = task.step(action)
 
             # w <- w + α δ ∇v(S, w), θ <- θ + α I δ ∇ ln π(A | S, θ), I <- γ I
-            error = td_error(task, critic, state, step)
+            error = td_error(task, critic, state, step, power)
             critic.update(state, error)
             ascend(task, theta, state, action, power * error)
             power *= task.discount
@@ -45,7 +45,7 @@ def actor_critic_lambda(env: gym.Env, config: Config, stop_after: int | None = N
         while not over:
             action = task.choose(theta, state)
             step = task.step(action)
-            error = td_error(task, critic, state, step)
+            error = td_error(task, critic, state, step, power)
 
             # z_w <- γλ z_w + ∇v(S, w), z_θ <- γλ z_θ + I ∇ ln π(A | S, θ)
             z_w *= decay
@@ -56,9 +56,11 @@ def actor_critic_lambda(env: gym.Env, config: Config, stop_after: int | None = N
                 for other, part in enumerate(gradient):
                     z_theta[row, other] += power * part
             # w <- w + α δ z_w, θ <- θ + α δ z_θ, I <- γ I
+            task.observer.before_ascent(theta, state, action, step_size(task), gradient, z_theta)
             (traced,) = np.nonzero(z_w)
             critic.w[traced] += (critic.step * error * z_w[traced])[:, np.newaxis]
             theta[traced] += step_size(task) * error * z_theta[traced]
+            task.observer.after_ascent(theta)
             power *= task.discount
 
             state, over = step.state, step.over
@@ -66,7 +68,11 @@ def actor_critic_lambda(env: gym.Env, config: Config, stop_after: int | None = N
     return task.result(theta, critic.w)
 
 
-def td_error(task: Task, critic: Critic, state: Rows, step: Step) -> float:
+def td_error(task: Task, critic: Critic, state: Rows, step: Step, power: float) -> float:
     """Returns δ = R + γ v(S', w) - v(S, w)."""
-    target = step.reward if step.terminal else step.reward + task.discount * critic.value(step.state)
+    following = None if step.terminal else critic.value(step.state)
+    target = step.reward if following is None else step.reward + task.discount * following
+    number = task.lengths[-1] - 1
+    task.observer.target(number, step.reward, following)
+    task.observer.advantage(number, state, target, critic.value(state), power)
     return target - critic.value(state)

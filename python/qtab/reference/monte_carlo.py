@@ -32,7 +32,10 @@ def first_visits(task: Task, Q: Table, state: Rows, action: int) -> None:
     # After a time-out, the value of an action that is drawn, but not taken, stands for the return that is missing.
     G = 0.0 if terminal else value(Q, state, action)
     for t in reversed(range(len(pairs))):
+        following = None if terminal and t == len(pairs) - 1 else G
         G = task.discount * G + rewards[t]
+        task.observer.returned(t, G)
         if pairs.index(pairs[t]) == t:
+            task.observer.target(t, rewards[t], following)
             row, past_action = pairs[t]
             task.update(Q, [row], past_action, G)

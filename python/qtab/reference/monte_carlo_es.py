@@ -15,6 +15,8 @@ def monte_carlo_es(env: gym.Env, config: Config, stop_after: int | None = None) 
     for _ in task.episodes():
         state = task.reset()
         valid = task.valid_actions(Q, state)
-        first_visits(task, Q, state, valid[int(task.rng.integers(0, len(valid)))])
+        action = valid[int(task.rng.integers(0, len(valid)))]
+        task.observer.exploring_start(task.values(Q, state), action, len(valid))
+        first_visits(task, Q, state, action)
 
     return task.result(Q)

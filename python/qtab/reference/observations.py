@@ -120,17 +120,17 @@ class Function:
 
 
 class Sparse:
-    """Rows in the order in which their cells are met, and one more."""
+    """Rows in the order in which their cells are seen, and one more."""
 
     n_active = 1
 
     def __init__(self, cells: Components | Function, max_rows: int) -> None:
-        self.inner, self.met = cells, dict[tuple[int, ...], int]()
+        self.inner, self.seen = cells, dict[tuple[int, ...], int]()
         self.shape: tuple[int, ...] = (max_rows + 1,)
 
     def rows(self, observation: Any) -> list[int]:
         """Returns one row."""
-        return [self.met.setdefault(self.inner.cells(observation), len(self.met))]
+        return [self.seen.setdefault(self.inner.cells(observation), len(self.seen))]
 
 
 def leaves(space: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:

@@ -47,6 +47,34 @@ class Observer:
             following: The value that is discounted in it; None if nothing follows.
         """
 
+    def returned(self, step: int, target: float) -> None:
+        """Called with the return G of each step of an episode that is over."""
+
+    def average_reward(self, average: float) -> None:
+        """Called before an update of a differential method with the average reward R̄ in its target."""
+
+    def exploring_start(self, values: Table, action: int, valid: int) -> None:
+        """Called with the first action of an episode where it is drawn among all valid actions of the state."""
+
+    def advantage(self, step: int, state: Sequence[int], target: float, reference: float, power: float) -> None:
+        """Called before a state value and the preferences change.
+
+        Args:
+            step: The number of the step in the episode, from 0.
+            state: The active rows of its state.
+            target: What its action was worth.
+            reference: What that is compared with; 0 without a baseline.
+            power: γ^t.
+        """
+
+    def before_ascent(
+        self, H: Table, state: Sequence[int], action: int, step_size: float, gradient: Sequence[float], z: Table | None
+    ) -> None:
+        """Called before preferences change along the gradient of ln π(A | S), or by their traces."""
+
+    def after_ascent(self, H: Table) -> None:
+        """Called after that."""
+
     def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:
         """Called before Q(S, A) changes towards a target."""
 

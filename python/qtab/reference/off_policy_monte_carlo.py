@@ -26,12 +26,18 @@ def off_policy_monte_carlo(env: gym.Env, config: Config, stop_after: int | None 
         # After a time-out, the largest value stands for the return that is missing.
         G = 0.0 if terminal else float(np.max(task.values(Q, state)))
         W = 1.0
-        for row, action, reward, probability in reversed(steps):
+        for t in reversed(range(len(steps))):
+            row, action, reward, probability = steps[t]
+            following = None if terminal and t == len(steps) - 1 else G
             G = task.discount * G + reward
+            task.observer.returned(t, G)
             C[row, action] += W
             # α W / C, and no less than its minimum; α is 1 in the book.
             step_size = max(config.learning_rate * W / float(C[row, action]), least)
+            task.observer.target(t, reward, following)
+            task.observer.before_update(Q, [row], action, G)
             Q[row, action] += step_size * (G - Q[row, action])
+            task.observer.after_update(Q, [step_size])
             if action != int(np.argmax(task.values(Q, [row]))):
                 break
             W /= probability

@@ -15,9 +15,11 @@ def ascend(task: Task, theta: Table, state: Rows, action: int, scale: float) -> 
     """θ <- θ + α scale ∇ ln π(A | S, θ); the active rows of S share the step."""
     step = step_size(task) * scale
     gradient = log_gradient(task, theta, state, action)
+    task.observer.before_ascent(theta, state, action, step_size(task), gradient, None)
     for row in state:
         for other, part in enumerate(gradient):
             theta[row, other] += step * part
+    task.observer.after_ascent(theta)
 
 
 def step_size(task: Task) -> float:

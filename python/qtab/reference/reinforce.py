@@ -38,10 +38,15 @@ def _reinforce(task: Task, *, with_baseline: bool) -> Result:
             returns[time] = rewards[time] + task.discount * returns[time + 1]
 
         power = 1.0  # γ^t
-        for (state, action), error in zip(visits, returns, strict=False):
+        for t, (state, action) in enumerate(visits):
+            error, reference = returns[t], 0.0
+            if critic is not None:
+                reference = critic.value(state)
+            task.observer.returned(t, returns[t])
+            task.observer.advantage(t, state, returns[t], reference, power)
             if critic is not None:
                 # δ = G - v(S, w), w <- w + α δ ∇v(S, w)
-                error -= critic.value(state)
+                error -= reference
                 critic.update(state, error)
             # θ <- θ + α γ^t δ ∇ ln π(A | S, θ)
             ascend(task, theta, state, action, power * error)

@@ -14,8 +14,8 @@ from qtab.envs.stored import spec_of_run
 from qtab.planning.optimum import Optimum
 from qtab.rendering.replay import check_render_mode, render_env
 from qtab.results.run import Run
+from qtab.training.assigned_rows import greedy_table
 from qtab.training.given_env import check_env, check_spaces
-from qtab.training.rows_met import greedy_table
 
 
 @dataclass(frozen=True)

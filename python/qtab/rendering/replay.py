@@ -10,6 +10,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
+from qtab.envs.continue_after import continue_after
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Recording, Run
 
@@ -93,11 +94,17 @@ def replay_episode(env: gym.Env, recording: Recording) -> float:
 def replay_all(env: gym.Env, run: Run, progress: bool | None = None) -> int:
     """Replays all recorded episodes of a run in ``env``, and returns the number with another return than in training.
 
-    A return can differ if the environment keeps state between episodes other than that of its ``np_random``.
+    The environment is seeded first, as for the run. One with a method ``resume_after`` is told before each episode how
+    many steps the run had taken until then. A return can differ if the environment keeps other state between episodes
+    beside that of its ``np_random``.
     """
     different = 0
+    if run.recordings:
+        # What the first reset of a run draws for all episodes, such as the problem of a bandit, must be there again.
+        env.unwrapped.reset(seed=run.config.seed)
     with ProgressBar(len(run.recordings), "episode", progress, "replay") as bar:
         for index, recording in enumerate(run.recordings):
+            continue_after(env, int(run.episode_lengths[: recording.episode].sum()))
             different += replay_episode(env, recording) != run.episode_returns[recording.episode]
             bar.move_to(index + 1)
     return different

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.checks import required
-from qtab.config.options import n_tables
+from qtab.config.options import AVERAGE_REWARD, n_tables
 
 if TYPE_CHECKING:
     from qtab.results.run import Run
@@ -28,6 +28,8 @@ def check_consistent(run: "Run") -> None:
         raise ValueError("its episodes do not fit together")
     if run.completed is not (len(run.episode_returns) == run.config.episodes):
         raise ValueError(f"it must have {run.config.episodes} episodes if it is complete, and fewer if not")
+    if run.average_reward is not None and run.config.algorithm not in AVERAGE_REWARD:
+        raise ValueError(f"it has an average_reward, which algorithm {run.config.algorithm!r} does not learn")
     _check_episodes(run)
 
 

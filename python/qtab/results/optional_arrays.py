@@ -1,4 +1,4 @@
-"""What a run file holds only where it was asked for: visits, action masks and snapshots."""
+"""What a run file holds only where it was asked for: visits, action masks, snapshots and the average reward."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.shown import shown
 from qtab.results.snapshots import Snapshots
 
 if TYPE_CHECKING:
@@ -22,6 +23,8 @@ def optional_arrays(run: "Run") -> dict[str, NDArray[Any]]:
     if run.snapshots is not None:
         arrays["snapshot_episodes"] = run.snapshots.episodes
         arrays["snapshot_tables"] = run.snapshots.tables
+    if run.average_reward is not None:
+        arrays["average_reward"] = np.array(run.average_reward)
     return arrays
 
 
@@ -58,6 +61,11 @@ def restore_optional(
         if snapshots.dtype != np.float64 or snapshots.shape != (len(episodes), *tables.shape):
             raise ValueError("its snapshots do not fit its tables")
         fields["snapshots"] = Snapshots(episodes, snapshots)
+    if "average_reward" in stored:
+        average = stored["average_reward"]
+        if average.dtype != np.float64 or average.ndim != 0 or not np.isfinite(average):
+            raise ValueError(f"its average_reward must be a finite number, got {shown(average)}")
+        fields["average_reward"] = float(average)
     return fields
 
 

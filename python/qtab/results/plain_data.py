@@ -45,7 +45,8 @@ def write(run: "Run", path: Path) -> None:
         OSError: if the file cannot be written.
         TypeError: if the environment's keyword arguments hold what JSON cannot.
         ValueError: if they hold a number that JSON cannot, the run is not one that training returns, or its
-            observations are nested, given to a function or given rows as they are met, or tile coding has action masks.
+            observations are nested, given to a function or assigned rows as they are seen, or tile coding has action
+            masks.
     """
     try:
         check_consistent(run)

@@ -67,6 +67,9 @@ class Run(WithPage):
     action_masks: NDArray[np.bool_] | None = field(default=None, repr=False)
     """(*cells, actions): which actions each cell has, as last seen; all, where it was never seen. None without
     ``action_mask=``, and with tile coding."""
+    average_reward: float | None = field(default=None, repr=False)
+    """The average reward per step that differential Sarsa or Q-learning learned; None for other algorithms, and like
+    :attr:`state`."""
     state: RunState | None = field(default=None, repr=False)
     """What :func:`qtab.resume` needs; None for runs of ``train_many`` and from files of earlier versions."""
 
@@ -91,6 +94,8 @@ class Run(WithPage):
         if len(returns):
             last = returns[-FINAL_EPISODES:]
             facts |= {f"mean of the last {len(last)}": f"{last.mean():.2f}", "best return": f"{returns.max():.6g}"}
+        if self.average_reward is not None:
+            facts["average reward"] = f"{self.average_reward:.6g}"
         if self.unchecked:
             facts["file"] = "of an earlier version, without a digest"
         block = min(default_block(len(returns)), max(len(returns) // 20, 1))

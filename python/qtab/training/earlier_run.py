@@ -24,11 +24,11 @@ from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
 from qtab.results.snapshots import resumed_snapshot_episodes, snapshot_episodes
 from qtab.results.storage import load, with_action_mask
+from qtab.training.assigned_rows import continued
 from qtab.training.extensions import extensions, falling_rates
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
-from qtab.training.rows_met import continued
 
 _LOGGER = logging.getLogger("qtab")
 

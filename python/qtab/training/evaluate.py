@@ -21,10 +21,10 @@ from qtab.discretizers import Sparse
 from qtab.envs.registry import spec_of
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
+from qtab.training.assigned_rows import greedy_table, with_assigned_rows
 from qtab.training.given_env import check_env, check_spaces
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import log_python_stepping, resolve
-from qtab.training.rows_met import greedy_table, with_rows_met
 from qtab.training.train import train_resolved
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ def evaluate(
         "max_episode_steps": config.max_episode_steps if max_episode_steps is None else max_episode_steps,
         "backend": config.backend if env is None and env_kwargs is None else "auto",
     }
-    resolved = with_rows_met(resolve(config.env if env is None else env, settings), run)
+    resolved = with_assigned_rows(resolve(config.env if env is None else env, settings), run)
     if env is not None:
         log_python_stepping(resolved)
     try:

@@ -207,7 +207,7 @@ def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> 
         return initial_q
     if isinstance(discretizer, Sparse):
         raise ValueError(
-            "initial_q must be a number or a range with max_rows, which gives out the rows anew, got a table"
+            "initial_q must be a number or a range with max_rows, which assigns the rows anew, got a table"
         )
     one = (*discretizer.shape, n_actions)
     shape = one if count == 1 else (count, *one)

@@ -8,6 +8,7 @@ import numpy as np
 
 from qtab import _core
 from qtab._utils.checks import required
+from qtab.envs.continue_after import continue_after
 from qtab.results.run import Run
 from qtab.results.run_state import RunState, generator_state
 from qtab.training.resolved_run import PythonEnvironment, ResolvedRun
@@ -40,13 +41,6 @@ def _restore_generator(env: gym.Env, seed: int, state: RunState) -> None:
         env.unwrapped.np_random.bit_generator.state = _with_arrays(state.generator)
     except (TypeError, ValueError, KeyError, OverflowError) as error:
         raise ValueError(f"run has a generator that its environment cannot take over: {error}") from None
-
-
-def continue_after(env: gym.Env, steps: int) -> None:
-    """Tells an environment that changes with time how many steps were taken, by its method ``resume_after``."""
-    resume_after = getattr(env.unwrapped, "resume_after", None)
-    if callable(resume_after):
-        resume_after(steps)
 
 
 def _with_arrays(state: Any) -> Any:

@@ -61,7 +61,7 @@ def table_words(resolved: ResolvedRun, needed: int) -> tuple[str, str]:
     environment = resolved.environment
     space = f" for {shown(environment.env.observation_space)}" if isinstance(environment, PythonEnvironment) else ""
     no_cells = resolved.config.max_rows is not None or not resolved.discretizer.has_cells
-    instead = "" if no_cells else "; max_rows= gives rows only to the observations that are met"
+    instead = "" if no_cells else "; max_rows= assigns rows only to the observations that are seen"
     return f" with a table of {rows:,} rows of {actions} actions{space}", instead
 
 

@@ -223,5 +223,6 @@ def _run(
         visits=None if visits is None else visits.reshape(*resolved.discretizer.shape, len(resolved.actions)),
         snapshots=collector.snapshots(),
         action_masks=masks_of(trainer, resolved),
+        average_reward=trainer.average_reward(),
         state=state_of(trainer, resolved, collector.to_take),
     )

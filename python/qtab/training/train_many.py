@@ -94,7 +94,7 @@ def train_many(
     log_default_limit(resolved)
     log_python_stepping(resolved)
     if tables and isinstance(resolved.discretizer, Sparse):
-        raise ValueError("tables must be left out with max_rows: each run gives out the rows of its table by itself")
+        raise ValueError("tables must be left out with max_rows: each run assigns the rows of its table by itself")
     began = time.perf_counter()
 
     def make_runs(finished: NDArray[np.bool_]) -> Runs:

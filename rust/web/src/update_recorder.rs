@@ -61,3 +61,29 @@ impl<R: Copy + AsRef<[u32]>, L: Learner<R>> Learner<R> for UpdateRecorder<L> {
         self.learner.persist(checkpoint)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use qtab_core::QTable;
+    use qtab_core::learners::{ActionMasks, Agent, Sarsa, TdLearner};
+    use qtab_core::policies::AnyPolicy;
+    use qtab_core::q_table::TerminalUpdate;
+    use qtab_core::schedules::{LearningRate, Schedule};
+
+    use super::*;
+
+    #[test]
+    fn the_actions_of_a_state_reach_the_learner() {
+        let agent: Agent = Agent {
+            table: QTable::new(vec![0.0; 4], 2),
+            policy: AnyPolicy::softmax(1.0, 2),
+            learning_rate: LearningRate::scheduled(Schedule::constant(0.1), 1),
+            discount: 1.0,
+            terminal_update: TerminalUpdate::Target,
+            masks: Some(Box::new(ActionMasks::known(vec![true; 4], 2))),
+        };
+        let mut recorder = UpdateRecorder::new(TdLearner { agent, rule: Sarsa }, None);
+        recorder.set_action_mask([1], &[false, true]);
+        assert_eq!(Learner::<[u32; 1]>::action_masks(&recorder), Some([true, true, false, true].as_slice()));
+    }
+}

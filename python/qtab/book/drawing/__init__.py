@@ -6,6 +6,7 @@ from qtab.book.drawing.grids import CellMap, draw_grids, greedy_actions
 from qtab.book.drawing.lines import draw_lines
 from qtab.book.drawing.panels import Panel, draw_panels
 from qtab.book.drawing.surfaces import draw_surfaces
+from qtab.book.drawing.titles import title_figure
 from qtab.book.drawing.top_labels import label_tops
 
 __all__ = [
@@ -20,4 +21,5 @@ __all__ = [
     "label_tops",
     "line_colors",
     "save_plot",
+    "title_figure",
 ]

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from qtab.book.drawing.titles import title_figure
 from qtab.book.result import Result
 from qtab.plots.axes import shown_figure
 
@@ -34,7 +35,7 @@ def draw_blackjack(result: Result, ax: "Axes | None") -> "Axes":
     from matplotlib.colors import ListedColormap
 
     figure = shown_figure(9, 7.5)
-    figure.suptitle(result.experiment.heading)
+    title_figure(figure, result.experiment.heading)
     cards = np.arange(1, len(DEALER) + 1)
     axes: Any = None
     for row, (name, values) in enumerate(result.surfaces.items()):
@@ -51,13 +52,17 @@ def draw_blackjack(result: Result, ax: "Axes | None") -> "Axes":
         axes.set_xticks(cards, DEALER)
         axes.set_yticks(sums)
         axes.set(xlabel="dealer's card", ylabel="player's sum", title=f"policy, {name}")
+        axes.title.set_fontsize("medium")
         axes.tick_params(labelsize="small")
         axes = figure.add_subplot(2, 2, 2 * row + 2, projection="3d")
         surface = values.max(axis=0)[_FIRST_VALUE - _FIRST_SUM :]
         x, y = np.meshgrid(cards, sums[_FIRST_VALUE - _FIRST_SUM :])
         axes.plot_surface(x, y, surface, cmap="viridis", vmin=-1, vmax=1, rcount=len(surface), ccount=len(cards))
         axes.set_xticks(cards, DEALER)
-        axes.set(ylabel="player's sum", zlim=(-1, 1), title=f"values, {name}")
+        axes.set(
+            xlabel="dealer's card", ylabel="player's sum", zlim=(-1, 1), zticks=(-1, 0, 1), title=f"values, {name}"
+        )
+        axes.title.set_fontsize("medium")
         axes.tick_params(labelsize="x-small")
         axes.set_box_aspect(None, zoom=0.85)
     drawn: Axes = axes

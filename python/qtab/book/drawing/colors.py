@@ -25,6 +25,7 @@ METHOD_COLORS: Mapping[str, str] = {
     # chapter 4
     "final values": _GREY,
     # chapters 5 to 9, 12
+    "true values": _GREY,
     "TD": _BLUE,
     "Monte Carlo": _RED,
     "off-line λ-return": _GREY,
@@ -44,8 +45,9 @@ METHOD_COLORS: Mapping[str, str] = {
 }
 """The color of each method that is not an algorithm of :func:`qtab.train`; those have the colors of all plots."""
 
-_PARAMETER = re.compile(r"(.+?)(?: =)? (-?[\d.,]+)")
-"""A parameter and its value: ``"n = 4"``, ``"sweep 32"``."""
+_PARAMETER = re.compile(r"(.+?)(?: =)? (-?[\d.,]+)(?:/(\d+))?([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]*)(?: episodes?)?")
+"""A parameter and its value: ``"n = 4"``, ``"sweep 32"``, ``"α = 0.5/8"``, ``"α = 2⁻¹²"``, ``"after 10 episodes"``."""
+_EXPONENTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 
 
 def line_colors(lines: Sequence[Line], ax: "Axes") -> list[Any]:
@@ -73,5 +75,11 @@ def _of_parameter(names: Sequence[str], ax: "Axes") -> dict[str, Any]:
     common = Counter(match[1] for match in found.values()).most_common(1)
     if not common or common[0][1] < 3:
         return {}
-    values = {name: float(match[2].replace(",", "")) for name, match in found.items() if match[1] == common[0][0]}
+    values = {name: _value(match) for name, match in found.items() if match[1] == common[0][0]}
     return dict(zip(values, sequential(list(values.values()), ax), strict=True))
+
+
+def _value(match: re.Match[str]) -> float:
+    _, number, divisor, exponent = match.groups()
+    value = float(number.replace(",", "")) / int(divisor or 1)
+    return float(value ** int(exponent.translate(_EXPONENTS))) if exponent else value

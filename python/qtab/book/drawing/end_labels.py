@@ -32,7 +32,8 @@ def label_ends(ax: "Axes", lines: Sequence[Line], colors: Sequence[Any]) -> bool
         return False  # a line leaves the axes before the right edge
     pixels = SIZE * ax.figure.dpi / 72
     wanted = np.array([ax.transData.transform(end)[1] for end in ends])
-    shifted = _spread(wanted, LINE_HEIGHT * pixels)
+    box = ax.get_window_extent()
+    shifted = _spread(wanted, LINE_HEIGHT * pixels, (box.y0, box.y1))
     if np.abs(shifted - wanted).max() > MAX_SHIFT * pixels:
         return False
     for line, hue, end, shift in zip(lines, colors, ends, (shifted - wanted) * 72 / ax.figure.dpi, strict=True):
@@ -58,18 +59,26 @@ def _last_point(ax: "Axes", line: Line) -> "tuple[float, float] | None":
     return float(line.x[last]), float(line.mean[last])
 
 
-def _spread(wanted: Any, distance: float) -> Any:
-    """Returns heights at least a distance apart, in the same order, whose middle stays where it was in each cluster."""
+def _spread(wanted: Any, distance: float, limits: tuple[float, float]) -> Any:
+    """Returns heights at least a distance apart, in the same order, and half of it inside the limits.
+
+    The middle of each cluster stays where it was, unless that were outside: below the axes are the labels of the ticks.
+    """
+
+    def inside(middle: float, count: int) -> float:
+        low, high = limits[0] + distance * count / 2, limits[1] - distance * count / 2
+        return max(low, min(middle, high))
+
     order = np.argsort(wanted, kind="stable")
     clusters: list[tuple[float, int]] = []  # the middle and the number of labels of each, from below
     for height in wanted[order]:
-        clusters.append((float(height), 1))
+        clusters.append((inside(float(height), 1), 1))
         while len(clusters) > 1:
             (below, n_below), (above, n_above) = clusters[-2:]
             if above - below >= distance * (n_below + n_above) / 2:
                 break
             count = n_below + n_above
-            clusters[-2:] = [((below * n_below + above * n_above) / count, count)]
+            clusters[-2:] = [(inside((below * n_below + above * n_above) / count, count), count)]
     heights = [middle + distance * (index - (count - 1) / 2) for middle, count in clusters for index in range(count)]
     spread = np.empty(len(wanted))
     spread[order] = heights

@@ -1,4 +1,4 @@
-"""CellMap worlds of the book's figures: a number in each cell, and arrows for the actions of a policy."""
+"""Grid worlds of the book's figures: a number in each cell, and arrows for the actions of a policy."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.book.drawing.titles import title_figure
 from qtab.book.runner import FloatArray
 from qtab.plots.axes import shown_figure
 from qtab.plots.colors import COLORS, readable, text_color
@@ -46,7 +47,7 @@ def draw_grids(title: str, grids: Sequence[CellMap], columns: int) -> "Axes":
     shape = next(np.shape(part)[:2] for one in grids for part in (one.values, one.best) if part is not None)
     rows = -(-len(grids) // columns)
     figure = shown_figure(columns * (shape[1] * CELL + 0.5), rows * (shape[0] * CELL + 0.4) + 0.5)
-    figure.suptitle(title, x=0.02, ha="left", fontweight="bold", fontsize="medium")
+    title_figure(figure, title)
     axes: Any = figure.subplots(rows, columns, squeeze=False)
     for ax in axes.flat[len(grids) :]:
         ax.remove()

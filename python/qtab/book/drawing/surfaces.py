@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from qtab.book.drawing.titles import title_figure
 from qtab.book.runner import FloatArray
 from qtab.plots.axes import shown_figure
 
@@ -21,7 +22,7 @@ def draw_surfaces(
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
     """
     figure = shown_figure(9, 5.5)
-    figure.suptitle(title)
+    title_figure(figure, title)
     x, y = np.meshgrid(positions, velocities, indexing="ij")
     x_ticks, y_ticks = (positions[0], -0.5, positions[-1]), (velocities[0], 0, velocities[-1])
     ax: Any = None

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
+from qtab.config.config import replace_checked
 from qtab.reference.schedules import LearningRate
 from qtab.reference.task import Task
 
@@ -39,9 +40,15 @@ class Prediction:
         self.rows = estimates.rows.tolist()
         count, n_active = estimates.weights.shape[2], estimates.rows.shape[1]
         self.w = np.full(count, self.settings.initial_value / n_active)
-        self.rate = LearningRate(config, (count, 1), n_active)
-        if self.settings.learning_rate is not None:
-            self.rate.schedule.value = self.settings.learning_rate
+        settings, by_visits = self.settings, self.settings.learning_rate is None
+        learning_rate: dict[str, Any] = {
+            "learning_rate": 1.0 if settings.learning_rate is None else settings.learning_rate,
+            "learning_rate_schedule": settings.learning_rate_schedule or ("visits" if by_visits else "constant"),
+            "min_learning_rate": settings.min_learning_rate,
+            "learning_rate_decay": settings.learning_rate_decay,
+            "learning_rate_warm_up": settings.learning_rate_warm_up,
+        }
+        self.rate = LearningRate(replace_checked(config, **learning_rate), (count, 1), n_active)
         self.target = estimates.probabilities.reshape(len(self.rows), -1)
         self.behavior = estimates.behavior.reshape(len(self.rows), -1)
         self.is_deterministic = bool((np.count_nonzero(self.behavior, axis=1) == 1).all())
@@ -80,6 +87,7 @@ class Prediction:
             return
         for _ in self.task.episodes():
             yield self._steps()
+            self.rate.schedule.end_episode()
 
     def _steps(self) -> Iterator[Visit]:
         [state] = self.task.reset()

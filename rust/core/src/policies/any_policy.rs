@@ -35,24 +35,10 @@ impl AnyPolicy {
         Self::Softmax(Softmax::new(temperature, num_actions))
     }
 
-    /// The gradient of ln π(A) with respect to the preferences of the actions; 0 for policies other than the softmax.
-    pub(crate) fn log_gradient(&mut self, values: &[f64], action: usize) -> &[f64] {
-        if let Self::Softmax(softmax) = self { softmax.log_gradient(values, action) } else { &[] }
-    }
-}
-
-impl Policy for AnyPolicy {
-    /// Draws one `random()`. The ε-greedy policies then draw one `integers` if they explore, or to break a tie.
-    #[inline]
-    fn choose(&mut self, values: &[f64], rng: &mut impl Rng) -> usize {
+    /// [`Policy::choose_in`] for the policies that are not compiled into the learners. `row` is the first active one.
+    fn choose_otherwise(&mut self, row: u32, values: &[f64], rng: &mut impl Rng) -> usize {
         match self {
-            Self::EpsilonGreedy { epsilon, ties } => {
-                if rng.random() >= 1.0 - epsilon.value() {
-                    rng.integers(values.len() as u32) as usize
-                } else {
-                    ties.greedy(values, rng)
-                }
-            }
+            Self::EpsilonGreedy { .. } => self.choose(values, rng),
             Self::MaskedEpsilonGreedy { epsilon, ties } => {
                 if rng.random() >= 1.0 - epsilon.value() {
                     random_available_action(values, rng)
@@ -61,18 +47,43 @@ impl Policy for AnyPolicy {
                 }
             }
             Self::Softmax(softmax) => softmax.choose(values, rng),
-            Self::Ucb(ucb) => ucb.choose(0, values, rng),
+            Self::Ucb(ucb) => ucb.choose(row, values, rng),
         }
     }
 
-    #[inline]
+    /// The gradient of ln π(A) with respect to the preferences of the actions; 0 for policies other than the softmax.
+    pub(crate) fn log_gradient(&mut self, values: &[f64], action: usize) -> &[f64] {
+        if let Self::Softmax(softmax) = self { softmax.log_gradient(values, action) } else { &[] }
+    }
+}
+
+impl Policy for AnyPolicy {
+    /// Draws one `random()`. The ε-greedy policies then draw one `integers` if they explore, or to break a tie.
+    #[expect(
+        clippy::inline_always,
+        reason = "where the number of actions is known, a call per step would take a third"
+    )]
+    #[inline(always)]
+    fn choose(&mut self, values: &[f64], rng: &mut impl Rng) -> usize {
+        let Self::EpsilonGreedy { epsilon, ties } = self else { return self.choose_otherwise(0, values, rng) };
+        if rng.random() >= 1.0 - epsilon.value() {
+            rng.integers(values.len() as u32) as usize
+        } else {
+            ties.greedy(values, rng)
+        }
+    }
+
+    #[expect(
+        clippy::inline_always,
+        reason = "where the number of actions is known, a call per step would take a third"
+    )]
+    #[inline(always)]
     fn choose_in(&mut self, rows: &[u32], values: &[f64], rng: &mut impl Rng) -> usize {
         match self {
-            Self::Ucb(ucb) => ucb.choose(rows[0], values, rng),
-            _ => self.choose(values, rng),
+            Self::EpsilonGreedy { .. } => self.choose(values, rng),
+            _ => self.choose_otherwise(rows[0], values, rng),
         }
     }
-
     #[inline]
     fn expected_value(&mut self, values: &[f64]) -> f64 {
         match self {

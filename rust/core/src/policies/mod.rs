@@ -3,6 +3,7 @@
 mod any_policy;
 mod epsilon_greedy;
 mod policy;
+mod single_state;
 mod softmax;
 mod tie_breaking;
 mod ucb;
@@ -11,6 +12,7 @@ pub use any_policy::AnyPolicy;
 pub(crate) use any_policy::random_available_action;
 pub use epsilon_greedy::EpsilonGreedy;
 pub use policy::Policy;
+pub use single_state::{SingleStateEpsilonGreedy, SingleStateUcb};
 pub use softmax::Softmax;
 pub use tie_breaking::TieBreaking;
 pub use ucb::Ucb;

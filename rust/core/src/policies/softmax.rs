@@ -9,18 +9,30 @@ use crate::random::Rng;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Softmax {
     temperature: f64,
-    /// A buffer for π.
+    /// The values for which π was computed last; NaN before.
+    values: Vec<f64>,
+    /// π for them.
     probabilities: Vec<f64>,
+    /// A buffer for the gradient.
+    gradient: Vec<f64>,
 }
 
 impl Softmax {
     /// A policy over `num_actions` actions.
     pub fn new(temperature: f64, num_actions: usize) -> Self {
-        Self { temperature, probabilities: vec![0.0; num_actions] }
+        let [values, probabilities, gradient] = [f64::NAN, 0.0, 0.0].map(|value| vec![value; num_actions]);
+        Self { temperature, values, probabilities, gradient }
     }
 
     /// π for these action values, which are shifted by their maximum so that `exp` cannot overflow.
+    ///
+    /// A learner of preferences often asks for π in the state in which it has just acted, with the same values.
+    /// Comparing them takes less time than one exponential.
     fn probabilities(&mut self, values: &[f64]) -> &[f64] {
+        if self.values == values {
+            return &self.probabilities;
+        }
+        self.values.copy_from_slice(values);
         let largest = maximum(values);
         for (probability, value) in self.probabilities.iter_mut().zip(values) {
             *probability = ((value - largest) / self.temperature).exp();
@@ -36,10 +48,10 @@ impl Softmax {
     /// for any other action (Sutton & Barto, equation 13.9).
     pub(super) fn log_gradient(&mut self, values: &[f64], action: usize) -> &[f64] {
         self.probabilities(values);
-        for (other, part) in self.probabilities.iter_mut().enumerate() {
-            *part = (f64::from(u8::from(other == action)) - *part) / self.temperature;
+        for (other, (part, probability)) in self.gradient.iter_mut().zip(&self.probabilities).enumerate() {
+            *part = (f64::from(u8::from(other == action)) - probability) / self.temperature;
         }
-        &self.probabilities
+        &self.gradient
     }
 }
 
@@ -81,6 +93,16 @@ mod tests {
         assert_eq!(softmax.expected_value(&values), 0.5);
         let mut rng = Pcg64::new(&SeedSequence::new(&[1]));
         assert!((0..100).all(|_| [1, 2].contains(&softmax.choose(&values, &mut rng))));
+    }
+
+    #[test]
+    fn probabilities_follow_the_values_that_change() {
+        let mut softmax = Softmax::new(1.0, 2);
+        for values in [[0.0, 0.0], [0.0, 3.0_f64.ln()], [0.0, 0.0]] {
+            let expected = Softmax::new(1.0, 2).probabilities(&values).to_vec();
+            assert_eq!(softmax.log_gradient(&values, 1), [-expected[0], 1.0 - expected[1]]);
+            assert_eq!(softmax.probabilities(&values), expected);
+        }
     }
 
     #[test]

@@ -16,7 +16,11 @@ pub enum TieBreaking {
 
 impl TieBreaking {
     /// The greedy action.
-    #[inline]
+    #[expect(
+        clippy::inline_always,
+        reason = "where the number of actions is known, a call per step would take a third"
+    )]
+    #[inline(always)]
     pub(super) fn greedy(self, values: &[f64], rng: &mut impl Rng) -> usize {
         match self {
             Self::First => argmax(values),
@@ -24,7 +28,7 @@ impl TieBreaking {
                 let best = argmax(values);
                 let largest = values[best];
                 let ties = values.iter().filter(|&&value| value == largest).count();
-                if ties == 1 { best } else { random_action(values, |&value| value == largest, rng) }
+                if ties == 1 { best } else { tied_action(values, largest, ties, rng) }
             }
         }
     }
@@ -67,6 +71,20 @@ impl TieBreaking {
             }
         }
     }
+}
+
+/// A random action among the `ties` ones with the maximal value.
+#[inline]
+fn tied_action(values: &[f64], largest: f64, ties: usize, rng: &mut impl Rng) -> usize {
+    let (mut left, mut chosen) = (rng.integers(ties as u32) as usize, 0);
+    // Which one is random, so that a branch would often be mispredicted. If the maximum is NaN, no action has it: the run
+    // has then diverged and stops after this episode.
+    for (action, &value) in values.iter().enumerate() {
+        let eligible = value == largest;
+        chosen = select_unpredictable(eligible && left == 0, action, chosen);
+        left = left.wrapping_sub(usize::from(eligible));
+    }
+    chosen
 }
 
 /// A random action among those whose values satisfy `eligible`.

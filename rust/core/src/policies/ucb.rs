@@ -44,17 +44,32 @@ impl Ucb {
     /// The upper bounds of the values.
     #[inline]
     fn bounds(&mut self, row: u32, values: &[f64]) -> &[f64] {
+        let log = (self.time(row) as f64).ln();
         let counts = &self.counts[row as usize * self.bounds.len()..][..self.bounds.len()];
-        let time = 1 + counts.iter().map(|&count| u64::from(count)).sum::<u64>();
-        let log = (time as f64).ln();
-        for ((bound, &count), value) in self.bounds.iter_mut().zip(counts).zip(values) {
-            *bound = match count {
-                0 if is_available(value) => f64::INFINITY,
-                0 => f64::NEG_INFINITY,
-                count => value + self.confidence * (log / f64::from(count)).sqrt(),
-            };
+        for ((bound, &count), &value) in self.bounds.iter_mut().zip(counts).zip(values) {
+            *bound = upper_bound(self.confidence, log, count, value);
         }
         &self.bounds
+    }
+
+    /// The upper bound of the value of an action in a table with one row, where ln t is `log`.
+    #[inline]
+    pub(super) fn bound_at(&self, log: f64, action: usize, value: f64) -> f64 {
+        upper_bound(self.confidence, log, self.counts[action], value)
+    }
+
+    /// t: one more than the number of choices in a row.
+    #[inline]
+    pub(super) fn time(&self, row: u32) -> u64 {
+        let counts = &self.counts[row as usize * self.bounds.len()..][..self.bounds.len()];
+        1 + counts.iter().map(|&count| u64::from(count)).sum::<u64>()
+    }
+
+    /// Counts a choice.
+    #[inline]
+    pub(super) fn count(&mut self, row: u32, action: usize) {
+        let count = &mut self.counts(row)[action];
+        *count = count.saturating_add(1);
     }
 
     /// The action with the largest bound. It counts as chosen. Draws one `integers` to break a tie at random.
@@ -62,8 +77,7 @@ impl Ucb {
     pub(super) fn choose(&mut self, row: u32, values: &[f64], rng: &mut impl Rng) -> usize {
         let ties = self.ties;
         let action = ties.greedy(self.bounds(row, values), rng);
-        let count = &mut self.counts(row)[action];
-        *count = count.saturating_add(1);
+        self.count(row, action);
         action
     }
 
@@ -82,6 +96,16 @@ impl Ucb {
 
     pub(super) fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.counts.persist(checkpoint)
+    }
+}
+
+/// The upper bound of a value: infinite for an action that was never chosen, -∞ for one that is not available.
+#[inline]
+fn upper_bound(confidence: f64, log: f64, count: u32, value: f64) -> f64 {
+    match count {
+        0 if is_available(&value) => f64::INFINITY,
+        0 => f64::NEG_INFINITY,
+        count => value + confidence * (log / f64::from(count)).sqrt(),
     }
 }
 

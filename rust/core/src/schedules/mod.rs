@@ -3,7 +3,9 @@
 mod learning_rate;
 mod schedule;
 mod step_size;
+mod visit_rate;
 
 pub use learning_rate::LearningRate;
 pub use schedule::{Decay, Schedule};
 pub use step_size::StepSize;
+pub use visit_rate::VisitRate;

@@ -55,6 +55,7 @@ impl Schedule {
     }
 
     /// Moves on to the next episode.
+    #[inline]
     pub fn end_episode(&mut self) {
         if self.warm_up > 0 {
             self.warm_up -= 1;

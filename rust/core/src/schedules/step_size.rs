@@ -42,6 +42,7 @@ impl StepSize for f64 {
         *self
     }
 
+    #[inline]
     fn end_episode(&mut self) {}
 }
 
@@ -60,6 +61,7 @@ impl StepSize for Schedule {
         self.value()
     }
 
+    #[inline]
     fn end_episode(&mut self) {
         Schedule::end_episode(self);
     }

@@ -58,6 +58,14 @@ impl KArmedBandit {
         self.record.as_deref().unwrap_or_default()
     }
 
+    /// Draws q⁎.
+    #[cold]
+    fn draw(&mut self) {
+        let Testbed { num_actions, mean, deviation, .. } = self.testbed;
+        self.values = (0..num_actions).map(|_| mean + deviation * self.rng.standard_normal()).collect();
+        self.optimal = argmax(&self.values);
+    }
+
     /// q⁎(a) ← q⁎(a) + an increment of its own.
     #[cold]
     fn walk(&mut self) {
@@ -73,17 +81,17 @@ impl Task for KArmedBandit {
     type Active = [u32; 1];
     type Error = OutOfBounds;
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+    #[inline(always)]
     fn reset(&mut self) -> Result<((), [u32; 1]), OutOfBounds> {
         if self.values.is_empty() {
-            let Testbed { num_actions, mean, deviation, .. } = self.testbed;
-            self.values = (0..num_actions).map(|_| mean + deviation * self.rng.standard_normal()).collect();
-            self.optimal = argmax(&self.values);
+            self.draw();
         }
         Ok(((), [0]))
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+    #[inline(always)]
     fn step(&mut self, _state: &mut (), action: usize) -> Result<Transition<[u32; 1]>, OutOfBounds> {
         let reward = self.values[action] + self.rng.standard_normal();
         if let Some(record) = &mut self.record {
@@ -96,6 +104,7 @@ impl Task for KArmedBandit {
     }
 
     /// A random walk draws a number for each action.
+    #[inline]
     fn step_work(&self) -> u64 {
         if self.testbed.random_walk == 0.0 { 0 } else { self.testbed.num_actions as u64 }
     }

@@ -4,13 +4,11 @@ use std::sync::Arc;
 
 use pyo3::intern;
 use pyo3::prelude::*;
-use qtab_core::tasks::{KArmedBandit, Testbed};
+use qtab_core::tasks::Testbed;
 
 use super::native_env::NativeEnv;
-use crate::convert::Seed;
 use crate::error::invalid;
-use crate::rng::environment_rng;
-use crate::runs::{AnyRecordings, RunFactory, boxed_factory};
+use crate::runs::{RunFactory, bandit_runs};
 use crate::spec::RunSpec;
 
 pub(crate) struct KArmedBanditEnv(Testbed);
@@ -38,9 +36,7 @@ impl NativeEnv for KArmedBanditEnv {
         if spec.num_actions != self.0.num_actions {
             return Err(invalid("num_actions", format!("{}, the environment's", self.0.num_actions), spec.num_actions));
         }
-        let testbed = self.0;
-        let new_task = move |seed: &Seed| KArmedBandit::new(testbed, environment_rng(seed));
-        Ok(boxed_factory(new_task, (1, 1), spec, record, AnyRecordings::Native))
+        Ok(bandit_runs(self.0, spec, record))
     }
 
     fn testbed(&self) -> Option<Testbed> {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use qtab_core::StopFlag;
+use qtab_core::learners::LearnerVisitor;
 use qtab_core::memory::{AllocationError, collect};
 use qtab_core::prediction::{
     BatchTd, FixedPolicy, ImportanceSampling, LinearValues, MonteCarloPrediction, NStepTd, OfflineLambdaReturn,
@@ -86,14 +87,35 @@ impl PredictionSpec {
         Ok(Self { method, behavior: policy("behavior")?, target: policy("target")?, rows, initial })
     }
 
+    /// Refuses rows for another number of states than the task has.
+    pub(crate) fn check_states(&self, states: usize) -> PyResult<()> {
+        if self.num_states() == states {
+            return Ok(());
+        }
+        Err(invalid("rows", format!("rows for each of the {states} cells"), self.num_states()))
+    }
+
     /// The number of states.
-    pub(crate) fn num_states(&self) -> usize {
+    fn num_states(&self) -> usize {
         self.rows.num_states()
     }
 
     /// The number of weights.
     pub(crate) fn n_weights(&self) -> usize {
         self.rows.n_weights()
+    }
+
+    /// Passes a learner before its first episode to `visitor`, with a type of its own for TD(0), whose steps are the shortest.
+    pub(crate) fn visit<V: LearnerVisitor<[u32; 1]>>(
+        &self,
+        spec: &RunSpec,
+        stop: &StopFlag<'_>,
+        visitor: V,
+    ) -> PyResult<V::Output> {
+        match self.method {
+            MethodSpec::TdZero => Ok(visitor.visit(self.with_rule(TdZero, spec, stop)?)),
+            _ => Ok(visitor.visit(self.predictor(spec, stop)?)),
+        }
     }
 
     /// A learner before its first episode, of any method.

@@ -162,9 +162,10 @@ where
     R: ActiveRows + Send + 'static,
 {
     if let Some(prediction) = &spec.prediction {
-        if n_active != 1 || prediction.num_states() != n_rows {
-            return Err(invalid("rows", format!("rows for each of the {n_rows} cells"), prediction.num_states()));
+        if n_active != 1 {
+            return Err(invalid("discretizer", "one with a cell for each observation", "tile coding"));
         }
+        prediction.check_states(n_rows)?;
         let predictor = prediction.predictor(spec, stop)?;
         let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation, bonus: None };
         return Ok(run.visit(predictor));

@@ -3,14 +3,18 @@
 mod action_mask;
 mod agent;
 mod answers;
+mod bandit;
 mod factory;
 mod generic;
+mod pending;
+mod prediction;
 mod python_env;
 mod python_task;
 mod run;
 mod specialized;
 mod testbed;
 
+pub(crate) use bandit::bandit_runs;
 pub(crate) use factory::{RunBatch, RunFactory};
 pub(crate) use generic::{boxed_factory, generic, generic_box};
 pub(crate) use python_env::PythonEnv;

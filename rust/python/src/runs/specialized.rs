@@ -13,6 +13,7 @@ use qtab_core::{Env, Features, StopFlag, Trainer};
 
 use super::agent::policy;
 use super::factory::{Batching, Factory};
+use super::prediction::predicting;
 use super::{AnyRecordings, Run, RunFactory, generic};
 use crate::convert::Seed;
 use crate::error::allocation;
@@ -70,7 +71,10 @@ where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active = [u32; 1]> + Clone + Send + Sync + 'static,
 {
-    if spec.prediction.is_some() {
+    if let Some(prediction) = &spec.prediction {
+        if super::prediction::is_specialized(spec, record) {
+            return Ok(predicting(env, features, spec, prediction));
+        }
         return generic(env, features, spec, record);
     }
     let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else {

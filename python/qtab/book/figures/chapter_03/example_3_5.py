@@ -21,7 +21,7 @@ def _compute() -> list[Line]:
 def _draw(result: Result, ax: "Axes | None") -> "Axes":
     if ax is not None:
         raise ValueError("ax must be None for example-3.5, which creates its own axes")
-    return draw_grids(result.experiment.heading, [CellMap("values of the random policy", as_grid(result.lines[0]))], 1)
+    return draw_grids(result.experiment.heading, [CellMap("", as_grid(result.lines[0]))], 1)
 
 
 EXPERIMENT = ExactExperiment(

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from qtab.book.drawing import title_figure
 from qtab.book.exact_experiment import ExactExperiment, exact_line
 from qtab.book.result import Line, Result
 from qtab.book.runner import FloatArray
@@ -62,7 +63,7 @@ def _draw(result: Result, ax: "Axes | None") -> "Axes":
         raise ValueError("ax must be None for figure-4.2, which creates its own axes")
     *policies, values = result.lines
     figure = shown_figure(10, 6.5)
-    figure.suptitle(result.experiment.heading, x=0.02, ha="left", fontweight="bold", fontsize="medium")
+    title_figure(figure, result.experiment.heading)
     image: Any = None
     panels = []
     for index, line in enumerate(policies):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from qtab.book.blackjack import blackjack
+from qtab.book.drawing import title_figure
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
@@ -43,7 +44,7 @@ def draw_values(result: Result, ax: "Axes | None") -> "Axes":
     if ax is not None:
         raise ValueError("ax must be None for figure-5.1, which creates four axes")
     figure = shown_figure(9, 7.5)
-    figure.suptitle(result.experiment.heading)
+    title_figure(figure, result.experiment.heading)
     cards, sums = np.meshgrid(_CARDS, _SUMS)
     last: Any = None
     for index, (name, surface) in enumerate(result.surfaces.items()):
@@ -51,7 +52,12 @@ def draw_values(result: Result, ax: "Axes | None") -> "Axes":
         last.plot_surface(cards, sums, surface, cmap="viridis", vmin=-1, vmax=1, linewidth=0, rcount=10, ccount=10)
         last.set_title(name, fontsize="medium")
         last.set(
-            xlabel="dealer shows", ylabel="player's sum", zlim=(-1, 1), xticks=(1, 4, 7, 10), yticks=(12, 15, 18, 21)
+            xlabel="dealer shows",
+            ylabel="player's sum",
+            zlim=(-1, 1),
+            zticks=(-1, 0, 1),
+            xticks=(1, 4, 7, 10),
+            yticks=(12, 15, 18, 21),
         )
         last.set_box_aspect(None, zoom=0.85)
     axes: Axes = last

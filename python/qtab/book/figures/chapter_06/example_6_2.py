@@ -57,7 +57,9 @@ EXPERIMENT = PredictionExperiment(
     draw=draw_panels(
         (
             Panel(
-                "values of TD(0) with α = 0.1", lambda line: "α" not in line, {"x_label": "state", "y_label": "value"}
+                "values of TD(0) with α = 0.1",
+                lambda line: "α" not in line,
+                {"x_label": "state", "y_label": "value", "x_ticks": _STATES, "x_tick_labels": tuple("ABCDE")},
             ),
             Panel(
                 "RMS error, averaged over the states",

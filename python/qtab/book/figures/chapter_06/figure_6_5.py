@@ -6,6 +6,8 @@ from qtab.book.training_experiment import TrainingExperiment
 
 FINAL = 20
 """The table's value at the end is the mean of so many episodes."""
+OPTIMAL = 5.0
+"""The percentage of left actions of the ε-greedy policy that knows the values."""
 _BOOK = {"preset": "book", "learning_rate": 0.1, "discount": 1.0, "epsilon": 0.1, "ties": "random", "episodes": 300}
 
 
@@ -45,4 +47,5 @@ EXPERIMENT = TrainingExperiment(
     y_label="left actions from A, %",
     table_x=(1, 5, 10, 20, 30, 50, 100, 150, 200, 250, 300),
     y_range=(0, 100),
+    y_marks={"optimal": OPTIMAL},
 )

@@ -5,13 +5,15 @@ from typing import Any
 from qtab.book.measures import reward_by
 from qtab.book.setting import Setting
 
-PLANNING_STEPS = 10
+LEARNING_RATE = 0.5
+"""α; the book does not state it."""
+PLANNING_STEPS = 50
 """n; the book does not state it."""
 TIME_WEIGHT = 1e-3
 """κ; the book does not state it."""
 
 _DYNA: dict[str, Any] = {
-    "learning_rate": 1.0,
+    "learning_rate": LEARNING_RATE,
     "discount": 0.95,
     "epsilon": 0.1,
     "epsilon_schedule": "constant",
@@ -20,7 +22,7 @@ _DYNA: dict[str, Any] = {
     "planning_steps": PLANNING_STEPS,
 }
 UNSPECIFIED = (
-    f"all settings but the mazes. Here α = 1 (the mazes are deterministic), ε = 0.1, γ = 0.95, n = {PLANNING_STEPS}, "
+    f"all settings but the mazes. Here α = {LEARNING_RATE:g}, ε = 0.1, γ = 0.95, n = {PLANNING_STEPS}, "
     f"κ = {TIME_WEIGHT:g}, ties are broken at random, and the number of runs is 100"
 )
 

@@ -1,7 +1,8 @@
 """Example 8.4: prioritized sweeping against Dyna-Q on mazes of eight sizes."""
 
+import dataclasses
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -21,7 +22,7 @@ from qtab.training.resolve import resolve
 ENV = "qtab/DynaMaze-v0"
 PLANNING_STEPS = 5
 EPISODES = 20_000
-"""More than any run needs."""
+"""As many as are waited for. In a run that has not found a shortest way by then, exploration hardly ever will."""
 PRECISION = 1.02
 """The greedy policy is looked at again after so many times the updates: looking costs more than learning."""
 METHODS = {"Dyna-Q": "dyna_q", "prioritized sweeping": "prioritized_sweeping"}
@@ -54,6 +55,7 @@ class Maze:
         )
         self.is_goal = np.array([cell == "G" for row in env.layout for cell in row])
         self.shortest = self._shortest()
+        self._specs: dict[str, Any] = {}
 
     def _shortest(self) -> int:
         """The number of steps of the shortest way, by breadth-first search."""
@@ -65,6 +67,13 @@ class Maze:
             steps += 1
         return steps
 
+    def spec(self, algorithm: str) -> Any:
+        """Returns a run in the maze as the extension takes it, with any seed."""
+        if algorithm not in self._specs:
+            options = {**CONFIG, "algorithm": algorithm, "env_kwargs": {"doublings": self.doublings}, "seed": 0}
+            self._specs[algorithm] = resolve(ENV, options).spec()
+        return self._specs[algorithm]
+
     def is_solved(self, table: FloatArray) -> bool:
         """Whether the greedy policy takes a shortest way. Of several greedy actions it takes the first."""
         state, greedy = self.start, table.reshape(-1, 4).argmax(axis=1)
@@ -73,23 +82,27 @@ class Maze:
         return bool(self.is_goal[state])
 
 
-def updates_to_optimum(maze: Maze, algorithm: str, seed: int) -> int:
-    """Returns the number of updates, to within 2 %, after which the greedy policy is first seen to be optimal."""
-    with_options = {**CONFIG, "algorithm": algorithm, "env_kwargs": {"doublings": maze.doublings}}
-    resolved = resolve(ENV, {**with_options, "seed": seed})
-    trainer = _core.Trainer(resolved.spec(), seed)
-    updates, steps, looked_at = 0, 0, 0.0
+def updates_to_optimum(maze: Maze, algorithm: str, seed: int) -> tuple[int, bool]:
+    """Returns the number of updates, to within 2 %, after which the greedy policy is first seen to be optimal.
+
+    The second is whether it is. If not, exploration has not found a shortest way in so many episodes, and all updates
+    are counted.
+    """
+    trainer = _core.Trainer(maze.spec(algorithm), seed)
+    updates, steps, seen = 0, 0, 0
     for episode in range(1, EPISODES + 1):
         trainer.advance(episode)
-        planned = trainer.planning_updates()
+        before, planned = updates, trainer.planning_updates()
         steps += int(trainer.episodes(episode - 1)[1][0])
         # Each step of Dyna-Q makes an update of its own, and all that are planned.
         updates = steps * (1 + PLANNING_STEPS) if planned is None else planned
-        if updates >= looked_at:
+        # The queue of prioritized sweeping can be empty for thousands of episodes, in which the policy stays as it is.
+        rests = updates == before != seen
+        if updates >= PRECISION * seen > 0 or rests or episode == 1:
             if maze.is_solved(trainer.tables()):
-                break
-            looked_at = PRECISION * updates
-    return updates
+                return updates, True
+            seen = updates
+    return updates, False
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -109,11 +122,13 @@ class UpdatesToOptimum(Experiment):
         started = time.perf_counter()
         mazes = [Maze(doublings) for doublings in range(MOST_DOUBLINGS + 1)]
         tasks = [(name, maze, seed + number) for maze in mazes for name in METHODS for number in range(runs)]
+        missed = dict.fromkeys(((name, maze.states) for maze in mazes for name in METHODS), 0)
         counts: dict[tuple[str, int], list[int]] = {(name, maze.states): [] for maze in mazes for name in METHODS}
         with ProgressBar(len(tasks), "run", progress, self.name) as bar, ThreadPoolExecutor(threads) as pool:
             done = pool.map(lambda task: updates_to_optimum(task[1], METHODS[task[0]], task[2]), tasks)
-            for index, ((name, maze, _), count) in enumerate(zip(tasks, done, strict=True)):
+            for index, ((name, maze, _), (count, is_optimal)) in enumerate(zip(tasks, done, strict=True)):
                 counts[name, maze.states].append(count)
+                missed[name, maze.states] += not is_optimal
                 bar.move_to(index + 1)
         sizes = np.array([maze.states for maze in mazes], np.float64)
         none = np.zeros(len(mazes), np.int64)
@@ -123,7 +138,20 @@ class UpdatesToOptimum(Experiment):
             error = samples.std(axis=1, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(len(mazes), np.nan)
             method = algorithm if name == "Dyna-Q" else ""
             lines.append(Line(name, sizes, samples.mean(axis=1), error, runs, none, none, method=method))
-        return Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_lines)
+        result = Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_lines)
+        return dataclasses.replace(result, table=_table(lines, missed))
+
+
+def _table(lines: Sequence[Line], missed: Mapping[tuple[str, int], int]) -> str:
+    """Returns the numbers of updates, and how many runs never became optimal, which count with all their updates."""
+    rows = [["", "states", "updates", "std. error", "never optimal"]]
+    for line in lines:
+        for states, mean, error in zip(line.x.tolist(), line.mean, line.error, strict=True):
+            rows.append(
+                [line.name, f"{states:,.0f}", f"{mean:,.0f}", f"{error:,.0f}", str(missed[line.name, int(states)])]
+            )
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in rows)
 
 
 EXPERIMENT = UpdatesToOptimum(
@@ -132,7 +160,8 @@ EXPERIMENT = UpdatesToOptimum(
     book=f"mazes of the same structure and of more and more cells; at most n = {PLANNING_STEPS} updates per step",
     unspecified="all other settings: here α = 1, ε = 0.1, γ = 0.95, θ = 0.0001, ties are broken at random, and there "
     "are 10 runs. The greedy policy is looked at between episodes, with every 2 % of updates; it is optimal if it "
-    "takes a shortest way. The update that Dyna-Q makes from each real step counts",
+    "takes a shortest way. A run that takes none after 20,000 episodes counts with all of its updates. The update that "
+    "Dyna-Q makes from each real step counts",
     runs=10,
     x_label="number of states",
     y_label="updates until the policy is optimal",

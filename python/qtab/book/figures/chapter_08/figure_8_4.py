@@ -20,5 +20,5 @@ EXPERIMENT = TrainingExperiment(
     y_label="cumulative reward",
     table_x=(500, 1000, 1500, 2000, 2500, 3000),
     x_range=(0, STEPS),
-    y_range=(0, 150),
+    y_range=(0, 160),
 )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import line_colors
+from qtab.book.drawing import line_colors, title_figure
 from qtab.book.experiment import Experiment
 from qtab.book.result import Line, Result
 from qtab.book.runner import FloatArray
@@ -128,8 +128,9 @@ def draw_two_sizes(result: Result, ax: "Axes | None") -> "Axes":
             style = STYLES.get(one.branching, "-")
             panel.plot(line.x, line.mean, style, color=hue, label=f"{name}, b = {one.branching}")
         panel.xaxis.set_major_formatter("{x:,.0f}")
-        title = experiment.heading if panel is panels[0] else ""
-        finish(panel, experiment.x_label, experiment.y_label, title, note=f"{states:,} states")
+        finish(panel, experiment.x_label, experiment.y_label)
+        panel.set_title(f"{states:,} states", loc="left", fontsize="medium")
+    title_figure(figure, experiment.heading)
     last: Axes = panels[-1]
     return last
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from qtab import _core
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import line_colors
+from qtab.book.drawing import line_colors, title_figure
 from qtab.book.experiment import Experiment
 from qtab.book.result import Line, Result
 from qtab.plots.axes import shown_figure
@@ -48,7 +48,7 @@ def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
     from matplotlib.colors import ListedColormap
 
     figure = shown_figure(7, 7)
-    figure.suptitle(result.experiment.heading)
+    title_figure(figure, result.experiment.heading)
     upper, lower = figure.subplots(2, 1, height_ratios=(1, 2), sharex=True)
     policy = result.surfaces["policy"].T
     free, levels = np.arange(SERVERS + 1), np.arange(len(PRIORITIES))
@@ -67,10 +67,8 @@ def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
     for line, hue in zip(drawn, line_colors(drawn, lower), strict=True):
         error = np.nan_to_num(line.error)
         lower.fill_between(line.x, line.mean - 2 * error, line.mean + 2 * error, color=hue, alpha=0.25, linewidth=0)
-        lower.plot(line.x, line.mean, color=hue, marker="o", markersize=4)
-        top = int(line.mean.argmax())
-        peak = line.x[top], line.mean[top]
-        lower.annotate(line.name, peak, (8, 0), textcoords="offset points", va="center", color=hue)
+        lower.plot(line.x, line.mean, color=hue, marker="o", markersize=4, label=line.name)
+    lower.legend(loc="upper left", frameon=False, reverse=True)
     lower.axhline(0, color="0.6", linewidth=0.8)
     lower.set_xlim(-0.5, SERVERS + 0.5)
     lower.set_xticks(free)

@@ -11,6 +11,5 @@ mod pendulum;
 pub use acrobot::{Acrobot, AcrobotState};
 pub use cart_pole::{CartPole, CartPoleState};
 pub use continuous_mountain_car::{ContinuousMountainCar, ContinuousMountainCarState};
-pub(crate) use mountain_car::RESET_BOUNDS as MOUNTAIN_CAR_RESET_BOUNDS;
 pub use mountain_car::{MountainCar, MountainCarState};
 pub use pendulum::{Pendulum, PendulumState};

@@ -156,6 +156,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     }
 
     /// Moves the schedules on to the next episode.
+    #[inline]
     pub fn end_episode(&mut self) {
         self.policy.end_episode();
         self.learning_rate.end_episode();

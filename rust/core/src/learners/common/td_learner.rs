@@ -71,6 +71,7 @@ where
         self.rule.average_reward()
     }
 
+    #[inline]
     fn end_episode(&mut self) {
         self.rule.end_episode(&mut self.agent);
         self.agent.end_episode();
@@ -105,6 +106,7 @@ where
         self.rule.persist(self.agent.table.shape(), checkpoint)
     }
 
+    #[inline]
     fn diverged(&self) -> bool {
         self.agent.table.diverged()
     }

@@ -96,7 +96,7 @@ fn backtrack(parents: &[Vec<Parent>], (mut index, last): Parent) -> Vec<u8> {
 mod tests {
     use super::super::{Rollout, replay, rollouts};
     use super::*;
-    use crate::envs::classic_control::{Acrobot, MOUNTAIN_CAR_RESET_BOUNDS, MountainCar};
+    use crate::envs::classic_control::{Acrobot, MountainCar};
 
     static NO_STOP: StopFlag<'static> = StopFlag::new();
     const BEAM: usize = 16;
@@ -107,8 +107,7 @@ mod tests {
 
     /// `count` initial states, at rest: the midpoints of equal parts of the range of positions.
     fn mountain_car_starts(count: u32) -> Vec<[f64; 2]> {
-        let [low, high] = MOUNTAIN_CAR_RESET_BOUNDS.map(|(_, bound)| bound);
-        (0..count).map(|index| [low + (high - low) * ((f64::from(index) + 0.5) / f64::from(count)), 0.0]).collect()
+        (0..count).map(|index| [-0.6 + 0.2 * ((f64::from(index) + 0.5) / f64::from(count)), 0.0]).collect()
     }
 
     /// Whether exactly the last action ends the episode.

@@ -26,7 +26,7 @@ pub fn rollouts<T: GridTask<D>, const D: usize>(
     let task = values.task();
     let greedy = |state: [f64; D]| values.best_action(task.observed(state));
     let rollout = |&start: &[f64; D]| {
-        if stop.is_set() { Err(PlanningError::Stopped) } else { Ok(follow(task, start, max_steps, greedy)) }
+        if stop.is_set() { Err(PlanningError::Stopped) } else { Ok(play(task, start, max_steps, greedy)) }
     };
     starts.iter().map(rollout).collect()
 }
@@ -35,10 +35,10 @@ pub fn rollouts<T: GridTask<D>, const D: usize>(
 pub fn replay<T: GridTask<D>, const D: usize>(task: &T, start: [f64; D], actions: &[u8]) -> Rollout {
     let mut actions = actions.iter();
     let max_steps = actions.len() as u64;
-    follow(task, start, max_steps, |_| actions.next().map_or(0, |&action| action.into()))
+    play(task, start, max_steps, |_| actions.next().map_or(0, |&action| action.into()))
 }
 
-fn follow<T: GridTask<D>, const D: usize>(
+fn play<T: GridTask<D>, const D: usize>(
     task: &T,
     mut state: [f64; D],
     max_steps: u64,

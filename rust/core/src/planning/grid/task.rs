@@ -3,7 +3,7 @@
 use crate::envs::Step;
 
 /// A deterministic environment whose state is `D` numbers, with a grid over them.
-pub trait GridTask<const D: usize>: Clone {
+pub trait GridTask<const D: usize>: Copy {
     /// The number of grid points along each axis of the finest grid. One less must be divisible by the coarsest stride.
     const POINTS: [usize; D];
     /// The coarsest grid has every so many-th point only: a power of two.

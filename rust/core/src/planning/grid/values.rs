@@ -48,12 +48,11 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
         let fits = finest_stride.is_power_of_two() && finest_stride <= coarsest;
         assert!(fits, "stride must be a power of two up to {coarsest}, got {finest_stride}");
         let lowest = task.lowest_value(max_steps);
-        let mut coarser =
-            Self { task: task.clone(), points: [2; D], corners: corners([2; D]), values: vec![0.0; 1 << D], lowest };
+        let mut coarser = Self { task, points: [2; D], corners: corners([2; D]), values: vec![0.0; 1 << D], lowest };
         let mut stride = coarsest;
         loop {
             let points = T::POINTS.map(|points| (points - 1) / stride + 1);
-            let mut finer = Self { task: task.clone(), points, corners: corners(points), values: Vec::new(), lowest };
+            let mut finer = Self { task, points, corners: corners(points), values: Vec::new(), lowest };
             finer.values = collect((0..points.iter().product()).map(|point| coarser.value(finer.state(point))))?;
             finer.converge(stop)?;
             if stride == finest_stride {
@@ -76,12 +75,12 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
             let mut change = 0.0_f64;
             // Forwards and backwards, so that changes spread in both directions.
             for point in (0..=last).chain((0..=last).rev()) {
-                let following = successors[point * actions..][..actions].iter();
-                let values = following.map(|successor| {
+                let possible = successors[point * actions..][..actions].iter();
+                let outcomes = possible.map(|successor| {
                     let value = self.interpolate(successor.point, successor.fractions);
                     f64::from(successor.reward) + T::DISCOUNT * value
                 });
-                let best = values.fold(self.lowest, f64::max);
+                let best = outcomes.fold(self.lowest, f64::max);
                 change = change.max((best - self.values[point]).abs());
                 self.values[point] = best;
             }

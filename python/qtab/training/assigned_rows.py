@@ -1,4 +1,4 @@
-"""Tables whose rows were given out in an earlier run: the same cells must have the same rows again."""
+"""Tables whose rows were assigned in an earlier run: the same cells must have the same rows again."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from qtab.results.run import Run
 from qtab.training.resolved_run import ResolvedRun
 
 
-def with_rows_met(resolved: ResolvedRun, run: Run) -> ResolvedRun:
+def with_assigned_rows(resolved: ResolvedRun, run: Run) -> ResolvedRun:
     """Returns a run in which a policy only plays, on the rows and with the values of an earlier run."""
     if not isinstance(run.discretizer, Sparse):
         return resolved
@@ -21,7 +21,7 @@ def with_rows_met(resolved: ResolvedRun, run: Run) -> ResolvedRun:
 
 
 def continued(resolved: ResolvedRun, run: Run) -> ResolvedRun:
-    """Returns a run that gives out rows where an earlier one stopped."""
+    """Returns a run that assigns rows where an earlier one stopped."""
     if not isinstance(run.discretizer, Sparse):
         return resolved
     return replace(resolved, discretizer=run.discretizer.as_learned())

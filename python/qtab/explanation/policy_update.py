@@ -1,0 +1,127 @@
+"""How a policy gradient method changed its preferences and its state values in an update."""
+
+from dataclasses import dataclass
+
+from qtab.config import Config
+from qtab.explanation.equations import number, power, term
+
+Rows = tuple[tuple[float, ...], ...]
+
+ERROR = {
+    "gradient_bandit": "R - R̄",
+    "reinforce": "G",
+    "reinforce_with_baseline": "δ = G - v(S)",
+    "actor_critic": "δ = R + γ v(S') - v(S)",
+    "actor_critic_lambda": "δ = R + γ v(S') - v(S)",
+}
+"""What an action was worth, compared with what was expected."""
+SYMBOL = {"gradient_bandit": "(R - R̄)", "reinforce": "G"}
+"""How the update names it, where that is not δ."""
+
+
+@dataclass(frozen=True)
+class PolicyUpdate:
+    """A change of the preferences of S along the gradient of ln π(A | S).
+
+    Its numbers are exact: from them follow the preferences, bit for bit.
+    """
+
+    step: int
+    """The step of S and A, counted from 0 in the episode."""
+    rows: tuple[int, ...]
+    """(n_active,): the active rows of S."""
+    cell: tuple[int, ...] | None
+    """The cell of S; None with tile coding, which has no cells."""
+    action: int
+    """The column of A."""
+    reward: float | None
+    """R, where it is in the target; None for REINFORCE, whose target is the return G."""
+    bootstrap: float | None
+    """v(S') in the target of an actor-critic method; None where the next state is terminal, and for others."""
+    target: float
+    """What the action was worth: the reward of a bandit, the return G, or R + γ v(S')."""
+    reference: float
+    """What that is compared with: the average reward R̄ of a bandit, or v(S); 0 without a baseline."""
+    error: float
+    """The target minus the reference."""
+    power: float
+    """γ to the power of ``step``; 1 for a bandit."""
+    step_size: float
+    """α, divided by the number of active rows."""
+    gradient: tuple[float, ...]
+    """(actions,): the gradient of ln π(A | S) for the preference of each action, the same for each active row."""
+    traces: Rows
+    """(n_active, actions): the eligibility traces of the preferences; empty for methods without traces."""
+    before: Rows
+    """(n_active, actions): the preferences before the update."""
+    after: Rows
+    """(n_active, actions): the preferences after it."""
+    probabilities_before: tuple[float, ...]
+    """(actions,): π(a | S) before the update."""
+    probabilities_after: tuple[float, ...]
+    """(actions,): π(a | S) after it."""
+    value_before: float | None
+    """v(S) before the update; None for methods without state values."""
+    value_after: float | None
+    """v(S) after it."""
+    equations: tuple[str, ...]
+    """The equations of the update."""
+    numbers: tuple[str, ...]
+    """The same equations with their numbers, rounded to six digits."""
+
+    @property
+    def policy(self) -> str:
+        """The probabilities of all actions before and after the update."""
+        before, after = (
+            ", ".join(f"{one:.4g}" for one in probabilities)
+            for probabilities in (self.probabilities_before, self.probabilities_after)
+        )
+        return f"π(a | S): {before} -> {after}"
+
+
+def equations_of(
+    config: Config,
+    parts: tuple[float | None, float | None, float, float, float],
+    step: int,
+    size: float,
+    factor: float,
+    preference: tuple[float, float],
+) -> list[tuple[str, str]]:
+    """Returns the equations of an update and their numbers.
+
+    Args:
+        config: The config of the run.
+        parts: The reward, the bootstrap, the target, the reference, and the target minus the reference.
+        step: The number of the step.
+        size: α, times the number of active rows.
+        factor: The gradient for the preference of A, or its trace.
+        preference: The preference of A before and after the update.
+    """
+    algorithm = config.algorithm
+    reward, following, target, reference, error = parts
+    symbols = ERROR[algorithm]
+    if reward is None or algorithm == "gradient_bandit":
+        shown = number(target)
+    else:
+        shown = number(reward)
+        if following is None:
+            symbols = "δ = R - v(S)"
+        else:
+            shown += f" + {power(number(config.discount), 1, ' · ')}{term(following)}"
+    shown += f" - {term(reference)} = {number(error)}"
+    name = "" if algorithm == "gradient_bandit" else "δ = "
+    lines = [] if algorithm == "reinforce" else [(symbols, f"{name}{shown}")]
+    symbol = SYMBOL.get(algorithm, "δ")
+    with_traces = algorithm == "actor_critic_lambda"
+    discounts = "" if algorithm == "gradient_bandit" or with_traces else power("γ", step, " ")
+    direction = "z" if with_traces else "∇ ln π(A | S)"
+    before, after = preference
+    step_of = f"{number(size)} · "
+    discount = power(number(config.discount), step, " · ") if discounts else ""
+    lines.append(
+        (
+            f"H(S, A) <- H(S, A) + α {discounts}{symbol} {direction}",
+            f"H(S, A) <- {number(before)} + {step_of}{discount}{term(error)} · {term(factor)} = {number(after)}",
+        )
+    )
+    return lines

@@ -1,0 +1,89 @@
+"""The learning rate of a prediction: which schedules a method takes, and the checks of their options."""
+
+from collections.abc import Mapping
+from typing import Any, get_args
+
+from qtab._utils import checks
+from qtab._utils.shown import shown
+from qtab.config.choices import LearningRateSchedule
+from qtab.config.options import listed
+from qtab.config.schedules import ByVisits, Constant, Exponential, LearningRate, Linear
+
+ONE_STEP_SIZE = ("td_lambda", "true_online_td_lambda")
+"""The methods with traces, which need one step size for all weights."""
+AVERAGES_ONLY = ("importance_sampling", "batch_td")
+"""The methods without a learning rate."""
+LARGEST = 2.0
+"""The largest learning rate, which several active features share."""
+
+OPTIONS: Mapping[str, tuple[tuple[str, ...], float]] = {
+    "min_learning_rate": (("linear", "exponential", "visits"), 0.0),
+    "learning_rate_decay": (("exponential",), 0.999),
+    "learning_rate_warm_up": (("linear", "exponential"), 0),
+}
+"""The schedules that an option applies to, and its default there: those of :class:`qtab.Config`."""
+
+
+def checked_learning_rate(method: str, episodes: int, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the learning rate, its schedule and the options of that, checked; None where one does not apply.
+
+    Args:
+        method: The method.
+        episodes: The number of episodes.
+        given: The settings, of which only these are read.
+
+    Raises:
+        TypeError: for a value of the wrong type.
+        ValueError: for a value that is out of range, missing, or does not apply to the method or the schedule.
+    """
+    value, schedule = given["learning_rate"], given["learning_rate_schedule"]
+    if schedule is not None:
+        checks.choice("learning_rate_schedule", schedule, get_args(LearningRateSchedule))
+    if method in AVERAGES_ONLY:
+        for name in ("learning_rate", "learning_rate_schedule", *OPTIONS):
+            if given[name] is not None:
+                raise ValueError(f"{name} must be None for method {method!r}, which averages, got {shown(given[name])}")
+        return {}
+    if method in ONE_STEP_SIZE and schedule == "visits":
+        raise ValueError(
+            f"learning_rate_schedule must be 'constant', 'linear' or 'exponential' for method {method!r}, got 'visits'"
+        )
+    if value is None and (method in ONE_STEP_SIZE or schedule not in (None, "visits")):
+        whose = f"method {method!r}" if method in ONE_STEP_SIZE else f"learning_rate_schedule {schedule!r}"
+        raise ValueError(f"learning_rate must be given for {whose}, got None")
+    checked: dict[str, Any] = {}
+    if value is not None:
+        checked["learning_rate"] = value = checks.real("learning_rate", value, 0.0, LARGEST)
+    kind = schedule or ("visits" if value is None else "constant")
+    for name, (schedules, default) in OPTIONS.items():
+        option = given[name]
+        if kind in schedules:
+            if option is not None or schedule is not None:
+                checked[name] = _option(name, default if option is None else option, value, episodes)
+        elif option is not None:
+            raise ValueError(
+                f"{name} applies to learning_rate_schedule {listed(schedules)}, not to {kind!r}, got {shown(option)}"
+            )
+    return checked
+
+
+def _option(name: str, option: Any, learning_rate: float | None, episodes: int) -> float | int:
+    if name == "learning_rate_warm_up":
+        return checks.integer(name, option, least=0, most=episodes - 1)
+    if name == "learning_rate_decay":
+        return checks.real(name, option, 0.0, 1.0)
+    return checks.real(name, option, 0.0, 1.0 if learning_rate is None else learning_rate)
+
+
+def schedule_of(given: Mapping[str, Any]) -> LearningRate:
+    """Returns the learning rate of checked settings."""
+    value, minimum = given["learning_rate"], given["min_learning_rate"] or 0.0
+    kind = given["learning_rate_schedule"] or ("visits" if value is None else "constant")
+    if kind == "visits":
+        return ByVisits(1.0 if value is None else value, minimum)
+    if kind == "constant":
+        return Constant(value)
+    warm_up = given["learning_rate_warm_up"] or 0
+    if kind == "linear":
+        return Linear(value, minimum, warm_up)
+    return Exponential(value, minimum, given["learning_rate_decay"], warm_up)

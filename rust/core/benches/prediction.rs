@@ -1,0 +1,154 @@
+//! The time per step of prediction beside that of Q-learning with random actions, in the same environments.
+//!
+//! `cargo bench --bench prediction`. "boxed" is a run whose task and method are chosen at run time.
+
+use std::fmt::Debug;
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, Throughput};
+use qtab_core::envs::tabular::{Outcome, TabularMdp};
+use qtab_core::features::{Identity, OutOfBounds};
+use qtab_core::learners::{Agent, QLearning, TdLearner, TruncationHandling};
+use qtab_core::policies::{AnyPolicy, TieBreaking};
+use qtab_core::prediction::{
+    FixedPolicy, LinearValues, MonteCarloPrediction, PredictionRule, Predictor, StateRows, TdLambda, TdZero,
+};
+use qtab_core::q_table::TerminalUpdate;
+use qtab_core::random::{AgentRng, Pcg64, Rng, SeedSequence};
+use qtab_core::schedules::{LearningRate, Schedule};
+use qtab_core::tasks::{BoxedTask, NativeTask};
+use qtab_core::{Budget, Env, Learner, QTable, Task, Trainer};
+
+const EPISODES: usize = 100;
+const MAX_EPISODE_STEPS: u64 = 10_000;
+const LEARNING_RATE: f64 = 0.1;
+
+/// A method that is chosen at run time.
+type Method = Box<dyn PredictionRule + Send>;
+
+/// A table whose step from a state by an action is given, until it leads to one of the terminal states.
+fn table(states: i64, start: usize, terminal: &[i64], actions: usize, step: impl Fn(i64, usize) -> i64) -> TabularMdp {
+    let row = |pair: usize| {
+        let (state, action) = ((pair / actions).cast_signed() as i64, pair % actions);
+        let next = if terminal.contains(&state) { state } else { step(state, action) };
+        vec![Outcome { probability: 1.0, state: next, reward: -1.0, terminated: terminal.contains(&next) }]
+    };
+    let rows: Vec<_> = (0..states as usize * actions).map(row).collect();
+    let mut initial = vec![0.0; states as usize];
+    initial[start] = 1.0;
+    TabularMdp::new(actions, &initial, &rows).expect("a valid table")
+}
+
+/// The 19-state random walk, with a terminal state at each end.
+fn random_walk() -> TabularMdp {
+    table(21, 10, &[0, 20], 2, |state, action| if action == 0 { state - 1 } else { state + 1 })
+}
+
+/// A grid world of 10 by 10 cells, from one corner to the opposite one.
+fn grid_world() -> TabularMdp {
+    table(100, 0, &[99], 4, |state, action| {
+        let (row, column) = (state / 10, state % 10);
+        let (row, column) = match action {
+            0 => (row - 1, column),
+            1 => (row, column + 1),
+            2 => (row + 1, column),
+            _ => (row, column - 1),
+        };
+        10 * row.clamp(0, 9) + column.clamp(0, 9)
+    })
+}
+
+/// A random policy in an environment.
+struct Problem {
+    env: TabularMdp,
+}
+
+impl Problem {
+    fn task(&self) -> NativeTask<TabularMdp, Identity> {
+        let features = Identity(self.env.num_states() as u32);
+        NativeTask::new(self.env.clone(), features, Some(MAX_EPISODE_STEPS), Pcg64::new(&SeedSequence::new(&[0])))
+    }
+
+    fn boxed(&self) -> BoxedTask<[u32; 1], OutOfBounds> {
+        BoxedTask::new(self.task())
+    }
+
+    fn predictor<U>(&self, rule: U) -> Predictor<U> {
+        let (states, actions) = (self.env.num_states(), self.env.num_actions());
+        let rows: Vec<u32> = (0..states as u32).collect();
+        let rows = StateRows::new(rows.into(), 1, states).expect("a row for each state");
+        let learning_rate = LearningRate::scheduled(Schedule::constant(LEARNING_RATE), 1);
+        Predictor {
+            values: LinearValues::new(vec![0.0; states], rows, learning_rate, 1.0),
+            behavior: FixedPolicy::new(vec![1.0 / actions as f64; states * actions].into(), actions),
+            rule,
+        }
+    }
+
+    /// Random actions, so that the episodes are those of the random policy.
+    fn q_learning<const N: usize, A>(&self, learning_rate: A) -> TdLearner<QLearning, Agent<N, AnyPolicy, A>> {
+        let actions = self.env.num_actions();
+        let agent = Agent {
+            table: QTable::new(vec![0.0; self.env.num_states() * actions], actions),
+            policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(1.0), ties: TieBreaking::First },
+            learning_rate,
+            discount: 1.0,
+            terminal_update: TerminalUpdate::Target,
+            masks: None,
+        };
+        TdLearner { agent, rule: QLearning }
+    }
+}
+
+/// Benchmarks a run, and returns after how many steps it ends.
+fn bench<T, L, R>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, parts: impl Fn() -> (T, L, R))
+where
+    T: Task<Error: Debug>,
+    L: Learner<T::Active>,
+    R: Rng + Clone,
+{
+    let run = || {
+        let (task, learner, rng) = parts();
+        let mut trainer = Trainer::new(task, learner, rng);
+        trainer.advance(Budget { episodes: EPISODES, work: u64::MAX }).expect("a table has no bounds to leave");
+        trainer.episodes().lengths.iter().sum::<i64>() as u64
+    };
+    group.throughput(Throughput::Elements(run()));
+    group.bench_function(name, |bencher| bencher.iter(run));
+}
+
+/// Benchmarks all runs in one environment with `N` actions.
+fn compare<const N: usize>(criterion: &mut Criterion, name: &str, env: TabularMdp) {
+    let problem = Problem { env };
+    let mut group = criterion.benchmark_group(name);
+    let seed = SeedSequence::new(&[0]);
+    let (rng, any_rng) = (Pcg64::new(&seed.child(0)), AgentRng::pcg64(&seed));
+    let scheduled = || LearningRate::scheduled(Schedule::constant(LEARNING_RATE), 1);
+    bench(&mut group, "Q-learning", || (problem.task(), problem.q_learning::<N, _>(LEARNING_RATE), rng.clone()));
+    bench(&mut group, "TD(0)", || (problem.task(), problem.predictor(TdZero), rng.clone()));
+    bench(&mut group, "TD(0.8)", || {
+        let rule: Method = Box::new(TdLambda::new(0.8, problem.env.num_states()));
+        (problem.task(), problem.predictor(rule), rng.clone())
+    });
+    bench(&mut group, "Monte Carlo", || {
+        let rule: Method = Box::new(MonteCarloPrediction::new(false, problem.env.num_states()));
+        (problem.task(), problem.predictor(rule), rng.clone())
+    });
+    bench(&mut group, "Q-learning, boxed", || {
+        let learner = problem.q_learning::<0, _>(scheduled());
+        (problem.boxed(), TruncationHandling { learner, terminate: false, bonus: None }, any_rng.clone())
+    });
+    bench(&mut group, "TD(0), boxed", || {
+        let rule: Method = Box::new(TdZero);
+        let learner = problem.predictor(rule);
+        (problem.boxed(), TruncationHandling { learner, terminate: false, bonus: None }, any_rng.clone())
+    });
+    group.finish();
+}
+
+fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    compare::<2>(&mut criterion, "random walk of 19 states", random_walk());
+    compare::<4>(&mut criterion, "grid world of 10 x 10 cells", grid_world());
+    criterion.final_summary();
+}
