@@ -1,75 +1,92 @@
-"""Prints the tables of docs/reference/environments.md, every preset over 100 seeds, in a minute or two.
+"""Prints the table of docs/reference/environments.md, every preset over fresh seeds.
 
-With an environment, those of one preset over other seeds:
+With an environment, the row of one preset:
 
-    python docs/reference/environments.py MountainCar-v0 solved --first-seed 10000 --seeds 1000
+    python docs/reference/environments.py MountainCar-v0 solved
 """
 
 import argparse
+from collections.abc import Iterable
 from typing import TypeAlias
 
 import gymnasium as gym
 import numpy as np
+from numpy.typing import ArrayLike
 
 import qtab
 from qtab.envs.registry import ENTRIES
 from qtab.results.summary import best_mean_returns
 
-SEEDS = 100
+ENVIRONMENTS = (*ENTRIES, "qtab/Racetrack-v0")
+SEEDS = {
+    ("MountainCar-v0", "solved"): (200, range(40_000, 41_000)),
+    ("CartPole-v1", "solved"): (32, range(40_000, 40_200)),
+    ("CartPole-v0", "solved"): (0, range(40_000, 40_040)),
+    ("Acrobot-v1", "solved"): (16, range(40_000, 40_020)),
+    ("Pendulum-v1", "tuned"): (16, range(40_000, 40_080)),
+    ("FrozenLake8x8-v1", "solved"): (16, range(40_000, 40_200)),
+    ("Taxi-v4", "solved"): (100, range(50_000, 51_000)),
+    ("qtab/Racetrack-v0", "solved"): (10, range(40_000, 40_100)),
+}
+"""On how many seeds a preset was chosen among others, from 20,000 on, and the fresh ones on which it was confirmed."""
+OTHERS = (0, range(40_000, 40_100))
+"""The same for presets that were chosen without a search."""
+FIRST_SEARCH_SEED = 20_000
+GREEDY_SEEDS = 100
 GREEDY_EPISODES = 1_000
 Cells: TypeAlias = tuple[str, ...]
 
-COLUMNS: Cells = ("environment", "preset", "algorithm", "episodes", "last 100", "seeds solved")
-COLUMNS += ("greedy", "threshold", "optimum")
-FRESH_COLUMNS: Cells = ("environment", "preset", "seeds", "last 100", "worst seed", "solved", "solved at the end")
+COLUMNS: Cells = ("environment", "preset", "algorithm", "episodes", "search seeds", "their last 100", "fresh seeds")
+COLUMNS += ("last 100", "worst seed", "solved", "solved at the end", "greedy", "threshold", "optimum")
 
 
-def row(env: str, preset: str, optimum: qtab.Optimum | None) -> Cells:
-    """Trains a preset with every seed and returns its row of the table."""
-    runs = qtab.train_many(env, SEEDS, preset=preset, tables=True)
-    threshold = gym.spec(env).reward_threshold
+def row(env: str, preset: str) -> Cells:
+    """Trains a preset with its search seeds and with fresh ones, and returns its row of the table."""
+    threshold, optimum = gym.spec(env).reward_threshold, known_optimum(env)
+    searched, fresh = SEEDS.get((env, preset), OTHERS)
+    on_search_seeds = ""
+    if searched:
+        seen = range(FIRST_SEARCH_SEED, FIRST_SEARCH_SEED + searched)
+        on_search_seeds = average(qtab.train_many(env, seen, preset=preset).final_returns(100))
+    runs = qtab.train_many(env, fresh, preset=preset, tables=True)
+    last = runs.final_returns(100)
+    solved = ("", "")
+    if threshold is not None:
+        solved = tuple(map(share, (best_mean_returns(runs.episode_returns) >= threshold, last >= threshold)))
     return (
         env,
         preset,
         runs.config.algorithm,
         f"{runs.config.episodes:,}",
-        average(runs.final_returns(100)),
-        "" if threshold is None else str(np.count_nonzero(best_mean_returns(runs.episode_returns) >= threshold)),
+        f"{searched:,}" if searched else "",
+        on_search_seeds,
+        f"{fresh[0]:,} to {fresh[-1]:,}",
+        average(last),
+        f"{last.min():.4g}",
+        *solved,
         average(greedy_returns(runs, optimum)),
         "" if threshold is None else f"{threshold:g}",
         "" if optimum is None else f"{optimum.expected_return:.4g}" + ("" if optimum.exact else f" ({optimum.label})"),
     )
 
 
-def fresh_row(env: str, preset: str, seeds: range) -> Cells:
-    """Trains a preset with seeds on which it was not chosen; of an environment with a threshold."""
-    runs = qtab.train_many(env, seeds, preset=preset)
-    threshold, last = gym.spec(env).reward_threshold, runs.final_returns(100)
-    assert threshold is not None, f"{env} has no threshold"  # noqa: S101 - a script of this repository
-    solved = np.count_nonzero(best_mean_returns(runs.episode_returns) >= threshold)
-    return (
-        env,
-        preset,
-        f"{seeds[0]:,} to {seeds[-1]:,}",
-        f"{last.mean():.2f}",
-        f"{last.min():.2f}",
-        f"{solved:,} of {len(seeds):,}",
-        f"{np.count_nonzero(last >= threshold):,} of {len(seeds):,}",
-    )
-
-
-def greedy_returns(runs: qtab.Runs, optimum: qtab.Optimum | None) -> np.typing.ArrayLike:
+def greedy_returns(runs: qtab.Runs, optimum: qtab.Optimum | None) -> ArrayLike:
     """Returns each greedy policy's expected return: exact if the transition table is known, else estimated."""
     if optimum is not None and optimum.exact:
         return optimum.gap(runs).greedy_return
-    played = (qtab.evaluate(run, GREEDY_EPISODES, seed=index) for index, run in enumerate(runs))
-    return [evaluation.mean_return for evaluation in played]
+    some: Iterable[qtab.Run] = (run for run, _ in zip(runs, range(GREEDY_SEEDS), strict=False))
+    return [qtab.evaluate(run, GREEDY_EPISODES, seed=index).mean_return for index, run in enumerate(some)]
 
 
-def average(values: np.typing.ArrayLike) -> str:
+def average(values: ArrayLike) -> str:
     """Formats the mean over seeds and its standard error."""
     error = np.std(values, ddof=1) / np.sqrt(np.size(values))
     return f"{np.mean(values):.4g}" + (f" ± {error:.1g}" if error > 1e-9 else "")
+
+
+def share(passed: np.typing.NDArray[np.bool_]) -> str:
+    """Formats how many of all seeds passed: "all", or their number."""
+    return "all" if passed.all() else f"{np.count_nonzero(passed):,}"
 
 
 def known_optimum(env: str) -> qtab.Optimum | None:
@@ -88,17 +105,9 @@ def print_row(cells: Cells) -> None:
 parser = argparse.ArgumentParser()
 parser.add_argument("env", nargs="?")
 parser.add_argument("preset", nargs="?", default="solved")
-parser.add_argument("--first-seed", type=int, default=10_000)
-parser.add_argument("--seeds", type=int, default=1000)
 asked = parser.parse_args()
-columns = COLUMNS if asked.env is None else FRESH_COLUMNS
-print_row(columns)
-print("|---" * len(columns) + "|")
-if asked.env is not None:
-    print_row(fresh_row(asked.env, asked.preset, range(asked.first_seed, asked.first_seed + asked.seeds)))
-else:
-    for env in ENTRIES:
-        if presets := qtab.presets(env):
-            optimum = known_optimum(env)
-            for preset in presets:
-                print_row(row(env, preset, optimum))
+print_row(COLUMNS)
+print("|---" * len(COLUMNS) + "|")
+pairs = [(env, preset) for env in ENVIRONMENTS for preset in qtab.presets(env)]
+for env, preset in pairs if asked.env is None else [(asked.env, asked.preset)]:
+    print_row(row(env, preset))

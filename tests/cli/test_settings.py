@@ -35,7 +35,7 @@ def test_help_has_the_explanations_of_the_api(capsys: pytest.CaptureFixture[str]
     [
         ([], ["default: 0.8", "default: 10.0 100.0", "default: assign", "default: article", "default: 0.9"]),
         (["CartPole-v1"], ["default: 3 3 6 6", "default: -2.4 -2.0 -0.21 -2.0", "default: tuned"]),
-        (["--env", "CartPole-v1", "--preset", "solved"], ["default: sarsa_lambda", "default: 16"]),
+        (["--env", "CartPole-v1", "--preset", "solved"], ["default: true_online_sarsa_lambda", "default: 16"]),
         (["--episodes", "77", "--initial-q", "a.npz"], ["default: 77", "default: a.npz"]),
         (["qtab/MaximizationBias-v0"], ["default: an array of shape (3, 10)"]),
         (["--no-such-flag"], ["default: 0.8"]),

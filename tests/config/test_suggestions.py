@@ -99,8 +99,8 @@ def test_a_choice_that_is_far_from_all_suggests_none(value: str) -> None:
 def test_a_wrong_preset_names_the_nearest_one() -> None:
     with pytest.raises(ValueError, match=r"^preset must be one of .*, got 'articel' \(did you mean 'article'\?\)$"):
         qtab.train(CAR, preset="articel")
-    with pytest.raises(ValueError, match=r"^preset must be left out for LunarLander-v3, which has none, got 'solved'$"):
-        qtab.train("LunarLander-v3", preset="solved")
+    with pytest.raises(ValueError, match=r"^preset must be left out for BipedalWalker-v3, .* none, got 'solved'$"):
+        qtab.train("BipedalWalker-v3", preset="solved")
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,7 @@ export const EXAMPLES = {
     {
       preset: "solved",
       title: "Solved: tile coding",
-      look: "Sarsa(λ) with 16 tilings. The curve rises to 500, the time limit, and the greedy agent keeps the pole up to the end.",
+      look: "True online Sarsa(λ) with 16 tilings. The curve rises to 500, the time limit, and the greedy agent keeps the pole up to the end.",
     },
   ],
   "FrozenLake-v1": [
