@@ -16,6 +16,9 @@ type Episodes<'py> = (Array<'py, f64>, Array<'py, i64>);
 /// The actions from each state, where a way was found.
 type Routes<'py> = Vec<Option<Array<'py, u8>>>;
 
+/// The constants of an environment: numbers, and whether a flag is set.
+type Constants = (Vec<(String, f64)>, Vec<(String, bool)>);
+
 /// The torques of a pendulum among which its policy chooses.
 const TORQUES: usize = 21;
 
@@ -143,7 +146,7 @@ fn episodes<'py>(py: Python<'py>, rollouts: &[Rollout]) -> Episodes<'py> {
 }
 
 /// An environment with the given constants.
-fn with<E: Parameters>(mut env: E, (parameters, flags): (Vec<(String, f64)>, Vec<(String, bool)>)) -> PyResult<E> {
+fn with<E: Parameters>(mut env: E, (parameters, flags): Constants) -> PyResult<E> {
     for (name, value) in parameters {
         let parameter = env.parameter(&name);
         *parameter.ok_or_else(|| invalid("parameters", "the environment's", format!("'{name}'")))? = value;
