@@ -85,7 +85,8 @@ impl Policy for SingleStateEpsilonGreedy {
 
     /// Nothing is stored. Other values may be restored, so that the next choice searches.
     fn persist_counts(&mut self, _checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        (self.last, self.best, self.best_value) = (0, 0, f64::NAN);
+        (self.best_value, self.bound) = (f64::NAN, f64::NAN);
+        (self.last, self.best) = (0, 0);
         Ok(())
     }
 
@@ -230,6 +231,10 @@ mod tests {
             values[action] += (reward - values[action]) * if averages { 1.0 / counts[action] } else { 0.25 };
             one.end_episode();
             other.end_episode();
+            // A run may be saved at any time, and goes on.
+            if step % 3 == 2 {
+                one.persist_counts(&mut Checkpoint::save(&mut Vec::new())).expect("memory suffices");
+            }
         }
         assert_eq!(rngs[0], rngs[1]);
     }
