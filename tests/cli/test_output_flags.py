@@ -63,6 +63,7 @@ def test_train_says_solved_and_the_gap_of_a_small_table(tmp_path: Path) -> None:
         "final": gap.final,
         "greedy": gap.greedy,
         "greedy_return": gap.greedy_return,
+        "attainable": gap.attainable,
         "standard_error": 0.0,
     }
     assert content["files"] == {}

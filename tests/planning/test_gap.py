@@ -90,3 +90,45 @@ def test_rows_that_are_not_the_states_are_refused(options: dict[str, Any]) -> No
     for compare in (best.gap, lambda one: qtab.plots.difference(one, best)):
         with pytest.raises(ValueError, match="run must have a table of the components of its observations, not of"):
             compare(run)
+
+
+@pytest.fixture(scope="module")
+def car() -> qtab.Optimum:
+    return qtab.optimum("MountainCar-v0")
+
+
+def test_a_gap_is_split_into_what_the_table_costs_and_what_was_not_learned(car):
+    run = qtab.train("MountainCar-v0", seed=0, episodes=300)
+    gap = car.gap(run)
+    assert gap.approximation == gap.optimum - gap.attainable
+    assert gap.learning == gap.attainable - gap.greedy_return
+    assert gap.approximation + gap.learning == pytest.approx(gap.greedy)
+    assert -125 < gap.attainable < -110  # the article's grid; its settings end near -180
+    assert f"of the table, whose best known policy returns {gap.attainable:.4g}, and" in str(gap)
+    assert "best known with this table" in gap._repr_html_()
+    assert car.gap(run).attainable == gap.attainable
+
+
+def test_a_finer_grid_costs_less(car):
+    coarse, fine = (
+        car.gap(qtab.train("MountainCar-v0", seed=0, episodes=1, discretizer="bins", bins=bins)).attainable
+        for bins in ((8, 8), (40, 40))
+    )
+    assert coarse < fine - 10
+    assert fine > -110
+
+
+@pytest.mark.slow
+def test_the_best_policy_known_returns_at_least_what_a_run_does():
+    runs = qtab.train_many("CartPole-v1", 2, tables=True, episodes=1500)
+    gap = qtab.optimum("CartPole-v1").gap(runs)
+    assert gap.attainable is not None
+    assert gap.greedy_return.max() <= gap.attainable <= gap.optimum
+
+
+def test_of_tile_coding_and_of_lost_tables_no_best_policy_is_known(car):
+    solved = qtab.train("MountainCar-v0", preset="solved", seed=0, episodes=20)
+    without = qtab.train_many("MountainCar-v0", 2, episodes=5)
+    for gap in (car.gap(solved), car.gap(without)):
+        assert (gap.attainable, gap.approximation, gap.learning) == (None, None, None)
+        assert "of the table" not in str(gap)

@@ -24,9 +24,9 @@ def test_frozen_lake_is_worth_less_to_a_policy_that_ignores_the_time() -> None:
     assert "0.740165" in best._repr_html_()
     run = qtab.train("FrozenLake-v1", seed=0, episodes=300)
     gap = best.gap(run)
-    assert gap.stationary == known.expected_return
-    assert "best known stationary policy 0.7402" in str(gap)
-    assert "best known stationary policy" in gap._repr_html_()
+    assert gap.attainable == known.expected_return
+    assert "of the table, whose best known policy returns 0.7402, and" in str(gap)
+    assert "best known with this table" in gap._repr_html_()
 
 
 @pytest.mark.parametrize("name", ["CliffWalking-v1", "Taxi-v4"])
@@ -36,7 +36,7 @@ def test_it_is_proven_where_no_policy_returns_more(name: str) -> None:
     assert known is not None
     assert (known.proven, known.label) == (True, "best")
     assert known.expected_return == pytest.approx(best.expected_return, rel=1e-12)
-    assert best.gap(qtab.train(name, seed=0, episodes=20)).stationary is None
+    assert best.gap(qtab.train(name, seed=0, episodes=20)).approximation == 0
 
 
 def test_it_is_not_known_for_a_search_or_a_large_table() -> None:

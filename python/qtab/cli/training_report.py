@@ -199,5 +199,6 @@ def _gap_facts(facts: Facts, gap: Gap[float] | None) -> dict[str, Any] | None:
         "final": BEST_KNOWN_MOUNTAIN_CAR - facts.final_return if gap is None else gap.final,
         "greedy": None if gap is None else gap.greedy,
         "greedy_return": None if gap is None else gap.greedy_return,
+        "attainable": None if gap is None else gap.attainable,
         "standard_error": None if gap is None else gap.standard_error,
     }

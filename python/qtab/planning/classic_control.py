@@ -1,18 +1,17 @@
 """The best known policies of classic control: value iteration on a grid, and searches over the exact dynamics."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from gymnasium.envs.classic_control import AcrobotEnv, CartPoleEnv, MountainCarEnv, PendulumEnv
 from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
 from qtab._utils import checks
 from qtab._utils.shown import shown
-from qtab.envs import classic_control as rust
+from qtab.planning.aggregation import aggregated_run
+from qtab.planning.grid_environments import GridEnvironment
 from qtab.planning.search import Search
 from qtab.results.run import Run
 from qtab.training.evaluate import evaluate
@@ -21,114 +20,6 @@ EVALUATION_EPISODES = 1000
 """The return of a greedy policy is estimated from this many episodes, with seed 0."""
 KEPT_SEARCHES = 2
 """The results of so many searches are kept, about 50 MB each: ``gap`` after ``optimum`` need not search again."""
-
-
-@dataclass(frozen=True, eq=False)
-class GridEnvironment:
-    """An environment whose best known policy is found on a grid over its states."""
-
-    name: str
-    """Its name in Rust."""
-    classes: tuple[type, ...]
-    """Gymnasium's class and ours."""
-    starts: NDArray[np.float64]
-    """(starts, components): states that cover Gymnasium's range of start states evenly."""
-    state_of: Callable[[NDArray[np.float64]], NDArray[np.float64]]
-    """The components of the state that an observation shows."""
-    observation: str
-    """What an observation is, for messages."""
-    observation_length: int
-    """The number of its components."""
-    beam: int = 0
-    """How many states the search for a route keeps after each step; 0 where there is no goal."""
-    starts_at_rest: bool = False
-    """Whether the starts are given as their first component alone."""
-    flags: Mapping[str, Any] = field(default_factory=dict)
-    """The value of each attribute of two values that Rust calls true."""
-    fixed: Mapping[str, Any] = field(default_factory=dict)
-    """Constants that the search takes for granted."""
-
-
-def _evenly(low: ArrayLike, high: ArrayLike, count: int) -> NDArray[np.float64]:
-    """Returns (count, components) points that cover a box evenly, by an additive recurrence.
-
-    M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018.
-    """
-    lower, upper = np.array(low), np.array(high)
-    root = 2.0
-    for _ in range(64):
-        root = (1.0 + root) ** (1.0 / (len(lower) + 1))
-    steps = root ** -np.arange(1.0, len(lower) + 1)
-    return np.asarray(lower + (upper - lower) * ((0.5 + np.arange(1, count + 1)[:, None] * steps) % 1.0))
-
-
-def _midpoints(low: float, high: float, count: int) -> NDArray[np.float64]:
-    """Returns (count, 2) states at rest: the midpoints of equal parts of a range of positions."""
-    positions = low + (high - low) * ((np.arange(count) + 0.5) / count)
-    return np.stack((positions, np.zeros(count)), axis=1)
-
-
-def _of_pendulum(observation: NDArray[np.float64]) -> NDArray[np.float64]:
-    cosine, sine, speed = observation
-    return np.array([np.arctan2(sine, cosine), speed])
-
-
-def _of_acrobot(observation: NDArray[np.float64]) -> NDArray[np.float64]:
-    cosine1, sine1, cosine2, sine2, *speeds = observation
-    return np.array([np.arctan2(sine1, cosine1), np.arctan2(sine2, cosine2), *speeds])
-
-
-def _itself(observation: NDArray[np.float64]) -> NDArray[np.float64]:
-    return observation
-
-
-# A beam of 1,024 shortens MountainCar's routes by a hundredth of a step and takes a hundred times as long; one of 256
-# shortens Acrobot's by one step.
-ENVIRONMENTS = (
-    GridEnvironment(
-        "MountainCar",
-        (MountainCarEnv, rust.MountainCarEnv),
-        _midpoints(-0.6, -0.4, 1000),
-        _itself,
-        "a position and a velocity",
-        2,
-        beam=16,
-        starts_at_rest=True,
-    ),
-    GridEnvironment(
-        "CartPole",
-        (CartPoleEnv, rust.CartPoleEnv),
-        _evenly([-0.05] * 4, [0.05] * 4, 1000),
-        _itself,
-        "position, velocity, angle and angular velocity",
-        4,
-        flags={"kinematics_integrator": "euler", "_sutton_barto_reward": True},
-    ),
-    GridEnvironment(
-        "Acrobot",
-        (AcrobotEnv, rust.AcrobotEnv),
-        _evenly([-0.1] * 4, [0.1] * 4, 200).astype(np.float32).astype(np.float64),
-        _of_acrobot,
-        "cosine and sine of both angles and both angular velocities",
-        6,
-        beam=64,
-        flags={"book_or_nips": "nips"},
-        fixed={"torque_noise_max": 0.0, "AVAIL_TORQUE": [-1.0, 0.0, 1.0]},
-    ),
-    GridEnvironment(
-        "Pendulum",
-        (PendulumEnv, rust.PendulumEnv),
-        _evenly([-np.pi, -1.0], [np.pi, 1.0], 1000),
-        _of_pendulum,
-        "cosine and sine of the angle and the angular velocity",
-        3,
-    ),
-)
-
-
-def grid_environment(env: Any) -> GridEnvironment | None:
-    """Returns how the best policy of an environment is searched; None for an environment of another class."""
-    return next((known for known in ENVIRONMENTS if type(env) in known.classes), None)
 
 
 def search_grid(
@@ -196,9 +87,10 @@ class GridSolver:
 
     needs_step_count = False
 
-    def __init__(self, searched: _core.GridSearch, known: GridEnvironment) -> None:
+    def __init__(self, searched: _core.GridSearch, known: GridEnvironment, search: Search) -> None:
         self._searched = searched
         self._known = known
+        self._axes = search.axes
         self._torques = searched.torques()
 
     @property
@@ -222,3 +114,8 @@ class GridSolver:
         """Returns the mean return of a run's greedy policy over 1,000 episodes, and its standard error."""
         evaluation = evaluate(run, EVALUATION_EPISODES, seed=0, progress=False)
         return evaluation.mean_return, evaluation.standard_error
+
+    def attainable_return(self, run: Run) -> float | None:
+        """Returns the mean return of the best policy known on the cells of a run; None for a run without cells."""
+        aggregated = aggregated_run(run, self._known, self._axes)
+        return None if aggregated is None else self.greedy_return(aggregated)[0]

@@ -28,9 +28,9 @@ class Gap(Generic[Number]):
     """The standard error of ``greedy_return``; 0 where that was computed exactly, from a transition table."""
     label: str = "optimum"
     """``"optimum"``, or ``"best known"`` where the optimum is not proven."""
-    stationary: float | None = None
-    """The expected return of the best policy known that does not depend on the number of steps taken, as the run's does
-    not; None where it is that of the optimum, or not known."""
+    attainable: float | None = None
+    """The return of the best policy known with the run's table, whose cells join states, or which does not count the
+    steps taken; None where it is not known. A lower bound: a better one may exist."""
 
     @property
     def final(self) -> Number:
@@ -41,6 +41,16 @@ class Gap(Generic[Number]):
     def greedy(self) -> Number:
         """The optimum minus ``greedy_return``."""
         return self.optimum - self.greedy_return
+
+    @property
+    def approximation(self) -> float | None:
+        """The optimum minus ``attainable``: at most so much of the gap is what the table costs, not the learning."""
+        return None if self.attainable is None else self.optimum - self.attainable
+
+    @property
+    def learning(self) -> Number | None:
+        """``attainable`` minus ``greedy_return``: what learning has not reached yet, at least."""
+        return None if self.attainable is None else self.attainable - self.greedy_return
 
     def __repr__(self) -> str:
         """One line, of many runs with their means."""
@@ -55,9 +65,9 @@ class Gap(Generic[Number]):
             ("last 100 episodes of training", *map(_shown, (self.final_return, self.final))),
             (self.label, f"{self.optimum:.4g}", ""),
         ]
-        stationary = self.stationary
-        if stationary is not None:
-            rows.append(("best known stationary policy", _shown(stationary), _shown(self.optimum - stationary)))
+        attainable = self.attainable
+        if attainable is not None and self._table_costs:
+            rows.append(("best known with this table", _shown(attainable), _shown(self.optimum - attainable)))
         return html.listing(heading, ("", "return", "gap"), rows)
 
     def __str__(self) -> str:
@@ -65,9 +75,16 @@ class Gap(Generic[Number]):
             float(np.mean(value)) for value in (self.greedy_return, self.standard_error, self.greedy)
         )
         uncertainty = f" ± {standard_error:.2g}" if standard_error > 0 else ""
-        stationary = "" if self.stationary is None else f", best known stationary policy {self.stationary:.4g}"
-        optimum = f"{self.label} {self.optimum:.4g}"
-        return f"greedy policy {greedy_return:.4g}{uncertainty}, {optimum}, gap {gap:.2g}{stationary}"
+        text = f"greedy policy {greedy_return:.4g}{uncertainty}, {self.label} {self.optimum:.4g}, gap {gap:.2g}"
+        attainable = self.attainable
+        if attainable is None or not self._table_costs:
+            return text
+        table = f"{self.optimum - attainable:.2g} of the table, whose best known policy returns {attainable:.4g}"
+        return f"{text}: {table}, and {attainable - greedy_return:.2g} of learning"
+
+    @property
+    def _table_costs(self) -> bool:
+        return self.attainable is not None and not np.isclose(self.attainable, self.optimum, rtol=1e-9, atol=1e-12)
 
 
 def _shown(value: float | NDArray[np.float64]) -> str:

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any, Protocol, overload
 
 import gymnasium as gym
@@ -38,6 +37,9 @@ class Solver(Protocol):
 
     def greedy_return(self, run: Run) -> tuple[float, float]:
         """Returns the expected return of a run's greedy policy, and its standard error."""
+
+    def attainable_return(self, run: Run) -> float | None:
+        """Returns the return of the best policy known with the table of a run; None where none is known."""
 
 
 @with_fields
@@ -83,14 +85,14 @@ class Optimum:
         """``"optimum"``, or ``"best known"`` where it is not exact."""
         return "optimum" if self.exact else "best known"
 
-    @cached_property
+    @property
     def stationary(self) -> StationaryPolicy | None:
         """The best policy known that ignores the number of steps taken, as runs without ``time_aware`` learn.
 
         The criterion is the undiscounted return under the time limit. It is searched when it is first read. None for an
         optimum that was found by search itself, and for tables too large to search within seconds.
         """
-        return self.solver.stationary() if isinstance(self.solver, TabularSolver) else None
+        return self.solver.stationary if isinstance(self.solver, TabularSolver) else None
 
     def predict(
         self,
@@ -140,7 +142,11 @@ class Optimum:
     @overload
     def gap(self, run: Runs) -> Gap[NDArray[np.float64]]: ...
     def gap(self, run: Run | Runs) -> Gap[float] | Gap[NDArray[np.float64]]:
-        """Returns how far a run, or each of many runs, falls short of the optimum.
+        """Returns how far a run, or each of many runs, falls short of the optimum, and how much of that is its table's.
+
+        A table may be unable to hold the best policy: its cells join states that need different actions, or it does not
+        count the steps taken. What is best with it is estimated: of cells as dynamic programming finds it where all
+        states of a cell are taken for one, and of a transition table as :attr:`stationary`.
 
         The return of a greedy policy is exact where there is a transition table, else the mean of 1,000 episodes.
 
@@ -154,23 +160,18 @@ class Optimum:
         if isinstance(run, Run):
             last = run.episode_returns[-FINAL_EPISODES:]
             final_return = float(last.mean()) if len(last) else float("nan")
-            greedy_return = self.solver.greedy_return(run)
-            return Gap(
-                self.expected_return,
-                final_return,
-                *greedy_return,
-                label=self.label,
-                stationary=self._stationary_return(run),
-            )
+            greedy_return, error = self.solver.greedy_return(run)
+            attainable = self._attainable_return(run, greedy_return)
+            return Gap(self.expected_return, final_return, greedy_return, error, self.label, attainable)
         evaluated = [(float("nan"),) * 2] * len(run) if run.tables is None else map(self.solver.greedy_return, run)
-        greedy, error = np.array(list(evaluated), dtype=np.float64).reshape(len(run), 2).T
-        stationary = self._stationary_return(run)
-        return Gap(self.expected_return, run.final_returns(), greedy, error, label=self.label, stationary=stationary)
+        greedy, errors = np.array(list(evaluated), dtype=np.float64).reshape(len(run), 2).T
+        attainable = None if run.tables is None or not len(run) else self._attainable_return(run[0], greedy)
+        return Gap(self.expected_return, run.final_returns(), greedy, errors, self.label, attainable)
 
-    def _stationary_return(self, run: Run | Runs) -> float | None:
-        """What a run with a stationary policy can reach, where that is not the optimum."""
-        known = self.stationary
-        return None if known is None or known.proven or run.config.time_aware else known.expected_return
+    def _attainable_return(self, run: Run, greedy_returns: ArrayLike) -> float | None:
+        """What the best policy known with the table of a run returns: at least what greedy policies were seen to."""
+        found = self.solver.attainable_return(run)
+        return None if found is None else max(found, float(np.max(greedy_returns)))
 
     def check_same_env(self, run: Run | Runs) -> None:
         """Checks that a run is on the environment of this optimum.

@@ -21,7 +21,8 @@ from qtab.envs.matching import time_limit, unknown_wrapper
 from qtab.envs.native import table_env
 from qtab.envs.registry import spec_of, versioned
 from qtab.envs.stored import spec_of_run
-from qtab.planning.classic_control import GridEnvironment, GridSolver, grid_environment, search_grid
+from qtab.planning.classic_control import GridSolver, search_grid
+from qtab.planning.grid_environments import GridEnvironment, grid_environment
 from qtab.planning.optimum import Optimum, Solver
 from qtab.planning.search import Search
 from qtab.planning.table import has_transition_table
@@ -214,6 +215,6 @@ def _search_grid(env: Any, known: GridEnvironment, discount: float, max_episode_
         q_values=q_values,
         policy=np.argmax(q_values, axis=-1),
         expected_return=float(search.returns.mean()),
-        solver=GridSolver(searched, known),
+        solver=GridSolver(searched, known, search),
         search=search,
     )

@@ -1,6 +1,7 @@
 """The best policy of an environment with a transition table, by dynamic programming."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -120,8 +121,15 @@ class TabularSolver:
         if not run.discretizer.has_cells or found != shape:
             raise ValueError(f"run must have a table of shape {shape}, got {found}")
 
+    def attainable_return(self, run: Run) -> float | None:
+        """Returns the return of the best policy known that counts the steps only if the run's does; None if unknown."""
+        if run.config.time_aware:
+            return self._solution.expected_return
+        return None if self.stationary is None else self.stationary.expected_return
+
+    @cached_property
     def stationary(self) -> StationaryPolicy | None:
-        """Returns the best policy known that does not depend on the number of steps taken; None for large tables."""
+        """The best policy known that does not depend on the number of steps taken; None for large tables."""
         found = stationary_policy(self._planner, self._cells.n_rows, self._max_episode_steps)
         if found is None:
             return None

@@ -1,0 +1,131 @@
+"""The environments of classic control whose best known policy is found on a grid over their states."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from gymnasium.envs.classic_control import AcrobotEnv, CartPoleEnv, MountainCarEnv, PendulumEnv
+from numpy.typing import NDArray
+
+from qtab.envs import classic_control as rust
+from qtab.planning.even_points import even_points
+
+
+@dataclass(frozen=True, eq=False)
+class GridEnvironment:
+    """An environment whose best known policy is found on a grid over its states."""
+
+    name: str
+    """Its name in Rust."""
+    classes: tuple[type, ...]
+    """Gymnasium's class and ours."""
+    starts: NDArray[np.float64]
+    """(starts, components): states that cover Gymnasium's range of start states evenly."""
+    state_of: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+    """The components of the state that an observation shows."""
+    observations_of: Callable[[NDArray[np.float64]], NDArray[np.float32]]
+    """(n, components) states as (n, components) observations."""
+    observation: str
+    """What an observation is, for messages."""
+    observation_length: int
+    """The number of its components."""
+    beam: int = 0
+    """How many states the search for a route keeps after each step; 0 where there is no goal."""
+    starts_at_rest: bool = False
+    """Whether the starts are given as their first component alone."""
+    flags: Mapping[str, Any] = field(default_factory=dict)
+    """The value of each attribute of two values that Rust calls true."""
+    fixed: Mapping[str, Any] = field(default_factory=dict)
+    """Constants that the search takes for granted."""
+    has_discrete_actions: bool = True
+    """Whether its actions are the same for every learner."""
+
+
+def _midpoints(low: float, high: float, count: int) -> NDArray[np.float64]:
+    """Returns (count, 2) states at rest: the midpoints of equal parts of a range of positions."""
+    positions = low + (high - low) * ((np.arange(count) + 0.5) / count)
+    return np.stack((positions, np.zeros(count)), axis=1)
+
+
+def _of_pendulum(observation: NDArray[np.float64]) -> NDArray[np.float64]:
+    cosine, sine, speed = observation
+    return np.array([np.arctan2(sine, cosine), speed])
+
+
+def _of_acrobot(observation: NDArray[np.float64]) -> NDArray[np.float64]:
+    cosine1, sine1, cosine2, sine2, *speeds = observation
+    return np.array([np.arctan2(sine1, cosine1), np.arctan2(sine2, cosine2), *speeds])
+
+
+def _acrobots(states: NDArray[np.float64]) -> NDArray[np.float32]:
+    first, second, *speeds = states.T
+    parts = (np.cos(first), np.sin(first), np.cos(second), np.sin(second), *speeds)
+    return np.stack(parts, axis=1).astype(np.float32)
+
+
+def _pendulums(states: NDArray[np.float64]) -> NDArray[np.float32]:
+    angle, speed = states.T
+    return np.stack((np.cos(angle), np.sin(angle), speed), axis=1).astype(np.float32)
+
+
+def _itself(observation: NDArray[np.float64]) -> NDArray[np.float64]:
+    return observation
+
+
+def _as_float32(states: NDArray[np.float64]) -> NDArray[np.float32]:
+    return states.astype(np.float32)
+
+
+# A beam of 1,024 shortens MountainCar's routes by a hundredth of a step and takes a hundred times as long; one of 256
+# shortens Acrobot's by one step.
+ENVIRONMENTS = (
+    GridEnvironment(
+        "MountainCar",
+        (MountainCarEnv, rust.MountainCarEnv),
+        _midpoints(-0.6, -0.4, 1000),
+        _itself,
+        _as_float32,
+        "a position and a velocity",
+        2,
+        beam=16,
+        starts_at_rest=True,
+    ),
+    GridEnvironment(
+        "CartPole",
+        (CartPoleEnv, rust.CartPoleEnv),
+        even_points([-0.05] * 4, [0.05] * 4, 1000),
+        _itself,
+        _as_float32,
+        "position, velocity, angle and angular velocity",
+        4,
+        flags={"kinematics_integrator": "euler", "_sutton_barto_reward": True},
+    ),
+    GridEnvironment(
+        "Acrobot",
+        (AcrobotEnv, rust.AcrobotEnv),
+        even_points([-0.1] * 4, [0.1] * 4, 100).astype(np.float32).astype(np.float64),
+        _of_acrobot,
+        _acrobots,
+        "cosine and sine of both angles and both angular velocities",
+        6,
+        beam=32,
+        flags={"book_or_nips": "nips"},
+        fixed={"torque_noise_max": 0.0, "AVAIL_TORQUE": [-1.0, 0.0, 1.0]},
+    ),
+    GridEnvironment(
+        "Pendulum",
+        (PendulumEnv, rust.PendulumEnv),
+        even_points([-np.pi, -1.0], [np.pi, 1.0], 1000),
+        _of_pendulum,
+        _pendulums,
+        "cosine and sine of the angle and the angular velocity",
+        3,
+        has_discrete_actions=False,
+    ),
+)
+
+
+def grid_environment(env: Any) -> GridEnvironment | None:
+    """Returns how the best policy of an environment is searched; None for an environment of another class."""
+    return next((known for known in ENVIRONMENTS if type(env) in known.classes), None)
