@@ -127,15 +127,6 @@ def test_state_values_that_differ_between_columns_are_refused() -> None:
         qtab.train(CORRIDOR, algorithm="actor_critic", initial_q=tables)
 
 
-@pytest.mark.parametrize("function", [qtab.explain, qtab.diagnose])
-def test_what_needs_action_values_says_so(function: Any) -> None:
-    run = qtab.train(CORRIDOR, seed=0, episodes=5)
-    with pytest.raises(
-        ValueError, match=r"^run must be of an algorithm that learns action values, got one of 'reinforce'"
-    ):
-        function(run)
-
-
 def test_a_preset_yields_to_an_algorithm_of_preferences() -> None:
     run = qtab.train("CliffWalking-v1", algorithm="actor_critic", **SHORT)
     assert run.config.exploration == "softmax"

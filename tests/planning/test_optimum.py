@@ -12,6 +12,7 @@ import qtab
 from qtab.reference import dynamic_programming as plain
 from support.toy_text import IDS
 
+CONTINUOUS = "MountainCarContinuous-v0"
 METHODS = ["value_iteration", "policy_iteration", "finite_horizon"]
 
 
@@ -179,7 +180,7 @@ class Odd(gym.RewardWrapper[Any, Any]):
 @pytest.mark.parametrize(
     ("arguments", "error", "message"),
     [
-        ({"env": "CartPole-v1"}, ValueError, "env must have a transition table P .* the optimum of CartPole-v1 is not"),
+        ({"env": CONTINUOUS}, ValueError, f"env must have a transition table P .* the optimum of {CONTINUOUS} is not"),
         ({"env": 3}, TypeError, "env must be an environment id, an EnvSpec, an environment or a run, got 3"),
         ({"env": "Nothing-v0"}, gym.error.Error, "Nothing"),
         (

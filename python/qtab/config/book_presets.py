@@ -67,9 +67,8 @@ DYNA_MAZE: SharedSettings = {
 _CHANGING_MAZE: SharedSettings = {
     **DYNA_MAZE,
     "algorithm": "dyna_q_plus",
-    "planning_steps": 10,
     "time_weight": 1e-3,
-    "learning_rate": 1.0,
+    "learning_rate": 0.5,
 }
 BLOCKING_MAZE: SharedSettings = {**_CHANGING_MAZE, "episodes": 300}
 SHORTCUT_MAZE: SharedSettings = {**_CHANGING_MAZE, "episodes": 600}

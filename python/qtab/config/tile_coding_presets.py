@@ -65,19 +65,3 @@ PENDULUM: SharedSettings = {
     "discount": 0.98,
     "episodes": 2000,
 }
-
-# The limits are those of the usual states; the bounds of the space are wider. Found with one seed, 20,000: a mean of
-# 194 over the last 100 episodes, where 200 is the threshold.
-LUNAR_LANDER: SharedSettings = {
-    **_TILES,
-    "algorithm": "true_online_sarsa_lambda",
-    "tilings": 32,
-    "tiles": (4, 4, 4, 4, 4, 4, 1, 1),
-    "hashed_rows": 2**20,
-    "low": (-0.8, -0.2, -1.0, -1.4, -0.8, -1.2, 0.0, 0.0),
-    "high": (0.8, 1.5, 1.0, 0.4, 0.8, 1.2, 1.0, 1.0),
-    "discount": 0.99,
-    "trace_decay": 0.8,
-    "trace_cutoff": 1e-2,
-    "episodes": 1500,
-}

@@ -85,6 +85,7 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
     given = {
         name: {setting: value for setting, value in preset.items() if setting not in LEFT_OUT}
         for name, preset in presets(entry.env).items()
+        if not preset.get("time_aware")  # its table has an axis that the page does not show
     }
     made = {
         "actions": list(description.actions),

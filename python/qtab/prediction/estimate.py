@@ -20,7 +20,7 @@ from qtab.config.unknown import suggesting
 from qtab.planning.policies import GivenPolicy, probabilities
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.features import feature_rows
-from qtab.prediction.learning_rates import AVERAGES_ONLY
+from qtab.prediction.learning_rates import AVERAGES_ONLY, schedule_of
 from qtab.prediction.settings import Method, PredictionSettings
 from qtab.results.run import Run
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
@@ -202,7 +202,7 @@ def run_prediction(
     check_memory(f"{len(seeds)} runs with {len(points)} recorded episodes (record= keeps fewer)", size, limit)
     weights = np.full((len(seeds), len(points), n_weights), np.nan)
     began = time.perf_counter()
-    spec: Any = {**resolved.spec(), "learning_rate": settings.schedule().spec()}
+    spec: Any = {**resolved.spec(), "learning_rate": schedule_of(vars(settings)).spec()}
     initial = np.full(n_weights, settings.initial_value / n_active)
     prediction: Any = {
         "method": settings.method_spec(),

@@ -10,8 +10,7 @@ from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
 from qtab.config.choices import BitGenerator, LearningRateSchedule, OnTruncation
 from qtab.config.options import listed
-from qtab.config.schedules import LearningRate
-from qtab.prediction.learning_rates import checked_learning_rate, schedule_of
+from qtab.prediction.learning_rates import checked_learning_rate
 
 Method: TypeAlias = Literal[
     "td",
@@ -122,10 +121,6 @@ class PredictionSettings:
         """Returns the method and its options as the extension takes them."""
         options = {name: getattr(self, name) for name, (methods, _) in _OPTIONS.items() if self.method in methods}
         return {"type": self.method, **options}
-
-    def schedule(self) -> LearningRate:
-        """Returns the learning rate, complete."""
-        return schedule_of(vars(self))
 
     def config(self) -> dict[str, Any]:
         """Returns the settings of :class:`qtab.Config` for the task. The learning rate is not made from them."""
