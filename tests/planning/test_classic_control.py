@@ -9,7 +9,7 @@ import pytest
 
 import qtab
 
-LEAST = {"CartPole-v1": 500.0, "Pendulum-v1": -138.0, "Acrobot-v1": -62.0}
+LEAST = {"CartPole-v1": 500.0, "Pendulum-v1": -138.0, "Acrobot-v1": -63.0}
 """What the searches return at least."""
 
 
