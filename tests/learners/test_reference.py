@@ -2,8 +2,6 @@
 
 from typing import Any, get_args
 
-import gymnasium as gym
-import numpy as np
 import pytest
 from hypothesis import given, settings
 
@@ -11,6 +9,7 @@ import qtab
 from qtab.config.choices import Algorithm
 from qtab.config.options import PREFERENCES, TABLES_ONLY
 from qtab.reference import LEARNERS
+from support.environments import Chain
 from support.learner_settings import CAR, TRAINED, run_settings
 
 ALGORITHMS = get_args(Algorithm)
@@ -73,24 +72,6 @@ def test_both_backends_give_the_identical_table(algorithm: Any, discretizer: Any
 def test_a_prefix_is_verified_with_the_full_runs_schedules(algorithm: Any) -> None:
     run = qtab.train("MountainCar-v0", algorithm=algorithm, seed=1, episodes=40)
     assert qtab.verify(run, episodes=3).equal
-
-
-class Chain(gym.Env[Any, Any]):
-    """A state of one float64 number, varying rewards, and an action space that starts at 5."""
-
-    observation_space = gym.spaces.Box(-2.0, 2.0, (1,), np.float64)
-    action_space = gym.spaces.Discrete(3, start=5)
-
-    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
-        super().reset(seed=seed)
-        self.place = float(self.np_random.uniform(-0.5, 0.5))
-        return np.array([self.place]), {}
-
-    def step(self, action: int) -> Any:
-        self.place += (action - 6) * 0.5 + float(self.np_random.uniform(-0.2, 0.2))
-        over = abs(self.place) > 1.5
-        self.place = min(max(self.place, -2.0), 2.0)
-        return np.array([self.place]), self.place - 0.1, over, False, {}
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)

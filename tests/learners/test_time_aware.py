@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.config.choices import Algorithm
+from support.environments import Chain
 from support.learner_settings import BY_EPISODE, explorations, learning_rates, own_options, possible_explorations
 
 LAKE = "FrozenLake-v1"
@@ -108,31 +109,23 @@ def test_the_wrapper_of_gymnasium_around_the_environment_gives_the_identical_tab
     assert run.episode_returns.tobytes() == other.episode_returns.tobytes()
 
 
-class Chain(gym.Env[Any, Any]):
-    """A random walk with a number of type float64, without a time limit, that may end an episode early."""
-
-    observation_space = gym.spaces.Box(-2.0, 2.0, (1,), np.float64)
-    action_space = gym.spaces.Discrete(3, start=5)
-
-    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
-        super().reset(seed=seed)
-        self.place = float(self.np_random.uniform(-0.5, 0.5))
-        return np.array([self.place]), {}
+class EarlyChain(Chain):
+    """Without a time limit; an episode may end early."""
 
     def step(self, action: int) -> Any:
-        self.place += (action - 6) * 0.5 + float(self.np_random.uniform(-0.2, 0.2))
-        over, early = abs(self.place) > 1.5, bool(self.np_random.random() < 0.05)
-        self.place = min(max(self.place, -2.0), 2.0)
-        return np.array([self.place]), self.place - 0.1, over, early, {}
+        observation, reward, over, _, info = super().step(action)
+        return observation, reward, over, bool(self.np_random.random() < 0.05), info
 
 
 @pytest.mark.parametrize("algorithm", ["q_learning", "monte_carlo", "prioritized_sweeping", "actor_critic"])
 @pytest.mark.parametrize("cells", [{"scale": (4,)}, {"discretizer": "bins", "bins": 5}])
 def test_an_environment_in_python_gives_the_table_of_the_reference(algorithm: Any, cells: dict[str, Any]) -> None:
-    run = qtab.train(Chain(), algorithm=algorithm, time_aware=True, max_episode_steps=15, seed=2, episodes=30, **cells)
+    run = qtab.train(
+        EarlyChain(), algorithm=algorithm, time_aware=True, max_episode_steps=15, seed=2, episodes=30, **cells
+    )
     assert run.terminated.any()
     assert not run.terminated.all()
-    assert qtab.verify(run, env=Chain()).equal
+    assert qtab.verify(run, env=EarlyChain()).equal
 
 
 def test_values_end_at_the_time_limit() -> None:

@@ -125,3 +125,21 @@ class Sampled(gym.Env):
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         assert self.action_space.contains(action)
         return self.observation_space.sample(), float(action) / 7.0, bool(self.np_random.random() < 0.1), False, {}
+
+
+class Chain(gym.Env[Any, Any]):
+    """A state of one float64 number, varying rewards, and an action space that starts at 5."""
+
+    observation_space = gym.spaces.Box(-2.0, 2.0, (1,), np.float64)
+    action_space = gym.spaces.Discrete(3, start=5)
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        super().reset(seed=seed)
+        self.place = float(self.np_random.uniform(-0.5, 0.5))
+        return np.array([self.place]), {}
+
+    def step(self, action: int) -> Any:
+        self.place += (action - 6) * 0.5 + float(self.np_random.uniform(-0.2, 0.2))
+        over = abs(self.place) > 1.5
+        self.place = min(max(self.place, -2.0), 2.0)
+        return np.array([self.place]), self.place - 0.1, over, False, {}

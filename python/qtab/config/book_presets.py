@@ -62,16 +62,16 @@ DYNA_MAZE: SharedSettings = {
     "episodes": 50,
 }
 
-# Figures 8.4 and 8.5: Dyna-Q+ for 3,000 and for 6,000 steps. The book states no settings; these are those of
-# qtab.book's figures.
-_CHANGING_MAZE: SharedSettings = {
+# Figures 8.4 and 8.5: Dyna-Q+ for 3,000 and for 6,000 steps. The book states no settings; docs/book/chapter_8.md
+# says how these were chosen.
+CHANGING_MAZE: SharedSettings = {
     **DYNA_MAZE,
     "algorithm": "dyna_q_plus",
     "time_weight": 1e-3,
     "learning_rate": 0.5,
 }
-BLOCKING_MAZE: SharedSettings = {**_CHANGING_MAZE, "episodes": 300}
-SHORTCUT_MAZE: SharedSettings = {**_CHANGING_MAZE, "episodes": 600}
+BLOCKING_MAZE: SharedSettings = {**CHANGING_MAZE, "episodes": 300}
+SHORTCUT_MAZE: SharedSettings = {**CHANGING_MAZE, "episodes": 600}
 
 # Figure 10.5. Its 2,000,000 steps are one episode in the book, as the task never ends; here 200, so that there are
 # returns to look at.

@@ -4,26 +4,15 @@ from typing import Any
 
 from qtab.book.measures import reward_by
 from qtab.book.setting import Setting
-
-LEARNING_RATE = 0.5
-"""α; the book does not state it."""
-PLANNING_STEPS = 50
-"""n; the book does not state it."""
-TIME_WEIGHT = 1e-3
-"""κ; the book does not state it."""
+from qtab.config.book_presets import CHANGING_MAZE
 
 _DYNA: dict[str, Any] = {
-    "learning_rate": LEARNING_RATE,
-    "discount": 0.95,
-    "epsilon": 0.1,
-    "epsilon_schedule": "constant",
-    "ties": "random",
-    "initial_q": 0.0,
-    "planning_steps": PLANNING_STEPS,
+    name: value for name, value in CHANGING_MAZE.items() if name not in ("algorithm", "time_weight", "episodes")
 }
 UNSPECIFIED = (
-    f"all settings but the mazes. Here α = {LEARNING_RATE:g}, ε = 0.1, γ = 0.95, n = {PLANNING_STEPS}, "
-    f"κ = {TIME_WEIGHT:g}, ties are broken at random, and the number of runs is 100"
+    f"all settings but the mazes. Here α = {_DYNA['learning_rate']:g}, ε = 0.1, γ = 0.95, "
+    f"n = {_DYNA['planning_steps']}, κ = {CHANGING_MAZE['time_weight']:g}, ties are broken at random, and the number "
+    "of runs is 100"
 )
 
 
@@ -38,7 +27,7 @@ def settings(env: str, steps: int, episodes: int) -> tuple[Setting, ...]:
     times = tuple(range(50, steps + 1, 50))
     measure, x = reward_by(times), tuple(map(float, times))
     base = {**_DYNA, "episodes": episodes}
-    plus = {"algorithm": "dyna_q_plus", "time_weight": TIME_WEIGHT}
+    plus = {"algorithm": "dyna_q_plus", "time_weight": CHANGING_MAZE["time_weight"]}
     return (
         Setting("Dyna-Q+", env, {**base, **plus}, measure, x, method="dyna_q_plus"),
         Setting("Dyna-Q", env, {**base, "algorithm": "dyna_q"}, measure, x, method="dyna_q"),

@@ -3,18 +3,8 @@
 from qtab.book.measures import lengths
 from qtab.book.setting import Setting
 from qtab.book.training_experiment import TrainingExperiment
+from qtab.config.book_presets import DYNA_MAZE
 from qtab.envs.grid_worlds import dyna_maze
-
-_DYNA = {
-    "algorithm": "dyna_q",
-    "learning_rate": 0.1,
-    "discount": 0.95,
-    "epsilon": 0.1,
-    "epsilon_schedule": "constant",
-    "ties": "random",
-    "initial_q": 0.0,
-    "episodes": 50,
-}
 
 EXPERIMENT = TrainingExperiment(
     name="figure-8.2",
@@ -23,7 +13,7 @@ EXPERIMENT = TrainingExperiment(
     unspecified="nothing. In the book the first episode is the same for every n (about 1,700 steps, not shown). Here "
     "it differs, because planning and acting draw from the same random generator",
     settings=tuple(
-        Setting(f"n = {steps}", dyna_maze, {**_DYNA, "planning_steps": steps}, lengths) for steps in (0, 5, 50)
+        Setting(f"n = {steps}", dyna_maze, {**DYNA_MAZE, "planning_steps": steps}, lengths) for steps in (0, 5, 50)
     ),
     runs=30,
     x_label="episode",
