@@ -120,13 +120,18 @@ def test_notebooks_show_its_values_in_a_short_picture(found):
 
 
 @pytest.mark.slow
-def test_the_goal_velocity_is_used():
-    slower: Any = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.04})
+def test_the_goal_velocity_and_the_time_limit_are_used():
+    slower: Any = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.04}, max_episode_steps=100)
+    assert slower.search.steps.max() == 100
     env = gym.make("MountainCar-v0", goal_velocity=0.04)
-    for index in range(0, 1000, 100):
-        ended = drive(env, float(slower.search.starts[index]), slower.search.routes[index])
-        assert ended[-1]
-        assert not any(ended[:-1])
+    arrived = 0
+    for start, steps, route in zip(slower.search.starts, slower.search.steps, slower.search.routes, strict=True):
+        if route is None:
+            assert steps == 100
+        else:
+            arrived += 1
+            assert drive(env, float(start), route) == [False] * (steps - 1) + [True]
+    assert 0 < arrived < 1000
     never: Any = qtab.optimum("MountainCar-v0", env_kwargs={"goal_velocity": 0.08})
     assert never.expected_return == never.search.predict_return == -200
     assert set(never.search.routes) == {None}
@@ -154,14 +159,6 @@ def test_a_car_that_cannot_move_has_no_route(edit):
     for start, route in zip(found.search.starts, found.search.routes, strict=True):
         if route is not None:
             assert drive(env, float(start), route)[-1]
-
-
-@pytest.mark.slow
-def test_a_time_limit_ends_every_episode():
-    short: Any = qtab.optimum("MountainCar-v0", max_episode_steps=90)
-    assert short.search.steps.max() == 90
-    assert {len(route) for route in short.search.routes if route is not None} <= set(range(80, 91))
-    assert (short.search.steps[[route is None for route in short.search.routes]] == 90).all()
 
 
 def test_the_gap_of_a_run_is_its_distance_from_the_optimum(found):
@@ -200,7 +197,7 @@ import time
 def once_it_plans(then):
     began = time.monotonic()
     def wait():
-        time.sleep(1.0)
+        time.sleep(0.5)
         then()
     threading.Thread(target=wait, daemon=True).start()
 mint = qtab.TabularEnv({0: {0: [(1.0, 0, 1.0, False)]}}, [1.0])
