@@ -45,7 +45,7 @@ def test_the_policy_returns_in_gymnasium_what_the_optimum_says(env: str) -> None
     assert best.expected_return == search.returns.mean() >= search.predict_return
     assert best.expected_return >= LEAST[env]
     theirs = gym.make(env, disable_env_checker=True)
-    chosen = range(0, len(search.starts), len(search.starts) // 10)
+    chosen = range(0, len(search.starts), len(search.starts) // (10 if env == "Acrobot-v1" else 5))
     returns = [played(best, theirs, search.starts[index], best.max_episode_steps) for index in chosen]
     if env == "Acrobot-v1":  # the episodes of the search are routes, which are shorter than the policy's
         assert np.mean(returns) == pytest.approx(search.predict_return, abs=4)
