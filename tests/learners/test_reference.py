@@ -70,7 +70,7 @@ def test_both_backends_give_the_identical_table(algorithm: Any, discretizer: Any
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_a_prefix_is_verified_with_the_full_runs_schedules(algorithm: Any) -> None:
-    run = qtab.train("MountainCar-v0", algorithm=algorithm, seed=1, episodes=40)
+    run = qtab.train("MountainCar-v0", algorithm=algorithm, seed=1, episodes=40, max_episode_steps=80)
     assert qtab.verify(run, episodes=3).equal
 
 

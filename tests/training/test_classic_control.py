@@ -69,7 +69,7 @@ def test_all_ways_of_naming_an_environment_give_the_same_run(env: str) -> None:
 @pytest.mark.parametrize("env", [env for env in TRAINED if env.values[0] in KEYWORDS])
 def test_keyword_arguments_reach_rust(env: str) -> None:
     name, values = KEYWORDS[env]
-    chosen: dict[str, Any] = {**settings_of(env, "bins"), "seed": 4, "episodes": 30, "max_episode_steps": 300}
+    chosen: dict[str, Any] = {**settings_of(env, "bins"), "seed": 4, "episodes": 5, "max_episode_steps": 300}
     for value in values:
         run = qtab.train(env, env_kwargs={name: value}, **chosen)
         assert run.config.backend == "rust"
