@@ -1,5 +1,6 @@
 """The ranking of settings, and the best ones trained again with other seeds."""
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -102,6 +103,7 @@ def test_a_store_does_not_choose_a_module_to_import(tmp_path: Path, monkeypatch:
         assert len(sweep.confirm(2, threads=1).confirmed) == 2
     finally:
         gym.registry.pop("Lake-v7", None)
+        sys.modules.pop("lakes", None)  # other tests have modules of this name
     with pytest.raises(
         ValueError, match=r"the environment '.*Lake-v7' of the store must be registered, or given as env="
     ):

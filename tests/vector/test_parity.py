@@ -49,7 +49,7 @@ def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
 
     @settings(max_examples=max(settings().max_examples // 6, 1))
     @given(
-        num_envs=st.integers(1, 40),
+        num_envs=st.integers(1, 24),
         seed=st.integers(0, 2**70) | st.none(),
         threads=st.sampled_from([None, 1, 2, 3]),
         copy=st.booleans(),
