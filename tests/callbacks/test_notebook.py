@@ -161,7 +161,7 @@ FIGURES = [
     "ax = qtab.plots.distribution([1.0, 2.0, 4.0])",
     "qtab.book.run('example-6.5', runs=2).plot()",
     "qtab.plots.overview(run)",
-    "figure = qtab.plots.overview(run)",
+    "figure = qtab.plot(run).figure",
     "display(figure)",
     "ax = qtab.plots.values([run, best])\nax.figure",
 ]
