@@ -10,7 +10,7 @@ use std::fmt::Debug;
 
 use benchmarks::Benchmarks;
 use mountain_car_task::{IN_BOUNDS, MountainCarTask, rounding, task};
-use qtab_core::features::{Features, TileCoding};
+use qtab_core::features::{Features, FixedTileCoding, TileCoding};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
     TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
@@ -105,7 +105,8 @@ fn grid(benchmarks: &mut Benchmarks) {
 fn tilings(benchmarks: &mut Benchmarks) {
     let bounds = [[-1.2_f32, -0.07], [0.6, 0.07]].map(|bound| bound.map(f64::from));
     let tiles = TileCoding::<f32, TILINGS>::new(&bounds[0], &bounds[1], &[8, 8], TILINGS as u32);
-    let mut tilings = Bench { benchmarks, group: "tilings", features: tiles, n_active: TILINGS };
+    let features = FixedTileCoding::<f32, 2, TILINGS>::new(&tiles).expect("the numbers agree");
+    let mut tilings = Bench { benchmarks, group: "tilings", features, n_active: TILINGS };
     tilings.all();
 }
 
