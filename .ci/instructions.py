@@ -54,7 +54,8 @@ def main() -> None:
     stored = json.loads(STORED.read_text())
     counted = {}
     for program in programs:
-        names = subprocess.run([program], env={**os.environ, "QTAB_BENCH": "list"}, capture_output=True, text=True)
+        listing = {**os.environ, "QTAB_BENCH": "list"}
+        names = subprocess.run([program], env=listing, capture_output=True, text=True, check=True)
         for name in names.stdout.splitlines():
             counted[name] = round(instructions_per_step(program, name), 1)
     if "--store" in sys.argv:
@@ -65,7 +66,8 @@ def main() -> None:
     for name, count in counted.items():
         change = 100 * (count / before[name] - 1) if name in before else None
         if change is None or abs(change) >= SHOWN:
-            print(f"{name:60} {count:8.1f}  " + ("new" if change is None else f"{change:+.1f} %, was {before[name]:.1f}"))
+            text = "new" if change is None else f"{change:+.1f} %, was {before[name]:.1f}"
+            print(f"{name:60} {count:8.1f}  {text}")
     print(f"{len(counted)} benchmarks; changes below {SHOWN} % are not shown")
 
 

@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.bench.article import q_learning
-from qtab.bench.article_numba import compiled
+from qtab.bench.article_numba import compiled, compiled_many
 from qtab.bench.timing import Benchmark
 from qtab.training.train import train
 from qtab.training.train_many import train_many
@@ -18,7 +18,8 @@ STEPS = 20_000
 
 ARTICLE, NUMBA, TRAIN = "the article's loop: NumPy on gymnasium.make", "the same loop under numba", "qtab.train"
 MANY, MANY_ON_TWO = "qtab.train_many, 16 seeds, one thread", "qtab.train_many, 32 seeds, two threads"
-TRAINING = (ARTICLE, NUMBA, TRAIN, MANY, MANY_ON_TWO)
+NUMBA_ON_TWO = "the same loop under numba, 32 seeds, two threads"
+TRAINING = (ARTICLE, NUMBA, NUMBA_ON_TWO, TRAIN, MANY, MANY_ON_TWO)
 GYMNASIUM_STEP, QTAB_STEP = "Gymnasium's env.unwrapped.step", "qtab's env.unwrapped.step"
 GYMNASIUM_MAKE, QTAB_MAKE = "Gymnasium's env of gymnasium.make", "qtab's env of gymnasium.make"
 
@@ -36,10 +37,11 @@ def training() -> dict[str, Benchmark]:
     def many(seeds: int, threads: int) -> Benchmark:
         return lambda _: int(train_many(ENV, seeds, threads=threads, progress=False).episode_lengths.sum())
 
-    loop = compiled()
+    loop, loops = compiled(), compiled_many(2)
     return {
         ARTICLE: article,
         **({} if loop is None else {NUMBA: loop}),
+        **({} if loops is None else {NUMBA_ON_TWO: lambda _: loops(32)}),
         TRAIN: single,
         MANY: many(16, 1),
         MANY_ON_TWO: many(32, 2),
