@@ -14,6 +14,7 @@ import qtab as package
 from qtab._utils.versions import versions
 from qtab.bench import (
     article,
+    article_c,
     article_numba,
     book,
     environments,
@@ -40,6 +41,23 @@ def test_the_numba_loop_equals_the_articles_loop_to_the_bit() -> None:
     assert table.tobytes() == run.q_table.tobytes()
     assert returns.tobytes() == run.episode_returns.tobytes()
     assert steps == run.episode_lengths.sum()
+
+
+def test_the_loop_in_c_equals_the_articles_loop_to_the_bit() -> None:
+    q_learning = article_c.library()
+    if q_learning is None:
+        pytest.skip("there is no compiler of C")
+    run = package.train("MountainCar-v0", episodes=300, seed=4)
+    table, steps = article_c.train(q_learning, 4, 300)
+    assert table.tobytes() == run.q_table.tobytes()
+    assert steps == run.episode_lengths.sum()
+
+
+def test_without_a_compiler_there_is_no_loop_in_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(article_c, "COMPILERS", ("no_compiler",))
+    assert article_c.compiled() is None
+    monkeypatch.setattr(article_c, "COMPILERS", ("false",))
+    assert article_c.compiled() is None
 
 
 def test_the_plain_loop_equals_the_articles_loop_to_the_bit() -> None:
@@ -186,7 +204,7 @@ def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(module, "train_many", train_many)
     monkeypatch.setattr(environments, "EPISODES", dict.fromkeys(environments.EPISODES, 20))
     monkeypatch.setattr(table_numba, "preset", lambda name, _: (None, {**preset(name, None)[1], "episodes": 20}))
-    for module in (article_numba, sarsa_numba):
+    for module in (article_c, article_numba, sarsa_numba):
         monkeypatch.setattr(module, "EPISODES", 5)
     numba = SimpleNamespace(njit=_not_compiled, prange=range, set_num_threads=lambda threads: None)
     monkeypatch.setitem(sys.modules, "numba", numba)
