@@ -27,7 +27,7 @@ GYMNASIUM_MAKE, QTAB_MAKE = "Gymnasium's env of gymnasium.make", "qtab's env of 
 
 
 def training() -> dict[str, Benchmark]:
-    """Returns the benchmarks of training: the article's loop, the same in C and numba where these are, and this package."""
+    """Returns the benchmarks of training: the article's loop, the same in C and numba if they are there, and ours."""
 
     def article(index: int) -> int:
         _, steps = q_learning(gym.make(ENV), 0.2, 0.9, 0.8, 0.0, ARTICLE_EPISODES, index)
