@@ -105,10 +105,9 @@ def test_an_acrobot_with_noise_has_no_route() -> None:
 def test_constants_and_the_time_limit_are_used() -> None:
     env: Any = gym.make("CartPole-v1", max_episode_steps=30)
     assert qtab.optimum(env).expected_return == 30
-    env.unwrapped.force_mag = 0.0
-    assert qtab.optimum(env).expected_return < 30
     book: Any = gym.make("CartPole-v1", sutton_barto_reward=True, max_episode_steps=30)
-    assert qtab.optimum(book).expected_return == 0
+    book.unwrapped.force_mag = 0.0
+    assert -1 < qtab.optimum(book).expected_return < 0  # the reward of the book, -1 where a pole falls, as some do
     env.unwrapped.gravity = float("inf")
     with pytest.raises(ValueError, match="gravity must be finite, got inf"):
         qtab.optimum(env)
