@@ -65,3 +65,17 @@ PENDULUM: SharedSettings = {
     "discount": 0.98,
     "episodes": 2000,
 }
+
+# The limits are those of the usual states; the bounds of the space are wider. Chosen on the seeds 20,000 and 20,001.
+LUNAR_LANDER: SharedSettings = {
+    **_TRACES,
+    "tilings": 32,
+    "tiles": (4, 4, 4, 4, 4, 4, 1, 1),
+    "hashed_rows": 2**20,
+    "low": (-0.8, -0.2, -1.0, -1.4, -0.8, -1.2, 0.0, 0.0),
+    "high": (0.8, 1.5, 1.0, 0.4, 0.8, 1.2, 1.0, 1.0),
+    "discount": 0.99,
+    "epsilon": 0.0,
+    "trace_cutoff": 1e-2,
+    "episodes": 3000,
+}
