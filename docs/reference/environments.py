@@ -6,7 +6,6 @@ With an environment, the row of one preset:
 """
 
 import argparse
-from collections.abc import Iterable
 from typing import TypeAlias
 
 import gymnasium as gym
@@ -48,7 +47,10 @@ def row(env: str, preset: str) -> Cells:
     if searched:
         seen = range(FIRST_SEARCH_SEED, FIRST_SEARCH_SEED + searched)
         on_search_seeds = average(qtab.train_many(env, seen, preset=preset).final_returns(100))
-    runs = qtab.train_many(env, fresh, preset=preset, tables=True)
+    exact = optimum is not None and optimum.exact
+    evaluated = fresh if exact else fresh[:GREEDY_SEEDS]
+    kept = qtab.train_many(env, evaluated, preset=preset, tables=True)
+    runs = kept if evaluated == fresh else qtab.train_many(env, fresh, preset=preset)  # without tables, which are large
     last = runs.final_returns(100)
     solved = ("", "")
     if threshold is not None:
@@ -64,7 +66,7 @@ def row(env: str, preset: str) -> Cells:
         average(last),
         f"{last.min():.4g}",
         *solved,
-        average(greedy_returns(runs, optimum)),
+        average(greedy_returns(kept, optimum)),
         "" if threshold is None else f"{threshold:g}",
         "" if optimum is None else f"{optimum.expected_return:.4g}" + ("" if optimum.exact else f" ({optimum.label})"),
     )
@@ -74,8 +76,7 @@ def greedy_returns(runs: qtab.Runs, optimum: qtab.Optimum | None) -> ArrayLike:
     """Returns each greedy policy's expected return: exact if the transition table is known, else estimated."""
     if optimum is not None and optimum.exact:
         return optimum.gap(runs).greedy_return
-    some: Iterable[qtab.Run] = (run for run, _ in zip(runs, range(GREEDY_SEEDS), strict=False))
-    return [qtab.evaluate(run, GREEDY_EPISODES, seed=index).mean_return for index, run in enumerate(some)]
+    return [qtab.evaluate(run, GREEDY_EPISODES, seed=index).mean_return for index, run in enumerate(runs)]
 
 
 def average(values: ArrayLike) -> str:
