@@ -105,12 +105,17 @@ def _of_actions(name: str, chosen: NDArray[Any], actions: Actions) -> NDArray[np
     return table
 
 
-def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> NDArray[np.float64]:
+def refuse_time_aware(name: str, run: Run) -> None:
+    """Refuses a run whose policy depends on the number of steps taken."""
     if run.config.time_aware:
         raise ValueError(
             f"{name} must not depend on the number of steps taken, got a run with time_aware=True; "
             "run.at_step(step) has the policy of one step"
         )
+
+
+def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> NDArray[np.float64]:
+    refuse_time_aware(name, run)
     expected, found = (*cells.shape, len(actions)), (*run.discretizer.shape, len(run.actions))
     if not run.discretizer.has_cells or found != expected:
         raise ValueError(f"{name} must be a run with a table of shape {expected}, got {found}")
