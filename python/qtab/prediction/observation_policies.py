@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._spec import ObservationPolicySpec
-from qtab._utils.arrays import same_bytes
 from qtab._utils.shown import shown
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
@@ -191,28 +190,29 @@ def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> Greedy
 
 def same_actions(one: Actions, other: Actions) -> bool:
     """Whether the columns of two tables stand for the same actions."""
-    if (one.values is None) != (other.values is None):
-        return False
-    equal = one.values is None or other.values is None or same_bytes(one.values, other.values)
-    return equal and (one.count, one.first) == (other.count, other.first)
+    if one.values is None or other.values is None:
+        return one.values is other.values and (one.count, one.first) == (other.count, other.first)
+    return np.array_equal(one.values, other.values)
 
 
 def _function_of_optimum(name: str, optimum: Optimum, actions: Actions) -> Callable[[Any], Any]:
     """Returns the best known policy as a function from an observation to the number of an action."""
     if optimum.search is None:
         raise ValueError(f"{name} must be an optimum for Box observations, got one for {optimum.env}")
-    if actions.values is None:
+    choices = actions.values
+    if choices is None:
         return lambda observation: optimum.predict(observation)[0]
-    columns = {np.asarray(value).tobytes(): column for column, value in enumerate(actions.values)}
 
     def column(observation: Any) -> int:
         action = optimum.predict(observation)[0]
-        found = columns.get(np.asarray(action, dtype=actions.values.dtype).tobytes())  # type: ignore[union-attr]
-        if found is None:
+        distances = np.abs(choices - action).reshape(len(choices), -1).max(axis=-1)
+        nearest = int(np.argmin(distances))
+        # The optimum's torques and equally spaced actions may differ in their last digits.
+        if not np.allclose(choices[nearest], action):
             raise ValueError(
-                f"actions must hold the actions of the optimum, of which {shown(action)} is one: "
+                f"actions must hold those of the optimum, of which {shown(action.tolist())} is one, got {actions!r}: "
                 f"actions={optimum.q_values.shape[-1]} does"
             )
-        return found
+        return nearest
 
     return column
