@@ -15,7 +15,6 @@ from qtab.discretizers import Discretizer, Identity
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.edges import Edges
 from qtab.planning.optimum import Optimum
-from qtab.prediction.estimates import ValueEstimates
 from qtab.results.action_values import read_by_policy
 from qtab.results.axes import Axis, action_names, axes_of
 from qtab.results.run import Run
@@ -24,15 +23,13 @@ from qtab.results.time_steps import at_step, checked_step
 
 Drawable = Run | Runs | Optimum
 """What the pictures show."""
-WithValues = Run | Runs | Optimum | ValueEstimates
-"""What pictures of state values show."""
 
 
 @dataclass(frozen=True, eq=False)
 class Subject:
     """One or several Q tables of one environment."""
 
-    source: WithValues
+    source: Any
     """What it was made from."""
     env: str
     """The environment's id, or the name of its class."""
@@ -131,25 +128,6 @@ def subject_of(name: str, source: Any, step: Any = 0) -> Subject:
     if isinstance(source, Subject):
         return source
     raise TypeError(f"{name} must be a Run, Runs or an Optimum, got {shown(source)}{load_hint(source)}")
-
-
-def of_estimates(estimates: ValueEstimates) -> Subject:
-    """Returns the subject of estimated values: tables of one column, which stands for no action.
-
-    Raises:
-        ValueError: for estimates from a file that does not hold how observations are divided.
-    """
-    discretizer = estimates.discretizer
-    if discretizer is None:
-        raise ValueError("run must be estimates with their discretizer, got those of numbered states from a file")
-    values = estimates.weights[:, -1] if estimates.rows is None else estimates.values.reshape(len(estimates.seeds), -1)
-    settings = estimates.settings
-    initial = settings.initial_value / (estimates.n_active if estimates.rows is None else 1)
-    which = "1 seed" if len(estimates.seeds) == 1 else f"{len(estimates.seeds):,} seeds"
-    env_kwargs = {} if estimates.config is None else estimates.config.env_kwargs
-    name = f"{estimates.env}: values by {settings.method}, {which}"
-    known = values != initial
-    return Subject(estimates, estimates.env, env_kwargs, name, discretizer, values[..., np.newaxis], known, ("",))
 
 
 def _of_runs(

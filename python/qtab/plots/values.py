@@ -1,7 +1,7 @@
 """A picture of the learned values."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,7 @@ from qtab._utils import checks
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.heat_maps import draw_heat_maps
 from qtab.plots.panels import arranged
-from qtab.plots.subject import WithValues, of_estimates
-from qtab.prediction.estimates import ValueEstimates
+from qtab.plots.subject import Drawable, Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,8 +20,16 @@ VALUE_LABEL = "value, max$_a$ Q(s, a)"
 ESTIMATED_LABEL = "value, v(s)"
 
 
+@runtime_checkable
+class Estimates(Protocol):
+    """Values without actions: a :class:`qtab.ValueEstimates`."""
+
+    def _subject(self) -> Subject:
+        """Returns tables of one column."""
+
+
 def values(
-    run: WithValues | Sequence[WithValues],
+    run: "Drawable | Estimates | Sequence[Drawable | Estimates]",
     ax: "Axes | None" = None,
     *,
     at: Mapping[str, float] | None = None,
@@ -60,9 +67,9 @@ def values(
         ValueError: for one that does not fit the environment, or runs without tables.
     """
     numbers = checks.boolean("numbers", numbers)
-    given = list(run) if isinstance(run, list | tuple) else [run]
-    estimated = [isinstance(source, ValueEstimates) for source in given]
-    sources: Any = [of_estimates(source) if isinstance(source, ValueEstimates) else source for source in given]
+    given: list[Any] = list(run) if isinstance(run, list | tuple) else [run]
+    estimated = [isinstance(source, Estimates) for source in given]
+    sources: Any = [source._subject() if isinstance(source, Estimates) else source for source in given]
     panels = arranged(sources if isinstance(run, list | tuple) else sources[0], at, layout, title, step)
     grids = [subject.state_values(raster.rows) for subject, raster in panels]
     text = value_text if numbers else None

@@ -20,6 +20,7 @@ from qtab.prediction.settings import PredictionSettings
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from qtab.plots.subject import Subject
     from qtab.prediction.verification import ValuesVerification
 
 
@@ -203,6 +204,12 @@ class ValueEstimates:
         return draw_values(
             self, ax, None if true_values is None else _of_shape("true_values", true_values, self.shape, "states")
         )
+
+    def _subject(self) -> "Subject":
+        """What :func:`qtab.plots.values` draws."""
+        from qtab.prediction.plot import subject_of_values
+
+        return subject_of_values(self)
 
     def save(self, path: Path | str) -> None:
         """Writes the estimates to an ``.npz`` file, completely or not at all.

@@ -42,15 +42,13 @@ where
         let rows = &mut self.values.rows;
         let number = rows.current(state.as_ref());
         let next_number = match next {
-            Next::NonTerminal(next) => Next::NonTerminal(rows.follow(next.as_ref())),
-            Next::Truncated(next) => Next::Truncated(rows.follow(next.as_ref())),
+            Next::NonTerminal(next) => Next::NonTerminal(rows.visit_next(next.as_ref())),
+            Next::Truncated(next) => Next::Truncated(rows.visit_next(next.as_ref())),
             Next::Terminal => Next::Terminal,
         };
         self.rule.learn(&mut self.values, PredictionStep { state: number, action, reward, next: next_number });
-        match (next, next_number) {
-            (Next::NonTerminal(next), Next::NonTerminal(number)) => self.behavior.action(number, &next, rng),
-            _ => 0,
-        }
+        let Next::NonTerminal(next) = next else { return 0 };
+        self.behavior.action(self.values.rows.current(next.as_ref()), &next, rng)
     }
 
     #[inline]

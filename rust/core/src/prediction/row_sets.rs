@@ -26,7 +26,7 @@ pub trait RowSets {
     fn current(&self, active: &[u32]) -> u32;
 
     /// The number of the state that follows it.
-    fn follow(&mut self, active: &[u32]) -> u32;
+    fn visit_next(&mut self, active: &[u32]) -> u32;
 
     /// Makes room for so many more states.
     ///

@@ -59,7 +59,7 @@ impl RowSets for StateRows {
     }
 
     #[inline]
-    fn follow(&mut self, active: &[u32]) -> u32 {
+    fn visit_next(&mut self, active: &[u32]) -> u32 {
         active[0]
     }
 }

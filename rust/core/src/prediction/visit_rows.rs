@@ -73,7 +73,7 @@ impl RowSets for VisitRows {
     }
 
     #[inline]
-    fn follow(&mut self, active: &[u32]) -> u32 {
+    fn visit_next(&mut self, active: &[u32]) -> u32 {
         self.store(self.last.wrapping_add(1), active)
     }
 
@@ -99,7 +99,7 @@ mod tests {
                 assert_eq!(rows.begin(&[episode, 50]), 0);
                 for visit in 1..=40 {
                     assert_eq!(rows.current(&[]), visit - 1);
-                    assert_eq!(rows.follow(&[episode + visit, 50 + visit]), visit);
+                    assert_eq!(rows.visit_next(&[episode + visit, 50 + visit]), visit);
                     for state in visit.saturating_sub(3)..=visit {
                         assert_eq!(rows.of(state), [episode + state, 50 + state]);
                     }

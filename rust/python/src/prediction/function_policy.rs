@@ -10,19 +10,19 @@ use super::observation_policy::{FunctionSpec, integer};
 /// The function, and what it answered for the observation that it read last.
 pub(crate) struct FunctionPolicy {
     spec: Arc<FunctionSpec>,
-    answer: Answer,
+    answer: PolicyAnswer,
     /// The probabilities of the actions, where it answered with these.
     probabilities: Vec<f64>,
 }
 
-enum Answer {
+enum PolicyAnswer {
     Action(usize),
     Probabilities,
 }
 
 impl FunctionPolicy {
     pub(super) fn new(spec: Arc<FunctionSpec>, num_actions: usize) -> Self {
-        Self { spec, answer: Answer::Action(0), probabilities: vec![0.0; num_actions] }
+        Self { spec, answer: PolicyAnswer::Action(0), probabilities: vec![0.0; num_actions] }
     }
 
     /// Asks the function.
@@ -33,19 +33,19 @@ impl FunctionPolicy {
         if let Some(column) = column.and_then(|column| usize::try_from(column).ok())
             && column < self.probabilities.len()
         {
-            self.answer = Answer::Action(column);
+            self.answer = PolicyAnswer::Action(column);
             return Ok(());
         }
         // Whatever is no valid number is read, or refused, in Python.
         let read: Vec<f64> = self.spec.read.bind(py).call1((answer, observation))?.extract()?;
         self.probabilities.copy_from_slice(&read);
-        self.answer = Answer::Probabilities;
+        self.answer = PolicyAnswer::Probabilities;
         Ok(())
     }
 
     /// The action; or the first one whose sum of probabilities exceeds one `random()`.
     pub(super) fn sample(&self, rng: &mut impl Rng) -> usize {
-        if let Answer::Action(action) = self.answer {
+        if let PolicyAnswer::Action(action) = self.answer {
             return action;
         }
         let (random, mut sum) = (rng.random(), 0.0);
@@ -64,8 +64,8 @@ impl FunctionPolicy {
 
     pub(super) fn probability(&self, action: usize) -> f64 {
         match self.answer {
-            Answer::Action(chosen) => f64::from(u8::from(action == chosen)),
-            Answer::Probabilities => self.probabilities[action],
+            PolicyAnswer::Action(chosen) => f64::from(u8::from(action == chosen)),
+            PolicyAnswer::Probabilities => self.probabilities[action],
         }
     }
 }

@@ -69,7 +69,7 @@ impl ObservationPolicySpec {
         num_actions: usize,
         (own, num_rows): (&DiscretizerSpec, usize),
         rows: impl Fn(&DiscretizerSpec) -> PyResult<G>,
-    ) -> PyResult<Source<G>> {
+    ) -> PyResult<ReadPolicy<G>> {
         match self {
             Self::Table { probabilities, is_everywhere } => {
                 let expected = if *is_everywhere { 1 } else { num_rows };
@@ -80,7 +80,7 @@ impl ObservationPolicySpec {
                 }
                 let policy = FixedPolicy::new(Arc::clone(probabilities), num_actions);
                 let rows = if *is_everywhere { None } else { Some(rows(own)?) };
-                Ok(Source::Table { rows, policy, row: 0 })
+                Ok(ReadPolicy::Table { rows, policy, row: 0 })
             }
             Self::Greedy { discretizer, tables, n_tables } => {
                 let per_table = discretizer.num_rows() * num_actions;
@@ -92,7 +92,7 @@ impl ObservationPolicySpec {
                     return Err(invalid("tables", fit, format!("{} numbers", tables.len())));
                 }
                 let scratch = [vec![0.0; num_actions], vec![0.0; num_actions]];
-                Ok(Source::Greedy {
+                Ok(ReadPolicy::Greedy {
                     rows: rows(discretizer)?,
                     tables: Arc::clone(tables),
                     per_table,
@@ -100,7 +100,7 @@ impl ObservationPolicySpec {
                     action: 0,
                 })
             }
-            Self::Function(spec) => Ok(Source::Function(FunctionPolicy::new(Arc::clone(spec), num_actions))),
+            Self::Function(spec) => Ok(ReadPolicy::Function(FunctionPolicy::new(Arc::clone(spec), num_actions))),
         }
     }
 }
@@ -123,7 +123,7 @@ impl PyObservation for Py<PyAny> {
 }
 
 /// A policy, with what it does at the observation that it read last.
-pub(crate) enum Source<G> {
+pub(crate) enum ReadPolicy<G> {
     Table {
         /// None where the policy is the same everywhere.
         rows: Option<G>,
@@ -142,7 +142,7 @@ pub(crate) enum Source<G> {
     Function(FunctionPolicy),
 }
 
-impl<G> Source<G> {
+impl<G> ReadPolicy<G> {
     fn read<O: PyObservation>(&mut self, observation: &O) -> Result<(), RunError>
     where
         G: ReadRows<O>,
@@ -207,8 +207,8 @@ fn first_of_largest(values: &[f64]) -> usize {
 
 /// The policy that acts and, off policy, the one that is evaluated.
 pub(crate) struct ObservationPolicies<G> {
-    pub(super) behavior: Source<G>,
-    pub(super) target: Option<Source<G>>,
+    pub(super) behavior: ReadPolicy<G>,
+    pub(super) target: Option<ReadPolicy<G>>,
     pub(super) num_actions: usize,
 }
 
@@ -234,7 +234,7 @@ impl<O: PyObservation, G: ReadRows<O>> ObservationPolicy<O> for ObservationPolic
     }
 
     fn work(&self) -> u64 {
-        let is_function = |source: &Source<G>| matches!(source, Source::Function(_));
+        let is_function = |source: &ReadPolicy<G>| matches!(source, ReadPolicy::Function(_));
         let calls = u64::from(is_function(&self.behavior)) + u64::from(self.target.as_ref().is_some_and(is_function));
         calls * CALL_WORK
     }

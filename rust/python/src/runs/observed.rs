@@ -3,22 +3,22 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::features::ActiveTiles;
+use qtab_core::features::{ActiveRows, FixedTileCoding};
 use qtab_core::learners::TruncationHandling;
 use qtab_core::prediction::{
-    FromTask, ObservableTask, ObservationPolicy, PolicyTask, PredictionRule, Predictor, RowSets,
+    FromTask, ObservableTask, ObservationPolicy, Observed, PolicyTask, PredictionRule, Predictor, RowSets,
 };
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, NativeTask};
-use qtab_core::{Env, StopFlag, Trainer};
+use qtab_core::{Env, Features, StopFlag, Trainer};
 
 use super::factory::{Batching, Factory};
 use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
-use crate::error::RunError;
+use crate::error::{RunError, invalid};
 use crate::prediction::{BoxFeatures, ObservedVisitor, PredictionSpec};
 use crate::rng::environment_rng;
-use crate::spec::RunSpec;
+use crate::spec::{DiscretizerSpec, RunSpec, TilesSpec};
 
 /// Runs of any method in an environment whose observations are `M` float32 numbers.
 pub(super) fn observed_box<E, const M: usize>(
@@ -29,7 +29,35 @@ pub(super) fn observed_box<E, const M: usize>(
 where
     E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
 {
-    let features = BoxFeatures::<f32>::new(&spec.discretizer, |bound| bound as f32)?;
+    let features = |spec: &DiscretizerSpec| BoxFeatures::<f32>::new(spec, |bound| bound as f32);
+    match &spec.discretizer {
+        // Compiled for the usual numbers of tilings: fewer rows are copied at each step.
+        DiscretizerSpec::Tiles(tiles) => match tiles.tilings {
+            8 => factory(env, fixed_tiles::<M, 8>(tiles)?, spec, prediction),
+            16 => factory(env, fixed_tiles::<M, 16>(tiles)?, spec, prediction),
+            32 => factory(env, fixed_tiles::<M, 32>(tiles)?, spec, prediction),
+            _ => factory(env, features(&spec.discretizer)?, spec, prediction),
+        },
+        _ => factory(env, features(&spec.discretizer)?, spec, prediction),
+    }
+}
+
+/// Exactly `N` tilings of `M` components.
+fn fixed_tiles<const M: usize, const N: usize>(tiles: &TilesSpec) -> PyResult<FixedTileCoding<f32, M, N>> {
+    FixedTileCoding::new(&tiles.tile_coding())
+        .ok_or_else(|| invalid("discretizer", format!("{N} tilings of {M} components"), "others"))
+}
+
+fn factory<E, F, const M: usize>(
+    env: E,
+    features: F,
+    spec: &Arc<RunSpec>,
+    prediction: &Arc<PredictionSpec>,
+) -> PyResult<Box<dyn RunFactory>>
+where
+    E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
+    F: Features<[f32; M], Active: Send + 'static> + Clone + Send + Sync + 'static,
+{
     let (spec, prediction) = (Arc::clone(spec), Arc::clone(prediction));
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
@@ -49,7 +77,7 @@ pub(super) fn observed_run<W, P>(
     stop: &StopFlag<'_>,
 ) -> PyResult<Box<dyn Run>>
 where
-    W: ObservableTask<Active = ActiveTiles, State: Send> + Send + 'static,
+    W: ObservableTask<Active: Send, State: Send> + Send + 'static,
     P: ObservationPolicy<W::Observation, Error = RunError> + Send + 'static,
     RunError: From<W::Error>,
 {
@@ -60,13 +88,13 @@ where
 }
 
 /// All of a run but its learner.
-struct PendingObservedRun {
-    task: BoxedTask<qtab_core::prediction::Observed<ActiveTiles>, RunError>,
+struct PendingObservedRun<R> {
+    task: BoxedTask<Observed<R>, RunError>,
     rng: AgentRng,
     terminate: bool,
 }
 
-impl ObservedVisitor for PendingObservedRun {
+impl<R: ActiveRows + Send + 'static> ObservedVisitor for PendingObservedRun<R> {
     type Output = Box<dyn Run>;
 
     fn visit<S>(self, learner: Predictor<Box<dyn PredictionRule<S> + Send>, FromTask, S>) -> Box<dyn Run>
