@@ -26,13 +26,17 @@ wasm_module() {
     fi
 }
 
+# Installs a package of Debian where that is possible.
+debian_package() {
+    local sudo=
+    [ "$(id -u)" = 0 ] || sudo=sudo
+    { $sudo apt-get update --quiet=2 || true; } && $sudo apt-get install --yes --quiet "$1"
+}
+
 # Sets CHROMIUM to the browser's program, which apt-get installs if there is none.
 find_chromium() {
     export CHROMIUM=${CHROMIUM:-$(type -P chromium || type -P chromium-browser || type -P google-chrome || true)}
-    [ -z "$CHROMIUM" ] || return 0
-    local sudo=
-    [ "$(id -u)" = 0 ] || sudo=sudo
-    { $sudo apt-get update --quiet=2 || true; } && $sudo apt-get install --yes --quiet chromium && CHROMIUM=$(type -P chromium)
+    [ -n "$CHROMIUM" ] || { debian_package chromium && CHROMIUM=$(type -P chromium); }
 }
 
 # The playground in Chromium: the module built anew, its tables compared with Python's, the page's controls.

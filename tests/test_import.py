@@ -33,6 +33,23 @@ print([name for name in {HEAVY!r} if name in sys.modules and name != "tqdm"])
     assert in_a_process(code).strip() == "[]"
 
 
+def test_the_command_loads_no_part_that_a_training_does_not_use():
+    code = """
+import sys
+from qtab.cli import main
+main(["train", "--episodes", "3", "--quiet"])
+parts = "diagnosis", "explanation", "planning", "plots", "prediction", "reference", "sweeps"
+others = "typeguard", "unittest.mock", "importlib.metadata", "matplotlib", "moviepy", "pygame"
+print([name for name in (*(f"qtab.{part}" for part in parts), *others) if name in sys.modules])
+"""
+    assert in_a_process(code).strip() == "[]"
+
+
+def test_the_help_of_the_command_does_not_need_its_parser():
+    code = "import sys; sys.modules['tyro'] = None; from qtab.cli import main; main(['--help'])"
+    assert "train a tabular agent" in in_a_process(code)
+
+
 def test_importing_registers_the_environments():
     code = "import gymnasium as gym, qtab; print([name for name in gym.registry if name.startswith('qtab/')])"
     assert "qtab/MountainCar-v0" in in_a_process(code)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.diagnosis.facts import BEST_KNOWN_MOUNTAIN_CAR
+from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR
 from support.repository import ROOT, tracked_files
 
 nbformat = pytest.importorskip("nbformat")

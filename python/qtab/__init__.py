@@ -129,9 +129,9 @@ else:
 
     def __getattr__(name):
         if name == "__version__":
-            from importlib.metadata import version
+            from qtab._core import VERSION
 
-            return version("qtab")
+            return VERSION
         if name not in _MODULES:
             from qtab._utils.suggestions import did_you_mean
 

@@ -14,6 +14,7 @@ __all__ = [
     "BUILD_PROFILE",
     "DISCRETIZERS",
     "SCHEDULES",
+    "VERSION",
     "AgentRng",
     "Blackjack",
     "ClassicControl",
@@ -40,6 +41,7 @@ ALGORITHMS: tuple[str, ...]
 BUILD_PROFILE: Literal["debug", "release"]
 DISCRETIZERS: tuple[str, ...]
 SCHEDULES: tuple[str, ...]
+VERSION: str
 
 def estimate_values(
     spec: RunSpec,

@@ -1,5 +1,6 @@
 """The benchmarks count their steps and print their tables; no test asserts a time."""
 
+import json
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,6 +14,7 @@ import qtab as package
 from qtab._utils.versions import versions
 from qtab.bench import (
     article,
+    article_c,
     article_numba,
     book,
     environments,
@@ -24,9 +26,11 @@ from qtab.bench import (
     plain_loop,
     report,
     sarsa_numba,
+    table_numba,
     vector_envs,
 )
 from qtab.bench.timing import Benchmark, Timings
+from qtab.config.presets import preset
 from support.command import qtab_here, refused
 
 
@@ -37,6 +41,23 @@ def test_the_numba_loop_equals_the_articles_loop_to_the_bit() -> None:
     assert table.tobytes() == run.q_table.tobytes()
     assert returns.tobytes() == run.episode_returns.tobytes()
     assert steps == run.episode_lengths.sum()
+
+
+def test_the_loop_in_c_equals_the_articles_loop_to_the_bit() -> None:
+    q_learning = article_c.library()
+    if q_learning is None:
+        pytest.skip("there is no compiler of C")
+    run = package.train("MountainCar-v0", episodes=300, seed=4)
+    table, steps = article_c.train(q_learning, 4, 300)
+    assert table.tobytes() == run.q_table.tobytes()
+    assert steps == run.episode_lengths.sum()
+
+
+def test_without_a_compiler_there_is_no_loop_in_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(article_c, "COMPILERS", ("no_compiler",))
+    assert article_c.compiled() is None
+    monkeypatch.setattr(article_c, "COMPILERS", ("false",))
+    assert article_c.compiled() is None
 
 
 def test_the_plain_loop_equals_the_articles_loop_to_the_bit() -> None:
@@ -57,15 +78,32 @@ def test_the_numba_loop_of_sarsa_lambda_equals_ours_to_the_bit(cutoff: float) ->
     assert steps == run.episode_lengths.sum()
 
 
+@pytest.mark.parametrize("name", environments.TABLES)
+def test_the_numba_loop_over_a_table_equals_ours_to_the_bit(name: str) -> None:
+    run = package.train(name, episodes=30, seed=4)
+    arguments = table_numba.arguments(name, 30, 4)
+    assert table_numba.q_learning(*arguments) == run.episode_lengths.sum()
+    assert arguments[5].tobytes() == run.q_table.tobytes()
+
+
 @pytest.mark.slow
 def test_numba_compiles_the_loops(monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("numba")
+    numba: Any = pytest.importorskip("numba")
     for module in (article_numba, sarsa_numba):
         monkeypatch.setattr(module, "EPISODES", 30)
     starts = np.random.default_rng(4).uniform(-0.6, -0.4, 30)
     q_learning, sarsa_lambda = article_numba.compiled(), sarsa_numba.compiled(0.9, 0.0)
     assert q_learning is not None
     assert sarsa_lambda is not None
+    expected = package.train("FrozenLake-v1", episodes=30, seed=4).q_table.tobytes()
+    table = table_numba.arguments("FrozenLake-v1", 30, 4)
+    numba.njit(table_numba.q_learning)(*table)
+    assert table[5].tobytes() == expected
+    many = article_numba.compiled_many(2)
+    assert many is not None
+    rows = np.random.default_rng(0).uniform(-0.6, -0.4, (3, 30))
+    each = [article_numba.q_learning(row, seed, 0.2, 0.9, 0.8, 0.0)[2] for seed, row in enumerate(rows)]
+    assert many(3) == sum(each)
     assert q_learning(4) == article_numba.q_learning(starts, 4, 0.2, 0.9, 0.8, 0.0)[2]
     assert sarsa_lambda(4) == sarsa_numba.sarsa_lambda(sarsa_numba.observe, starts, 4, 0.3, 0.9, 0.0)[2]
 
@@ -146,6 +184,10 @@ def test_vector_benchmarks_count_all_steps_and_are_compared_within_their_environ
     }
 
 
+def _not_compiled(function: Any = None, **_: Any) -> Any:
+    return _not_compiled if function is None else function
+
+
 @pytest.fixture
 def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
     """Makes a round of every benchmark short: few episodes, seeds and sub-environments, and nothing is compiled."""
@@ -161,9 +203,11 @@ def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
     for module in (mountain_car, environments):
         monkeypatch.setattr(module, "train_many", train_many)
     monkeypatch.setattr(environments, "EPISODES", dict.fromkeys(environments.EPISODES, 20))
-    for module in (article_numba, sarsa_numba):
+    monkeypatch.setattr(table_numba, "preset", lambda name, _: (None, {**preset(name, None)[1], "episodes": 20}))
+    for module in (article_c, article_numba, sarsa_numba):
         monkeypatch.setattr(module, "EPISODES", 5)
-    monkeypatch.setitem(sys.modules, "numba", SimpleNamespace(njit=lambda function: function))
+    numba = SimpleNamespace(njit=_not_compiled, prange=range, set_num_threads=lambda threads: None)
+    monkeypatch.setitem(sys.modules, "numba", numba)
     monkeypatch.setattr(book, "EPISODES", 20)
     monkeypatch.setattr(book, "PROBLEMS", 2)
     monkeypatch.setattr(mountain_car, "STEPS", 1_000)
@@ -183,7 +227,14 @@ def test_the_bench_prints_its_tables_with_versions_and_build(small_rounds: None)
     )
     for name in (*names, vector_envs.SYNC, vector_envs.QTAB_CARS, vector_envs.QTAB_POLES, vector_envs.QTAB_ONE):
         assert f"\n{name}  " in printed
-    for name in (environments.FIRST, *learners.SETTINGS, *(name for _, names in book.GROUPS for name in names)):
+    tables = (f"{name.partition('-')[0]}, {environments.NUMBA}" for name in environments.TABLES)
+    for name in (
+        environments.FIRST,
+        mountain_car.NUMBA_ON_TWO,
+        *tables,
+        *learners.SETTINGS,
+        *(name for _, names in book.GROUPS for name in names),
+    ):
         assert f"\n{name}  " in printed
     assert "learning adds" in printed
     assert "import qtab adds" in printed
@@ -216,6 +267,15 @@ def test_the_report_names_the_extra_for_numba_and_warns_of_a_debug_build() -> No
     assert printed.startswith("WARNING: this is a debug build")
     assert "pip install numba" in printed
     assert "× numba" not in printed
+
+
+def test_json_holds_the_median_and_all_rounds(small_rounds: None, tmp_path: Path) -> None:
+    done = qtab_here("bench", "--rounds", "2", "--part", "stepping", "--json", cwd=tmp_path)
+    content = json.loads(done.stdout)
+    found = content["benchmarks"][mountain_car.QTAB_STEP]
+    assert found["ns_per_step"] == np.median(found["rounds"])
+    assert content["rounds"] == len(found["rounds"]) == 2
+    assert content["versions"] == versions()
 
 
 @pytest.mark.parametrize("arguments", [["--rounds", "0"], ["--seconds", "-1"], ["--laps", "3"], ["--part", "whole"]])

@@ -224,7 +224,7 @@ def test_without_tyro_the_command_names_the_extra(tmp_path: Path) -> None:
     done = qtab("train", cwd=tmp_path)
     assert done.returncode == 1
     assert done.stderr.startswith(
-        "qtab: error: this needs tyro, which is not installed; run: pip install 'tyro>=1.0' 'tqdm>=4.66'"
+        "qtab train: error: this needs tyro, which is not installed; run: pip install 'tyro>=1.0' 'tqdm>=4.66'"
     )
     assert ("tomli" in done.stderr) == (sys.version_info < (3, 11))
 

@@ -2,7 +2,6 @@
 
 import re
 import sys
-from importlib.metadata import PackageNotFoundError, requires
 
 _PYTHON_BELOW = re.compile(r"python(?:_full)?_version < '(\d+)\.(\d+)'")
 """The only condition that requirements of extras have besides the name of the extra."""
@@ -24,6 +23,8 @@ def missing(error: ModuleNotFoundError, extra: str | None = None) -> ModuleNotFo
 
 def _requirements(extra: str | None) -> list[str]:
     """Returns the requirements of an extra for this version of Python, quoted for a shell."""
+    from importlib.metadata import PackageNotFoundError, requires  # takes as long to load as all of qtab's own modules
+
     try:
         declared = requires("qtab") or []
     except PackageNotFoundError:

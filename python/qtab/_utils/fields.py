@@ -3,48 +3,75 @@
 import ast
 import inspect
 import textwrap
+from collections.abc import Iterator
+from functools import cache
 from itertools import pairwise
 from typing import Any, TypeVar
 
 C = TypeVar("C", bound=type)
 
 
-class _Annotation:
-    """An annotation as it is written in the source."""
-
-    def __init__(self, text: str) -> None:
-        self._text = text
-
-    def __repr__(self) -> str:
-        return self._text
-
-
 def with_fields(cls: C) -> C:
     """Ends the docstring of a dataclass with its fields, and gives its constructor short annotations.
 
     The docstrings below fields are no part of a class at run time, and ``help()`` would spell an array's type in 70
-    characters. Without the source, nothing changes.
+    characters. The source is read when either is first looked at, because that takes milliseconds. Without the source,
+    nothing changes.
     """
+    init: Any = cls.__init__  # type: ignore[misc]
+    annotations = init.__annotations__
+    for name in annotations.keys() - {"return"}:
+        annotations[name] = _Annotation(cls, name, annotations[name])
+    cls.__doc__ = _Docstring(cls.__doc__ or "")  # type: ignore[assignment]
+    return cls
+
+
+class _Annotation:
+    """An annotation, shown as it is written in the source."""
+
+    def __init__(self, owner: type, name: str, type_: Any) -> None:
+        self._owner, self._name, self._type = owner, name, type_
+
+    def __repr__(self) -> str:
+        for name, annotation, _ in _fields(self._owner):
+            if name == self._name:
+                return annotation
+        return inspect.formatannotation(self._type)
+
+
+class _Docstring:
+    """The docstring of a class, with its fields."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+
+    def __get__(self, instance: object, owner: type) -> str:
+        entries = [
+            textwrap.fill(f"{name} ({annotation}): {text}", 112, initial_indent=" " * 4, subsequent_indent=" " * 8)
+            for name, annotation, text in _fields(owner)
+            if text
+        ]
+        if not entries:
+            return self._text
+        return "\n\n".join([inspect.cleandoc(self._text), "\n".join(["Attributes:", *entries]), ""])
+
+
+@cache
+def _fields(cls: type) -> tuple[tuple[str, str, str], ...]:
+    """Returns the name, the annotation and the docstring of each field, as the source has them."""
     try:
         (tree,) = ast.parse(textwrap.dedent(inspect.getsource(cls))).body
     except (OSError, TypeError, SyntaxError):
-        return cls
-    written, lines = {}, []
+        return ()
+    return tuple(_read(tree))
+
+
+def _read(tree: ast.stmt) -> Iterator[tuple[str, str, str]]:
     for statement, following in pairwise([*getattr(tree, "body", []), ast.Pass()]):
-        if not isinstance(statement, ast.AnnAssign) or not isinstance(statement.target, ast.Name):
-            continue
-        name = statement.target.id
-        written[name] = ast.unparse(statement.annotation).strip("'")
-        match following:
-            case ast.Expr(value=ast.Constant(value=str(text))):
-                entry = f"{name} ({written[name]}): {' '.join(text.split())}"
-                lines.append(textwrap.fill(entry, 112, initial_indent=" " * 4, subsequent_indent=" " * 8))
-    cls.__doc__ = "\n\n".join([inspect.cleandoc(cls.__doc__ or ""), "\n".join(["Attributes:", *lines]), ""])
-    init: Any = cls.__init__  # type: ignore[misc]
-    signature = inspect.signature(init)
-    parameters = [
-        parameter.replace(annotation=_Annotation(written[name])) if name in written else parameter
-        for name, parameter in signature.parameters.items()
-    ]
-    init.__signature__ = signature.replace(parameters=parameters)
-    return cls
+        if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name):
+            annotation = ast.unparse(statement.annotation).strip("'")
+            match following:
+                case ast.Expr(value=ast.Constant(value=str(text))):
+                    yield statement.target.id, annotation, " ".join(text.split())
+                case _:
+                    yield statement.target.id, annotation, ""

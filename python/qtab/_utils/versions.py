@@ -2,9 +2,11 @@
 
 import platform
 from functools import cache
-from importlib.metadata import version
 
+import gymnasium as gym
 import numpy as np
+
+from qtab._core import BUILD_PROFILE, VERSION
 
 
 def versions() -> dict[str, str]:
@@ -12,14 +14,12 @@ def versions() -> dict[str, str]:
     return dict(_versions())
 
 
-@cache  # reading the metadata takes as long as a short run
+@cache
 def _versions() -> dict[str, str]:
-    from qtab._core import BUILD_PROFILE
-
     libc = " ".join(platform.libc_ver()).strip()
     return {
-        "qtab": version("qtab"),
-        "gymnasium": version("gymnasium"),
+        "qtab": VERSION,
+        "gymnasium": gym.__version__,
         "numpy": np.__version__,
         "python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}" + (f" {libc}" if libc else ""),

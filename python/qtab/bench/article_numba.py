@@ -69,6 +69,30 @@ def q_learning(
     return Q, returns, steps
 
 
+def compiled_many(threads: int) -> Callable[[int], int] | None:
+    """Returns a function from a number of seeds to the steps of their runs, on several threads; None without numba."""
+    try:
+        from numba import njit, prange, set_num_threads
+    except ModuleNotFoundError:
+        return None
+    fast: Any = njit(q_learning)
+
+    def runs(starts: NDArray[np.float64], steps: NDArray[np.int64]) -> None:
+        for seed in prange(len(starts)):
+            _, _, steps[seed] = fast(starts[seed], seed, 0.2, 0.9, 0.8, 0.0)
+
+    parallel: Any = njit(parallel=True)(runs)
+
+    def run(seeds: int) -> int:
+        set_num_threads(threads)
+        starts = np.random.default_rng(0).uniform(-0.6, -0.4, (seeds, EPISODES))
+        steps = np.zeros(seeds, np.int64)
+        parallel(starts, steps)
+        return int(steps.sum())
+
+    return run
+
+
 def compiled() -> Callable[[int], int] | None:
     """Returns a function from the seed of a run, compiled by numba, to its number of steps; None without numba."""
     try:

@@ -1,5 +1,6 @@
 """Training with the default presets of other environments than MountainCar."""
 
+from qtab.bench import table_numba
 from qtab.bench.plain_loop import q_learning
 from qtab.bench.timing import Benchmark, Timings
 from qtab.config.presets import presets
@@ -13,6 +14,9 @@ TITLE = "Training, the environment's preset"
 _METHODS = ("a plain loop: NumPy on gymnasium.make", "qtab.train", "train_many, 16 seeds, one thread")
 METHODS = (*_METHODS, "train_many, 32 seeds, two threads")
 FIRST = f"FrozenLake, {METHODS[0]}"
+NUMBA = "a loop over the table under numba"
+TABLES = ("FrozenLake-v1", "Taxi-v4")
+"""The environments that have such a loop."""
 
 
 def names() -> list[str]:
@@ -26,17 +30,22 @@ def training() -> dict[str, Benchmark]:
     for name in names():
         loops = (_plain(name), _single(name), _many(name, 16, 1), _many(name, 32, 2))
         benchmarks |= {_row(name, method): loop for method, loop in zip(METHODS, loops, strict=True)}
+        numba = table_numba.compiled(name) if name in TABLES else None
+        if numba is not None:
+            benchmarks[_row(name, NUMBA)] = numba
     return benchmarks
 
 
 def lines(timings: Timings) -> list[list[str]]:
-    """Returns the rows of the table: name, nanoseconds per step, and how many times as fast as the plain loop."""
-    groups = [[_row(name, method) for method in METHODS] for name in names()]
-    return [
-        [row, f"{timings.median(row):,.1f}", f"{timings.ratio(group[0], row):,.0f}"]
-        for group in groups
-        for row in group
-    ]
+    """Returns the rows of the table: name, nanoseconds per step, and how many times as fast as the two loops."""
+    rows = []
+    for name in names():
+        plain, numba = _row(name, METHODS[0]), _row(name, NUMBA)
+        for row in (plain, numba, *(_row(name, method) for method in METHODS[1:])):
+            if row in timings.nanoseconds:
+                of_numba = f"{timings.ratio(numba, row):.1f}" if numba in timings.nanoseconds and row != plain else ""
+                rows.append([row, f"{timings.median(row):,.1f}", f"{timings.ratio(plain, row):,.0f}", of_numba])
+    return rows
 
 
 def _row(name: str, method: str) -> str:

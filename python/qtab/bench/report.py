@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from qtab._utils import checks
 from qtab._utils.versions import versions
@@ -56,6 +57,19 @@ class Report:
         lines.append(", ".join(f"{name} {value}" for name, value in self.versions.items()))
         return "\n".join(lines)
 
+    def facts(self) -> dict[str, Any]:
+        """Returns what ``qtab bench --json`` prints: for each benchmark the median, and the times of the rounds."""
+        timings = self.timings
+        return {
+            "benchmarks": {
+                name: {"ns_per_step": timings.median(name), "rounds": times}
+                for name, times in timings.nanoseconds.items()
+            },
+            "rounds": self.rounds,
+            "footprint": self.footprint,
+            "versions": self.versions,
+        }
+
     def _warning(self) -> list[str]:
         if self.versions["build"] == "release":
             return []
@@ -98,7 +112,7 @@ class Report:
         return lines
 
     def _environments(self) -> list[str]:
-        head = _line(environments.TITLE, "ns/step", "× plain loop")
+        head = _line(environments.TITLE, "ns/step", "× plain loop", "× numba")
         return [head, *(_line(*columns) for columns in environments.lines(self.timings))]
 
     def _learners(self) -> list[str]:

@@ -1,6 +1,7 @@
-"""An experiment that computes its figure, without random numbers."""
+"""Experiments that compute their figures once, instead of averaging runs."""
 
 import time
+from abc import abstractmethod
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 
@@ -13,11 +14,9 @@ from qtab.book.result import Draw, Line, Result
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class ExactExperiment(Experiment):
-    """An experiment whose numbers follow from the settings: the number of runs and the seed change nothing."""
+class ComputedExperiment(Experiment):
+    """An experiment whose lines are computed once: the number of runs changes nothing."""
 
-    compute: Callable[[], Sequence[Line]]
-    """Returns the lines."""
     draw: Draw = field(repr=False)
     """Draws the figure."""
     names: Sequence[str]
@@ -31,6 +30,10 @@ class ExactExperiment(Experiment):
         """The names of the lines, each once."""
         return self.names
 
+    @abstractmethod
+    def lines(self, seed: int) -> Sequence[Line]:
+        """Computes the lines."""
+
     def run(
         self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
     ) -> Result:
@@ -38,9 +41,21 @@ class ExactExperiment(Experiment):
         _, seed, _ = self.check_arguments(runs, seed, threads)
         check_progress(progress)
         started = time.perf_counter()
-        lines = tuple(self.compute())
+        lines = tuple(self.lines(seed))
         text = "" if self.text is None else self.text(lines)
         return Result(self, lines, 1, seed, time.perf_counter() - started, self.draw, table=text)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class ExactExperiment(ComputedExperiment):
+    """An experiment whose numbers follow from the settings: the seed changes nothing either."""
+
+    compute: Callable[[], Sequence[Line]]
+    """Returns the lines."""
+
+    def lines(self, seed: int) -> Sequence[Line]:  # noqa: ARG002
+        """Computes the lines."""
+        return self.compute()
 
     def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:  # noqa: ARG002
         """Returns how a result was made, in words."""

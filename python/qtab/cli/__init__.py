@@ -19,16 +19,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     write_names_of_letters()
     try:
-        import tyro  # noqa: F401 - all subcommands need it
-
         from qtab.cli.command import run
-    except ModuleNotFoundError as error:
-        if error.name != "tyro":
-            raise
-        from qtab._utils.extras import missing
-
-        sys.stderr.write(f"qtab: error: {missing(error, 'cli')}\n")
-        return 1
     except KeyboardInterrupt:
         return 130
     return run(list(sys.argv[1:] if arguments is None else arguments))

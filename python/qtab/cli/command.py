@@ -56,8 +56,8 @@ def run(arguments: list[str]) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_ERROR
     except ModuleNotFoundError as error:
-        # Python 3.10 has no parser of TOML.
-        return _fail(name, one_line(missing(error, "cli") if error.name == "tomli" else error), EXIT_ERROR)
+        # All commands need tyro; Python 3.10 has no parser of TOML.
+        return _fail(name, one_line(missing(error, "cli") if error.name in ("tyro", "tomli") else error), EXIT_ERROR)
     except USER_ERRORS as error:
         return _fail(name, one_line(error), EXIT_ERROR)
     except KeyboardInterrupt:

@@ -4,18 +4,19 @@ from collections.abc import Callable
 from contextlib import ExitStack, closing
 from pathlib import Path
 from types import TracebackType
+from typing import TYPE_CHECKING
 
 from qtab._utils import checks
 from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
 from qtab.config import Config
-from qtab.planning import Optimum
-from qtab.plots.axes import check_format
-from qtab.plots.run import save_plot
 from qtab.rendering.replay import replay_all
 from qtab.rendering.video import VideoRecorder
 from qtab.rendering.window import display_problem, open_window
 from qtab.results.run import Run
+
+if TYPE_CHECKING:
+    from qtab.planning import Optimum
 
 DEFAULT_SHOWN = 20
 """The number of episodes that ``--record`` writes without ``--watch``, as many as the article's code shows."""
@@ -53,6 +54,8 @@ class Outputs:
         if watch is not None:
             checks.integer("watch", watch, least=1)
         if plot is not None:
+            from qtab.plots.axes import check_format
+
             check_format("plot", plot)
             check_writable("plot", plot)
         if save is not None:
@@ -74,7 +77,7 @@ class Outputs:
     ) -> None:
         self._opened.__exit__(kind, error, traceback)
 
-    def keep(self, run: Run, optimum: Optimum | None = None) -> None:
+    def keep(self, run: Run, optimum: "Optimum | None" = None) -> None:
         """Saves and plots a run, finished or interrupted, and prints where.
 
         Raises:
@@ -85,6 +88,8 @@ class Outputs:
             self.files["save"] = self._save
             self._say(f"Saved the run to {self._save}")
         if self._plot is not None:
+            from qtab.plots.run import save_plot
+
             save_plot(run, self._plot, optimum)
             self.files["plot"] = self._plot
             self._say(f"Saved the plot to {self._plot}")

@@ -1,11 +1,13 @@
 """Parsing with tyro, whose errors become one line in the words of this command."""
 
 import dataclasses
+import inspect
 import io
 import re
 from collections.abc import Collection, Sequence
 from contextlib import redirect_stderr
-from typing import Any, TypeVar, get_type_hints
+from types import UnionType
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import tyro
 
@@ -33,6 +35,7 @@ def parse(kind: type[T], command: str, arguments: Sequence[str], known: Collecti
     Raises:
         UsageError: for arguments that cannot be parsed.
     """
+    _use_unions_of_typing(kind)
     printed = io.StringIO()
     try:
         with redirect_stderr(printed):
@@ -42,6 +45,23 @@ def parse(kind: type[T], command: str, arguments: Sequence[str], known: Collecti
             reason = _reason(_paragraphs(printed.getvalue()), kind, known)
             raise UsageError(f"{reason}; see {command} --help") from None
         raise
+
+
+def _use_unions_of_typing(kind: type) -> None:
+    """Turns ``X | None`` into ``Optional[X]``: tyro loads typeguard, for 30 ms, to check the default of the former.
+
+    From Python 3.14 on they are the same.
+    """
+    for base in kind.__mro__:
+        if annotations := inspect.get_annotations(base):
+            base.__annotations__ = {name: _with_union_of_typing(hint) for name, hint in annotations.items()}
+
+
+def _with_union_of_typing(hint: Any) -> Any:
+    if get_origin(hint) is Annotated:
+        inner, *rest = get_args(hint)
+        return Annotated[(_with_union_of_typing(inner), *rest)]
+    return Union[get_args(hint)] if isinstance(hint, UnionType) else hint  # noqa: UP007 - of any number of types
 
 
 def _paragraphs(box: str) -> list[str]:
@@ -91,6 +111,6 @@ def arguments_of(kind: Any) -> tuple[set[str], set[str]]:
     hints = get_type_hints(kind, include_extras=True)
     also_flags = {name.removesuffix("_flag") for name in hints if name.endswith("_flag")}
     positional = {name for name, hint in hints.items() if "Positional" in repr(hint)} - also_flags
-    groups = {name for name, hint in hints.items() if hasattr(hint, "__total__")}  # the settings, each by its name
+    groups = {name for name, hint in hints.items() if dataclasses.is_dataclass(hint)}  # the settings, each by its name
     flags = {field.name.removesuffix("_flag") for field in dataclasses.fields(kind)} - positional - groups
     return flags, positional

@@ -10,7 +10,7 @@ import tyro
 from qtab.cli.constructors import OPTIONAL_INT
 from qtab.cli.parsing import parse
 from qtab.cli.reporting import OutputFlags
-from qtab.cli.settings import flag_groups, read_config
+from qtab.cli.settings import flag_groups, given_flags, read_config
 from qtab.cli.usage import UsageError, usage_errors
 from qtab.config import DEFAULTS, Config
 from qtab.config.explanations import default, groups
@@ -59,7 +59,7 @@ OUTPUTS = ("save", "plot", "watch", "record")
 
 def flags_of(asked: Arguments) -> tuple[str, ...]:
     """Returns the arguments that messages spell as flags: all but the settings that only the file gives."""
-    given = {name for title in groups(DEFAULTS) for name in getattr(asked, title.lower())}
+    given = {name for title in groups(DEFAULTS) for name in given_flags(getattr(asked, title.lower()))}
     in_file = () if asked.config is None else read_config(asked.config).keys() - given
     return (*OUTPUTS, *(name for name in DEFAULTS if name not in in_file and name != "env"))
 
@@ -91,7 +91,9 @@ def parse_arguments(arguments: list[str]) -> tuple[Arguments, str, dict[str, Any
 
 def _read(words: list[str], shown: Mapping[str, Any]) -> Arguments:
     fields: list[Any] = [
-        (title.lower(), flags, field(default_factory=dict)) for title, flags in flag_groups(shown).items()
+        # Without a help text, tyro would look for one in the source.
+        (title.lower(), flags, field(default_factory=flags, metadata={"help": ""}))
+        for title, flags in flag_groups(shown).items()
     ]
     namespace = {"__doc__": Arguments.__doc__}
     with_settings = make_dataclass("Arguments", fields, bases=(Arguments,), frozen=True, namespace=namespace)
@@ -101,7 +103,7 @@ def _read(words: list[str], shown: Mapping[str, Any]) -> Arguments:
 def _env_and_settings(asked: Arguments) -> tuple[str, dict[str, Any]]:
     settings = {} if asked.config is None else read_config(asked.config)
     for title in groups(DEFAULTS):
-        settings |= getattr(asked, title.lower())
+        settings |= given_flags(getattr(asked, title.lower()))
     if asked.env is not None and asked.env_flag is not None:
         raise ValueError(f"env must be given once, got {asked.env!r} and {asked.env_flag!r}")
     named = settings.pop("env", Config.env)

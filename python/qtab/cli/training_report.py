@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,8 +10,7 @@ from qtab.cli.outputs import Outputs, last_episodes
 from qtab.cli.reporting import Report
 from qtab.config import Config
 from qtab.config.presets import presets
-from qtab.diagnosis.facts import BEST_KNOWN_MOUNTAIN_CAR, MAX_QUICK_UPDATES, Facts
-from qtab.planning import Gap, Optimum, optimum
+from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, MAX_QUICK_UPDATES, is_usual_mountain_car, reward_threshold
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES, SOLVED_EPISODES, best_mean_returns, default_block, summarize
 from qtab.training.callbacks import Progress
@@ -19,16 +18,21 @@ from qtab.training.options import TrainingOptions
 from qtab.training.resolved_run import NativeEnvironment, ResolvedRun
 from qtab.training.train import train_resolved
 
+if TYPE_CHECKING:
+    from qtab.planning import Gap, Optimum
+
 
 def backend_words(config: Config) -> str:
     """Returns the environment and where it is stepped."""
     return f"{config.env} {'in Rust' if config.backend == 'rust' else 'stepped by Gymnasium in Python'}"
 
 
-def optimum_of(resolved: ResolvedRun, always: bool, progress: bool | None) -> Optimum | None:
+def optimum_of(resolved: ResolvedRun, always: bool, progress: bool | None) -> "Optimum | None":
     """Returns the optimum of a run's environment; None if it takes more than a second, unless ``always`` is set."""
     if not (always or _has_quick_optimum(resolved)):
         return None
+    from qtab.planning import optimum
+
     config = resolved.config
     return optimum(
         config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps, progress=progress
@@ -52,7 +56,7 @@ class Training:
     resolved: ResolvedRun
     report: Report
     outputs: Outputs
-    best: Optimum | None
+    best: "Optimum | None"
     """The optimum of the environment, if it is known."""
     visits: bool = False
     snapshots: tuple[int, ...] = ()
@@ -94,10 +98,10 @@ class Training:
         self.report.add(files=self.outputs.files)
 
     def _report(self, run: Run) -> None:
-        facts, gap = Facts(run), None if self.best is None else self.best.gap(run)
-        self.report.add(**_summary(run, facts, gap))
+        gap, threshold = None if self.best is None else self.best.gap(run), reward_threshold(run.config.env)
+        self.report.add(**_summary(run, threshold, gap))
         self.report.text(_summary_text(run))
-        for line in (_verdict(run, facts.threshold), _gap_text(facts, gap)):
+        for line in (_verdict(run, threshold), _gap_text(run, gap)):
             if line is not None:
                 self.report.text(line)
         try:
@@ -135,8 +139,9 @@ def _best_mean(run: Run) -> float | None:
     return float(best_mean_returns(run.episode_returns[np.newaxis])[0])
 
 
-def _last_mean(run: Run) -> float:
-    return float(run.episode_returns[-SOLVED_EPISODES:].mean())
+def _final_return(run: Run) -> float:
+    last = run.episode_returns[-FINAL_EPISODES:]
+    return float(last.mean()) if len(last) else float("nan")
 
 
 def _verdict(run: Run, threshold: float | None) -> str | None:
@@ -145,7 +150,7 @@ def _verdict(run: Run, threshold: float | None) -> str | None:
     if threshold is None or best is None:
         return None
     found = f"the best mean return over {SOLVED_EPISODES} consecutive episodes is {best:.2f}"
-    if _last_mean(run) >= threshold:
+    if _final_return(run) >= threshold:
         return f"Solved: the last {SOLVED_EPISODES} episodes reach the threshold of {threshold:g}"
     if best >= threshold:
         return f"Solved earlier, not at the end: {found}, the threshold {threshold:g}"
@@ -153,21 +158,21 @@ def _verdict(run: Run, threshold: float | None) -> str | None:
     return f"Not solved: {found}, the threshold {threshold:g}" + ("; --preset solved reaches it" if solving else "")
 
 
-def _gap_text(facts: Facts, gap: Gap[float] | None) -> str | None:
+def _gap_text(run: Run, gap: "Gap[float] | None") -> str | None:
     """Returns the gap to the optimum; None where it is not known, or not without a search."""
     if gap is not None:
         text = str(gap)
         return text[0].upper() + text[1:]
-    if not facts.is_usual_mountain_car or not len(facts.run.episode_returns):
+    if not is_usual_mountain_car(run.config) or not len(run.episode_returns):
         return None
-    last = last_episodes(min(len(facts.run.episode_returns), FINAL_EPISODES))
-    short = BEST_KNOWN_MOUNTAIN_CAR - facts.final_return
+    last = last_episodes(min(len(run.episode_returns), FINAL_EPISODES))
+    short = BEST_KNOWN_MOUNTAIN_CAR - _final_return(run)
     return f"Best known {BEST_KNOWN_MOUNTAIN_CAR:.4g}, gap {short:.4g} over {last}"
 
 
-def _summary(run: Run, facts: Facts, gap: Gap[float] | None) -> dict[str, Any]:
+def _summary(run: Run, threshold: float | None, gap: "Gap[float] | None") -> dict[str, Any]:
     """Returns what the JSON object says of a run; the page on the command line lists the keys."""
-    finished, best, threshold = len(run.episode_returns), _best_mean(run), facts.threshold
+    finished, best = len(run.episode_returns), _best_mean(run)
     columns = summarize(run.episode_returns[None], run.episode_lengths[None], run.terminated[None]) if finished else {}
     numbers = {name: column.item() for name, column in columns.items()}
     return {
@@ -184,19 +189,19 @@ def _summary(run: Run, facts: Facts, gap: Gap[float] | None) -> dict[str, Any]:
         **{name: numbers.get(name) for name in ("mean_return", "final_return", "best_return", "terminated_rate")},
         "best_mean_return": best,
         "threshold": threshold,
-        "solved": None if threshold is None or best is None else _last_mean(run) >= threshold,
-        "gap": _gap_facts(facts, gap),
+        "solved": None if threshold is None or best is None else _final_return(run) >= threshold,
+        "gap": _gap_facts(run, gap),
         "versions": run.versions,
     }
 
 
-def _gap_facts(facts: Facts, gap: Gap[float] | None) -> dict[str, Any] | None:
-    if gap is None and not facts.is_usual_mountain_car:
+def _gap_facts(run: Run, gap: "Gap[float] | None") -> dict[str, Any] | None:
+    if gap is None and not is_usual_mountain_car(run.config):
         return None
     return {
         "label": "best known" if gap is None else gap.label,
         "optimum": BEST_KNOWN_MOUNTAIN_CAR if gap is None else gap.optimum,
-        "final": BEST_KNOWN_MOUNTAIN_CAR - facts.final_return if gap is None else gap.final,
+        "final": BEST_KNOWN_MOUNTAIN_CAR - _final_return(run) if gap is None else gap.final,
         "greedy": None if gap is None else gap.greedy,
         "greedy_return": None if gap is None else gap.greedy_return,
         "attainable": None if gap is None else gap.attainable,

@@ -3,6 +3,7 @@
 import inspect
 import textwrap
 from collections.abc import Callable
+from functools import cache
 from typing import Any, TypeVar, get_args, get_type_hints
 
 from qtab.config.explanations import applicability, default, explanations, groups
@@ -37,6 +38,7 @@ def with_settings(function: F) -> F:
     return function
 
 
+@cache  # several functions take the same settings
 def _entry(name: str) -> str:
     text = f"{name}: {explanations().get(name, '')} {applicability(name)}".strip()
     return textwrap.fill(text, 112, initial_indent=" " * 4, subsequent_indent=" " * 8)

@@ -1,6 +1,5 @@
 """What the checks look at: a run, its repetition, and its environment. Each fact is computed when it is first used."""
 
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,7 +11,8 @@ from qtab._utils.memory import memory_limit
 from qtab.config import Config
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES
 from qtab.diagnosis.sample import Sample, sample_steps
-from qtab.envs.registry import entry_for_id, gymnasium_id, spec_of
+from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, MAX_QUICK_UPDATES, is_usual_mountain_car, reward_threshold
+from qtab.envs.registry import entry_for_id
 from qtab.envs.stored import spec_of_run
 from qtab.planning.optimum import Optimum
 from qtab.planning.solve import optimum as solve
@@ -27,10 +27,6 @@ from qtab.training.train_many import seed_sequence, train_many
 
 EVALUATION_EPISODES = 100
 RANDOM_EPISODES = 500
-MAX_QUICK_UPDATES = 10**8
-"""The optimum of a table is computed if it needs at most this many updates, which take less than a second."""
-BEST_KNOWN_MOUNTAIN_CAR = -97.668
-"""The expected return that ``qtab.optimum("MountainCar-v0")`` finds in seconds."""
 SHORTEST_MOUNTAIN_CAR, LONGEST_MOUNTAIN_CAR = 83, 104
 """The lengths of its routes: from the best and from the worst start."""
 OTHER_SEEDS_STEPS = 10**7
@@ -103,9 +99,7 @@ class Facts:
     @cached_property
     def threshold(self) -> float | None:
         """The return at which Gymnasium considers the environment solved; None where it gives none."""
-        with suppress(gym.error.Error):  # the class of an environment that has no id
-            return spec_of(self.config.env).reward_threshold
-        return None
+        return reward_threshold(self.config.env)
 
     @cached_property
     def optimum(self) -> Optimum | None:
@@ -121,9 +115,7 @@ class Facts:
     @cached_property
     def is_usual_mountain_car(self) -> bool:
         """Whether the run is on MountainCar-v0 with its own constants and time limit."""
-        config = self.config
-        usual = not config.env_kwargs.get("goal_velocity") and config.max_episode_steps == 200
-        return usual and gymnasium_id(config.env) == "MountainCar-v0"
+        return is_usual_mountain_car(self.config)
 
     @cached_property
     def best_return(self) -> float | None:

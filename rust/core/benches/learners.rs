@@ -3,14 +3,14 @@
 //! `cargo bench --bench learners`, or `cargo bench --bench learners -- tilings` for the tilings only. All learners use the
 //! policy and the learning rate that are chosen at run time.
 
+mod benchmarks;
 mod mountain_car_task;
 
 use std::fmt::Debug;
 
-use criterion::measurement::WallTime;
-use criterion::{BenchmarkGroup, Criterion, Throughput};
+use benchmarks::Benchmarks;
 use mountain_car_task::{IN_BOUNDS, MountainCarTask, rounding, task};
-use qtab_core::features::{Features, TileCoding};
+use qtab_core::features::{Features, FixedTileCoding, TileCoding};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
     TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
@@ -43,7 +43,8 @@ fn agent(rows: usize, n_active: usize) -> Agent {
 
 /// The benchmarks of all learners with the same features.
 struct Bench<'a, F> {
-    group: BenchmarkGroup<'a, WallTime>,
+    benchmarks: &'a mut Benchmarks,
+    group: &'static str,
     features: F,
     n_active: usize,
 }
@@ -67,8 +68,7 @@ where
             trainer.advance(Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
             trainer.episodes().lengths.iter().sum::<i64>() as u64
         };
-        self.group.throughput(Throughput::Elements(run()));
-        self.group.bench_function(name, |bencher| bencher.iter(run));
+        self.benchmarks.add(self.group, name, run);
     }
 
     /// Benchmarks all learners that work with any features.
@@ -91,8 +91,8 @@ where
     }
 }
 
-fn grid(criterion: &mut Criterion) {
-    let mut grid = Bench { group: criterion.benchmark_group("grid"), features: rounding(), n_active: 1 };
+fn grid(benchmarks: &mut Benchmarks) {
+    let mut grid = Bench { benchmarks, group: "grid", features: rounding(), n_active: 1 };
     grid.all();
     let model =
         |agent: &Agent| Model::new(agent.table.values().len() / ACTIONS, ACTIONS, &StopFlag::new()).expect(FITS);
@@ -100,20 +100,19 @@ fn grid(criterion: &mut Criterion) {
     grid.rule("Dyna-Q+, 10 steps planned", |agent| {
         DynaQPlus::new(model(agent), 10, 1e-3, &StopFlag::new()).expect(FITS)
     });
-    grid.group.finish();
 }
 
-fn tilings(criterion: &mut Criterion) {
+fn tilings(benchmarks: &mut Benchmarks) {
     let bounds = [[-1.2_f32, -0.07], [0.6, 0.07]].map(|bound| bound.map(f64::from));
     let tiles = TileCoding::<f32, TILINGS>::new(&bounds[0], &bounds[1], &[8, 8], TILINGS as u32);
-    let mut tilings = Bench { group: criterion.benchmark_group("tilings"), features: tiles, n_active: TILINGS };
+    let features = FixedTileCoding::<f32, 2, TILINGS>::new(&tiles).expect("the numbers agree");
+    let mut tilings = Bench { benchmarks, group: "tilings", features, n_active: TILINGS };
     tilings.all();
-    tilings.group.finish();
 }
 
 fn main() {
-    let mut criterion = Criterion::default().configure_from_args();
-    grid(&mut criterion);
-    tilings(&mut criterion);
-    criterion.final_summary();
+    let mut benchmarks = Benchmarks::from_env();
+    grid(&mut benchmarks);
+    tilings(&mut benchmarks);
+    benchmarks.finish();
 }

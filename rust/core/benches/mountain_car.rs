@@ -2,11 +2,12 @@
 //!
 //! `cargo bench --bench mountain_car`, or `cargo bench --bench mountain_car -- run` for the training run only.
 
+mod benchmarks;
 mod mountain_car_task;
 
 use std::hint::black_box;
 
-use criterion::{BatchSize, Criterion, Throughput};
+use benchmarks::Benchmarks;
 use mountain_car_task::{IN_BOUNDS, MAX_EPISODE_STEPS, MountainCarTask, agent_rng, rounding, task};
 use qtab_core::batch::{BatchedRun, LANES};
 use qtab_core::envs::classic_control::{MountainCar, MountainCarState};
@@ -44,39 +45,31 @@ fn states(rng: &mut Pcg64) -> Vec<(MountainCarState, usize)> {
 }
 
 /// One step of many independent cars.
-fn physics(criterion: &mut Criterion) {
+fn physics(benchmarks: &mut Benchmarks) {
     let mut rng = agent_rng();
     let (car, states) = (MountainCar::default(), states(&mut rng));
-    let mut group = criterion.benchmark_group("physics");
-    group.throughput(Throughput::Elements(BATCH as u64));
-    group.bench_function("step", |bencher| {
-        bencher.iter(|| {
-            for &(state, action) in &states {
-                black_box(car.step(state, action, &mut rng));
-            }
-        });
+    benchmarks.add("physics", "step", || {
+        for &(state, action) in &states {
+            black_box(car.step(state, action, &mut rng));
+        }
+        BATCH as u64
     });
-    group.finish();
 }
 
 /// From observations to rows.
-fn discretizer(criterion: &mut Criterion) {
+fn discretizer(benchmarks: &mut Benchmarks) {
     let (car, rounding) = (MountainCar::default(), rounding());
     let observations: Vec<_> = states(&mut agent_rng()).iter().map(|(state, _)| car.observe(state)).collect();
-    let mut group = criterion.benchmark_group("discretizer");
-    group.throughput(Throughput::Elements(BATCH as u64));
-    group.bench_function("rows", |bencher| {
-        bencher.iter(|| {
-            for observation in &observations {
-                let _ = black_box(rounding.active_rows(observation));
-            }
-        });
+    benchmarks.add("discretizer", "rows", || {
+        for observation in &observations {
+            let _ = black_box(rounding.active_rows(observation));
+        }
+        BATCH as u64
     });
-    group.finish();
 }
 
 /// The update and the choice of the next action, along a random walk.
-fn update(criterion: &mut Criterion) {
+fn update(benchmarks: &mut Benchmarks) {
     let mut rng = agent_rng();
     let (mut task, mut learner) = (task(rounding()), learner(&mut rng));
     let (mut state, mut active) = task.reset().expect(IN_BOUNDS);
@@ -91,16 +84,12 @@ fn update(criterion: &mut Criterion) {
             (state, active) = task.reset().expect(IN_BOUNDS);
         }
     }
-    let mut group = criterion.benchmark_group("update");
-    group.throughput(Throughput::Elements(BATCH as u64));
-    group.bench_function("learn", |bencher| {
-        bencher.iter(|| {
-            for &(active, action, transition) in &walk {
-                black_box(learner.learn(active, action, transition.reward, transition.next, &mut rng));
-            }
-        });
+    benchmarks.add("update", "learn", || {
+        for &(active, action, transition) in &walk {
+            black_box(learner.learn(active, action, transition.reward, transition.next, &mut rng));
+        }
+        BATCH as u64
     });
-    group.finish();
 }
 
 fn trainer<R: Rng + Clone>(mut rng: R) -> QLearningRun<R> {
@@ -144,30 +133,24 @@ fn lower_bound(steps: u64, actions: &[usize], rng: &mut Pcg64) -> f64 {
 }
 
 /// The article's training run, and the lower bound for as many steps.
-fn run(criterion: &mut Criterion) {
+fn run(benchmarks: &mut Benchmarks) {
     let steps = train(trainer(agent_rng()));
     let mut rng = agent_rng();
     let actions: Vec<_> = (0..BATCH).map(|_| rng.integers(3) as usize).collect();
-    let mut group = criterion.benchmark_group("run");
-    group.throughput(Throughput::Elements(steps));
-    group.bench_function("article, PCG64", |bencher| bencher.iter(|| train(trainer(agent_rng()))));
-    group.bench_function("lower bound", |bencher| bencher.iter(|| lower_bound(steps, &actions, &mut rng)));
-    let steps = train_batch(&mut batch_of_runs());
-    group.throughput(Throughput::Elements(steps));
-    group.bench_function("article, a batch of 8 on one core", |bencher| {
-        bencher.iter_batched_ref(batch_of_runs, train_batch, BatchSize::PerIteration);
+    benchmarks.add("run", "article, PCG64", || train(trainer(agent_rng())));
+    benchmarks.add("run", "lower bound", || {
+        black_box(lower_bound(steps, &actions, &mut rng));
+        steps
     });
-    let steps = train(trainer(Mt19937::new(0)));
-    group.throughput(Throughput::Elements(steps));
-    group.bench_function("article, MT19937", |bencher| bencher.iter(|| train(trainer(Mt19937::new(0)))));
-    group.finish();
+    benchmarks.add("run", "article, a batch of 8 on one core", || train_batch(&mut batch_of_runs()));
+    benchmarks.add("run", "article, MT19937", || train(trainer(Mt19937::new(0))));
 }
 
 fn main() {
-    let mut criterion = Criterion::default().configure_from_args();
-    physics(&mut criterion);
-    discretizer(&mut criterion);
-    update(&mut criterion);
-    run(&mut criterion);
-    criterion.final_summary();
+    let mut benchmarks = Benchmarks::from_env();
+    physics(&mut benchmarks);
+    discretizer(&mut benchmarks);
+    update(&mut benchmarks);
+    run(&mut benchmarks);
+    benchmarks.finish();
 }

@@ -2,10 +2,11 @@
 //!
 //! `cargo bench --bench prediction`. "boxed" is a run whose task and method are chosen at run time.
 
+mod benchmarks;
+
 use std::fmt::Debug;
 
-use criterion::measurement::WallTime;
-use criterion::{BenchmarkGroup, Criterion, Throughput};
+use benchmarks::Benchmarks;
 use qtab_core::envs::tabular::{Outcome, TabularMdp};
 use qtab_core::features::{Identity, OutOfBounds};
 use qtab_core::learners::{Agent, QLearning, TdLearner, TruncationHandling};
@@ -21,6 +22,8 @@ use qtab_core::{Budget, Env, Learner, QTable, Task, Trainer};
 
 const EPISODES: usize = 100;
 const MAX_EPISODE_STEPS: u64 = 10_000;
+/// Methods that look back reserve memory for so many.
+const MOST_STEPS: u64 = EPISODES as u64 * MAX_EPISODE_STEPS;
 const LEARNING_RATE: f64 = 0.1;
 
 /// A method that is chosen at run time.
@@ -100,8 +103,8 @@ impl Problem {
     }
 }
 
-/// Benchmarks a run, and returns after how many steps it ends.
-fn bench<T, L, R>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, parts: impl Fn() -> (T, L, R))
+/// Adds the benchmark of a run.
+fn bench<T, L, R>(benchmarks: &mut Benchmarks, group: &str, name: &str, parts: impl Fn() -> (T, L, R))
 where
     T: Task<Error: Debug>,
     L: Learner<T::Active>,
@@ -110,45 +113,42 @@ where
     let run = || {
         let (task, learner, rng) = parts();
         let mut trainer = Trainer::new(task, learner, rng);
-        trainer.advance(Budget { episodes: EPISODES, work: u64::MAX }).expect("a table has no bounds to leave");
+        trainer.advance(Budget { episodes: EPISODES, work: MOST_STEPS }).expect("a table has no bounds to leave");
         trainer.episodes().lengths.iter().sum::<i64>() as u64
     };
-    group.throughput(Throughput::Elements(run()));
-    group.bench_function(name, |bencher| bencher.iter(run));
+    benchmarks.add(group, name, run);
 }
 
 /// Benchmarks all runs in one environment with `N` actions.
-fn compare<const N: usize>(criterion: &mut Criterion, name: &str, env: TabularMdp) {
+fn compare<const N: usize>(benchmarks: &mut Benchmarks, group: &str, env: TabularMdp) {
     let problem = Problem { env };
-    let mut group = criterion.benchmark_group(name);
     let seed = SeedSequence::new(&[0]);
     let (rng, any_rng) = (Pcg64::new(&seed.child(0)), AgentRng::pcg64(&seed));
     let scheduled = || LearningRate::scheduled(Schedule::constant(LEARNING_RATE), 1);
-    bench(&mut group, "Q-learning", || (problem.task(), problem.q_learning::<N, _>(LEARNING_RATE), rng.clone()));
-    bench(&mut group, "TD(0)", || (problem.task(), problem.predictor(TdZero), rng.clone()));
-    bench(&mut group, "TD(0.8)", || {
+    bench(benchmarks, group, "Q-learning", || (problem.task(), problem.q_learning::<N, _>(LEARNING_RATE), rng.clone()));
+    bench(benchmarks, group, "TD(0)", || (problem.task(), problem.predictor(TdZero), rng.clone()));
+    bench(benchmarks, group, "TD(0.8)", || {
         let rule: Method = Box::new(TdLambda::new(0.8, problem.env.num_states()));
         (problem.task(), problem.predictor(rule), rng.clone())
     });
-    bench(&mut group, "Monte Carlo", || {
+    bench(benchmarks, group, "Monte Carlo", || {
         let rule: Method = Box::new(MonteCarloPrediction::new(false, problem.env.num_states()));
         (problem.task(), problem.predictor(rule), rng.clone())
     });
-    bench(&mut group, "Q-learning, boxed", || {
+    bench(benchmarks, group, "Q-learning, boxed", || {
         let learner = problem.q_learning::<0, _>(scheduled());
         (problem.boxed(), TruncationHandling { learner, terminate: false, bonus: None }, any_rng.clone())
     });
-    bench(&mut group, "TD(0), boxed", || {
+    bench(benchmarks, group, "TD(0), boxed", || {
         let rule: Method = Box::new(TdZero);
         let learner = problem.predictor(rule);
         (problem.boxed(), TruncationHandling { learner, terminate: false, bonus: None }, any_rng.clone())
     });
-    group.finish();
 }
 
 fn main() {
-    let mut criterion = Criterion::default().configure_from_args();
-    compare::<2>(&mut criterion, "random walk of 19 states", random_walk());
-    compare::<4>(&mut criterion, "grid world of 10 x 10 cells", grid_world());
-    criterion.final_summary();
+    let mut benchmarks = Benchmarks::from_env();
+    compare::<2>(&mut benchmarks, "random walk of 19 states", random_walk());
+    compare::<4>(&mut benchmarks, "grid world of 10 x 10 cells", grid_world());
+    benchmarks.finish();
 }

@@ -2,7 +2,9 @@
 //!
 //! `cargo bench --bench vector`. Finished episodes are reset in the same step.
 
-use criterion::{Criterion, Throughput};
+mod benchmarks;
+
+use benchmarks::Benchmarks;
 use qtab_core::Env;
 use qtab_core::envs::classic_control::{CartPole, MountainCar};
 use qtab_core::random::{Pcg64, Rng, SeedSequence};
@@ -11,7 +13,7 @@ use qtab_core::vector::{Autoreset, StepBuffers, VectorEnv};
 const NUM_ENVS: usize = 4096;
 const LIMIT: u64 = 200;
 
-fn step<E>(criterion: &mut Criterion, name: &str, env: E)
+fn step<E>(benchmarks: &mut Benchmarks, name: &str, env: E)
 where
     E: Env<Action = usize, Observation: Copy + Default + Send, State: Send> + Sync,
 {
@@ -21,25 +23,21 @@ where
     rngs.iter_mut().enumerate().for_each(|(index, rng)| vector.reset(index, None, rng));
     let (mut observations, mut rewards) = (vec![E::Observation::default(); NUM_ENVS], vec![0.0; NUM_ENVS]);
     let (mut terminated, mut truncated) = (vec![false; NUM_ENVS], vec![false; NUM_ENVS]);
-    let mut group = criterion.benchmark_group("vector");
-    group.throughput(Throughput::Elements(NUM_ENVS as u64));
-    group.bench_function(name, |bencher| {
-        bencher.iter(|| {
-            let buffers = StepBuffers {
-                observations: &mut observations,
-                rewards: &mut rewards,
-                terminated: &mut terminated,
-                truncated: &mut truncated,
-            };
-            vector.step(&actions, &mut rngs, buffers);
-        });
+    benchmarks.add("vector", name, || {
+        let buffers = StepBuffers {
+            observations: &mut observations,
+            rewards: &mut rewards,
+            terminated: &mut terminated,
+            truncated: &mut truncated,
+        };
+        vector.step(&actions, &mut rngs, buffers);
+        NUM_ENVS as u64
     });
-    group.finish();
 }
 
 fn main() {
-    let mut criterion = Criterion::default().configure_from_args();
-    step(&mut criterion, "MountainCar", MountainCar::default());
-    step(&mut criterion, "CartPole", CartPole::default());
-    criterion.final_summary();
+    let mut benchmarks = Benchmarks::from_env();
+    step(&mut benchmarks, "MountainCar", MountainCar::default());
+    step(&mut benchmarks, "CartPole", CartPole::default());
+    benchmarks.finish();
 }

@@ -41,6 +41,10 @@ mod _core {
     #[pymodule_export]
     use super::training::{PyTrainer, run_testbeds, train_many};
 
+    /// The version of the package, which Python's metadata takes ten times as long to tell.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+
     /// How the extension was compiled: only "release" says anything about speed.
     #[pymodule_export]
     const BUILD_PROFILE: &str = if cfg!(debug_assertions) { "debug" } else { "release" };

@@ -1,16 +1,12 @@
 """Figure 2.1: an exemplary problem of the 10-armed testbed."""
 
-import time
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
 
-from qtab._utils.progress import check_progress
-from qtab.book.exact_experiment import exact_line
-from qtab.book.experiment import Experiment
+from qtab.book.exact_experiment import ComputedExperiment, exact_line
 from qtab.book.result import Line, Result
 from qtab.book.testbed import ENV
 from qtab.plots.axes import axes_or_new
@@ -27,38 +23,20 @@ HALF_WIDTH = 0.4
 """The largest half width of a distribution, where actions are 1 apart."""
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
-class ExemplaryProblem(Experiment):
+class ExemplaryProblem(ComputedExperiment):
     """The problem that the testbed draws with a seed: the true values and the distributions of the rewards."""
 
-    runs: int = 1
-
-    @property
-    def line_names(self) -> Sequence[str]:
-        """The names of the lines, each once."""
-        return (VALUES,)
+    def lines(self, seed: int) -> Sequence[Line]:
+        """Draws the problem."""
+        env = gym.make(ENV)
+        env.reset(seed=seed)
+        values = env.get_wrapper_attr("action_values")
+        env.close()
+        return [exact_line(VALUES, np.arange(1, len(values) + 1), values)]
 
     def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:  # noqa: ARG002
         """Returns how a result was made, in words."""
         return f"the problem of seed {seed}; the distributions are exact"
-
-    def run(
-        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
-    ) -> Result:
-        """Draws the problem; the number of runs changes nothing. See :func:`qtab.book.run`."""
-        _, seed, _ = self.check_arguments(runs, seed, threads)
-        check_progress(progress)
-        started = time.perf_counter()
-        line = _true_values(seed)
-        return Result(self, (line,), 1, seed, time.perf_counter() - started, _draw)
-
-
-def _true_values(seed: int) -> Line:
-    env = gym.make(ENV)
-    env.reset(seed=seed)
-    values = env.get_wrapper_attr("action_values")
-    env.close()
-    return exact_line(VALUES, np.arange(1, len(values) + 1), values)
 
 
 def _draw(result: Result, ax: "Axes | None") -> "Axes":
@@ -89,4 +67,6 @@ EXPERIMENT = ExemplaryProblem(
     unspecified="the true values of the book's problem (here those of the seed); actions are numbered from 1, as there",
     x_label="action",
     y_label="reward distribution",
+    names=[VALUES],
+    draw=_draw,
 )

@@ -1,0 +1,50 @@
+"""The article's training loop in C, where there is a compiler."""
+
+import ctypes
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+EPISODES = 5000
+COMPILERS = ("cc", "gcc", "clang")
+FLAGS = ("-O3", "-march=native", "-ffp-contract=off", "-shared", "-fPIC")
+"""Contraction would fuse multiplications with additions, which Gymnasium and NumPy do not."""
+
+
+def compiled() -> Callable[[int], int] | None:
+    """Returns a function from the seed of a run to its number of steps; None without a compiler of C."""
+    q_learning = library()
+    return None if q_learning is None else lambda seed: train(q_learning, seed, EPISODES)[1]
+
+
+def library() -> Any:
+    """Returns the compiled function; None without a compiler that accepts the flags."""
+    compiler = next(filter(None, map(shutil.which, COMPILERS)), None)
+    if compiler is None:
+        return None
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        built = Path(folder, "article.so")
+        source = Path(__file__).with_name("article.c")
+        command = [compiler, *FLAGS, "-o", str(built), str(source), "-lm"]
+        if subprocess.run(command, capture_output=True, check=False).returncode != 0:  # noqa: S603 - our own file
+            return None
+        function = ctypes.CDLL(str(built)).q_learning
+    function.restype = ctypes.c_int64
+    pointers = [ctypes.c_void_p] * 3
+    function.argtypes = [*pointers, ctypes.c_int64, *[ctypes.c_double] * 4]
+    return function
+
+
+def train(q_learning: Any, seed: int, episodes: int) -> tuple[NDArray[np.float64], int]:
+    """Trains with the article's settings, and returns the Q table, (19, 15, 3), and the number of steps."""
+    seeds = np.random.SeedSequence(seed)
+    env, agent = np.random.default_rng(seeds), np.random.default_rng(seeds.spawn(1)[0])
+    q = agent.uniform(-1.0, 1.0, (19, 15, 3))
+    streams = (rng.bit_generator.ctypes.bit_generator for rng in (env, agent))
+    return q, q_learning(q.ctypes.data, *streams, episodes, 0.2, 0.9, 0.8, 0.0)

@@ -1,0 +1,116 @@
+"""Q-learning on a transition table, written so that numba can compile it: Gymnasium's toy text with a preset."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.config.presets import preset
+from qtab.reference import agent_stream
+
+
+@dataclass(frozen=True, eq=False)
+class TransitionArrays:
+    """A transition table as arrays, (states, actions, outcomes). Of pairs with fewer outcomes, the last is repeated."""
+
+    cumulative: NDArray[np.float64]
+    """The sums of the probabilities, as ``np.cumsum`` has them."""
+    states: NDArray[np.int64]
+    rewards: NDArray[np.float64]
+    terminal: NDArray[np.bool_]
+    initial: NDArray[np.float64]
+    """(states,): the sums of the probabilities of the initial states."""
+
+
+def transition_arrays(env: Any) -> TransitionArrays:
+    """Returns the table of an environment of Gymnasium's toy text."""
+    outcomes = max(len(row) for pairs in env.P.values() for row in pairs.values())
+    shape = (len(env.P), len(env.P[0]), outcomes)
+    cumulative, rewards = np.ones(shape), np.zeros(shape)
+    states, terminal = np.zeros(shape, np.int64), np.zeros(shape, np.bool_)
+    for state, pairs in env.P.items():
+        for action, row in pairs.items():
+            cumulative[state, action, : len(row)] = np.cumsum([outcome[0] for outcome in row])
+            for index in range(outcomes):
+                _, next_state, reward, done = row[min(index, len(row) - 1)]
+                states[state, action, index] = next_state
+                rewards[state, action, index] = reward
+                terminal[state, action, index] = done
+    return TransitionArrays(cumulative, states, rewards, terminal, np.cumsum(env.initial_state_distrib))
+
+
+def q_learning(
+    cumulative: NDArray[np.float64],
+    states: NDArray[np.int64],
+    rewards: NDArray[np.float64],
+    terminal: NDArray[np.bool_],
+    initial: NDArray[np.float64],
+    q: NDArray[np.float64],
+    env_rng: np.random.Generator,
+    rng: np.random.Generator,
+    episodes: int,
+    time_limit: int,
+    learning_rate: float,
+    learning_rate_reduction: float,
+    discount: float,
+    epsilon: float,
+    epsilon_reduction: float,
+) -> int:
+    """Trains a Q table, (states, actions), in place, and returns the number of steps."""
+    steps = 0
+    for _ in range(episodes):
+        number, state = env_rng.random(), 0
+        while state + 1 < len(initial) and initial[state] <= number:
+            state += 1
+        for _ in range(time_limit):
+            if rng.random() < 1.0 - epsilon:
+                action = int(np.argmax(q[state]))
+            else:
+                action = int(rng.integers(0, q.shape[1]))
+            number, index = env_rng.random(), 0
+            while index + 1 < cumulative.shape[2] and cumulative[state, action, index] <= number:
+                index += 1
+            next_state, reward = states[state, action, index], rewards[state, action, index]
+            done = terminal[state, action, index]
+            target = reward if done else reward + discount * np.max(q[next_state])
+            q[state, action] += learning_rate * (target - q[state, action])
+            state = next_state
+            steps += 1
+            if done:
+                break
+        if epsilon > 0:
+            epsilon -= epsilon_reduction
+        if learning_rate > 0:
+            learning_rate -= learning_rate_reduction
+    return steps
+
+
+def arguments(name: str, episodes: int, seed: int) -> tuple[Any, ...]:
+    """Returns the arguments of :func:`q_learning` for an environment with its default preset."""
+    env: Any = gym.make(name)
+    env.reset(seed=seed)
+    env_rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
+    table, settings = transition_arrays(env.unwrapped), dict[str, Any](preset(name, None)[1])
+    q = np.full(table.states.shape[:2], float(settings["initial_q"]))
+    learning_rate, epsilon = settings["learning_rate"], settings["epsilon"]
+    falls = settings.get("learning_rate_schedule") == "linear"
+    return (
+        *(table.cumulative, table.states, table.rewards, table.terminal, table.initial, q),
+        *(env_rng, agent_stream(seed, "PCG64"), episodes, env.spec.max_episode_steps),
+        *(learning_rate, learning_rate / episodes if falls else 0.0, settings["discount"]),
+        *(epsilon, epsilon / episodes),
+    )
+
+
+def compiled(name: str) -> Callable[[int], int] | None:
+    """Returns a function from the seed of a run, compiled by numba, to its number of steps; None without numba."""
+    try:
+        from numba import njit
+    except ModuleNotFoundError:
+        return None
+    fast: Any = njit(q_learning)
+    episodes = preset(name, None)[1]["episodes"]
+    return lambda seed: int(fast(*arguments(name, episodes, seed)))
