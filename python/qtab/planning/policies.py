@@ -44,11 +44,7 @@ def probabilities(
             that do not sum to 1.
     """
     if isinstance(policy, str):
-        if policy != RANDOM:
-            raise ValueError(
-                f"{name} must be 'random' or a policy, got {shown(policy)}{did_you_mean(policy, [RANDOM])}"
-            )
-        return np.full((cells.n_rows, len(actions)), 1.0 / len(actions))
+        return equal_probabilities(name, policy, cells.n_rows, len(actions))
     if isinstance(policy, Run):
         return _of_run(name, policy, cells, actions)
     if isinstance(policy, Optimum):
@@ -61,6 +57,17 @@ def probabilities(
     if callable(policy):
         return _of_function(name, policy, space, cells, actions)
     return of_array(name, policy, cells, actions)
+
+
+def equal_probabilities(name: str, policy: str, rows: int, n_actions: int) -> NDArray[np.float64]:
+    """Returns (rows, actions): the policy that has this name, of which there is one.
+
+    Raises:
+        ValueError: for another name.
+    """
+    if policy != RANDOM:
+        raise ValueError(f"{name} must be 'random' or a policy, got {shown(policy)}{did_you_mean(policy, [RANDOM])}")
+    return np.full((rows, n_actions), 1.0 / n_actions)
 
 
 def of_array(name: str, policy: ArrayLike, cells: Discretizer, actions: Actions) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from qtab.planning.policies import GivenPolicy
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.runs import recorded_episodes, run_prediction
 from qtab.prediction.settings import Method, PredictionSettings
-from qtab.prediction.task import OF_OBSERVATIONS, resolve_prediction
+from qtab.prediction.task import resolve_prediction
 from qtab.training.resolve import log_default_limit, log_python_stepping
 from qtab.training.train_many import seed_sequence, thread_count
 
@@ -146,10 +146,20 @@ def estimate_values(
     limit = memory_limit(None)
     numbers = seed_sequence(seeds, limit)
     points = recorded_episodes(record, settings.episodes)
-    arguments = locals()
-    given: dict[str, Any] = {
-        name: arguments[name] for name in ("max_episode_steps", *OF_OBSERVATIONS) if arguments[name] is not None
+    of_task = {
+        "max_episode_steps": max_episode_steps,
+        "discretizer": discretizer,
+        "tilings": tilings,
+        "tiles": tiles,
+        "hashed_rows": hashed_rows,
+        "bins": bins,
+        "edges": edges,
+        "scale": scale,
+        "low": low,
+        "high": high,
+        "actions": actions,
     }
+    given: dict[str, Any] = {name: value for name, value in of_task.items() if value is not None}
     if env_kwargs is not None:
         given["env_kwargs"] = env_kwargs
     resolved, space = resolve_prediction(env, policy, settings, numbers[0], given)

@@ -197,7 +197,7 @@ class ValueEstimates:
         """
         from qtab.prediction.plot import draw_values
 
-        if isinstance(self.discretizer, BoxDiscretizer) and len(self.discretizer.low) > 1:
+        if self.rows is None or (isinstance(self.discretizer, BoxDiscretizer) and len(self.discretizer.low) > 1):
             from qtab.plots import values
 
             return values(self, ax)

@@ -13,7 +13,7 @@ from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.planning.optimum import Optimum
-from qtab.planning.policies import RANDOM, SUM_TOLERANCE, GivenPolicy, probabilities, refuse_time_aware
+from qtab.planning.policies import SUM_TOLERANCE, GivenPolicy, equal_probabilities, probabilities, refuse_time_aware
 from qtab.results.action_values import read_by_policy
 from qtab.results.run import Run
 
@@ -155,8 +155,7 @@ def observation_policy(
         ValueError: if it does not fit the observations or the actions.
     """
     if isinstance(policy, str):
-        probabilities(name, policy, None, cells, actions) if policy != RANDOM else None
-        return TablePolicy(np.full((1, len(actions)), 1.0 / len(actions)))
+        return TablePolicy(equal_probabilities(name, policy, 1, len(actions)))
     if isinstance(policy, Run):
         return _of_run(name, policy, cells, actions)
     if isinstance(policy, Optimum):
