@@ -1,4 +1,4 @@
-"""The Python of the pages runs, and prints what they show: that of the README here, that of the others in `docs`.
+"""The Python of the pages runs, and prints what they show, which `.ci/run docs` tests.
 
 A block of ```` ```python ```` is run. One of ```` ```py ```` is only compiled: it needs a display, a key or patience.
 """
@@ -95,7 +95,7 @@ def test_the_python_of_a_page_runs(page: Path) -> None:
     CHECKS.get(name, lambda _: None)(namespace)
 
 
-@pytest.mark.slow
+@pytest.mark.docs
 def test_the_readmes_python_runs(tmp_path: Path) -> None:
     """With fewer seeds and snapshots."""
     page = ROOT / "README.md"

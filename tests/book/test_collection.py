@@ -7,7 +7,7 @@ import pytest
 import qtab
 from qtab.book import collection
 
-NAMES = ("example-6.6", "figure-8.2")
+NAMES = ("example-6.5", "figure-6.5")
 
 
 @pytest.fixture(autouse=True)
@@ -35,11 +35,11 @@ def test_each_experiment_has_a_table_its_points_and_a_picture(tmp_path):
     assert sorted(written) == sorted(
         ["book.json", *(name + suffix for name in NAMES for suffix in collection.SUFFIXES)]
     )
-    assert written["figure-8.2.txt"].decode().startswith("Figure 8.2: ")
-    assert written["figure-8.2.png"].startswith(b"\x89PNG")
-    result = qtab.book.run("8.2", runs=1)
+    assert written["figure-6.5.txt"].decode().startswith("Figure 6.5: ")
+    assert written["figure-6.5.png"].startswith(b"\x89PNG")
+    result = qtab.book.run("figure-6.5", runs=1)
     result.save(tmp_path / "points.csv")
-    assert written["figure-8.2.csv"] == (tmp_path / "points.csv").read_bytes()
+    assert written["figure-6.5.csv"] == (tmp_path / "points.csv").read_bytes()
 
 
 @pytest.mark.slow
@@ -48,15 +48,15 @@ def test_only_what_is_missing_is_run_again(tmp_path, monkeypatch):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr(type(qtab.book.find("8.2")), "run", interrupted_at(NAMES[1], interrupt))
+        patched.setattr(type(qtab.book.find("figure-6.5")), "run", interrupted_at(NAMES[1], interrupt))
         with pytest.raises(KeyboardInterrupt):
             run(tmp_path)
     before = files(tmp_path)
-    assert "figure-8.2.txt" not in before
+    assert "figure-6.5.txt" not in before
     assert run(tmp_path) == ([NAMES[1]], [NAMES[0]])
-    assert files(tmp_path)["example-6.6.txt"] == before["example-6.6.txt"]
+    assert files(tmp_path)["example-6.5.txt"] == before["example-6.5.txt"]
     assert run(tmp_path) == ([], [*NAMES])
-    (tmp_path / "example-6.6.png").unlink()
+    (tmp_path / "example-6.5.png").unlink()
     assert run(tmp_path) == ([NAMES[0]], [NAMES[1]])
     assert run(tmp_path, seed=1) == ([*NAMES], [])
 
@@ -71,7 +71,7 @@ def interrupted_at(name, interrupt):
     return run_or_interrupt
 
 
-@pytest.mark.parametrize("content", ["", "[]", "{", json.dumps({"figure-8.2": 3})])
+@pytest.mark.parametrize("content", ["", "[]", "{", json.dumps({"figure-6.5": 3})])
 def test_a_record_that_cannot_be_read_counts_as_none(content, tmp_path):
     (tmp_path / "book.json").write_text(content)
     assert run(tmp_path) == ([*NAMES], [])

@@ -1,7 +1,8 @@
-"""In a notebook the learning curve and the progress bars are shown; elsewhere nothing is."""
+"""In a notebook figures, the learning curve and the progress bars are shown; elsewhere no curve and no bar is."""
 
 import io
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -154,18 +155,37 @@ TOTALS = {500: 500, 4: 4, 6: 6, 7: 7, 11: 11, 1: 1, 26: 26, 34: 34}
 """The number of units of each bar, and how many of them are done at its end."""
 
 
+FIGURES = [
+    "run = qtab.train('FrozenLake-v1', seed=0, episodes=20)\nbest = qtab.optimum('FrozenLake-v1')",
+    "qtab.plot(run)",
+    "ax = qtab.plots.distribution([1.0, 2.0, 4.0])",
+    "qtab.book.run('example-6.5', runs=2).plot()",
+    "qtab.plots.overview(run)",
+    "figure = qtab.plot(run).figure",
+    "display(figure)",
+    "ax = qtab.plots.values([run, best])\nax.figure",
+]
+"""Each but the first shows one figure."""
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of Jupyter's libraries
-def test_a_kernel_shows_the_picture_and_a_widget_for_every_long_call() -> None:
+def test_a_kernel_shows_every_figure_once_and_a_widget_for_every_long_call(tmp_path: Path) -> None:
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
     pytest.importorskip("ipywidgets")
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in CELLS.values()])
-    done = nbclient.NotebookClient(notebook, timeout=60, kernel_name="python3").execute()
-    outputs = {name: cell.outputs for name, cell in zip(CELLS, done.cells, strict=True)}
-    assert sum("image/png" in output.data for output in outputs["picture"]) == 1
+    # One kernel for both, as it takes seconds to start.
+    cells = [nbformat.v4.new_code_cell(cell) for cell in (*CELLS.values(), *FIGURES)]
+    # The kernel chooses its own backend, as it does for a user.
+    with pytest.MonkeyPatch.context() as environment:
+        environment.delenv("MPLBACKEND", raising=False)
+        environment.setenv("IPYTHONDIR", str(tmp_path))
+        client = nbclient.NotebookClient(nbformat.v4.new_notebook(cells=cells), timeout=120, kernel_name="python3")
+        done = client.execute(cwd=str(tmp_path))
+    pictures = [sum("image/png" in output.get("data", {}) for output in cell.outputs) for cell in done.cells]
+    assert pictures == [1] + [0] * len(CELLS) + [1] * (len(FIGURES) - 1)
     models = done.metadata.widgets["application/vnd.jupyter.widget-state+json"].state.values()
     bars = [model.state for model in models if model.model_name == "FloatProgressModel"]
     assert {int(bar["max"]): int(bar["value"]) for bar in bars}.items() >= TOTALS.items()
     # Nothing is left of the widgets, which a saved notebook could not show again.
-    for name in list(CELLS)[1:]:
-        assert [dict(output.data) for output in outputs[name]] == [{"text/plain": ""}], name
+    for name, cell in list(zip(CELLS, done.cells, strict=False))[1:]:
+        assert [dict(output.data) for output in cell.outputs] == [{"text/plain": ""}], name

@@ -19,7 +19,7 @@ DECLARED = [
 
 @pytest.mark.parametrize(("version", "brings"), [((3, 10, 13), True), ((3, 11, 0), False), ((3, 14, 0), False)])
 def test_the_advice_depends_on_the_version_of_python(monkeypatch, version, brings):
-    monkeypatch.setattr(extras, "requires", lambda name: DECLARED)
+    monkeypatch.setattr("importlib.metadata.requires", lambda name: DECLARED)
     monkeypatch.setattr(sys, "version_info", version)
     error = extras.missing(ModuleNotFoundError("No module named 'tomli'", name="tomli"), "cli")
     old = " 'tomli>=2.0' 'typing-extensions>=4'" if brings else ""
@@ -31,6 +31,6 @@ def test_a_package_without_metadata_names_the_library(monkeypatch):
     def unknown(name):
         raise importlib.metadata.PackageNotFoundError(name)
 
-    monkeypatch.setattr(extras, "requires", unknown)
+    monkeypatch.setattr("importlib.metadata.requires", unknown)
     error = extras.missing(ModuleNotFoundError("No module named 'scipy'", name="scipy"), "stats")
     assert str(error) == "this needs scipy, which is not installed; run: pip install scipy"

@@ -6,7 +6,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.wrappers import DiscretizeObservation
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
@@ -39,7 +39,6 @@ def boxes(draw: st.DrawFn) -> tuple[Any, ...]:
     return low, high, bins
 
 
-@settings(max_examples=150, deadline=None)
 @given(box=boxes(), data=st.data())
 def test_rows_equal_gymnasiums_discretize_observation(box: tuple[Any, ...], data: st.DataObject) -> None:
     low, high, bins = box
@@ -61,7 +60,6 @@ def test_rows_equal_gymnasiums_discretize_observation(box: tuple[Any, ...], data
     assert qtab.verify(run, env=env).equal
 
 
-@settings(max_examples=100, deadline=None)
 @given(
     edges=st.lists(st.floats(-1e300, 1e300), unique=True, max_size=90).map(sorted),
     value=st.floats(allow_nan=False),

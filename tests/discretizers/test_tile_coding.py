@@ -5,7 +5,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
@@ -68,7 +68,6 @@ def observations(draw: st.DrawFn) -> tuple[Any, ...]:
     return np.array(shown, dtype=dtype), tuple(low), tuple(high), tiles, draw(st.integers(1, 32)), hashed
 
 
-@settings(max_examples=150, deadline=None)
 @given(observations())
 def test_active_rows_equal_the_formula(case: tuple[Any, ...]) -> None:
     observation, low, high, tiles, tilings, hashed = case

@@ -3,7 +3,7 @@
 import gymnasium as gym
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from qtab import _core
@@ -11,7 +11,7 @@ from qtab.envs.classic_control import AcrobotEnv
 from support.classic_control import CONTINUOUS, EDITS, IDS, LockstepClassicControl, heuristic_policy
 from support.machine import MACHINE
 
-STEPS = 50_000
+STEPS = 20_000
 """Random steps; as many are taken by a policy that reaches the goal."""
 
 
@@ -24,7 +24,7 @@ def test_long_walks_equal_gymnasiums(name, policy, record_property):
     pair.reset(seed=7)
     episodes = pair.run(STEPS, policy, seed=11)
     if policy is heuristic_policy and name not in ("CartPole-v1", "Pendulum-v1"):
-        assert episodes > 100  # the goal was met, not only the slope below
+        assert episodes > 40  # the goal was met, not only the slope below
 
 
 def test_rust_steps_where_numpy_uses_libm(monkeypatch):
@@ -58,8 +58,8 @@ def test_rust_steps_where_numpy_uses_libm(monkeypatch):
 def test_every_constructor_argument_has_its_effect(name, kwargs):
     pair = LockstepClassicControl(name, **kwargs)
     pair.reset(seed=1)
-    pair.run(4_000)
-    pair.run(2_000, heuristic_policy)
+    pair.run(1_500)
+    pair.run(1_000, heuristic_policy)
 
 
 ATTRIBUTES = [(name, attribute, value) for name, edits in EDITS.items() for attribute, value in edits.items()]
@@ -72,8 +72,8 @@ def test_every_assigned_attribute_is_used_from_the_next_step(name, attribute, va
     pair.run(50, heuristic_policy)
     pair.set(**{attribute: value})
     assert getattr(pair.ours, attribute) == value
-    pair.run(500, None)
-    pair.run(500, heuristic_policy)
+    pair.run(200, None)
+    pair.run(250, heuristic_policy)
     if isinstance(value, float):
         for width in (np.float32, np.float64):  # NumPy scalars promote differently
             pair.set(**{attribute: width(value)})
@@ -165,7 +165,6 @@ FORCES = st.floats(-3, 3) | st.floats(width=32) | st.sampled_from([0.0, -0.0, 1.
 
 
 @pytest.mark.parametrize("name", CONTINUOUS)
-@settings(max_examples=150, deadline=None)
 @given(forces=st.lists(st.tuples(FORCES, WIDTHS), max_size=8), seed=st.integers(0, 99))
 def test_forces_of_any_size_and_dtype_equal_gymnasiums(name, forces, seed):
     pair = LockstepClassicControl(name)

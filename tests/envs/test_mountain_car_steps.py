@@ -13,7 +13,7 @@ import qtab  # noqa: F401 - registers the environment
 from support.exact import assert_identical
 from support.parity import energy_policy, state_bytes
 
-STEPS_PER_SEED = 13_000
+STEPS_PER_SEED = 7_000
 
 
 def pair(**kwargs: Any) -> tuple[Any, Any]:
@@ -61,7 +61,7 @@ def test_random_walks_equal_gymnasiums(seed):
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_walks_of_the_energy_policy_equal_gymnasiums(seed):
-    assert assert_same_walk(*pair(), pumping_policy, seed, STEPS_PER_SEED)["goal"] > 50
+    assert assert_same_walk(*pair(), pumping_policy, seed, STEPS_PER_SEED)["goal"] > 30
 
 
 @pytest.mark.parametrize("seed", [3, 4])

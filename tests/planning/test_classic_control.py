@@ -45,7 +45,7 @@ def test_the_policy_returns_in_gymnasium_what_the_optimum_says(env: str) -> None
     assert best.expected_return == search.returns.mean() >= search.predict_return
     assert best.expected_return >= LEAST[env]
     theirs = gym.make(env, disable_env_checker=True)
-    chosen = range(0, len(search.starts), len(search.starts) // 10)
+    chosen = range(0, len(search.starts), len(search.starts) // (10 if env == "Acrobot-v1" else 5))
     returns = [played(best, theirs, search.starts[index], best.max_episode_steps) for index in chosen]
     if env == "Acrobot-v1":  # the episodes of the search are routes, which are shorter than the policy's
         assert np.mean(returns) == pytest.approx(search.predict_return, abs=4)
@@ -105,10 +105,9 @@ def test_an_acrobot_with_noise_has_no_route() -> None:
 def test_constants_and_the_time_limit_are_used() -> None:
     env: Any = gym.make("CartPole-v1", max_episode_steps=30)
     assert qtab.optimum(env).expected_return == 30
-    env.unwrapped.force_mag = 0.0
-    assert qtab.optimum(env).expected_return < 30
     book: Any = gym.make("CartPole-v1", sutton_barto_reward=True, max_episode_steps=30)
-    assert qtab.optimum(book).expected_return == 0
+    book.unwrapped.force_mag = 0.0
+    assert -1 < qtab.optimum(book).expected_return < 0  # the reward of the book, -1 where a pole falls, as some do
     env.unwrapped.gravity = float("inf")
     with pytest.raises(ValueError, match="gravity must be finite, got inf"):
         qtab.optimum(env)

@@ -97,7 +97,6 @@ def tables(draw: st.DrawFn) -> Any:
     return {state: {action: row() for action in range(actions)} for state in range(states)}
 
 
-@settings(max_examples=100)
 @given(tables(), st.floats(0, 0.95))
 def test_values_of_random_tables_equal_numpys(table, discount):
     start = np.full(len(table), 1 / len(table))
@@ -108,7 +107,7 @@ def test_values_of_random_tables_equal_numpys(table, discount):
     assert horizon.values.tobytes() == plain.finite_horizon(table, discount, 7).tobytes()
 
 
-@settings(max_examples=50)
+@settings(max_examples=settings().max_examples // 2)
 @given(tables(), st.integers(1, 4))
 def test_no_policy_earns_more_than_the_finite_horizon_optimum(table, steps):
     def best(state: int, left: int) -> float:

@@ -29,7 +29,7 @@ def check(env: str, preset: Mapping[str, Any], exploration: Mapping[str, Any], r
     settings = {**preset, **exploration, "learning_rate_schedule": rate}
     if exploration is SOFTMAX:
         settings = {name: value for name, value in settings.items() if name not in GREEDY}
-    run = qtab.train(env, **{**settings, "episodes": 2, "max_episode_steps": 20, "seed": 0})
+    run = qtab.train(env, **{**settings, "episodes": 2, "max_episode_steps": 10, "seed": 0})
     AXES.clear()
     ax = qtab.plot(run, AXES)
     notes = ax.get_title("right") + "".join(text.get_text() for text in ax.texts)

@@ -1,4 +1,7 @@
-"""Figures that are made without axes appear: in a notebook, and with ``plt.show()``."""
+"""Figures that are made without axes appear with ``plt.show()``.
+
+That a notebook shows them is tested in tests/callbacks/test_notebook.py.
+"""
 
 from pathlib import Path
 from typing import Any
@@ -14,16 +17,6 @@ from qtab.cli import main
 from qtab.plots.axes import not_shown
 
 RETURNS = np.random.default_rng(0).normal(size=(4, 20))
-CELLS = [
-    "import qtab\nrun = qtab.train('FrozenLake-v1', seed=0, episodes=20)\nbest = qtab.optimum('FrozenLake-v1')",
-    "qtab.plot(run)",
-    "ax = qtab.plots.distribution([1.0, 2.0, 4.0])",
-    "qtab.book.run('example-6.5', runs=2).plot()",
-    "qtab.plots.overview(run)",
-    "figure = qtab.plots.overview(run)",
-    "display(figure)",
-    "ax = qtab.plots.values([run, best])\nax.figure",
-]
 
 
 @pytest.mark.parametrize(
@@ -71,18 +64,3 @@ def test_an_error_leaves_no_empty_figure() -> None:
         with pytest.raises(ValueError, match="must"):
             call()
     assert plt.get_fignums() == []
-
-
-@pytest.mark.slow
-@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of Jupyter's libraries
-def test_a_notebook_shows_every_figure_once(tmp_path: Path) -> None:
-    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
-    pytest.importorskip("ipykernel")
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in CELLS])
-    # The kernel chooses its own backend, as it does for a user.
-    with pytest.MonkeyPatch.context() as environment:
-        environment.delenv("MPLBACKEND", raising=False)
-        environment.setenv("IPYTHONDIR", str(tmp_path))
-        nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3").execute(cwd=str(tmp_path))
-    pictures = [sum("image/png" in output.get("data", {}) for output in cell.outputs) for cell in notebook.cells]
-    assert pictures == [0] + [1] * (len(CELLS) - 1)

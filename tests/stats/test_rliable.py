@@ -31,6 +31,7 @@ def test_aggregates_match_rliable():
         assert by_name == found
 
 
+@pytest.mark.slow  # whichever test comes first imports rliable, which takes seconds: all of them in one process
 @pytest.mark.filterwarnings("ignore")
 def test_optimality_gap_and_performance_profile_match_rliable():
     from rliable import library, metrics

@@ -1,5 +1,6 @@
 """The ranking of settings, and the best ones trained again with other seeds."""
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -95,13 +96,14 @@ def test_a_store_does_not_choose_a_module_to_import(tmp_path: Path, monkeypatch:
     )
     monkeypatch.syspath_prepend(str(tmp_path))
     path = tmp_path / "study.db"
-    arguments: dict[str, Any] = {"episodes": 5, "max_episode_steps": 20, "discretizer": "identity"}
+    arguments: dict[str, Any] = {"episodes": 5, "max_episode_steps": 20, "discretizer": "identity", "threads": 1}
     try:
         qtab.sweep(None, {"learning_rate": [0.1, 0.2]}, 2, config={"env": "lakes:Lake-v7"}, store=path, **arguments)
         sweep = qtab.load_sweep(path)
-        assert len(sweep.confirm(2).confirmed) == 2
+        assert len(sweep.confirm(2, threads=1).confirmed) == 2
     finally:
         gym.registry.pop("Lake-v7", None)
+        sys.modules.pop("lakes", None)  # other tests have modules of this name
     with pytest.raises(
         ValueError, match=r"the environment '.*Lake-v7' of the store must be registered, or given as env="
     ):

@@ -36,7 +36,7 @@ def test_every_learner_and_discretizer_makes_the_table_of_gymnasium(env: str) ->
     kinds = ("bins", "edges", "tiles") if env == "CartPole-v1" else ("bins", "edges", "tiles", "round")
     pairs = [(kind, name) for kind in kinds for name in ALGORITHMS if kind != "tiles" or name not in TABLES_ONLY]
     for seed, (kind, algorithm) in enumerate(pairs):
-        chosen = {**settings_of(env, kind), "algorithm": algorithm, "seed": seed, "episodes": 2 if seed % 2 else 30}
+        chosen = {**settings_of(env, kind), "algorithm": algorithm, "seed": seed, "episodes": 1 if seed % 2 else 10}
         chosen["max_episode_steps"] = 500 if seed % 2 else 37
         chosen["on_truncation"] = "terminate" if seed % 3 else "bootstrap"
         fast = qtab.train(env, backend="rust", **chosen)
@@ -69,7 +69,7 @@ def test_all_ways_of_naming_an_environment_give_the_same_run(env: str) -> None:
 @pytest.mark.parametrize("env", [env for env in TRAINED if env.values[0] in KEYWORDS])
 def test_keyword_arguments_reach_rust(env: str) -> None:
     name, values = KEYWORDS[env]
-    chosen: dict[str, Any] = {**settings_of(env, "bins"), "seed": 4, "episodes": 30, "max_episode_steps": 300}
+    chosen: dict[str, Any] = {**settings_of(env, "bins"), "seed": 4, "episodes": 5, "max_episode_steps": 300}
     for value in values:
         run = qtab.train(env, env_kwargs={name: value}, **chosen)
         assert run.config.backend == "rust"

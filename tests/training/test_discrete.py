@@ -32,15 +32,15 @@ def same_everywhere(env: str, **settings: Any) -> qtab.Run:
 @pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
 def test_rust_trains_as_gymnasium_and_numpy_do(name, bit_generator):
     limit: dict[str, Any] = {"max_episode_steps": 200} if "Cliff" in name else {}  # else 10,000
-    run = same_everywhere(name, bit_generator=bit_generator, episodes=60, **limit)
+    run = same_everywhere(name, bit_generator=bit_generator, episodes=25, **limit)
     assert run.config.discretizer == "identity"
-    assert run.episode_lengths.sum() > 60
+    assert run.episode_lengths.sum() > 25
 
 
 @pytest.mark.parametrize("algorithm", LEARNERS)
 @pytest.mark.parametrize("name", ["FrozenLake-v1", "Taxi-v4", "Blackjack-v1"])
 def test_every_algorithm_learns_the_same(name, algorithm):
-    run = same_everywhere(name, algorithm=algorithm, episodes=30, max_episode_steps=40)
+    run = same_everywhere(name, algorithm=algorithm, episodes=12, max_episode_steps=40)
     assert len(run.tables) == n_tables(algorithm)
 
 
@@ -58,7 +58,7 @@ def test_every_algorithm_learns_the_same(name, algorithm):
     ],
 )
 def test_every_constructor_argument_has_its_effect(name, env_kwargs):
-    same_everywhere(name, env_kwargs=env_kwargs, episodes=80, max_episode_steps=100, epsilon=0.9)
+    same_everywhere(name, env_kwargs=env_kwargs, episodes=40, max_episode_steps=100, epsilon=0.9)
 
 
 @pytest.fixture(scope="module")
@@ -77,8 +77,8 @@ def taxi_table():
     ],
 )
 def test_every_variant_of_the_taxi_is_trained_the_same(name, env_kwargs, taxi_table):
-    run = same_everywhere(name, env_kwargs=env_kwargs, episodes=100, epsilon=0.3, initial_q=taxi_table)
-    assert run.terminated.sum() > 50
+    run = same_everywhere(name, env_kwargs=env_kwargs, episodes=50, epsilon=0.3, initial_q=taxi_table)
+    assert run.terminated.sum() > 25
 
 
 @pytest.mark.parametrize("rate", [1.5, np.float32(0.7)])

@@ -68,7 +68,7 @@ def test_all_three_implementations_agree_for_any_settings(settings):
 def test_all_three_implementations_agree_at_the_goal_and_at_the_time_limit(bit_generator, terminal_update):
     run = assert_three_ways_equal(
         seed=3,
-        episodes=30,
+        episodes=12,
         initial_q=LEARNED,
         epsilon=0.05,
         bit_generator=bit_generator,

@@ -36,7 +36,8 @@ def test_a_tuple_and_an_array_are_the_same_observation() -> None:
     "algorithm", ["q_learning", *(pytest.param(name, marks=pytest.mark.slow) for name in ("sarsa_lambda", "dyna_q"))]
 )
 def test_a_slippery_room_is_learned_saved_loaded_and_verified(algorithm: Any, tmp_path: Any) -> None:
-    run = qtab.train("qtab-tests/Room-v0", env_kwargs={"slip": 0.1}, algorithm=algorithm, **ROOM)
+    few = {} if algorithm == "q_learning" else {"episodes": 120}  # these learn from fewer
+    run = qtab.train("qtab-tests/Room-v0", env_kwargs={"slip": 0.1}, algorithm=algorithm, **{**ROOM, **few})
     run.save(tmp_path / "run.npz")
     loaded = qtab.load(tmp_path / "run.npz")
     assert qtab.verify(loaded).equal

@@ -76,16 +76,22 @@ def test_runs_of_cart_pole_equal_gymnasiums():
     assert_same_as_single_runs(runs, env=POLE, episodes=40, backend="gymnasium")
 
 
+TWO_TABLES: dict[str, Any] = {"algorithm": "double_q_learning"}
+TILES: dict[str, Any] = {"discretizer": "tiles", "algorithm": "sarsa"}
+
+
 @pytest.mark.parametrize(
-    "config",
+    ("config", "backend"),
     [
-        {"algorithm": "double_q_learning"},
-        {"algorithm": "sarsa_lambda", "trace_decay": 0.9},
-        {"algorithm": "dyna_q", "planning_steps": 3},
-        {"discretizer": "tiles", "algorithm": "sarsa"},
+        (TWO_TABLES, "rust"),
+        ({"algorithm": "sarsa_lambda", "trace_decay": 0.9}, "rust"),
+        ({"algorithm": "dyna_q", "planning_steps": 3}, "rust"),
+        (TILES, "rust"),
+        # In processes, for which every learner is the same; the two have other arrays to return.
+        (TWO_TABLES, "gymnasium"),
+        (TILES, "gymnasium"),
     ],
 )
-@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
 def test_each_run_equals_the_single_run_for_every_learner(config, backend):
     episodes = 12 if backend == "rust" else 2
     config = {**config, "episodes": episodes, "backend": backend}

@@ -122,7 +122,9 @@ def test_a_failing_process_is_reported_with_its_seed_and_keeps_the_finished_runs
 
 @posix_only
 @pytest.mark.slow
-@pytest.mark.parametrize("settings", ["episodes=50", "max_episode_steps=10**12, env_kwargs={'goal_velocity': 1.0}"])
+@pytest.mark.parametrize(
+    "settings", ["threads=2, episodes=50", "threads=1, max_episode_steps=10**12, env_kwargs={'goal_velocity': 1.0}"]
+)
 def test_ctrl_c_stops_the_processes_too(settings):
     said = run_until_ready_then_interrupt(
         f"""
@@ -130,12 +132,12 @@ def test_ctrl_c_stops_the_processes_too(settings):
         def ready():
             while not multiprocessing.active_children():
                 time.sleep(0.05)
-            time.sleep(2)
+            time.sleep(1.2)
             print("ready", flush=True)
         if __name__ == "__main__":
             threading.Thread(target=ready, daemon=True).start()
             try:
-                qtab.train_many("MountainCar-v0", 1000, threads=2, backend="gymnasium", {settings})
+                qtab.train_many("MountainCar-v0", 1000, backend="gymnasium", {settings})
             except KeyboardInterrupt as error:
                 print(error.run.completed, multiprocessing.active_children() == [])
         """

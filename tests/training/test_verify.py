@@ -128,10 +128,10 @@ def test_tables_are_compared_in_any_memory_order():
     assert qtab.verify(dataclasses.replace(run, tables=flipped)).equal
 
 
-@pytest.mark.parametrize("episodes", [None, 10])
+@pytest.mark.parametrize("episodes", [None, 5])
 def test_a_changed_seed_is_reported_with_the_first_episode_that_differs(episodes):
-    run = train(initial_q=LEARNED, max_episode_steps=1000)
-    other = train(initial_q=LEARNED, max_episode_steps=1000, seed=4)
+    run = train(initial_q=LEARNED, max_episode_steps=1000, episodes=6)
+    other = train(initial_q=LEARNED, max_episode_steps=1000, episodes=6, seed=4)
     claimed = dataclasses.replace(run, config=run.config.replace(seed=4))
     report = qtab.verify(claimed, episodes=episodes)
     assert report.equal is False
@@ -140,7 +140,7 @@ def test_a_changed_seed_is_reported_with_the_first_episode_that_differs(episodes
 
 @pytest.mark.parametrize("setting", [{"learning_rate": 0.21}, {"discount": 0.91}, {"terminal_update": "target"}])
 def test_a_changed_setting_is_reported(setting):
-    run = train(initial_q=LEARNED, max_episode_steps=1000, epsilon=0.1)
+    run = train(initial_q=LEARNED, max_episode_steps=1000, epsilon=0.1, episodes=4)
     assert run.terminated.any()
     assert not qtab.verify(dataclasses.replace(run, config=run.config.replace(**setting))).equal
 

@@ -58,7 +58,7 @@ def visits_of_the_reference(run: qtab.Run) -> Any:
 def test_visits_are_those_of_the_reference(algorithm: Any, env: str) -> None:
     profile: Any = settings.default
 
-    @settings(max_examples=max(1, profile.max_examples // (20 if env == CAR else 50)), deadline=None)
+    @settings(max_examples=max(1, profile.max_examples // (10 if env == CAR else 50)), deadline=None)
     @given(run_settings(algorithm, env))
     def check(chosen: dict[str, Any]) -> None:
         try:
