@@ -29,17 +29,19 @@ pub(super) fn observed_box<E, const M: usize>(
 where
     E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
 {
-    let features = |spec: &DiscretizerSpec| BoxFeatures::<f32>::new(spec, |bound| bound as f32);
-    match &spec.discretizer {
+    Ok(match &spec.discretizer {
         // Compiled for the usual numbers of tilings: fewer rows are copied at each step.
-        DiscretizerSpec::Tiles(tiles) => match tiles.tilings {
-            8 => factory(env, fixed_tiles::<M, 8>(tiles)?, spec, prediction),
-            16 => factory(env, fixed_tiles::<M, 16>(tiles)?, spec, prediction),
-            32 => factory(env, fixed_tiles::<M, 32>(tiles)?, spec, prediction),
-            _ => factory(env, features(&spec.discretizer)?, spec, prediction),
-        },
-        _ => factory(env, features(&spec.discretizer)?, spec, prediction),
-    }
+        DiscretizerSpec::Tiles(tiles) if tiles.tilings == 8 => {
+            factory(env, fixed_tiles::<M, 8>(tiles)?, spec, prediction)
+        }
+        DiscretizerSpec::Tiles(tiles) if tiles.tilings == 16 => {
+            factory(env, fixed_tiles::<M, 16>(tiles)?, spec, prediction)
+        }
+        DiscretizerSpec::Tiles(tiles) if tiles.tilings == 32 => {
+            factory(env, fixed_tiles::<M, 32>(tiles)?, spec, prediction)
+        }
+        any => factory(env, BoxFeatures::<f32>::new(any, |bound| bound as f32)?, spec, prediction),
+    })
 }
 
 /// Exactly `N` tilings of `M` components.
@@ -53,7 +55,7 @@ fn factory<E, F, const M: usize>(
     features: F,
     spec: &Arc<RunSpec>,
     prediction: &Arc<PredictionSpec>,
-) -> PyResult<Box<dyn RunFactory>>
+) -> Box<dyn RunFactory>
 where
     E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
     F: Features<[f32; M], Active: Send + 'static> + Clone + Send + Sync + 'static,
@@ -64,7 +66,7 @@ where
         let policies = prediction.policies(&spec, |own| BoxFeatures::<f32>::new(own, |bound| bound as f32))?;
         Ok((observed_run(task, policies, seed, &spec, &prediction, stop)?, AnyRecordings::None))
     };
-    Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
+    Box::new(Factory { build, batching: Batching::one_by_one() })
 }
 
 /// A run of any method on a task with a policy.
