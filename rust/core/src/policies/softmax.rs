@@ -35,12 +35,16 @@ impl Softmax {
         self.values.copy_from_slice(values);
         let largest = maximum(values);
         for (probability, value) in self.probabilities.iter_mut().zip(values) {
-            *probability = ((value - largest) / self.temperature).exp();
+            *probability = value - largest;
+        }
+        divide(&mut self.probabilities, self.temperature);
+        for probability in &mut self.probabilities {
+            // exp(0), of the largest value, is exactly 1 on every platform. The compiler knows that too: it would call `exp`
+            // after a comparison of floats.
+            *probability = if probability.to_bits() == 0 { 1.0 } else { probability.exp() };
         }
         let total = sum(self.probabilities.iter().copied());
-        for probability in &mut self.probabilities {
-            *probability /= total;
-        }
+        divide(&mut self.probabilities, total);
         &self.probabilities
     }
 
@@ -48,10 +52,21 @@ impl Softmax {
     /// for any other action (Sutton & Barto, equation 13.9).
     pub(super) fn log_gradient(&mut self, values: &[f64], action: usize) -> &[f64] {
         self.probabilities(values);
-        for (other, (part, probability)) in self.gradient.iter_mut().zip(&self.probabilities).enumerate() {
-            *part = (f64::from(u8::from(other == action)) - probability) / self.temperature;
+        for (part, probability) in self.gradient.iter_mut().zip(&self.probabilities) {
+            *part = 0.0 - probability;
         }
+        self.gradient[action] = 1.0 - self.probabilities[action];
+        divide(&mut self.gradient, self.temperature);
         &self.gradient
+    }
+}
+
+/// Divides numbers by the same one. A division by 1 changes nothing, but takes time.
+fn divide(numbers: &mut [f64], divisor: f64) {
+    if divisor != 1.0 {
+        for number in numbers {
+            *number /= divisor;
+        }
     }
 }
 

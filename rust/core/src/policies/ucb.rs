@@ -52,10 +52,13 @@ impl Ucb {
         &self.bounds
     }
 
-    /// The upper bound of the value of an action in a table with one row, where ln t is `log`.
+    /// c / √N(a) in a table with one row, after so many more choices of the action: infinite for one that was never chosen.
     #[inline]
-    pub(super) fn bound_at(&self, log: f64, action: usize, value: f64) -> f64 {
-        upper_bound(self.confidence, log, self.counts[action], value)
+    pub(super) fn scale_at(&self, action: usize, more: u32) -> f64 {
+        match self.counts[action].saturating_add(more) {
+            0 => f64::INFINITY,
+            count => self.confidence / f64::from(count).sqrt(),
+        }
     }
 
     /// t: one more than the number of choices in a row.

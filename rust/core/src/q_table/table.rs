@@ -64,6 +64,13 @@ impl<const N: usize> QTable<N> {
         &self.values[row as usize * actions..][..actions]
     }
 
+    /// The same, to be changed.
+    #[inline]
+    pub(crate) fn row_mut(&mut self, row: u32) -> &mut [f64] {
+        let actions = self.num_actions();
+        &mut self.values[row as usize * actions..][..actions]
+    }
+
     /// The value of an action in a row.
     #[inline]
     pub fn value_mut(&mut self, row: u32, action: usize) -> &mut f64 {

@@ -18,8 +18,8 @@ const TWO_POW_52: f64 = 4_503_599_627_370_496.0;
 
 /// The layers, from the tail to the top: layer 0 has the tail, layer i > 0 ends at `xᵢ`.
 struct Ziggurat {
-    /// `xᵢ` / 2⁵²
-    widths: [f64; LAYERS],
+    /// `xᵢ` / 2⁵², and then -`xᵢ` / 2⁵²: a branch on the sign would be mispredicted every other time.
+    widths: [f64; 2 * LAYERS],
     /// The part of a layer, in units of its 2⁻⁵², that lies below the density.
     inner: [u64; LAYERS],
     /// exp(-`xᵢ`² / 2)
@@ -47,7 +47,11 @@ impl Ziggurat {
         }
         inner[0] = (TAIL * heights[LAYERS - 1] / AREA * TWO_POW_52) as u64;
         (ends[0], heights[0]) = (AREA / heights[LAYERS - 1], 1.0);
-        Self { widths: ends.map(|end| end / TWO_POW_52), inner, heights }
+        let widths = std::array::from_fn(|index| {
+            let width = ends[index % LAYERS] / TWO_POW_52;
+            if index < LAYERS { width } else { -width }
+        });
+        Self { widths, inner, heights }
     }
 }
 
@@ -60,8 +64,8 @@ impl Pcg64 {
         let word = self.next_u64();
         let layer = (word & 0xff) as usize;
         let coordinate = (word >> 9) & ((1 << 52) - 1);
-        // The sign as a bit: a branch on it would be mispredicted every other time.
-        let x = f64::from_bits((coordinate as f64 * ziggurat.widths[layer]).to_bits() ^ ((word >> 8 & 1) << 63));
+        // The bit above those of the layer is the sign.
+        let x = coordinate as f64 * ziggurat.widths[(word & 0x1ff) as usize];
         if coordinate < ziggurat.inner[layer] { x } else { self.beyond_inner_part(layer, coordinate, x) }
     }
 

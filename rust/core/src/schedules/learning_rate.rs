@@ -70,8 +70,10 @@ impl StepSize for LearningRate {
     }
 
     fn end_episode(&mut self) {
-        self.schedule.end_episode();
-        self.step_size = self.schedule.value() / self.n_active;
+        if !self.schedule.is_final() {
+            self.schedule.end_episode();
+            self.step_size = self.schedule.value() / self.n_active;
+        }
     }
 
     fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {

@@ -25,12 +25,14 @@ pub struct Schedule {
     min: f64,
     warm_up: u64,
     decay: Decay,
+    /// Whether the rate will not change any more.
+    is_final: bool,
 }
 
 impl Schedule {
     /// The constant `value`.
     pub fn constant(value: f64) -> Self {
-        Self { value, min: value, warm_up: 0, decay: Decay::Constant }
+        Self { value, min: value, warm_up: 0, decay: Decay::Constant, is_final: true }
     }
 
     /// `value` for the first `warm_up` episodes, then a linear decay to `min` over the rest of the `episodes`.
@@ -40,12 +42,12 @@ impl Schedule {
     pub fn linear(value: f64, min: f64, episodes: u64, warm_up: u64) -> Self {
         assert!(warm_up < episodes, "warm_up must be less than episodes ({episodes}), got {warm_up}");
         let reduction = (value - min) / (episodes - warm_up) as f64;
-        Self { value, min, warm_up, decay: Decay::Linear { reduction } }
+        Self { value, min, warm_up, decay: Decay::Linear { reduction }, is_final: false }
     }
 
     /// `value` for the first `warm_up` episodes, then multiplied by `factor` after each episode, down to `min`.
     pub fn exponential(value: f64, min: f64, factor: f64, warm_up: u64) -> Self {
-        Self { value, min, warm_up, decay: Decay::Exponential { factor } }
+        Self { value, min, warm_up, decay: Decay::Exponential { factor }, is_final: false }
     }
 
     /// The rate of the current episode.
@@ -54,9 +56,19 @@ impl Schedule {
         self.value
     }
 
+    /// Whether the rate will not change any more.
+    #[inline]
+    pub(crate) fn is_final(&self) -> bool {
+        self.is_final
+    }
+
     /// Moves on to the next episode.
     #[inline]
     pub fn end_episode(&mut self) {
+        // One comparison where there is nothing to do: the episodes of a bandit are single steps.
+        if self.is_final {
+            return;
+        }
         if self.warm_up > 0 {
             self.warm_up -= 1;
         } else if self.value > self.min {
@@ -65,6 +77,8 @@ impl Schedule {
                 Decay::Linear { reduction } => self.value -= reduction,
                 Decay::Exponential { factor } => self.value = (self.value * factor).max(self.min),
             }
+        } else {
+            self.is_final = true;
         }
     }
 }

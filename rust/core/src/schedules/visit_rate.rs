@@ -41,7 +41,9 @@ impl StepSize for VisitRate {
 
     #[inline]
     fn at(&self, weight_index: usize) -> f64 {
-        (self.initial / f64::from(self.visits[weight_index])).max(self.min)
+        let rate = self.initial / f64::from(self.visits[weight_index]);
+        // One instruction, unlike `f64::max`, which minds NaN.
+        if self.min > rate { self.min } else { rate }
     }
 
     #[inline]

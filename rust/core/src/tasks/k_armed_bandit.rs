@@ -24,38 +24,44 @@ pub struct Testbed {
 /// episode is one action.
 ///
 /// It is a task, not an environment, because the problem outlasts an episode.
+///
+/// With `RECORDS` it records whether the optimal action was taken in each episode.
 #[derive(Clone, Debug)]
-pub struct KArmedBandit {
+pub struct KArmedBandit<const RECORDS: bool = false> {
     testbed: Testbed,
+    /// The number of actions whose true values walk after each action: all or none.
+    walking: u64,
     /// q⁎; empty before the first reset.
     values: Vec<f64>,
     /// The action with the largest true value.
     optimal: usize,
     rng: Pcg64,
-    /// Whether the optimal action was taken in each episode, where this is recorded.
-    record: Option<Vec<bool>>,
+    /// Whether the optimal action was taken in each episode; empty without `RECORDS`.
+    record: Vec<bool>,
 }
 
 impl KArmedBandit {
     /// A problem of the testbed; `rng` is the environment's generator.
     pub fn new(testbed: Testbed, rng: Pcg64) -> Self {
-        Self { testbed, values: Vec::new(), optimal: 0, rng, record: None }
+        let walking = if testbed.random_walk == 0.0 { 0 } else { testbed.num_actions as u64 };
+        Self { testbed, walking, values: Vec::new(), optimal: 0, rng, record: Vec::new() }
     }
 
     /// The same, recording whether the optimal action is taken in each of so many episodes.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn recording(mut self, episodes: usize) -> Result<Self, AllocationError> {
-        let mut record = Vec::new();
+    pub fn recording(self, episodes: usize) -> Result<KArmedBandit<true>, AllocationError> {
+        let Self { testbed, walking, values, optimal, rng, mut record } = self;
         reserve(&mut record, episodes)?;
-        self.record = Some(record);
-        Ok(self)
+        Ok(KArmedBandit { testbed, walking, values, optimal, rng, record })
     }
+}
 
+impl<const RECORDS: bool> KArmedBandit<RECORDS> {
     /// Whether the optimal action was taken in each episode; empty if this is not recorded.
     pub fn took_optimal(&self) -> &[bool] {
-        self.record.as_deref().unwrap_or_default()
+        &self.record
     }
 
     /// Draws q⁎.
@@ -66,17 +72,18 @@ impl KArmedBandit {
         self.optimal = argmax(&self.values);
     }
 
-    /// q⁎(a) ← q⁎(a) + an increment of its own.
+    /// q⁎(a) ← q⁎(a) + an increment of its own. Returns the reward, which the caller then need not keep during the call.
     #[cold]
-    fn walk(&mut self) {
+    fn walk(&mut self, reward: f64) -> f64 {
         for value in &mut self.values {
             *value += self.testbed.random_walk * self.rng.standard_normal();
         }
         self.optimal = argmax(&self.values);
+        reward
     }
 }
 
-impl Task for KArmedBandit {
+impl<const RECORDS: bool> Task for KArmedBandit<RECORDS> {
     type State = ();
     type Active = [u32; 1];
     type Error = OutOfBounds;
@@ -93,20 +100,26 @@ impl Task for KArmedBandit {
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     fn step(&mut self, _state: &mut (), action: usize) -> Result<Transition<[u32; 1]>, OutOfBounds> {
-        let reward = self.values[action] + self.rng.standard_normal();
-        if let Some(record) = &mut self.record {
-            record.push(action == self.optimal);
+        let noise = self.rng.standard_normal();
+        let mut reward = self.values[action] + noise;
+        if RECORDS {
+            self.record.push(action == self.optimal);
         }
-        if self.testbed.random_walk != 0.0 {
-            self.walk();
+        if self.walking != 0 {
+            reward = self.walk(reward);
         }
         Ok(Transition { reward, next: Next::Terminal })
+    }
+
+    #[inline]
+    fn has_single_steps(&self) -> bool {
+        true
     }
 
     /// A random walk draws a number for each action.
     #[inline]
     fn step_work(&self) -> u64 {
-        if self.testbed.random_walk == 0.0 { 0 } else { self.testbed.num_actions as u64 }
+        self.walking
     }
 
     fn active_rows(&self, _state: &()) -> Result<[u32; 1], OutOfBounds> {
@@ -127,7 +140,7 @@ impl Task for KArmedBandit {
 }
 
 /// The snapshot is the number of 64-bit words drawn since seeding, and the buffered 32-bit half.
-impl RngSnapshot for KArmedBandit {
+impl<const RECORDS: bool> RngSnapshot for KArmedBandit<RECORDS> {
     type Snapshot = (u64, Option<u32>);
 
     fn rng_snapshot(&self) -> Result<Self::Snapshot, OutOfBounds> {

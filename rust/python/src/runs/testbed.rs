@@ -45,7 +45,7 @@ pub(crate) fn run_testbed(
 
 /// A run before its learner is known, and where its results go.
 struct Recorded<'a> {
-    task: KArmedBandit,
+    task: KArmedBandit<true>,
     rng: Pcg64,
     rewards: &'a mut [f64],
     optimal: &'a mut [bool],

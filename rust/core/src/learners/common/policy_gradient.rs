@@ -19,8 +19,8 @@ impl Agent {
         let values = available::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         let gradient = self.policy.log_gradient(values, action);
         for &row in rows.as_ref() {
-            for (action, part) in gradient.iter().enumerate() {
-                *self.table.value_mut(row, action) += step * part;
+            for (preference, part) in self.table.row_mut(row).iter_mut().zip(gradient) {
+                *preference += step * part;
             }
         }
     }

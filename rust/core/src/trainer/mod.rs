@@ -1,4 +1,6 @@
-//! A training run as a value, and the only training loop.
+//! A training run as a value, and the only training loop, with a shorter form for episodes of a single step.
+
+mod single_step;
 
 use crate::learners::Learner;
 use crate::memory::{AllocationError, reserve};
@@ -135,6 +137,10 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
                     continue;
                 }
                 Some(episode) => episode,
+                None if self.task.has_single_steps() => {
+                    self.advance_single_steps(rng, budget, &mut work)?;
+                    continue;
+                }
                 None => self.begin_episode(rng)?,
             };
             let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length, .. } = episode;
