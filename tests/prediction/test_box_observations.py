@@ -70,7 +70,8 @@ def test_any_settings_equal_plain_numpy(data: st.DataObject) -> None:
         data.draw(st.sampled_from(policies)),
         method=method,
         episodes=2,
-        discount=data.draw(st.sampled_from([0.0, 0.9, 1.0])),
+        # Without a discount, batch TD does not settle before it has seen a terminal state.
+        discount=data.draw(st.sampled_from([0.0, 0.9] if method == "batch_td" else [0.0, 0.9, 1.0])),
         initial_value=data.draw(st.sampled_from([0.0, -5.0])),
         max_episode_steps=data.draw(st.sampled_from([5, 40])),
         on_truncation=data.draw(st.sampled_from(["bootstrap", "terminate"])),
