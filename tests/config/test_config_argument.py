@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.config.options import OPTIONS
+from qtab.config import presets
+from qtab.config.options import OFF_BY_NONE, OPTIONS
 from support.environments import Walk
 
 CAR = "MountainCar-v0"
@@ -56,13 +57,42 @@ def test_the_config_of_a_run_on_an_object_repeats_it_on_another() -> None:
     assert again.tables.tobytes() == run.tables.tobytes()
 
 
-def test_no_preset_has_an_option_that_a_run_may_leave_none() -> None:
-    """The config of a run has None where an option does not apply, or is off; a preset must not fill that in."""
-    values = [values for env in gym.registry for values in qtab.presets(env).values()]
-    assert values
+@pytest.fixture
+def hashed_preset(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A preset with an option that a run may have or not."""
+    tiles = {**qtab.presets(CAR)["solved"], "learning_rate": 0.5, "episodes": 4, "hashed_rows": 512}
+    monkeypatch.setitem(presets._PRESETS, CAR, {"hashed": tiles})
+
+
+@pytest.mark.usefixtures("hashed_preset")
+@pytest.mark.parametrize(
+    ("settings", "rows"),
+    [({}, 512), ({"hashed_rows": 300}, 300), ({"hashed_rows": None}, 2592), ({"discretizer": "bins", "bins": 4}, 16)],
+)
+def test_what_a_run_has_off_its_preset_does_not_turn_on(settings: dict[str, Any], rows: int) -> None:
+    run = qtab.train(CAR, seed=1, **settings)
+    for again in (qtab.train(config=run.config), qtab.train(CAR, config=run.config)):
+        assert again.tables[0].size == rows * 3
+        assert fields(again.config) == fields(run.config)
+        assert again.tables.tobytes() == run.tables.tobytes()
+    stopped = qtab.train(config=run.config, callback=lambda progress: False, callback_every=2)
+    assert qtab.resume(stopped).tables.tobytes() == run.tables.tobytes()
+
+
+@pytest.mark.usefixtures("hashed_preset")
+def test_a_preset_turns_on_what_was_left_open_or_did_not_apply() -> None:
+    assert qtab.train(config=qtab.Config(CAR, discretizer="tiles", episodes=1)).config.hashed_rows == 512
+    run = qtab.train(CAR, discretizer="bins", bins=4)
+    assert qtab.train(config=run.config, discretizer="tiles").config.hashed_rows == 512
+    off = qtab.train(CAR, hashed_rows=None)
+    assert qtab.train(config=off.config, hashed_rows=300).config.hashed_rows == 300
+    assert qtab.train(config=off.config, discretizer="bins", bins=4).config.hashed_rows is None
+
+
+def test_the_options_that_may_be_off_are_known() -> None:
+    """The others without a default are found from the space or must be given, so that no run leaves them None."""
     without_default = {name for name, option in OPTIONS.items() if option.default is None}
-    assert without_default == {"scale", "hashed_rows", "edges", "low", "high", "shape", "max_rows"}
-    assert not any({"hashed_rows", "shape", "max_rows"} & preset.keys() for preset in values)
+    assert without_default == {"scale", "edges", "low", "high", "shape", *OFF_BY_NONE}
 
 
 def test_keywords_override_the_config_and_the_config_overrides_the_preset() -> None:

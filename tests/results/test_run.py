@@ -127,7 +127,8 @@ def test_presets_are_listed_per_environment():
     assert qtab.presets("qtab/MountainCar-v0") == qtab.presets("MountainCar-v0")
     assert qtab.presets("MountainCar-v0")["article"]["terminal_update"] == "assign"
     assert list(qtab.presets("CartPole-v1")) == ["tuned", "solved"]
-    assert dict(qtab.presets("LunarLander-v3")) == {}
+    assert list(qtab.presets("LunarLander-v3")) == ["solved"]
+    assert dict(qtab.presets("BipedalWalker-v3")) == {}
 
 
 def test_an_explicit_setting_wins_over_the_preset():

@@ -1,5 +1,6 @@
 """Training on other environments: LunarLander, a room like those of MiniGrid, and wrappers of many kinds."""
 
+import sys
 from typing import Any
 
 import gymnasium as gym
@@ -58,10 +59,12 @@ def test_the_last_episodes_in_the_room_are_replayed() -> None:
 LANDER: dict[str, Any] = {
     "algorithm": "sarsa_lambda",
     "discretizer": "tiles",
+    "tilings": 8,
     "tiles": (3, 3, 3, 3, 3, 3, 1, 1),
     "low": (-1.0, -0.5, -1.5, -1.5, -1.0, -2.0, 0.0, 0.0),
     "high": (1.0, 1.5, 1.5, 1.0, 1.0, 2.0, 1.0, 1.0),
     "learning_rate": 0.3,
+    "learning_rate_schedule": "constant",
     "discount": 0.99,
     "epsilon": 0.1,
     "trace_decay": 0.8,
@@ -77,6 +80,21 @@ LANDER: dict[str, Any] = {
 def lander() -> str:
     pytest.importorskip("Box2D", reason="LunarLander needs the extra box2d")
     return "LunarLander-v3"
+
+
+def test_the_preset_of_the_lander_trains_without_settings(lander: str) -> None:
+    run = qtab.train(lander, episodes=2, seed=0)
+    assert (run.config.preset, run.config.algorithm) == ("solved", "true_online_sarsa_lambda")
+    assert run.tables.shape == (1, 2**20, 4)
+    assert qtab.train(config=run.config).tables.tobytes() == run.tables.tobytes()
+
+
+def test_without_box2d_the_error_names_its_installation(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.startswith("gymnasium.envs.box2d")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "Box2D", None)
+    with pytest.raises(gym.error.DependencyNotInstalled, match=r'pip install "gymnasium\[box2d\]"'):
+        qtab.train("LunarLander-v3", seed=0)
 
 
 @pytest.mark.slow

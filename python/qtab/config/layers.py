@@ -9,7 +9,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, Config, replace_checked
-from qtab.config.options import applicable, is_set
+from qtab.config.options import applicable, is_set, turned_off
 from qtab.config.unknown import check_names
 
 Base: TypeAlias = Config | Mapping[str, Any]
@@ -57,9 +57,10 @@ def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns settings over the base of a call.
 
     What a mapping holds counts like a keyword. The fields of a Config yield: those that are not set, and those that do
-    not apply beside the other settings, are left out.
+    not apply beside the other settings, are left out. An option that is off in the config of a run stays off, whatever
+    a preset has.
     """
     if isinstance(base, Config):
         given = {name: value for name, value in vars(base).items() if name != "env" and is_set(value)}
-        base = applicable(given, {**vars(base), **settings})
+        base = applicable({**given, **turned_off(vars(base))}, {**vars(base), **settings})
     return {**base, **settings}

@@ -74,6 +74,9 @@ OPTIONS: Mapping[str, Option] = {
     "high": Option("discretizer", ("bins", "tiles"), None),
 }
 
+OFF_BY_NONE = ("hashed_rows", "max_rows")
+"""The options of which None may be the choice of a run, and not only a choice that is left open."""
+
 ONE_STEP = (
     "q_learning",
     "sarsa",
@@ -160,6 +163,16 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
     if (name, value) == ("exploration", "ucb") and algorithm in WITH_PROBABILITIES:
         return other_choice(name, value, ("ucb",), f"for algorithm {algorithm!r}")
     return None
+
+
+def turned_off(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the options that a complete config, such as that of a run, has off, each with its None.
+
+    A config in which options are still open is not complete, and nothing says that another one is not open as well.
+    """
+    if defaults(fields):
+        return {}
+    return {name: None for name in OFF_BY_NONE if fields[name] is None and not mismatch(name, None, fields)}
 
 
 def applicable(fields: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:

@@ -149,6 +149,7 @@ _PRESETS: Mapping[str, Mapping[str, SharedSettings]] = {
     "CartPole-v1": {"tuned": _CART_POLE, "solved": tile_coding_presets.SOLVED_CART_POLE},
     "Acrobot-v1": {"solved": tile_coding_presets.ACROBOT},
     "Pendulum-v1": {"tuned": tile_coding_presets.PENDULUM},
+    "LunarLander-v3": {"solved": tile_coding_presets.LUNAR_LANDER},
     "FrozenLake-v1": {"tuned": _LAKE, "solved": _SOLVED_LAKE, "time_aware": _TIME_AWARE_LAKE},
     "FrozenLake8x8-v1": {
         "tuned": _LARGE_LAKE,

@@ -2,8 +2,11 @@
 //!
 //! `cargo bench --bench bandits`. "at run time" is a run whose policy and learning rate are chosen at run time.
 
-use criterion::measurement::WallTime;
-use criterion::{BenchmarkGroup, Criterion, Throughput};
+mod benchmarks;
+
+use std::hint::black_box;
+
+use benchmarks::Benchmarks;
 use qtab_core::learners::{Agent, GradientBandit, QLearning, TdLearner};
 use qtab_core::policies::{AnyPolicy, Policy, SingleStateEpsilonGreedy, SingleStateUcb, TieBreaking, Ucb};
 use qtab_core::q_table::TerminalUpdate;
@@ -15,6 +18,7 @@ use qtab_core::{Budget, Learner, QTable, StopFlag, Trainer};
 /// What the benchmarks store is small.
 const FITS: &str = "it fits into memory";
 
+const GROUP: &str = "10-armed testbed";
 const STEPS: usize = 1000;
 const ACTIONS: usize = 10;
 const TESTBED: Testbed = Testbed { num_actions: ACTIONS, mean: 0.0, deviation: 1.0, random_walk: 0.0 };
@@ -34,14 +38,13 @@ fn run<L: Learner<[u32; 1]>>(learner: L, seed: u32) -> f64 {
     trainer.episodes().returns.iter().sum()
 }
 
-/// Benchmarks a learner on the problems of one seed after the other: with one problem, branches would be predicted too well.
-fn bench<L: Learner<[u32; 1]>>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, learner: impl Fn() -> L) {
+/// Adds the benchmark of a learner on the problems of one seed after the other: with one problem, branches would be predicted too well.
+fn bench<L: Learner<[u32; 1]>>(benchmarks: &mut Benchmarks, name: &str, learner: impl Fn() -> L) {
     let mut seed = 0;
-    group.bench_function(name, |bencher| {
-        bencher.iter(|| {
-            seed += 1;
-            run(learner(), seed)
-        });
+    benchmarks.add(GROUP, name, || {
+        seed += 1;
+        black_box(run(learner(), seed));
+        STEPS as u64
     });
 }
 
@@ -63,41 +66,39 @@ fn averages_at_run_time() -> LearningRate {
 }
 
 fn main() {
-    let mut criterion = Criterion::default().configure_from_args();
-    let mut group = criterion.benchmark_group("10-armed testbed");
-    group.throughput(Throughput::Elements(STEPS as u64));
+    let mut benchmarks = Benchmarks::from_env();
     let (rule, epsilon, ties) = (QLearning, Schedule::constant(EPSILON), TieBreaking::Random);
-    group.bench_function("draws: a reward, and whether to explore", |bencher| {
-        let [mut environment, mut agent] = generators(0);
-        bencher.iter(|| (0..STEPS).map(|_| environment.standard_normal() + agent.random()).sum::<f64>());
+    let [mut environment, mut agent_rng] = generators(0);
+    benchmarks.add(GROUP, "draws: a reward, and whether to explore", || {
+        black_box((0..STEPS).map(|_| environment.standard_normal() + agent_rng.random()).sum::<f64>());
+        STEPS as u64
     });
-    bench(&mut group, "ε-greedy", || TdLearner {
+    bench(&mut benchmarks, "ε-greedy", || TdLearner {
         agent: agent::<ACTIONS, _, _>(SingleStateEpsilonGreedy::new(epsilon, ties), averages()),
         rule,
     });
-    bench(&mut group, "ε-greedy, at run time", || {
+    bench(&mut benchmarks, "ε-greedy, at run time", || {
         let policy = AnyPolicy::EpsilonGreedy { epsilon, ties };
         TdLearner { agent: agent::<0, _, _>(policy, averages_at_run_time()), rule }
     });
-    bench(&mut group, "upper confidence bounds", || TdLearner {
+    bench(&mut benchmarks, "upper confidence bounds", || TdLearner {
         agent: agent::<ACTIONS, _, _>(SingleStateUcb::new(ucb()), averages()),
         rule,
     });
-    bench(&mut group, "upper confidence bounds, at run time", || TdLearner {
+    bench(&mut benchmarks, "upper confidence bounds, at run time", || TdLearner {
         agent: agent::<0, _, _>(AnyPolicy::Ucb(ucb()), averages_at_run_time()),
         rule,
     });
-    group.bench_function("draws and ten exponentials", |bencher| {
-        let [mut environment, mut agent] = generators(0);
+    benchmarks.add(GROUP, "draws and ten exponentials", || {
         let exponentials = |scale: f64| (0..ACTIONS).map(|action| (-scale * action as f64).exp()).sum::<f64>();
-        let mut step = |_| environment.standard_normal() + exponentials(agent.random());
-        bencher.iter(|| (0..STEPS).map(&mut step).sum::<f64>());
+        let step = |_| environment.standard_normal() + exponentials(agent_rng.random());
+        black_box((0..STEPS).map(step).sum::<f64>());
+        STEPS as u64
     });
-    bench(&mut group, "gradient bandit", || {
+    bench(&mut benchmarks, "gradient bandit", || {
         let learning_rate = LearningRate::scheduled(Schedule::constant(0.1), 1);
         let rule = GradientBandit::new(true, 1, &StopFlag::new()).expect(FITS);
         TdLearner { agent: agent::<0, _, _>(AnyPolicy::softmax(1.0, ACTIONS), learning_rate), rule }
     });
-    group.finish();
-    criterion.final_summary();
+    benchmarks.finish();
 }

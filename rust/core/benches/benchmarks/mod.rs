@@ -3,13 +3,14 @@
 //! With `QTAB_BENCH=list` a benchmark program prints the names of its benchmarks; with `QTAB_BENCH=NAME` it runs one of them
 //! `QTAB_RUNS` times and prints the number of steps. Otherwise Criterion reads the command line. `.ci/run instructions`
 //! counts the instructions of one run and of two under Valgrind, and so those of a step.
+#![expect(clippy::print_stdout, reason = "names and numbers of steps are the program's output")]
 
 use std::env;
 
 use criterion::{Criterion, Throughput};
 
 pub(crate) enum Benchmarks {
-    Timed(Criterion),
+    Timed(Box<Criterion>),
     Listed,
     Counted { wanted: String, runs: u32, steps: u64 },
 }
@@ -18,7 +19,7 @@ impl Benchmarks {
     /// As the environment variables and the command line ask for.
     pub(crate) fn from_env() -> Self {
         match env::var("QTAB_BENCH") {
-            Err(_) => Self::Timed(Criterion::default().configure_from_args()),
+            Err(_) => Self::Timed(Box::new(Criterion::default().configure_from_args())),
             Ok(name) if name == "list" => Self::Listed,
             Ok(wanted) => {
                 let runs = env::var("QTAB_RUNS").expect("QTAB_RUNS is set").parse().expect("QTAB_RUNS is a number");
