@@ -194,16 +194,44 @@ class MethodSpec(TypedDict, total=False):
     weighted: bool
 
 
+class ObservationPolicySpec(TypedDict, total=False):
+    """A policy that chooses by the observation."""
+
+    type: Required[Literal["table", "greedy", "function"]]
+    probabilities: NDArray[np.float64]
+    """(cells, actions), or (1, actions) for the same everywhere, of a table."""
+    discretizer: DiscretizerSpec
+    """Of a greedy policy."""
+    tables: NDArray[np.float64]
+    """(tables, rows, actions): the action values of a greedy policy, which are added."""
+    function: Callable[[Any], Any]
+    """From an observation to the number of an action or to probabilities."""
+    read: Callable[[Any, Any], Sequence[float]]
+    """From any other answer of the function, and the observation, to probabilities; or it raises an error."""
+    first_action: int
+    """The number of the first action."""
+
+
+class ObservationPoliciesSpec(TypedDict):
+    """Policies that choose by the observation."""
+
+    target: ObservationPolicySpec | None
+    """The policy that is evaluated; None for the one that acts."""
+    behavior: ObservationPolicySpec
+
+
 class PredictionSpec(TypedDict):
     """What is estimated, beside the run whose task it is."""
 
     method: MethodSpec
-    target: NDArray[np.float64]
-    """(states, actions): the policy that is evaluated."""
-    behavior: NDArray[np.float64]
-    """(states, actions): the policy that chooses the actions."""
-    rows: NDArray[np.uint32]
-    """(states, n_active)"""
+    target: NDArray[np.float64] | None
+    """(states, actions): the policy that is evaluated; None with ``policies``."""
+    behavior: NDArray[np.float64] | None
+    """(states, actions): the policy that chooses the actions; None with ``policies``."""
+    policies: ObservationPoliciesSpec | None
+    """Policies that read the observations of a Box."""
+    rows: NDArray[np.uint32] | None
+    """(states, n_active); None where the features of an observation are the active rows of the discretizer."""
     initial_weights: NDArray[np.float64]
     """(n_weights,)"""
 

@@ -18,9 +18,10 @@ from qtab.book.runner import FloatArray
 from qtab.planning.policies import GivenPolicy
 from qtab.planning.policy_values import PolicyValues
 from qtab.plots.axes import shown_figure
-from qtab.prediction.estimate import recorded_episodes, resolve_prediction, run_prediction
 from qtab.prediction.estimates import ValueEstimates
+from qtab.prediction.runs import recorded_episodes, run_prediction
 from qtab.prediction.settings import PredictionSettings
+from qtab.prediction.task import resolve_prediction
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -110,6 +110,11 @@ class GridSolver:
         index = self._searched.action(self._known.state_of(numbers).tolist())
         return self._torques[index : index + 1].copy() if len(self._torques) else index
 
+    @property
+    def has_continuous_actions(self) -> bool:
+        """Whether its actions are some of a Box, as Pendulum's torques."""
+        return len(self._torques) > 0
+
     def greedy_return(self, run: Run) -> tuple[float, float]:
         """Returns the mean return of a run's greedy policy over 1,000 episodes, and its standard error."""
         evaluation = evaluate(run, EVALUATION_EPISODES, seed=0, progress=False)

@@ -44,11 +44,7 @@ def probabilities(
             that do not sum to 1.
     """
     if isinstance(policy, str):
-        if policy != RANDOM:
-            raise ValueError(
-                f"{name} must be 'random' or a policy, got {shown(policy)}{did_you_mean(policy, [RANDOM])}"
-            )
-        return np.full((cells.n_rows, len(actions)), 1.0 / len(actions))
+        return equal_probabilities(name, policy, cells.n_rows, len(actions))
     if isinstance(policy, Run):
         return _of_run(name, policy, cells, actions)
     if isinstance(policy, Optimum):
@@ -61,6 +57,17 @@ def probabilities(
     if callable(policy):
         return _of_function(name, policy, space, cells, actions)
     return of_array(name, policy, cells, actions)
+
+
+def equal_probabilities(name: str, policy: str, rows: int, n_actions: int) -> NDArray[np.float64]:
+    """Returns (rows, actions): the policy that has this name, of which there is one.
+
+    Raises:
+        ValueError: for another name.
+    """
+    if policy != RANDOM:
+        raise ValueError(f"{name} must be 'random' or a policy, got {shown(policy)}{did_you_mean(policy, [RANDOM])}")
+    return np.full((rows, n_actions), 1.0 / n_actions)
 
 
 def of_array(name: str, policy: ArrayLike, cells: Discretizer, actions: Actions) -> NDArray[np.float64]:
@@ -105,12 +112,17 @@ def _of_actions(name: str, chosen: NDArray[Any], actions: Actions) -> NDArray[np
     return table
 
 
-def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> NDArray[np.float64]:
+def refuse_time_aware(name: str, run: Run) -> None:
+    """Refuses a run whose policy depends on the number of steps taken."""
     if run.config.time_aware:
         raise ValueError(
             f"{name} must not depend on the number of steps taken, got a run with time_aware=True; "
             "run.at_step(step) has the policy of one step"
         )
+
+
+def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> NDArray[np.float64]:
+    refuse_time_aware(name, run)
     expected, found = (*cells.shape, len(actions)), (*run.discretizer.shape, len(run.actions))
     if not run.discretizer.has_cells or found != expected:
         raise ValueError(f"{name} must be a run with a table of shape {expected}, got {found}")

@@ -29,7 +29,7 @@ Drawable = Run | Runs | Optimum
 class Subject:
     """One or several Q tables of one environment."""
 
-    source: Drawable
+    source: Any
     """What it was made from."""
     env: str
     """The environment's id, or the name of its class."""
@@ -125,6 +125,8 @@ def subject_of(name: str, source: Any, step: Any = 0) -> Subject:
         return _of_runs(source, source.config, tables, names, f"{len(source):,} seeds")
     if isinstance(source, Optimum):
         return _of_optimum(source)
+    if isinstance(source, Subject):
+        return source
     raise TypeError(f"{name} must be a Run, Runs or an Optimum, got {shown(source)}{load_hint(source)}")
 
 

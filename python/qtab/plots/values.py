@@ -1,7 +1,7 @@
 """A picture of the learned values."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,17 +10,26 @@ from qtab._utils import checks
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.heat_maps import draw_heat_maps
 from qtab.plots.panels import arranged
-from qtab.plots.subject import Drawable
+from qtab.plots.subject import Drawable, Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import Normalize
 
 VALUE_LABEL = "value, max$_a$ Q(s, a)"
+ESTIMATED_LABEL = "value, v(s)"
+
+
+@runtime_checkable
+class Estimates(Protocol):
+    """Values without actions: a :class:`qtab.ValueEstimates`."""
+
+    def _subject(self) -> Subject:
+        """Returns tables of one column."""
 
 
 def values(
-    run: Drawable | Sequence[Drawable],
+    run: "Drawable | Estimates | Sequence[Drawable | Estimates]",
     ax: "Axes | None" = None,
     *,
     at: Mapping[str, float] | None = None,
@@ -37,8 +46,8 @@ def values(
     still at ``initial_q``, where that is one number. With tile coding this holds of most tiles of a grey point.
 
     Args:
-        run: A run; the runs of many seeds with their tables, of which the mean is shown; or an optimum. A sequence of
-            them makes panels with one scale of colors.
+        run: A run; the runs of many seeds with their tables, of which the mean is shown; an optimum; or the values that
+            :func:`qtab.estimate_values` found. A sequence of them makes panels with one scale of colors.
         ax: The axes to draw on; None creates a new figure. A sequence needs None.
         at: For observations of more than two components, the values of those that are not axes, by the names in
             ``run.axes``, such as ``{"cart position": 0.0, "cart velocity": 0.0}``. Acrobot and Pendulum have angles
@@ -58,10 +67,14 @@ def values(
         ValueError: for one that does not fit the environment, or runs without tables.
     """
     numbers = checks.boolean("numbers", numbers)
-    panels = arranged(run, at, layout, title, step)
+    given: list[Any] = list(run) if isinstance(run, list | tuple) else [run]
+    estimated = [isinstance(source, Estimates) for source in given]
+    sources: Any = [source._subject() if isinstance(source, Estimates) else source for source in given]
+    panels = arranged(sources if isinstance(run, list | tuple) else sources[0], at, layout, title, step)
     grids = [subject.state_values(raster.rows) for subject, raster in panels]
     text = value_text if numbers else None
-    return draw_heat_maps(panels, grids, ax, norm=common_norm, label=VALUE_LABEL, title=title, text=text)
+    label = ESTIMATED_LABEL if all(estimated) else VALUE_LABEL
+    return draw_heat_maps(panels, grids, ax, norm=common_norm, label=label, title=title, text=text)
 
 
 def common_norm(grids: Sequence[NDArray[np.float64]]) -> "Normalize":

@@ -1,6 +1,6 @@
 """``qtab.ValueEstimates``: the estimated values of a policy, for each seed, and how they developed."""
 
-import json
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab._utils import checks, html, svg
+from qtab._utils import html, svg
 from qtab._utils.fields import with_fields
-from qtab._utils.files import replacing
 from qtab.config import Config
-from qtab.prediction.learning_rates import OPTIONS
+from qtab.discretizers import Discretizer
+from qtab.discretizers.box import BoxDiscretizer
+from qtab.prediction import storage
+from qtab.prediction.observation_policies import ObservationPolicies
 from qtab.prediction.settings import PredictionSettings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from qtab.plots.subject import Subject
     from qtab.prediction.verification import ValuesVerification
-
-_ARRAYS = ("episodes", "weights", "rows", "probabilities", "behavior")
-FORMAT = 1
 
 
 @with_fields
@@ -39,26 +39,66 @@ class ValueEstimates:
     """(points,): after how many episodes the weights were recorded, ascending; the last one is the last episode."""
     weights: NDArray[np.float64]
     """(seeds, points, n_weights): the recorded weights: of a table the values themselves."""
-    rows: NDArray[np.uint32]
-    """(states, n_active): the active features of each state, whose weights add up to its value."""
-    probabilities: NDArray[np.float64]
-    """(*cells, actions): the policy that is evaluated."""
-    behavior: NDArray[np.float64]
+    rows: NDArray[np.uint32] | None
+    """(states, n_active): the active features of each state, whose weights add up to its value; None with tile coding
+    of the observations, whose active tiles they are."""
+    probabilities: NDArray[np.float64] | None
+    """(*cells, actions): the policy that is evaluated; None where it reads the observations of a Box."""
+    behavior: NDArray[np.float64] | None
     """(*cells, actions): the policy that chose the actions: the same, except off policy."""
     config: Config | None = field(repr=False, default=None)
     """The task as a config, by which it can be verified; None for estimates from a file."""
     seconds: float = 0.0
     """The wall-clock time of the computation."""
+    discretizer: Discretizer | None = field(repr=False, default=None)
+    """Maps observations to states, or to the active features; None for estimates of numbered states from a file."""
+    policies: ObservationPolicies | None = field(repr=False, default=None)
+    """The policies that read the observations of a Box, where they are no tables; None for estimates from a file."""
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape of the values of a run: the number of cells along each component of the observation."""
-        return self.probabilities.shape[:-1]
+        """The shape of the values of a run: the number of cells along each component of the observation.
+
+        Raises:
+            ValueError: with tile coding of the observations, which has no cells.
+        """
+        if self.probabilities is not None:
+            return self.probabilities.shape[:-1]
+        if self.discretizer is None or not self.discretizer.has_cells:
+            raise ValueError("the values need cells, which tile coding does not have; value(observation) works")
+        return self.discretizer.shape
+
+    @property
+    def n_active(self) -> int:
+        """The number of weights that add up to a value."""
+        return _required(self.discretizer).n_active if self.rows is None else self.rows.shape[1]
 
     @property
     def values(self) -> NDArray[np.float64]:
-        """(seeds, *cells): the values after the last episode."""
+        """(seeds, *cells): the values after the last episode.
+
+        Raises:
+            ValueError: with tile coding of the observations, which has no cells; :meth:`value` works.
+        """
         return self.values_after(-1)
+
+    def value(self, observation: Any, point: int = -1) -> NDArray[np.float64]:
+        """Returns (seeds,): the value of an observation, or the (seeds, n) values of n observations.
+
+        Args:
+            observation: An observation, or n of them.
+            point: One of the recorded points, by its index.
+
+        Raises:
+            TypeError: if the observation does not hold numbers (integers for a discrete space).
+            ValueError: if it has another shape than the space, or lies outside the space; or for estimates of numbered
+                states from a file.
+        """
+        if self.discretizer is None:
+            raise ValueError("value needs the observations of the states, which are not in the file; values works")
+        rows = self.discretizer.active_rows(observation)
+        active = rows if self.rows is None else self.rows[rows[..., 0]]
+        return _summed(self.weights[:, point], np.moveaxis(active, -1, 0))
 
     @property
     def mean(self) -> NDArray[np.float64]:
@@ -76,42 +116,56 @@ class ValueEstimates:
 
     def values_after(self, point: int) -> NDArray[np.float64]:
         """Returns (seeds, *cells): the values at one of the recorded points, by its index."""
-        weights = self.weights[:, point]
-        # From left to right, as the methods sum them.
-        total = weights[:, self.rows[:, 0]]
-        for active in self.rows.T[1:]:
-            total = total + weights[:, active]
-        return total.reshape(len(self.seeds), *self.shape)
+        shape = self.shape
+        rows: Any = self.rows
+        return _summed(self.weights[:, point], rows.T).reshape(len(self.seeds), *shape)
 
-    def rms_error(self, true_values: ArrayLike, weights: ArrayLike | None = None) -> NDArray[np.float64]:
-        """Returns (seeds, points): the root of the weighted mean of the squared errors over the states.
+    def rms_error(
+        self,
+        true_values: ArrayLike | Callable[[Any], float],
+        weights: ArrayLike | None = None,
+        *,
+        observations: ArrayLike | None = None,
+    ) -> NDArray[np.float64]:
+        """Returns (seeds, points): the root of the weighted mean of the squared errors over states or observations.
 
         Args:
-            true_values: (*cells,): the true values, such as those of :func:`qtab.policy_values`.
-            weights: (*cells,): how much each state counts, such as ``state_distribution`` for the value error VE of
+            true_values: (*cells,): the true values, such as those of :func:`qtab.policy_values`; with ``observations``
+                (n,) those of the observations, or a function from an observation to its value.
+            weights: (*cells,) or (n,): how much each counts, such as ``state_distribution`` for the value error VE of
                 Sutton & Barto's equation 9.1; None counts all the same.
+            observations: The n observations whose values are compared, where states are not numbered; None means all
+                states.
 
         Raises:
-            ValueError: if an argument has another shape, or the weights are negative or all zero.
+            TypeError: for a function without observations.
+            ValueError: if an argument has another shape, or the weights are negative or all zero; or with tile coding
+                without observations.
         """
-        exact = self._per_state("true_values", true_values)
-        shares = np.ones(exact.shape) if weights is None else self._per_state("weights", weights)
+        if observations is None:
+            if callable(true_values):
+                raise TypeError("true_values must be an array where observations is None, got a function")
+            estimated, shape, where = self.values_after, self.shape, "states"
+        else:
+            at = np.asarray(observations)
+            estimated, where = lambda point: self.value(at, point), "observations"
+            shape = estimated(-1).shape[1:]
+            if len(shape) != 1:
+                raise ValueError(f"observations must hold several observations, got an array of shape {at.shape}")
+            if callable(true_values):
+                true_values = [float(true_values(observation)) for observation in at]
+        exact = _of_shape("true_values", true_values, shape, where)
+        shares = np.ones(exact.shape) if weights is None else _of_shape("weights", weights, shape, where)
         if not (shares >= 0.0).all() or not shares.sum() > 0.0:
             raise ValueError("weights must be at least 0 and not all 0")
         shares = shares / shares.sum()
         axes = tuple(range(1, exact.ndim + 1))
         with np.errstate(over="ignore"):  # values that diverge have an infinite error
             errors = [
-                np.sqrt((shares * (self.values_after(point) - exact) ** 2).sum(axis=axes))
+                np.sqrt((shares * (estimated(point) - exact) ** 2).sum(axis=axes))
                 for point in range(len(self.episodes))
             ]
         return np.stack(errors, axis=1)
-
-    def _per_state(self, name: str, numbers: ArrayLike) -> NDArray[np.float64]:
-        array = np.asarray(numbers, dtype=np.float64)
-        if array.shape != self.shape:
-            raise ValueError(f"{name} must have the shape {self.shape} of the states, got {array.shape}")
-        return array
 
     def verify(self, episodes: int | None = None, seed: int | None = None) -> "ValuesVerification":
         """Estimates again in plain NumPy in Gymnasium's environment, and compares the weights byte for byte.
@@ -131,7 +185,8 @@ class ValueEstimates:
         """Draws the mean values over the states, and returns the axes.
 
         States of one component are a line with a band of two standard errors to each side; those of two or more are a
-        map of the first two components, with the others at the middle of their range.
+        map of the first two components, with the others at the middle of their range. Of a Box with two components or
+        more it is the picture of :func:`qtab.plots.values`.
 
         Args:
             ax: The axes to draw on; None creates a new figure.
@@ -142,7 +197,19 @@ class ValueEstimates:
         """
         from qtab.prediction.plot import draw_values
 
-        return draw_values(self, ax, None if true_values is None else self._per_state("true_values", true_values))
+        if self.rows is None or (isinstance(self.discretizer, BoxDiscretizer) and len(self.discretizer.low) > 1):
+            from qtab.plots import values
+
+            return values(self, ax)
+        return draw_values(
+            self, ax, None if true_values is None else _of_shape("true_values", true_values, self.shape, "states")
+        )
+
+    def _subject(self) -> "Subject":
+        """What :func:`qtab.plots.values` draws."""
+        from qtab.prediction.plot import subject_of_values
+
+        return subject_of_values(self)
 
     def save(self, path: Path | str) -> None:
         """Writes the estimates to an ``.npz`` file, completely or not at all.
@@ -150,16 +217,7 @@ class ValueEstimates:
         Raises:
             OSError: if the file cannot be written.
         """
-        # Schedules only where there are any, so that earlier versions can read the others.
-        settings = {
-            name: value
-            for name, value in asdict(self.settings).items()
-            if value is not None or name not in ("learning_rate_schedule", *OPTIONS)
-        }
-        about = {"format": FORMAT, "env": self.env, "settings": settings, "seeds": list(self.seeds)}
-        text = np.array(json.dumps({**about, "seconds": self.seconds}))
-        with replacing(checks.path("path", path)) as temporary, temporary.open("wb") as file:
-            np.savez_compressed(file, about=text, **{name: getattr(self, name) for name in _ARRAYS})
+        storage.save(self, path)
 
     @classmethod
     def load(cls, path: Path | str) -> "ValueEstimates":
@@ -169,46 +227,56 @@ class ValueEstimates:
             OSError: if the file is missing or cannot be read.
             ValueError: if it is not such a file.
         """
-        with checks.path("path", path).open("rb") as file:
-            try:
-                with np.load(file, allow_pickle=False) as arrays:
-                    about: Any = json.loads(str(arrays["about"]))
-                    loaded = {name: arrays[name] for name in _ARRAYS}
-                    made = cls(
-                        env=str(about["env"]),
-                        settings=PredictionSettings(**about["settings"]),
-                        seeds=tuple(int(seed) for seed in about["seeds"]),
-                        seconds=float(about["seconds"]),
-                        **loaded,
-                    )
-                if about["format"] != FORMAT or made.weights.shape[:2] != (len(made.seeds), len(made.episodes)):
-                    raise ValueError("its arrays do not fit each other")
-                made.values_after(-1)
-            except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
-                raise ValueError(f"not a file of value estimates: {path}: {error}") from None
-        return made
+        return storage.load(cls, path)
 
     def __repr__(self) -> str:
         """One line: the values are not shown."""
         runs = "1 run" if len(self.seeds) == 1 else f"{len(self.seeds):,} runs"
-        states = " x ".join(map(str, self.shape))
-        return (
-            f"<ValueEstimates of {self.env}: {self.settings.method}, {states} states, {runs} of "
-            f"{self.settings.episodes:,} episodes>"
-        )
+        size = self._size(" x ")
+        episodes = f"{runs} of {self.settings.episodes:,} episodes"
+        return f"<ValueEstimates of {self.env}: {self.settings.method}, {size}, {episodes}>"
 
     def _repr_html_(self) -> str:
-        """A table and the mean values, for notebooks."""
+        """A table and, where there are states, the mean values, for notebooks."""
         options = {name: value for name, value in asdict(self.settings).items() if value is not None}
         facts: dict[str, object] = {
             **options,
-            "states": " × ".join(map(str, self.shape)),
-            "weights": f"{self.weights.shape[2]:,}, {self.rows.shape[1]} active",
+            "states": self._size(" × "),
+            "weights": f"{self.weights.shape[2]:,}, {self.n_active} active",
             "seeds": f"{len(self.seeds):,}",
             "time": f"{self.seconds:.3g} s",
         }
+        title = f"Estimated values in {self.env}"
+        if self.rows is None:
+            return html.summary(title, facts)
         if len(self.shape) == 2:
             picture = svg.field(f"Mean values, {' rows by '.join(map(str, self.shape))} columns", self.mean)
         else:
             picture = svg.lines("The mean value of each state, by its number", {"value": self.mean.ravel()})
-        return html.summary(f"Estimated values in {self.env}", facts, picture)
+        return html.summary(title, facts, picture)
+
+    def _size(self, times: str) -> str:
+        if self.rows is None:
+            return f"{self.n_active} of {self.weights.shape[2]:,} features"
+        return f"{times.join(map(str, self.shape))} states"
+
+
+def _summed(weights: NDArray[np.float64], active: NDArray[Any]) -> NDArray[np.float64]:
+    """Returns (seeds, ...): the sums of (n_active, ...) weights, from left to right, as the methods add them."""
+    total: NDArray[np.float64] = weights[:, active[0]]
+    for rows in active[1:]:
+        total = total + weights[:, rows]
+    return total
+
+
+def _of_shape(name: str, numbers: ArrayLike, shape: tuple[int, ...], where: str) -> NDArray[np.float64]:
+    array = np.asarray(numbers, dtype=np.float64)
+    if array.shape != shape:
+        raise ValueError(f"{name} must have the shape {shape} of the {where}, got {array.shape}")
+    return array
+
+
+def _required(discretizer: Discretizer | None) -> Discretizer:
+    if discretizer is None:
+        raise ValueError("the discretizer is unknown")
+    return discretizer

@@ -7,11 +7,32 @@ from numpy.typing import NDArray
 
 from qtab.plots.axes import axes_or_new
 from qtab.plots.labels import finish
+from qtab.plots.subject import Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from qtab.prediction.estimates import ValueEstimates
+
+
+def subject_of_values(estimates: "ValueEstimates") -> Subject:
+    """Returns what a picture of estimated values shows: tables of one column, which stands for no action.
+
+    Raises:
+        ValueError: for estimates from a file that does not hold how observations are divided.
+    """
+    discretizer = estimates.discretizer
+    if discretizer is None:
+        raise ValueError("run must be estimates with their discretizer, got those of numbered states from a file")
+    settings, count = estimates.settings, len(estimates.seeds)
+    of_states = estimates.rows is not None
+    values = estimates.values.reshape(count, -1) if of_states else estimates.weights[:, -1]
+    initial = settings.initial_value / (1 if of_states else estimates.n_active)
+    env_kwargs = {} if estimates.config is None else estimates.config.env_kwargs
+    which = "1 seed" if count == 1 else f"{count:,} seeds"
+    name = f"{estimates.env}: values by {settings.method}, {which}"
+    known = values != initial
+    return Subject(estimates, estimates.env, env_kwargs, name, discretizer, values[..., np.newaxis], known, ("",))
 
 
 def draw_values(estimates: "ValueEstimates", ax: "Axes | None", true_values: NDArray[np.float64] | None) -> "Axes":

@@ -15,8 +15,8 @@ def batch_td(prediction: Prediction) -> None:
     visits, scale = np.zeros_like(w), 0.0
     for episode in prediction.episodes():
         for visit in episode:
-            [row], [next_row] = prediction.rows[visit.state], prediction.rows[visit.next_state]
-            transition = row, visit.reward, None if visit.terminal else next_row
+            [row], [following] = prediction.rows[visit.state], prediction.rows[visit.next_state]
+            transition = row, visit.reward, None if visit.terminal else following
             counts[transition] = counts.get(transition, 0.0) + 1.0
             visits[row] += 1.0
         scale = max(scale, np.abs(w).max(), *(abs(reward) for _, reward, _ in counts))

@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
+from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.config.config import replace_checked
+from qtab.prediction.observation_policies import TablePolicy
+from qtab.reference.prediction.policies import policy_of, probability
 from qtab.reference.schedules import LearningRate
-from qtab.reference.task import Task
+from qtab.reference.task import Rows, Task
 
 if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates
@@ -28,6 +31,19 @@ class Visit:
     """Whether the next state is terminal, so that its value is zero."""
     over: bool
     """Whether the episode ends here."""
+    ratio: float
+    """π(A|S) / b(A|S), the importance-sampling ratio."""
+
+
+class ObservedTask(Task):
+    """A task whose last observation can be read."""
+
+    observation: Any
+
+    def rows(self, observation: Any) -> Rows:
+        """Returns the active rows of an observation."""
+        self.observation = observation
+        return super().rows(observation)
 
 
 class Prediction:
@@ -35,10 +51,12 @@ class Prediction:
 
     def __init__(self, env: gym.Env, config: Config, estimates: "ValueEstimates", stop_after: int) -> None:
         self.settings = estimates.settings
-        self.task = Task(env, config, stop_after)
+        self.task = ObservedTask(env, config, stop_after)
         self.discount = self.settings.discount
-        self.rows = estimates.rows.tolist()
-        count, n_active = estimates.weights.shape[2], estimates.rows.shape[1]
+        # Of tile coding the states are numbered in the order of their visits in an episode.
+        self.has_states = estimates.rows is not None
+        self.rows: list[list[int]] = [] if estimates.rows is None else estimates.rows.tolist()
+        count, n_active = estimates.weights.shape[2], estimates.n_active
         self.w = np.full(count, self.settings.initial_value / n_active)
         settings, by_visits = self.settings, self.settings.learning_rate is None
         learning_rate: dict[str, Any] = {
@@ -49,9 +67,13 @@ class Prediction:
             "learning_rate_warm_up": settings.learning_rate_warm_up,
         }
         self.rate = LearningRate(replace_checked(config, **learning_rate), (count, 1), n_active)
-        self.target = estimates.probabilities.reshape(len(self.rows), -1)
-        self.behavior = estimates.behavior.reshape(len(self.rows), -1)
-        self.is_deterministic = bool((np.count_nonzero(self.behavior, axis=1) == 1).all())
+        policies = estimates.policies
+        if policies is None:
+            given = TablePolicy(_by_row(estimates.probabilities)), TablePolicy(_by_row(estimates.behavior))
+            self.target, self.behavior = (policy_of(policy, env) for policy in given)
+        else:
+            self.target, self.behavior = policy_of(policies.target, env), policy_of(policies.behavior, env)
+        self.is_off_policy = settings.method == "importance_sampling"
 
     def value(self, state: int) -> float:
         """Returns v(S), the sum of the weights of its active features from left to right."""
@@ -68,18 +90,30 @@ class Prediction:
             self.rate.visit([row], 0)
             self.w[row] += self.rate.step(row, 0) * error
 
-    def choose(self, state: int) -> int:
-        """Returns an action: the first whose cumulative probability exceeds one ``random()``."""
-        probabilities = self.behavior[state]
-        possible = np.flatnonzero(probabilities)
-        if self.is_deterministic:
-            return int(possible[0])
+    def choose(self) -> tuple[int, float]:
+        """Returns an action, the first whose cumulative probability exceeds one ``random()``, and its ratio."""
+        given = self.task.observation, self.task.state
+        answer = self.behavior(*given)
+        action = answer if isinstance(answer, int) else self._sample(answer)
+        if not self.is_off_policy:
+            return action, 1.0
+        return action, probability(self.target(*given), action) / probability(answer, action)
+
+    def _sample(self, probabilities: list[float]) -> int:
+        possible = [action for action, probability in enumerate(probabilities) if probability > 0.0]
         random, total = self.task.rng.random(), 0.0
         for action in possible:
-            total += float(probabilities[action])
+            total += probabilities[action]
             if random < total:
-                return int(action)
-        return int(possible[-1])
+                return action
+        return possible[-1]
+
+    def state_of(self, rows: Rows) -> int:
+        """Returns the number of a state."""
+        if self.has_states:
+            return rows[0]
+        self.rows.append(rows)
+        return len(self.rows) - 1
 
     def episodes(self) -> Iterator[Iterator[Visit]]:
         """Yields the steps of each episode, which are taken as they are asked for."""
@@ -90,16 +124,25 @@ class Prediction:
             self.rate.schedule.end_episode()
 
     def _steps(self) -> Iterator[Visit]:
-        [state] = self.task.reset()
+        if not self.has_states:
+            self.rows.clear()
+        state = self.state_of(self.task.reset())
         over = False
         while not over:
-            action = self.choose(state)
+            action, ratio = self.choose()
             step = self.task.step(action)
-            [next_state] = step.state
+            next_state = self.state_of(step.state)
             over = step.over
-            yield Visit(state, action, step.reward, next_state, step.terminal, over)
+            yield Visit(state, action, step.reward, next_state, step.terminal, over, ratio)
             state = next_state
 
     def next_value(self, visit: Visit) -> float:
         """Returns v(S'), which is 0 in a terminal state."""
         return 0.0 if visit.terminal else self.value(visit.next_state)
+
+
+def _by_row(table: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """Returns (rows, actions) probabilities of (*cells, actions)."""
+    if table is None:
+        raise ValueError("there are policies for the observations or for the states")
+    return table.reshape(-1, table.shape[-1])

@@ -16,8 +16,8 @@ def importance_sampling(prediction: Prediction) -> None:
         states = [visit.state for visit in visits]
         rho = 1.0
         for t in reversed(range(len(visits))):
-            state, action = states[t], visits[t].action
-            rho *= float(prediction.target[state, action]) / float(prediction.behavior[state, action])
+            state = states[t]
+            rho *= visits[t].ratio
             if settings.first_visit and state in states[:t]:
                 continue
             [row] = prediction.rows[state]

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{LinearValues, PredictionRule, PredictionStep};
+use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
 use crate::tasks::Next;
 
 /// The values have settled when a presentation changes none by more than this fraction of the largest value or reward so far.
@@ -50,7 +50,7 @@ impl BatchTd {
     }
 
     /// Presents all transitions once. Returns whether the values have settled.
-    fn present(&mut self, values: &mut LinearValues) -> bool {
+    fn present<S: RowSets>(&mut self, values: &mut LinearValues<S>) -> bool {
         self.errors.fill(0.0);
         for &(row, (reward, next), count) in &self.transitions {
             let next_value = next.map_or(0.0, |next| values.weights[next as usize]);
@@ -70,8 +70,8 @@ impl BatchTd {
     }
 }
 
-impl PredictionRule for BatchTd {
-    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+impl<S: RowSets> PredictionRule<S> for BatchTd {
+    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
         self.work = 1;
         let row = values.rows.first(step.state) as u32;
         let next = match step.next {
@@ -100,7 +100,7 @@ impl PredictionRule for BatchTd {
         self.unfinished
     }
 
-    fn resume(&mut self, values: &mut LinearValues) {
+    fn resume(&mut self, values: &mut LinearValues<S>) {
         let (mut read, each) = (0, (self.transitions.len() + self.visits.len()) as u64);
         self.unfinished = true;
         while self.unfinished && read < MAX_TRANSITIONS_PER_CALL {
@@ -127,7 +127,7 @@ mod tests {
         for reward in episodes {
             learner.rule.learn(&mut learner.values, last(1, reward));
         }
-        assert!(!learner.rule.is_unfinished());
+        assert!(!learner.rule.unfinished);
         for value in learner.values.weights {
             assert!((value - 0.75).abs() < 1e-11, "{value}");
         }

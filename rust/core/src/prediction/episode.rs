@@ -1,6 +1,6 @@
 //! The steps of an episode, for methods that learn at its end.
 
-use super::{LinearValues, PredictionStep};
+use super::{LinearValues, PredictionStep, RowSets};
 use crate::memory::{AllocationError, reserve};
 use crate::tasks::Next;
 
@@ -28,7 +28,7 @@ pub(super) struct Episode {
 }
 
 impl Episode {
-    /// Without a step. `states` is their number.
+    /// Without a step. `states` is their number; 0 for states without numbers, whose visits are all first ones.
     pub(super) fn new(states: usize) -> Self {
         Self { last_visits: vec![0; states], number: 1, ..Self::default() }
     }
@@ -37,7 +37,8 @@ impl Episode {
     #[inline]
     pub(super) fn push(&mut self, step: PredictionStep) -> bool {
         self.finished = 0;
-        let first = std::mem::replace(&mut self.last_visits[step.state as usize], self.number) != self.number;
+        let last = self.last_visits.get_mut(step.state as usize);
+        let first = last.is_none_or(|last| std::mem::replace(last, self.number) != self.number);
         self.visits.push(EpisodeVisit { state: step.state, action: step.action as u32, first, reward: step.reward });
         step.is_last()
     }
@@ -45,7 +46,7 @@ impl Episode {
     /// Computes the λ-returns G of all steps, from the last one to the first, with the values as they are (Sutton & Barto,
     /// equations 12.2 and 12.3): G = R + γ [(1 - λ) v(S′) + λ G′]. With λ = 1 they are the returns themselves. The return
     /// of an episode that its time limit cut off ends with the value of the last state.
-    pub(super) fn compute_returns(&mut self, values: &LinearValues, next: Next<u32>, trace_decay: f64) {
+    pub(super) fn compute_returns<S: RowSets>(&mut self, values: &LinearValues<S>, next: Next<u32>, trace_decay: f64) {
         let bootstrap = match next {
             Next::NonTerminal(state) | Next::Truncated(state) => values.value(state),
             Next::Terminal => 0.0,

@@ -70,8 +70,8 @@ impl FixedPolicy {
 mod tests {
     use super::*;
     use crate::learners::Learner;
+    use crate::prediction::TdZero;
     use crate::prediction::test_support::{predictor, rng};
-    use crate::prediction::{PredictionRule, TdZero};
     use crate::random::NoRng;
 
     #[test]
@@ -92,6 +92,5 @@ mod tests {
         assert_eq!([policy.choose(0, &mut NoRng), policy.choose(1, &mut NoRng)], [1, 0]);
         let mut learner = predictor(&[0.0; 2], TdZero);
         assert_eq!(Learner::<[u32; 1]>::first_action(&mut learner, [0], &mut NoRng), 0);
-        assert!(!PredictionRule::is_unfinished(&learner.rule));
     }
 }

@@ -1,8 +1,22 @@
 //! Off-policy Monte Carlo prediction by importance sampling (Sutton & Barto, equations 5.3 to 5.8).
 
 use super::episode::Episode;
-use super::{FixedPolicy, LinearValues, PredictionRule, PredictionStep};
-use crate::memory::AllocationError;
+use super::{FixedPolicy, LinearValues, PredictionRule, PredictionStep, RowSets};
+use crate::memory::{AllocationError, reserve};
+
+/// π(A|S) / b(A|S) of the steps of an episode.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ratios {
+    /// Of policies over numbered states.
+    OfTables {
+        /// π.
+        target: FixedPolicy,
+        /// b.
+        behavior: FixedPolicy,
+    },
+    /// As the policies gave them, step by step; empty before the first step.
+    Given(Vec<f64>),
+}
 
 /// At the end of an episode, for its steps from the last to the first, with the importance-sampling ratio
 /// ρ = Π π(A|S) / b(A|S) from that step on:
@@ -13,37 +27,35 @@ use crate::memory::AllocationError;
 pub struct ImportanceSampling {
     weighted: bool,
     first_visit: bool,
-    target: FixedPolicy,
-    behavior: FixedPolicy,
+    ratios: Ratios,
     /// C of each row.
     weights: Vec<f64>,
     episode: Episode,
 }
 
 impl ImportanceSampling {
-    /// Estimates the values of `target` from episodes of `behavior`. `shape` is the number of states and of rows.
-    pub fn new(
-        weighted: bool,
-        first_visit: bool,
-        target: FixedPolicy,
-        behavior: FixedPolicy,
-        (states, rows): (usize, usize),
-    ) -> Self {
-        Self { weighted, first_visit, target, behavior, weights: vec![0.0; rows], episode: Episode::new(states) }
+    /// Estimates the values of a target policy from episodes of another one. `shape` is the number of states and of rows.
+    pub fn new(weighted: bool, first_visit: bool, ratios: Ratios, (states, rows): (usize, usize)) -> Self {
+        Self { weighted, first_visit, ratios, weights: vec![0.0; rows], episode: Episode::new(states) }
     }
 }
 
-impl PredictionRule for ImportanceSampling {
+impl<S: RowSets> PredictionRule<S> for ImportanceSampling {
     #[inline]
-    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
         if !self.episode.push(step) {
             return;
         }
         self.episode.compute_returns(values, step.next, 1.0);
         let mut ratio = 1.0;
-        for (visit, &target) in self.episode.visits.iter().zip(&self.episode.returns).rev() {
-            let action = visit.action as usize;
-            ratio *= self.target.probability(visit.state, action) / self.behavior.probability(visit.state, action);
+        for (index, (visit, &target)) in self.episode.visits.iter().zip(&self.episode.returns).enumerate().rev() {
+            ratio *= match &self.ratios {
+                Ratios::OfTables { target, behavior } => {
+                    let action = visit.action as usize;
+                    target.probability(visit.state, action) / behavior.probability(visit.state, action)
+                }
+                Ratios::Given(ratios) => ratios[index],
+            };
             if self.first_visit && !visit.first {
                 continue;
             }
@@ -62,6 +74,15 @@ impl PredictionRule for ImportanceSampling {
             values.weights[row] += error;
         }
         self.episode.clear();
+        if let Ratios::Given(ratios) = &mut self.ratios {
+            ratios.clear();
+        }
+    }
+
+    fn weigh(&mut self, ratio: f64) {
+        if let Ratios::Given(ratios) = &mut self.ratios {
+            ratios.push(ratio);
+        }
     }
 
     #[inline]
@@ -70,6 +91,9 @@ impl PredictionRule for ImportanceSampling {
     }
 
     fn reserve(&mut self, steps: u64) -> Result<(), AllocationError> {
+        if let Ratios::Given(ratios) = &mut self.ratios {
+            reserve(ratios, usize::try_from(steps).unwrap_or(usize::MAX))?;
+        }
         self.episode.reserve(steps)
     }
 }
@@ -84,7 +108,7 @@ mod tests {
     fn two_episodes_by_hand() {
         for (weighted, values) in [(false, [3.0, 1.5]), (true, [3.0, 3.0])] {
             let (target, behavior) = (FixedPolicy::new([1.0, 0.0].into(), 2), FixedPolicy::new([0.5, 0.5].into(), 2));
-            let rule = ImportanceSampling::new(weighted, true, target, behavior, (1, 1));
+            let rule = ImportanceSampling::new(weighted, true, Ratios::OfTables { target, behavior }, (1, 1));
             let mut learner = predictor(&[0.0], rule);
             let rewards = if weighted { [3.0, 9.0] } else { [1.5, 9.0] };
             // The target policy takes the first action only, so ρ is 2 and then 0.

@@ -1,15 +1,15 @@
 //! Estimated state values: the weights, their features and their step sizes.
 
-use super::StateRows;
+use super::{RowSets, StateRows};
 use crate::schedules::{LearningRate, StepSize};
 
 /// v(s) = Σ w over the active rows of s, from left to right. With one row for each state it is a table.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LinearValues {
+pub struct LinearValues<S = StateRows> {
     /// The weights w.
     pub weights: Vec<f64>,
     /// The active rows of each state.
-    pub rows: StateRows,
+    pub rows: S,
     /// The learning rate α, divided by the number of active rows.
     pub learning_rate: LearningRate,
     /// The discount γ.
@@ -17,12 +17,12 @@ pub struct LinearValues {
     overflowed: bool,
 }
 
-impl LinearValues {
+impl<S: RowSets> LinearValues<S> {
     /// The values before the first episode.
     ///
     /// # Panics
     /// If there is not a weight for each row.
-    pub fn new(weights: Vec<f64>, rows: StateRows, learning_rate: LearningRate, discount: f64) -> Self {
+    pub fn new(weights: Vec<f64>, rows: S, learning_rate: LearningRate, discount: f64) -> Self {
         assert_eq!(weights.len(), rows.n_weights(), "there must be a weight for each row");
         Self { weights, rows, learning_rate, discount, overflowed: false }
     }

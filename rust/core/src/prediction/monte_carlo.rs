@@ -1,7 +1,7 @@
 //! Monte Carlo prediction (Sutton & Barto, the boxes in sections 5.1 and 9.3, and equation 6.1).
 
 use super::episode::Episode;
-use super::{LinearValues, PredictionRule, PredictionStep};
+use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
 use crate::memory::AllocationError;
 
 /// w ← w + α [Gₜ - v(Sₜ)] ∇v(Sₜ) at the end of an episode, for its steps from the first to the last. With a learning rate
@@ -19,9 +19,9 @@ impl MonteCarloPrediction {
     }
 }
 
-impl PredictionRule for MonteCarloPrediction {
+impl<S: RowSets> PredictionRule<S> for MonteCarloPrediction {
     #[inline]
-    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
         if !self.episode.push(step) {
             return;
         }

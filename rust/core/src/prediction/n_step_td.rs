@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{LinearValues, PredictionRule, PredictionStep};
+use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
 use crate::memory::{AllocationError, out_of_memory};
 use crate::tasks::Next;
 
@@ -29,7 +29,7 @@ impl NStepTd {
     }
 
     /// Updates the oldest state. `bootstrap` is the value of the state after the newest reward, if it is not terminal.
-    fn update_oldest(&mut self, values: &mut LinearValues, bootstrap: Option<u32>) {
+    fn update_oldest<S: RowSets>(&mut self, values: &mut LinearValues<S>, bootstrap: Option<u32>) {
         let (mut target, mut power) = (0.0, 1.0);
         for (_, reward) in &self.visits {
             target += power * reward;
@@ -45,8 +45,8 @@ impl NStepTd {
     }
 }
 
-impl PredictionRule for NStepTd {
-    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+impl<S: RowSets> PredictionRule<S> for NStepTd {
+    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
         self.work = 1;
         self.visits.push_back((step.state, step.reward));
         match step.next {
@@ -66,6 +66,10 @@ impl PredictionRule for NStepTd {
 
     fn work(&self) -> u64 {
         self.work
+    }
+
+    fn look_back(&self) -> Option<usize> {
+        Some(self.n)
     }
 
     /// At most n states wait.

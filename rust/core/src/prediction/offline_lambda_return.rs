@@ -1,7 +1,7 @@
 //! The off-line λ-return algorithm (Sutton & Barto, equations 12.2 to 12.4).
 
 use super::episode::Episode;
-use super::{LinearValues, PredictionRule, PredictionStep};
+use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
 use crate::memory::AllocationError;
 
 /// w ← w + α [Gₜ - v(Sₜ)] ∇v(Sₜ) at the end of an episode, for its steps from the first to the last, where Gₜ is the
@@ -19,8 +19,8 @@ impl OfflineLambdaReturn {
     }
 }
 
-impl PredictionRule for OfflineLambdaReturn {
-    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+impl<S: RowSets> PredictionRule<S> for OfflineLambdaReturn {
+    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
         if !self.episode.push(step) {
             return;
         }

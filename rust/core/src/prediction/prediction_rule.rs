@@ -1,6 +1,6 @@
 //! The trait of all prediction methods.
 
-use super::LinearValues;
+use super::{LinearValues, StateRows};
 use crate::memory::AllocationError;
 use crate::tasks::Next;
 
@@ -26,9 +26,9 @@ impl PredictionStep {
 }
 
 /// How a method changes the values. It draws no random numbers.
-pub trait PredictionRule {
+pub trait PredictionRule<S = StateRows> {
     /// Learns from one step.
-    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep);
+    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep);
 
     /// The work of the last call, as [`Budget`](crate::Budget) counts it. At least 1.
     fn work(&self) -> u64 {
@@ -41,10 +41,18 @@ pub trait PredictionRule {
     }
 
     /// Continues to learn from the last step.
-    fn resume(&mut self, _values: &mut LinearValues) {}
+    fn resume(&mut self, _values: &mut LinearValues<S>) {}
+
+    /// Takes π(A|S) / b(A|S) of the step that is learned from next, where the policies are not tables.
+    fn weigh(&mut self, _ratio: f64) {}
+
+    /// How many states before the last one are still needed; `None` for all of the episode.
+    fn look_back(&self) -> Option<usize> {
+        None
+    }
 
     /// Called after the last step of every episode.
-    fn end_episode(&mut self, _values: &mut LinearValues) {}
+    fn end_episode(&mut self, _values: &mut LinearValues<S>) {}
 
     /// Makes room for what so many steps store.
     ///
@@ -55,8 +63,8 @@ pub trait PredictionRule {
     }
 }
 
-impl PredictionRule for Box<dyn PredictionRule + Send> {
-    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+impl<S> PredictionRule<S> for Box<dyn PredictionRule<S> + Send> {
+    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
         (**self).learn(values, step);
     }
 
@@ -68,11 +76,19 @@ impl PredictionRule for Box<dyn PredictionRule + Send> {
         (**self).is_unfinished()
     }
 
-    fn resume(&mut self, values: &mut LinearValues) {
+    fn resume(&mut self, values: &mut LinearValues<S>) {
         (**self).resume(values);
     }
 
-    fn end_episode(&mut self, values: &mut LinearValues) {
+    fn weigh(&mut self, ratio: f64) {
+        (**self).weigh(ratio);
+    }
+
+    fn look_back(&self) -> Option<usize> {
+        (**self).look_back()
+    }
+
+    fn end_episode(&mut self, values: &mut LinearValues<S>) {
         (**self).end_episode(values);
     }
 

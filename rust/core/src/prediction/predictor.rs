@@ -1,6 +1,6 @@
 //! A learner that follows a given policy and estimates its values.
 
-use super::{FixedPolicy, LinearValues, PredictionRule, PredictionStep};
+use super::{Behavior, FixedPolicy, LinearValues, PredictionRule, PredictionStep, RowSets, StateRows};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::learners::Learner;
 use crate::memory::AllocationError;
@@ -9,38 +9,46 @@ use crate::schedules::StepSize;
 use crate::tasks::Next;
 
 /// A prediction method as a [`Learner`]: its actions come from a policy that does not change, and its table has one column.
-/// The active row of an observation is the number of its state; the values may have other features.
+/// The active row of an observation is the number of its state, which may have other features; or the observation has
+/// features without a number.
 #[derive(Clone, Debug)]
-pub struct Predictor<U> {
+pub struct Predictor<U, B = FixedPolicy, S = StateRows> {
     /// The estimated values.
-    pub values: LinearValues,
-    /// The policy that chooses the actions.
-    pub behavior: FixedPolicy,
+    pub values: LinearValues<S>,
+    /// Where the actions come from.
+    pub behavior: B,
     /// The method.
     pub rule: U,
 }
 
-/// The number of a state.
-#[inline]
-fn state_of<R: AsRef<[u32]>>(rows: &R) -> u32 {
-    rows.as_ref()[0]
-}
-
-impl<R: AsRef<[u32]> + Copy, U: PredictionRule> Learner<R> for Predictor<U> {
+impl<R, U, B, S> Learner<R> for Predictor<U, B, S>
+where
+    R: AsRef<[u32]> + Copy,
+    U: PredictionRule<S>,
+    B: Behavior<R>,
+    S: RowSets,
+{
     #[inline]
     fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
-        self.behavior.choose(state_of(&state), rng)
+        let number = self.values.rows.begin(state.as_ref());
+        self.behavior.action(number, &state, rng)
     }
 
     #[inline]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
-        let next = match next {
-            Next::NonTerminal(state) => Next::NonTerminal(state_of(&state)),
-            Next::Truncated(state) => Next::Truncated(state_of(&state)),
+        if B::HAS_RATIOS {
+            self.rule.weigh(self.behavior.ratio(&state));
+        }
+        let rows = &mut self.values.rows;
+        let number = rows.current(state.as_ref());
+        let next_number = match next {
+            Next::NonTerminal(next) => Next::NonTerminal(rows.visit_next(next.as_ref())),
+            Next::Truncated(next) => Next::Truncated(rows.visit_next(next.as_ref())),
             Next::Terminal => Next::Terminal,
         };
-        self.rule.learn(&mut self.values, PredictionStep { state: state_of(&state), action, reward, next });
-        if let Next::NonTerminal(state) = next { self.behavior.choose(state, rng) } else { 0 }
+        self.rule.learn(&mut self.values, PredictionStep { state: number, action, reward, next: next_number });
+        let Next::NonTerminal(next) = next else { return 0 };
+        self.behavior.action(self.values.rows.current(next.as_ref()), &next, rng)
     }
 
     #[inline]
@@ -49,6 +57,7 @@ impl<R: AsRef<[u32]> + Copy, U: PredictionRule> Learner<R> for Predictor<U> {
     }
 
     fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
+        self.values.rows.reserve(work)?;
         self.rule.reserve(work)
     }
 

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::RowSets;
+
 /// The active rows of each state, as many for every state. Clones share them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateRows {
@@ -19,31 +21,45 @@ impl StateRows {
         fits.then_some(Self { rows, n_active, n_weights })
     }
 
-    /// The active rows of a state.
-    #[inline]
-    pub fn of(&self, state: u32) -> &[u32] {
-        &self.rows[state as usize * self.n_active..][..self.n_active]
-    }
-
-    /// The row of a state that has one active row; the first one otherwise.
-    #[inline]
-    pub fn first(&self, state: u32) -> usize {
-        self.rows[state as usize * self.n_active] as usize
-    }
-
     /// The number of states.
     pub fn num_states(&self) -> usize {
         self.rows.len() / self.n_active
     }
+}
 
-    /// The number of active rows of a state.
+/// The active row of a task is the number of its state.
+impl RowSets for StateRows {
     #[inline]
-    pub fn n_active(&self) -> usize {
+    fn of(&self, state: u32) -> &[u32] {
+        &self.rows[state as usize * self.n_active..][..self.n_active]
+    }
+
+    #[inline]
+    fn first(&self, state: u32) -> usize {
+        self.rows[state as usize * self.n_active] as usize
+    }
+
+    #[inline]
+    fn n_active(&self) -> usize {
         self.n_active
     }
 
-    /// The number of weights.
-    pub fn n_weights(&self) -> usize {
+    fn n_weights(&self) -> usize {
         self.n_weights
+    }
+
+    #[inline]
+    fn begin(&mut self, active: &[u32]) -> u32 {
+        active[0]
+    }
+
+    #[inline]
+    fn current(&self, active: &[u32]) -> u32 {
+        active[0]
+    }
+
+    #[inline]
+    fn visit_next(&mut self, active: &[u32]) -> u32 {
+        active[0]
     }
 }

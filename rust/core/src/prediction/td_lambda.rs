@@ -1,6 +1,6 @@
 //! TD(λ) with accumulating traces (R. Sutton, 1988; Sutton & Barto, the box in section 12.2).
 
-use super::{LinearValues, PredictionRule, PredictionStep};
+use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
 use crate::tasks::Next;
 
 /// The traces z of all weights, and which of them may not be zero.
@@ -74,8 +74,8 @@ impl TdLambda {
     }
 }
 
-impl PredictionRule for TdLambda {
-    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+impl<S: RowSets> PredictionRule<S> for TdLambda {
+    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
         self.traces.decay(values.discount * self.trace_decay);
         for &row in values.rows.of(step.state) {
             self.traces.add(row, 1.0);
@@ -94,7 +94,11 @@ impl PredictionRule for TdLambda {
         self.traces.work()
     }
 
-    fn end_episode(&mut self, _values: &mut LinearValues) {
+    fn look_back(&self) -> Option<usize> {
+        Some(0)
+    }
+
+    fn end_episode(&mut self, _values: &mut LinearValues<S>) {
         self.traces.clear();
     }
 }

@@ -1,7 +1,7 @@
 //! True online TD(λ), with dutch traces (H. van Seijen and R. Sutton, 2014; Sutton & Barto, the box in section 12.5).
 
 use super::td_lambda::StateTraces;
-use super::{LinearValues, PredictionRule, PredictionStep};
+use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
 use crate::tasks::Next;
 
 /// With the weights w, the traces z, the binary features x of S, V = wᵀx and V′ = wᵀx′:
@@ -24,8 +24,8 @@ impl TrueOnlineTdLambda {
     }
 }
 
-impl PredictionRule for TrueOnlineTdLambda {
-    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+impl<S: RowSets> PredictionRule<S> for TrueOnlineTdLambda {
+    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
         let next_value = match step.next {
             Next::NonTerminal(next) | Next::Truncated(next) => values.value(next),
             Next::Terminal => 0.0,
@@ -51,7 +51,11 @@ impl PredictionRule for TrueOnlineTdLambda {
         self.traces.work()
     }
 
-    fn end_episode(&mut self, _values: &mut LinearValues) {
+    fn look_back(&self) -> Option<usize> {
+        Some(0)
+    }
+
+    fn end_episode(&mut self, _values: &mut LinearValues<S>) {
         self.v_old = 0.0;
         self.traces.clear();
     }

@@ -48,12 +48,16 @@ pub(crate) fn estimate_values(
         return Err(invalid("weights", format!("an array of shape {expected:?}, none of them 0"), got));
     }
     let size = expected[1] * expected[2];
+    let calls_python = prediction.calls_python();
     run_spec.prediction = Some(Arc::new(prediction));
     let run_spec = Arc::new(run_spec);
     let mut rows = weights.as_slice_mut()?.chunks_mut(size.max(1)).enumerate();
     match EnvironmentSpec::parse(&fields.nested("env")?)? {
         EnvironmentSpec::Native(env) => {
             let factory = env.runs(&run_spec, 0)?;
+            if calls_python {
+                return Ok(run_attached(py, &*factory, &seeds, episodes, rows));
+            }
             let work = PredictionQueue {
                 factory: &*factory,
                 seeds: &seeds,
@@ -86,6 +90,31 @@ pub(crate) fn estimate_values(
             Ok(Vec::new())
         }
     }
+}
+
+/// Does one run after the other on this thread, which holds the interpreter's lock: to take it at each step would take much
+/// longer than the step. Returns the runs that failed; an exception of Python code ends them all.
+fn run_attached(
+    py: Python<'_>,
+    factory: &dyn RunFactory,
+    seeds: &[Seed],
+    episodes: &[u64],
+    rows: Rows<'_>,
+) -> Vec<FailedRun> {
+    let mut failed = Vec::new();
+    for (seed, (index, row)) in seeds.iter().zip(rows) {
+        let done = factory.build(seed, &StopFlag::new()).and_then(|mut built| {
+            advance(&mut *built.run, episodes, row, || Ok(py.check_signals()?)).map_err(as_python)
+        });
+        if let Err(error) = done {
+            let diverged = error.is_instance_of::<PyOverflowError>(py);
+            failed.push((index, error));
+            if !diverged {
+                break;
+            }
+        }
+    }
+    failed
 }
 
 /// What the threads of one call share.

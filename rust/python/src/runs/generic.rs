@@ -11,6 +11,7 @@ use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
 
 use super::agent::generic_agent;
 use super::factory::{Batching, Factory};
+use super::observed::observed_box;
 use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
@@ -29,6 +30,10 @@ where
     let (_, dimensions) = spec.discretizer.box_space()?;
     if dimensions != M {
         return Err(invalid("discretizer", format!("one for observations of {M} components"), dimensions));
+    }
+    if let Some(prediction) = spec.prediction_by_observation() {
+        check_actions(&env, spec)?;
+        return observed_box(env, spec, prediction);
     }
     match &spec.discretizer {
         // Compiled for the usual numbers of tilings, but not once more for what is rarely asked for besides.

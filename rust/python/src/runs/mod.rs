@@ -6,6 +6,7 @@ mod answers;
 mod bandit;
 mod factory;
 mod generic;
+mod observed;
 mod pending;
 mod prediction;
 mod python_env;

@@ -5,15 +5,18 @@ use pyo3::prelude::*;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::features::MAX_TILINGS;
 use qtab_core::numeric::Float;
+use qtab_core::prediction::ObservableTask;
 use qtab_core::tasks::{Next, RngSnapshot, Transition};
 use qtab_core::{Features, StopFlag, Task};
 
 use super::answers::{self, Answer};
 use super::generic::boxed_run;
+use super::observed::observed_run;
 use super::python_env::PythonEnv;
 use super::{AnyRecordings, BuiltRun};
 use crate::convert::{BoxReader, ObservationReader, Seed};
 use crate::error::RunError;
+use crate::prediction::{BoxFeatures, PredictionSpec};
 use crate::spec::{DiscretizerSpec, FloatType, RunSpec};
 
 /// How many steps of Q-learning on a grid a step in Python counts as. It may take a millisecond.
@@ -57,6 +60,9 @@ impl TaskBuilder<'_> {
     where
         T: Float + Default + numpy::Element + 'static,
     {
+        if let Some(prediction) = self.spec.prediction_by_observation() {
+            return self.observed_run(prediction, to_dtype, dimensions);
+        }
         if let DiscretizerSpec::Tiles(tiles) = &self.spec.discretizer {
             let tiles = tiles.tile_coding::<T, MAX_TILINGS>();
             let n_rows = Features::<[T]>::len(&tiles);
@@ -67,14 +73,48 @@ impl TaskBuilder<'_> {
         self.run(BoxReader::new(grid, dimensions), n_rows)
     }
 
+    /// The values of a policy that reads the observations.
+    fn observed_run<T>(
+        self,
+        prediction: &PredictionSpec,
+        to_dtype: impl Fn(f64) -> T,
+        dimensions: usize,
+    ) -> PyResult<BuiltRun>
+    where
+        T: Float + Default + numpy::Element + 'static,
+    {
+        let (spec, seed, stop) = (self.spec, self.seed, self.stop);
+        let reader = |discretizer: &DiscretizerSpec| {
+            PyResult::Ok(BoxReader::new(BoxFeatures::new(discretizer, &to_dtype)?, dimensions))
+        };
+        let policies = prediction.policies(spec, reader)?;
+        let task = PythonTask { keeps_observation: true, ..self.task(reader(&spec.discretizer)?) };
+        let run = observed_run(task, policies, seed, spec, prediction, stop)?;
+        Ok(BuiltRun { run, recordings: AnyRecordings::None, steps_python: true })
+    }
+
+    fn task<R>(self, reader: R) -> PythonTask<R> {
+        let (max_episode_steps, mask) = (self.spec.max_episode_steps, vec![true; self.spec.num_actions]);
+        let Self { env, first_seed, .. } = self;
+        PythonTask {
+            env,
+            first_seed,
+            seeded: false,
+            max_episode_steps,
+            reader,
+            mask,
+            keeps_observation: false,
+            last_observation: None,
+        }
+    }
+
     fn run<R>(self, reader: R, n_rows: usize) -> PyResult<BuiltRun>
     where
         R: ObservationReader<Active: Send> + Send + 'static,
     {
-        let Self { env, first_seed, spec, seed, record, stop } = self;
-        let (max_episode_steps, shape) = (spec.max_episode_steps, (n_rows, spec.discretizer.n_active()));
-        let mask = vec![true; spec.num_actions];
-        let task = PythonTask { env, first_seed, seeded: false, max_episode_steps, reader, mask };
+        let Self { spec, seed, record, stop, .. } = self;
+        let shape = (n_rows, spec.discretizer.n_active());
+        let task = self.task(reader);
         let (run, recordings) = boxed_run(task, shape, seed, spec, (record, stop), AnyRecordings::Python)?;
         Ok(BuiltRun { run, recordings, steps_python: true })
     }
@@ -89,6 +129,17 @@ struct PythonTask<R> {
     reader: R,
     /// Which actions the last state has, where the environment has action masks.
     mask: Vec<bool>,
+    /// Whether a policy reads the observations, so that the last one is kept.
+    keeps_observation: bool,
+    last_observation: Option<Py<PyAny>>,
+}
+
+impl<R: ObservationReader> ObservableTask for PythonTask<R> {
+    type Observation = Py<PyAny>;
+
+    fn observation(&self, _elapsed: &u64) -> Py<PyAny> {
+        Python::attach(|py| self.last_observation.as_ref().map_or_else(|| py.None(), |last| last.clone_ref(py)))
+    }
 }
 
 impl<R: ObservationReader> Task for PythonTask<R> {
@@ -104,6 +155,9 @@ impl<R: ObservationReader> Task for PythonTask<R> {
             let env = self.env.bind(py);
             let (observation, info) = answers::of_reset(env, &answer)?;
             let rows = self.reader.active_rows(&observation)?;
+            if self.keeps_observation {
+                self.last_observation = Some(observation.clone().unbind());
+            }
             self.env.masks.read((env, "reset"), &observation, &info, &mut self.mask)?;
             Ok((0, rows))
         })
@@ -116,6 +170,9 @@ impl<R: ObservationReader> Task for PythonTask<R> {
             let Answer { observation, reward, terminated, truncated, info } = Answer::of_step(env, &answer)?;
             *elapsed += 1;
             let rows = self.reader.active_rows(&observation)?;
+            if self.keeps_observation {
+                self.last_observation = Some(observation.to_owned().unbind());
+            }
             if terminated {
                 // Nothing is chosen in a terminal state: it may have no action left.
                 return Ok(Transition { reward, next: Next::Terminal });

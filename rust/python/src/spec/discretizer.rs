@@ -88,6 +88,11 @@ impl DiscretizerSpec {
         }
     }
 
+    /// The number of rows. Parsing has made sure that it fits.
+    pub(crate) fn num_rows(&self) -> usize {
+        self.row_counts().into_iter().product::<u64>() as usize
+    }
+
     /// The dtype and the number of components of the observations. It is an error for integers.
     pub(crate) fn box_space(&self) -> PyResult<(FloatType, usize)> {
         match self {

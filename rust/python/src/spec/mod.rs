@@ -57,6 +57,11 @@ pub(crate) struct RunSpec {
 }
 
 impl RunSpec {
+    /// The prediction, if its policies read the observations of a Box.
+    pub(crate) fn prediction_by_observation(&self) -> Option<&Arc<PredictionSpec>> {
+        self.prediction.as_ref().filter(|prediction| prediction.reads_observations())
+    }
+
     pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
         let episodes = fields.get("episodes")?;
         let num_actions = fields.get("num_actions")?;

@@ -56,7 +56,8 @@ impl ClassicEnv for CartPole {
     }
 
     fn runs(&self, _actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-        if let DiscretizerSpec::Bins(bins) = &spec.discretizer
+        if spec.prediction_by_observation().is_none()
+            && let DiscretizerSpec::Bins(bins) = &spec.discretizer
             && let Some(grid) = bins.bins::<4>()
         {
             return specialized::<_, _, 2>(*self, grid, spec, record, QLearningBatching::in_lanes());

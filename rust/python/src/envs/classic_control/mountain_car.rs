@@ -55,7 +55,8 @@ impl ClassicEnv for MountainCar {
     }
 
     fn runs(&self, _actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-        if let DiscretizerSpec::Round(round) = &spec.discretizer
+        if spec.prediction_by_observation().is_none()
+            && let DiscretizerSpec::Round(round) = &spec.discretizer
             && let Some(grid) = round.rounding::<2>()
         {
             return specialized::<_, _, 3>(*self, grid, spec, record, QLearningBatching::in_lanes());

@@ -1,0 +1,153 @@
+"""The runs of a prediction: the policies, the features and the seeds, passed to Rust."""
+
+import math
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qtab import _core
+from qtab._utils import checks
+from qtab._utils.memory import check_memory, memory_limit
+from qtab._utils.shown import shown
+from qtab.discretizers import Discretizer
+from qtab.planning.policies import GivenPolicy, probabilities
+from qtab.prediction.estimates import ValueEstimates
+from qtab.prediction.features import Rows, feature_rows
+from qtab.prediction.learning_rates import AVERAGES_ONLY, schedule_of
+from qtab.prediction.observation_policies import ObservationPolicies, observation_policy, reads_observations
+from qtab.prediction.settings import PredictionSettings
+from qtab.training.resolved_run import ResolvedRun
+
+
+def run_prediction(
+    resolved: ResolvedRun,
+    space: gym.Space[Any] | None,
+    settings: PredictionSettings,
+    policy: GivenPolicy,
+    behavior: GivenPolicy | None,
+    features: ArrayLike | None,
+    seeds: Sequence[int],
+    points: NDArray[np.uint64],
+    threads: int,
+    limit: int,
+) -> tuple[ValueEstimates, list[tuple[int, Exception]]]:
+    """Runs a prediction; returns the estimates and the runs that failed, whose missing weights are NaN."""
+    cells, actions = resolved.discretizer, resolved.actions
+    _check_behavior(behavior, settings)
+    by_observation = any(reads_observations(one, cells) for one in (policy, behavior) if one is not None)
+    target = followed = policies = None
+    if by_observation:
+        evaluated = observation_policy("policy", policy, cells, actions)
+        acting = evaluated if behavior is None else observation_policy("behavior", behavior, cells, actions)
+        policies = ObservationPolicies(evaluated, acting)
+    else:
+        target = probabilities("policy", policy, space, cells, actions)
+        followed = target if behavior is None else probabilities("behavior", behavior, space, cells, actions)
+        _check_covered(target, followed)
+    rows, n_weights = _features(features, cells, settings)
+    n_active = cells.n_active if rows is None else rows.shape[1]
+    if n_active == 1 and settings.learning_rate is not None and settings.learning_rate > 1.0:
+        raise ValueError(f"learning_rate must lie in [0, 1] for a table, got {shown(settings.learning_rate)}")
+    if not resolved.is_native and len(seeds) > 1:
+        raise ValueError(f"seeds must be one seed for an environment that is stepped in Python, got {len(seeds)}")
+    size = len(seeds) * len(points) * n_weights * 8
+    check_memory(f"{len(seeds)} runs with {len(points)} recorded episodes (record= keeps fewer)", size, limit)
+    weights = np.full((len(seeds), len(points), n_weights), np.nan)
+    began = time.perf_counter()
+    spec: Any = {**resolved.spec(), "learning_rate": schedule_of(vars(settings)).spec()}
+    initial = np.full(n_weights, settings.initial_value / n_active)
+    prediction: Any = {
+        "method": settings.method_spec(),
+        "target": target,
+        "behavior": followed,
+        "policies": None if policies is None else policies.spec(),
+        "rows": rows,
+        "initial_weights": initial,
+    }
+    with resolved.environment.exclusively():
+        failed = _core.estimate_values(spec, prediction, seeds, points, weights, threads)
+    return ValueEstimates(
+        env=resolved.config.env,
+        settings=settings,
+        seeds=tuple(seeds),
+        episodes=points.astype(np.int64),
+        weights=weights,
+        rows=rows,
+        probabilities=_by_cell(target, cells),
+        behavior=_by_cell(followed, cells),
+        config=resolved.config,
+        seconds=time.perf_counter() - began,
+        discretizer=cells,
+        policies=policies,
+    ), failed
+
+
+def _check_behavior(behavior: GivenPolicy | None, settings: PredictionSettings) -> None:
+    """Refuses a missing policy that acts, and one for a method that evaluates the policy that acts."""
+    off_policy = settings.method == "importance_sampling"
+    if behavior is None and off_policy:
+        raise ValueError("behavior must be given for method 'importance_sampling', got None")
+    if behavior is not None and not off_policy:
+        raise ValueError(
+            f"behavior applies to method 'importance_sampling', not to {settings.method!r}, got {shown(behavior)}"
+        )
+
+
+def _check_covered(target: NDArray[np.float64], followed: NDArray[np.float64]) -> None:
+    missing = np.argwhere((target > 0.0) & (followed == 0.0))
+    if len(missing):
+        row, action = missing[0]
+        raise ValueError(
+            f"behavior must cover policy: it never takes action {action} in row {row}, which policy takes with "
+            f"probability {target[row, action]:g}"
+        )
+
+
+def _features(features: ArrayLike | None, cells: Discretizer, settings: PredictionSettings) -> tuple[Rows | None, int]:
+    """Returns the active rows of each cell, None with tile coding of the observations, and the number of weights."""
+    method = settings.method
+    if cells.has_cells:
+        rows, n_weights = feature_rows(features, cells.n_rows)
+        if method in AVERAGES_ONLY and rows.shape[1] > 1:
+            raise ValueError(f"features must have one active row for method {method!r}, got {rows.shape[1]}")
+        return rows, n_weights
+    if features is not None:
+        raise ValueError(
+            f"features must be None for discretizer 'tiles', whose tiles are the features, got {shown(features)}"
+        )
+    if method in AVERAGES_ONLY:
+        raise ValueError(
+            f"discretizer must be 'round', 'bins' or 'edges' for method {method!r}, which averages in each cell, got "
+            "'tiles'"
+        )
+    if settings.first_visit:
+        raise ValueError("first_visit must be False for discretizer 'tiles', where no state is visited twice, got True")
+    return None, cells.n_rows
+
+
+def _by_cell(table: NDArray[np.float64] | None, cells: Discretizer) -> NDArray[np.float64] | None:
+    return None if table is None else table.reshape(*cells.shape, -1)
+
+
+def recorded_episodes(record: Any, episodes: int) -> NDArray[np.uint64]:
+    """Returns (points,) uint64: after how many episodes the weights are kept, ascending; always after the last.
+
+    Raises:
+        TypeError: if ``record`` is not an integer or a sequence of integers.
+        ValueError: if a number is out of range.
+    """
+    if record is None:
+        record = 1
+    if not checks.is_sequence(record):
+        every = checks.count("record", record, least=1)
+        count = math.ceil(episodes / every)
+        check_memory(f"{count} recorded episodes (record= keeps fewer)", 8 * count, memory_limit(None))
+        points = np.arange(1, count + 1, dtype=np.uint64) * np.uint64(every)
+        points[-1] = episodes
+        return points
+    numbers = sorted({checks.integer("record", number, least=0, most=episodes) for number in record} | {episodes})
+    return np.array(numbers, dtype=np.uint64)

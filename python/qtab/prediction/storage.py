@@ -1,0 +1,96 @@
+"""How value estimates are written to a file, and read again."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from qtab import discretizers
+from qtab._utils import checks
+from qtab._utils.files import replacing
+from qtab.config import Config
+from qtab.discretizers import Discretizer
+from qtab.discretizers.box import BoxDiscretizer
+from qtab.prediction.learning_rates import OPTIONS
+from qtab.prediction.settings import PredictionSettings
+
+if TYPE_CHECKING:
+    from qtab.prediction.estimates import ValueEstimates
+
+_ARRAYS = ("episodes", "weights")
+_OF_STATES = ("rows", "probabilities", "behavior")
+"""The arrays that there are where the policy and the features are those of numbered states or of cells."""
+FORMAT = 1
+OBSERVATIONS_FORMAT = 2
+"""The format of estimates that lack some of these arrays, which earlier versions could not read."""
+DISCRETIZER = ("discretizer", "scale", "bins", "edges", "low", "high", "tiles", "tilings", "hashed_rows")
+"""The settings of a run from which the discretizer of a Box is restored."""
+
+
+def save(estimates: "ValueEstimates", path: Path | str) -> None:
+    """Writes estimates to a file; see :meth:`qtab.ValueEstimates.save`."""
+    # Schedules only where there are any, so that earlier versions can read the others.
+    settings = {
+        name: value
+        for name, value in asdict(estimates.settings).items()
+        if value is not None or name not in ("learning_rate_schedule", *OPTIONS)
+    }
+    arrays = {name: getattr(estimates, name) for name in _ARRAYS}
+    given = {name: getattr(estimates, name) for name in _OF_STATES}
+    arrays |= {name: array for name, array in given.items() if array is not None}
+    is_complete = all(array is not None for array in given.values())
+    about: dict[str, Any] = {
+        "format": FORMAT if is_complete else OBSERVATIONS_FORMAT,
+        "env": estimates.env,
+        "settings": settings,
+        "seeds": list(estimates.seeds),
+    }
+    cells, config = estimates.discretizer, estimates.config
+    if isinstance(cells, BoxDiscretizer) and config is not None:
+        about["discretizer"] = {name: getattr(config, name) for name in DISCRETIZER}
+        arrays |= {f"discretizer_{name}": array for name, array in cells.arrays().items()}
+    text = np.array(json.dumps({**about, "seconds": estimates.seconds}))
+    with replacing(checks.path("path", path)) as temporary, temporary.open("wb") as file:
+        np.savez_compressed(file, about=text, **arrays)
+
+
+def load(cls: type["ValueEstimates"], path: Path | str) -> "ValueEstimates":
+    """Reads estimates from a file; see :meth:`qtab.ValueEstimates.load`."""
+    with checks.path("path", path).open("rb") as file:
+        try:
+            with np.load(file, allow_pickle=False) as arrays:
+                about: Any = json.loads(str(arrays["about"]))
+                if about["format"] not in (FORMAT, OBSERVATIONS_FORMAT):
+                    raise ValueError(f"its format {about['format']} is unknown")
+                optional = about["format"] == OBSERVATIONS_FORMAT
+                loaded = {name: arrays[name] for name in _ARRAYS}
+                loaded |= {name: arrays[name] for name in _OF_STATES if not optional or name in arrays}
+                weights = loaded["weights"]
+                made = cls(
+                    env=str(about["env"]),
+                    settings=PredictionSettings(**about["settings"]),
+                    seeds=tuple(int(seed) for seed in about["seeds"]),
+                    seconds=float(about["seconds"]),
+                    discretizer=_discretizer(about, arrays, weights.shape[2]),
+                    **{**dict.fromkeys(_OF_STATES), **loaded},
+                )
+            if weights.shape[:2] != (len(made.seeds), len(made.episodes)):
+                raise ValueError("its arrays do not fit each other")
+            if made.rows is not None:
+                made.values_after(-1)
+            elif made.discretizer is None or made.discretizer.n_rows != weights.shape[2]:
+                raise ValueError("its weights do not fit its discretizer")
+        except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
+            raise ValueError(f"not a file of value estimates: {path}: {error}") from None
+    return made
+
+
+def _discretizer(about: Any, arrays: Any, n_weights: int) -> Discretizer | None:
+    if "discretizer" not in about:
+        return None
+    # The scale and the edges are in the file as lists, which the config turns into tuples.
+    config = Config(env=str(about["env"]), **{name: about["discretizer"][name] for name in DISCRETIZER})
+    stored = {name.removeprefix("discretizer_"): arrays[name] for name in arrays if name.startswith("discretizer_")}
+    return discretizers.restore(config, stored, n_weights)

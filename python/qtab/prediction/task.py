@@ -1,0 +1,58 @@
+"""The task of a prediction: the environment, and how its observations are divided into states or tilings."""
+
+from collections.abc import Mapping
+from contextlib import closing
+from typing import Any
+
+import gymnasium as gym
+from gymnasium.envs.registration import EnvSpec
+
+from qtab._utils.shown import shown
+from qtab.discretizers.box import BoxDiscretizer
+from qtab.planning.classic_control import GridSolver
+from qtab.planning.optimum import Optimum
+from qtab.planning.policies import GivenPolicy
+from qtab.prediction.settings import PredictionSettings
+from qtab.prediction.storage import DISCRETIZER
+from qtab.results.run import Run
+from qtab.training.resolve import resolve
+from qtab.training.resolved_run import ResolvedRun
+
+OF_OBSERVATIONS = (*DISCRETIZER, "actions")
+"""The settings of a run by which observations find their features, and actions their columns."""
+
+
+def resolve_prediction(
+    env: Any, policy: GivenPolicy, settings: PredictionSettings, seed: int, given: Mapping[str, Any]
+) -> tuple[ResolvedRun, gym.Space[Any] | None]:
+    """Returns the task of a prediction as a run, and its observation space where a function needs it."""
+    brought = _of_policy(policy, given)
+    made = env
+    if not isinstance(env, gym.Env | str | EnvSpec):
+        if not callable(env):
+            raise TypeError(
+                f"env must be an environment id, an EnvSpec, an environment or a function, got {shown(env)}"
+            )
+        made = env()
+        if not isinstance(made, gym.Env):
+            raise TypeError(f"env must make an environment, got {shown(made)}")
+    resolved = resolve(made, {**settings.config(), **brought, **given, "seed": seed}, owns_env=made is not env)
+    cells = resolved.discretizer
+    if cells.reads_space or not (cells.has_cells or isinstance(cells, BoxDiscretizer)):
+        raise ValueError(f"env must have discrete observations or a Box with one axis of floats, got {cells!r}")
+    if isinstance(made, gym.Env) or not callable(policy) or isinstance(cells, BoxDiscretizer):
+        return resolved, made.observation_space if isinstance(made, gym.Env) else None
+    # A function of the observation has to see observations of the right type.
+    with closing(gym.make(made, **dict(given.get("env_kwargs", {})))) as again:
+        return resolved, again.observation_space
+
+
+def _of_policy(policy: GivenPolicy, given: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings that a policy brings along: a run its actions and, unless one is given, its discretizer."""
+    if isinstance(policy, Run):
+        config = policy.config
+        names = ("shape", *OF_OBSERVATIONS) if given.keys().isdisjoint(DISCRETIZER) else ("actions",)
+        return {name: getattr(config, name) for name in names}
+    if isinstance(policy, Optimum) and isinstance(policy.solver, GridSolver) and policy.solver.has_continuous_actions:
+        return {"actions": policy.q_values.shape[-1]}
+    return {}

@@ -1,0 +1,167 @@
+//! A task in which a given policy acts by reading the observations.
+
+use super::{Choice, Observed};
+use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::envs::Env;
+use crate::features::Features;
+use crate::random::Rng;
+use crate::tasks::{NativeTask, Next, Task, Transition};
+
+/// A task whose observations can be read, beside their active rows.
+pub trait ObservableTask: Task {
+    /// An observation.
+    type Observation;
+
+    /// The observation of a state.
+    fn observation(&self, state: &Self::State) -> Self::Observation;
+}
+
+impl<E: Env<Action = usize>, F: Features<E::Observation>> ObservableTask for NativeTask<E, F> {
+    type Observation = E::Observation;
+
+    #[inline]
+    fn observation(&self, state: &Self::State) -> E::Observation {
+        self.env.observe(&state.state)
+    }
+}
+
+/// A policy that does not change, and chooses by the observation.
+pub trait ObservationPolicy<O> {
+    /// Why it can fail.
+    type Error;
+
+    /// Samples an action.
+    ///
+    /// # Errors
+    /// Whatever a policy in Python raises, or an observation without a row.
+    fn choose(&mut self, observation: &O, rng: &mut impl Rng) -> Result<Choice, Self::Error>;
+
+    /// The work of a choice, as [`Budget`](crate::Budget) counts it, beside that of a step.
+    fn work(&self) -> u64 {
+        0
+    }
+}
+
+/// A task with the policy that acts in it and the agent's generator.
+///
+/// Rows alone do not determine what such a policy does. So the task asks the policy, and its active rows bring the action
+/// along, which the learner returns.
+#[derive(Clone, Debug)]
+pub struct PolicyTask<W, P, D> {
+    /// The task.
+    pub task: W,
+    /// The policy.
+    pub policy: P,
+    /// The agent's generator.
+    pub rng: D,
+}
+
+impl<W, P, D> Task for PolicyTask<W, P, D>
+where
+    W: ObservableTask,
+    P: ObservationPolicy<W::Observation, Error: From<W::Error>>,
+    D: Rng,
+{
+    type State = W::State;
+    type Active = Observed<W::Active>;
+    type Error = P::Error;
+
+    fn reset(&mut self) -> Result<(W::State, Self::Active), P::Error> {
+        let (state, active) = self.task.reset()?;
+        let choice = self.policy.choose(&self.task.observation(&state), &mut self.rng)?;
+        Ok((state, Observed { active, choice }))
+    }
+
+    fn step(&mut self, state: &mut W::State, action: usize) -> Result<Transition<Self::Active>, P::Error> {
+        let Transition { reward, next } = self.task.step(state, action)?;
+        let next = match next {
+            Next::NonTerminal(active) => {
+                let choice = self.policy.choose(&self.task.observation(state), &mut self.rng)?;
+                Next::NonTerminal(Observed { active, choice })
+            }
+            Next::Truncated(active) => Next::Truncated(Observed { active, choice: Choice::NONE }),
+            Next::Terminal => Next::Terminal,
+        };
+        Ok(Transition { reward, next })
+    }
+
+    fn step_work(&self) -> u64 {
+        self.task.step_work() + self.policy.work()
+    }
+
+    fn active_rows(&self, _state: &W::State) -> Result<Self::Active, P::Error> {
+        unreachable!("an episode of a prediction is never resumed in the middle")
+    }
+
+    fn resumes_episodes(&self) -> bool {
+        false
+    }
+
+    /// A prediction has no checkpoints.
+    fn persist(&mut self, _state: Option<&mut W::State>, _: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        Err(CheckpointError::Invalid("prediction, which is not resumed"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::envs::classic_control::MountainCar;
+    use crate::features::{OutOfBounds, TileCoding};
+    use crate::memory::AllocationError;
+    use crate::prediction::test_support::rng;
+    use crate::prediction::{FromTask, LinearValues, MonteCarloPrediction, Predictor, TdZero, VisitRows};
+    use crate::schedules::{LearningRate, Schedule};
+    use crate::{Budget, Trainer};
+
+    /// Pushes in the direction of the velocity.
+    #[derive(Clone, Debug)]
+    struct WithTheVelocity;
+
+    impl ObservationPolicy<[f32; 2]> for WithTheVelocity {
+        type Error = OutOfBounds;
+
+        fn choose(&mut self, &[_, velocity]: &[f32; 2], _rng: &mut impl Rng) -> Result<Choice, OutOfBounds> {
+            Ok(Choice { action: if velocity < 0.0 { 0 } else { 2 }, ratio: 1.0 })
+        }
+    }
+
+    fn task() -> PolicyTask<NativeTask<MountainCar, TileCoding<f32, 8>>, WithTheVelocity, crate::random::Pcg64> {
+        let tiles = TileCoding::new(&[-1.2, -0.07], &[0.6, 0.07], &[8, 8], 8);
+        let task = NativeTask::new(MountainCar::default(), tiles, Some(200), rng());
+        PolicyTask { task, policy: WithTheVelocity, rng: rng() }
+    }
+
+    fn values(look_back: Option<usize>) -> Result<LinearValues<VisitRows>, AllocationError> {
+        let rows = VisitRows::new(8, 8 * 81, look_back)?;
+        let rate = LearningRate::scheduled(Schedule::constant(0.5), 8);
+        Ok(LinearValues::new(vec![0.0; 8 * 81], rows, rate, 1.0))
+    }
+
+    #[test]
+    fn the_goal_is_reached_and_the_values_are_near_the_returns() {
+        let monte_carlo = MonteCarloPrediction::new(false, 0);
+        let learner =
+            Predictor { values: values(None).expect("memory suffices"), behavior: FromTask, rule: monte_carlo };
+        let mut run = Trainer::new(task(), learner, rng());
+        while run.episodes().returns.len() < 200 {
+            run.advance(Budget { episodes: 200, work: 1000 }).expect("no bounds are left");
+        }
+        assert!(run.episodes().terminated.iter().all(|&terminated| terminated));
+        let mean = run.episodes().returns.iter().sum::<f64>() / 200.0;
+        let start = task().task.features.active_rows(&[-0.5_f32, 0.0]).expect("it lies in the box");
+        let value: f64 = start.as_ref().iter().map(|&row| run.learner().values.weights[row as usize]).sum();
+        assert!((value - mean).abs() < 15.0, "{value} for returns of {mean}");
+    }
+
+    #[test]
+    fn a_method_that_looks_back_one_step_needs_no_more_rows() {
+        let weights = [Some(1), None].map(|look_back| {
+            let values = values(look_back).expect("memory suffices");
+            let mut run = Trainer::new(task(), Predictor { values, behavior: FromTask, rule: TdZero }, rng());
+            run.advance(Budget { episodes: 3, work: 1000 }).expect("no bounds are left");
+            run.learner().values.weights.clone()
+        });
+        assert_eq!(weights[0], weights[1]);
+    }
+}
