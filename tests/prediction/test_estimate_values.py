@@ -229,10 +229,17 @@ def test_what_does_not_fit_is_refused_by_name(changes: dict[str, Any], error: ty
 
 
 def test_values_that_overflow_are_an_error_with_the_seed() -> None:
-    with pytest.raises(OverflowError, match="the values overflowed in episode"):
+    with pytest.raises(OverflowError, match="the values diverged in episode"):
         qtab.estimate_values(
             WALK, "random", method="td_lambda", trace_decay=1.0, learning_rate=1.0, episodes=1000, record=1000
         )
+
+
+def test_batch_td_without_an_end_is_an_error_unless_it_is_discounted() -> None:
+    arguments: dict[str, Any] = {"method": "batch_td", "episodes": 3, "max_episode_steps": 20}
+    with pytest.raises(OverflowError, match="a smaller learning_rate, trace_decay or discount helps"):
+        qtab.estimate_values("CliffWalking-v1", "random", **arguments)
+    assert qtab.estimate_values("CliffWalking-v1", "random", discount=0.9, **arguments).verify().equal
 
 
 def test_features_of_numbered_states() -> None:

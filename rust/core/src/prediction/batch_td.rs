@@ -31,6 +31,8 @@ pub struct BatchTd {
     errors: Vec<f64>,
     /// The largest magnitude of a value or a reward so far.
     scale: f64,
+    /// Whether these transitions were found to lead to an end.
+    leads_to_end: bool,
     unfinished: bool,
     work: u64,
 }
@@ -44,6 +46,7 @@ impl BatchTd {
             visits: vec![0.0; rows],
             errors: vec![0.0; rows],
             scale: 0.0,
+            leads_to_end: false,
             unfinished: false,
             work: 1,
         }
@@ -68,6 +71,23 @@ impl BatchTd {
         values.check_finite(change);
         change <= SETTLED * self.scale || values.diverged()
     }
+
+    /// Whether a path of transitions leads from each row to an end: a terminal state, or a row without transitions, whose
+    /// value does not change. Without a discount the values grow forever otherwise.
+    fn every_row_leads_to_an_end(&self) -> bool {
+        let mut leads: Vec<bool> = self.visits.iter().map(|&visits| visits == 0.0).collect();
+        let mut found = true;
+        while found {
+            found = false;
+            for &(row, (_, next), _) in &self.transitions {
+                if !leads[row as usize] && next.is_none_or(|next| leads[next as usize]) {
+                    leads[row as usize] = true;
+                    found = true;
+                }
+            }
+        }
+        leads.iter().all(|&leads| leads)
+    }
 }
 
 impl<S: RowSets> PredictionRule<S> for BatchTd {
@@ -87,6 +107,7 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
         self.scale = self.scale.max(step.reward.abs());
         self.visits[row as usize] += 1.0;
         if step.is_last() {
+            self.leads_to_end = false;
             self.scale = values.weights.iter().fold(self.scale, |scale, value| scale.max(value.abs()));
             self.resume(values);
         }
@@ -108,6 +129,14 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
             read += each;
         }
         self.work = 1 + read / TRANSITIONS_PER_WORK;
+        // Most episodes settle in one call, and need no search.
+        if self.unfinished && values.discount >= 1.0 && !self.leads_to_end {
+            self.leads_to_end = self.every_row_leads_to_an_end();
+            if !self.leads_to_end {
+                values.give_up();
+                self.unfinished = false;
+            }
+        }
     }
 }
 
@@ -115,6 +144,19 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
 mod tests {
     use super::*;
     use crate::prediction::test_support::{last, predictor, step};
+
+    #[test]
+    fn without_an_end_the_values_diverge_unless_they_are_discounted() {
+        for (discount, diverged) in [(1.0, true), (0.9, false)] {
+            let mut learner = predictor(&[0.0, 0.0], BatchTd::new(2));
+            learner.values.discount = discount;
+            learner.rule.learn(&mut learner.values, step(0, -1.0, 1));
+            let cut_off = PredictionStep { state: 1, action: 0, reward: -1.0, next: Next::Truncated(0) };
+            learner.rule.learn(&mut learner.values, cut_off);
+            assert!(!learner.rule.unfinished);
+            assert_eq!(learner.values.diverged(), diverged);
+        }
+    }
 
     /// Example 6.4: eight episodes. Batch TD finds V(A) = 3/4, where the average of the returns is 0.
     #[test]

@@ -14,7 +14,7 @@ pub struct LinearValues<S = StateRows> {
     pub learning_rate: LearningRate,
     /// The discount γ.
     pub discount: f64,
-    overflowed: bool,
+    diverged: bool,
 }
 
 impl<S: RowSets> LinearValues<S> {
@@ -24,7 +24,7 @@ impl<S: RowSets> LinearValues<S> {
     /// If there is not a weight for each row.
     pub fn new(weights: Vec<f64>, rows: S, learning_rate: LearningRate, discount: f64) -> Self {
         assert_eq!(weights.len(), rows.n_weights(), "there must be a weight for each row");
-        Self { weights, rows, learning_rate, discount, overflowed: false }
+        Self { weights, rows, learning_rate, discount, diverged: false }
     }
 
     /// v(S).
@@ -64,11 +64,16 @@ impl<S: RowSets> LinearValues<S> {
     /// Notes an error that is no finite number.
     #[inline]
     pub fn check_finite(&mut self, error: f64) {
-        self.overflowed |= !error.is_finite();
+        self.diverged |= !error.is_finite();
     }
 
-    /// Whether a value has overflowed.
+    /// Notes that the values will never settle.
+    pub fn give_up(&mut self) {
+        self.diverged = true;
+    }
+
+    /// Whether a value has overflowed, or the values will never settle.
     pub fn diverged(&self) -> bool {
-        self.overflowed
+        self.diverged
     }
 }

@@ -177,8 +177,8 @@ fn advance(
 fn as_python(error: RunError) -> PyErr {
     match error {
         RunError::Diverged { episode } => PyOverflowError::new_err(format!(
-            "the values overflowed in episode {episode} (counted from 0): the updates grow instead of settling; a smaller \
-             learning_rate or trace_decay helps"
+            "the values diverged in episode {episode} (counted from 0): the updates grow instead of settling; a smaller \
+             learning_rate, trace_decay or discount helps"
         )),
         error => error.into(),
     }
