@@ -20,7 +20,7 @@ ENVIRONMENTS = (*ENTRIES, "LunarLander-v3", "qtab/Racetrack-v0")
 NO_SEEDS = range(0)
 SEEDS = {
     ("MountainCar-v0", "solved"): (range(20_000, 20_200), range(40_000, 41_000)),
-    ("CartPole-v1", "solved"): (range(20_300, 20_380), range(60_000, 61_000)),
+    ("CartPole-v1", "solved"): (range(20_300, 20_500), range(70_000, 71_000)),
     ("CartPole-v0", "solved"): (NO_SEEDS, range(60_000, 60_040)),
     ("Acrobot-v1", "solved"): (range(20_000, 20_016), range(60_000, 60_100)),
     ("Pendulum-v1", "tuned"): (range(20_000, 20_016), range(60_000, 60_200)),
