@@ -249,6 +249,12 @@ def test_features_of_numbered_states() -> None:
         tile_coding(6, 3, 4, 1)
 
 
+def test_only_what_was_recorded_is_verified() -> None:
+    found = qtab.estimate_values(WALK, "random", episodes=20, record=10)
+    with pytest.raises(ValueError, match=r"episodes must be one of those that were recorded, \[10, 20\], got 5"):
+        found.verify(episodes=5)
+
+
 def test_batch_td_settles_where_all_rewards_are_zero() -> None:
     # The values fall to 0, where the smallest numbers of float64 once went round in circles.
     env_kwargs = {"states": 5, "left_reward": 0.0, "right_reward": 0.0}

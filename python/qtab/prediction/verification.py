@@ -10,6 +10,7 @@ import numpy as np
 from qtab._utils import checks, html
 from qtab._utils.arrays import same_bytes
 from qtab._utils.fields import with_fields
+from qtab._utils.shown import shown
 from qtab.config.config import replace_checked
 from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.envs.stored import spec_of_run
@@ -64,7 +65,8 @@ def verify_values(
     count = int(estimates.episodes[-1]) if episodes is None else checks.count("episodes", episodes, least=0)
     found = np.flatnonzero(estimates.episodes == count)
     if not len(found):
-        raise ValueError(f"episodes must be one of those that were recorded, got {count}")
+        recorded = shown(estimates.episodes.tolist())
+        raise ValueError(f"episodes must be one of those that were recorded, {recorded}, got {count}")
     if env is None:
         spec = spec_of_run(config.env)
         theirs = gymnasium_id(config.env)
