@@ -27,6 +27,8 @@ def check(env: str, preset: Mapping[str, Any], exploration: Mapping[str, Any], r
     if rate == "visits" and preset.get("algorithm") == "true_online_sarsa_lambda":
         rate = "linear"  # it has one learning rate for all weights
     settings = {**preset, **exploration, "learning_rate_schedule": rate}
+    if rate != "exponential":
+        settings.pop("learning_rate_decay", None)
     if exploration is SOFTMAX:
         settings = {name: value for name, value in settings.items() if name not in GREEDY}
     run = qtab.train(env, **{**settings, "episodes": 2, "max_episode_steps": 10, "seed": 0})

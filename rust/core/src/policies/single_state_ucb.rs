@@ -31,7 +31,8 @@ pub struct SingleStateUcb {
     scales: Vec<[f64; 2]>,
     /// A buffer for the approximate bounds.
     bounds: Vec<f64>,
-    /// No value is farther from 0; NaN if this is unknown, and the scales with it.
+    /// No value is farther from 0; NaN if this is unknown, and the scales with it; negative if there is no such number,
+    /// because values have overflowed or soon will. All bounds are then computed.
     magnitude: f64,
     /// What the approximate bounds of two actions have to differ by, as long as the largest one is at most `magnitude`.
     margin: f64,
@@ -51,9 +52,9 @@ impl SingleStateUcb {
     /// Computes the scales, and finds a magnitude that will last.
     #[cold]
     fn measure(&mut self, values: &[f64]) {
-        // Infinite, and so forever, if a value is not a number.
         let magnitudes = values.iter().map(|value| if value.is_nan() { f64::INFINITY } else { value.abs() });
-        self.set_magnitude(2.0 * magnitudes.fold(0.0, f64::max));
+        let magnitude = 2.0 * magnitudes.fold(0.0, f64::max);
+        self.set_magnitude(if magnitude.is_finite() { magnitude } else { -1.0 });
         self.bounds.resize(values.len(), 0.0);
         self.scales.clear();
         self.scales.extend((0..values.len()).map(|action| [0, 1].map(|more| self.ucb.scale_at(action, more))));
@@ -83,8 +84,9 @@ impl SingleStateUcb {
         }
         let is_covered = largest.abs() <= self.magnitude;
         if !is_covered {
-            if largest.is_finite() {
-                self.set_magnitude(2.0 * largest.abs());
+            let magnitude = 2.0 * largest.abs();
+            if magnitude.is_finite() && self.magnitude >= 0.0 {
+                self.set_magnitude(magnitude);
             }
             return None;
         }
