@@ -4,7 +4,10 @@ import gc
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Iterator
+from contextlib import suppress
+from importlib import import_module
 
 import pytest
 
@@ -17,6 +20,11 @@ os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 from hypothesis import settings
 
 from support import selection
+
+# Warnings are errors in tests. That of SWIG, raised while Box2D is first imported, would crash the process.
+with warnings.catch_warnings(), suppress(ModuleNotFoundError):
+    warnings.simplefilter("ignore")
+    import_module("Box2D")
 
 # CI draws the same examples every time: more of them would find nothing new. The profile "fuzz" does, every night.
 settings.register_profile("local", deadline=None, max_examples=50)
