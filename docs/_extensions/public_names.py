@@ -54,8 +54,8 @@ SHORT = {
     "stable_baselines3.common.vec_env.base_vec_env.VecEnv": "stable_baselines3.common.vec_env.VecEnv",
 }
 """The full names of the types in signatures, which show them by their last part, and of those defined elsewhere."""
-WITHOUT_A_PAGE = ("SharedSettings", "ValuesVerification", "WhatIf")
-"""Types of this package that have no page and are named by strings."""
+WITHOUT_A_PAGE = ("Estimates", "SharedSettings", "ValuesVerification", "WhatIf")
+"""Types of this package that have no page and are named without their module."""
 MODULES = ("book", "callbacks", "designs", "planning", "playground", "plots", "prediction", "stats")
 """The modules among the public names, whose own names are public too."""
 

@@ -29,7 +29,7 @@ class Estimates(Protocol):
 
 
 def values(
-    run: "Drawable | Estimates | Sequence[Drawable | Estimates]",
+    run: Drawable | Estimates | Sequence[Drawable | Estimates],
     ax: "Axes | None" = None,
     *,
     at: Mapping[str, float] | None = None,
