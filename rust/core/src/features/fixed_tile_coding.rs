@@ -1,5 +1,7 @@
 //! Tile coding compiled for the number of tilings and of components.
 
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
 use std::array::TryFromSliceError;
 
 use super::tile_coding::TiledAxis;
@@ -13,7 +15,7 @@ use crate::numeric::Float;
 pub struct FixedTiles<const N: usize>([u32; N]);
 
 impl<const N: usize> AsRef<[u32]> for FixedTiles<N> {
-    #[inline]
+    #[inline(always)]
     fn as_ref(&self) -> &[u32] {
         &self.0
     }
@@ -95,7 +97,7 @@ impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
 impl<T: Float, const D: usize, const N: usize> Features<[T; D]> for FixedTileCoding<T, D, N> {
     type Active = FixedTiles<N>;
 
-    #[inline]
+    #[inline(always)]
     fn active_rows(&self, observation: &[T; D]) -> Result<FixedTiles<N>, OutOfBounds> {
         if let Some(tiles) = &self.hashed {
             return Self::hashed_rows(tiles, observation);

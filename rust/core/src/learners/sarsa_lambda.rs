@@ -1,5 +1,7 @@
 //! Sarsa(λ) (G. Rummery and M. Niranjan, 1994; Sutton & Barto, the box in section 12.7).
 
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
 use super::common::{Agent, TraceKind, Traces, UpdateRule, VALUES_PER_WORK};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::AllocationError;
@@ -22,7 +24,9 @@ pub struct SarsaLambda {
 }
 
 impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for SarsaLambda {
-    #[inline]
+    const HAS_VECTOR_PASSES: bool = true;
+
+    #[inline(always)]
     fn learn(
         &mut self,
         agent: &mut Agent,

@@ -1,5 +1,7 @@
 //! True online Sarsa(λ), with dutch traces (H. van Seijen et al., 2016; Sutton & Barto, the box in section 12.7).
 
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
 use super::common::{Agent, Traces, UpdateRule, VALUES_PER_WORK};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::AllocationError;
@@ -31,7 +33,9 @@ impl TrueOnlineSarsaLambda {
 }
 
 impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
-    #[inline]
+    const HAS_VECTOR_PASSES: bool = true;
+
+    #[inline(always)]
     fn learn(
         &mut self,
         agent: &mut Agent,
@@ -44,7 +48,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
         let (traces, rows) = (&mut self.traces, state.as_ref());
         traces.begin_step(&mut agent.table);
         let (next_action, next_value) = traces.sample_next(agent, next, rng).unwrap_or((0, 0.0));
-        let value = traces.action_values(&mut agent.table, state)[action];
+        let value = traces.value(&agent.table, rows, action);
         let error = reward + agent.discount * next_value - value;
         let change = value - self.q_old;
         // The algorithm needs one step size for all weights, so visit counts are not supported.

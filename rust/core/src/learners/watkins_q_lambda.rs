@@ -1,5 +1,7 @@
 //! Watkins's Q(λ) (C. Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
 
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
 use super::common::{Agent, TraceKind, Traces, UpdateRule, VALUES_PER_WORK, available};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::AllocationError;
@@ -24,7 +26,9 @@ pub struct WatkinsQLambda {
 }
 
 impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
-    #[inline]
+    const HAS_VECTOR_PASSES: bool = true;
+
+    #[inline(always)]
     fn learn(
         &mut self,
         agent: &mut Agent,

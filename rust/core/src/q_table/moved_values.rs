@@ -1,17 +1,19 @@
 //! Action values while a learner keeps some of the values behind the rows.
 
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
 use super::QTable;
 
 impl<const N: usize> QTable<N> {
     /// The values of the rows, and those that a learner keeps behind them.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn storage_mut(&mut self) -> &mut Vec<f64> {
         &mut self.values
     }
 
     /// [`action_values`](Self::action_values), where `slots` says for each weight at which index of the storage its value
     /// is.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn values_at<R: AsRef<[u32]>>(&mut self, slots: &[u32], rows: &R) -> &[f64] {
         match self.num_actions() {
             2 => self.sum_slots::<2>(slots, rows.as_ref()),
@@ -28,8 +30,16 @@ impl<const N: usize> QTable<N> {
         &self.sums
     }
 
+    /// [`value`](Self::value) with the same slots.
+    #[inline(always)]
+    pub(crate) fn value_at(&self, slots: &[u32], rows: &[u32], action: usize) -> f64 {
+        let mut values = rows.iter().map(|&row| self.values[slots[self.weight_index(row, action)] as usize]);
+        let first = values.next().unwrap_or(0.0);
+        values.fold(first, |sum, value| sum + value)
+    }
+
     /// The sums of `A` values a row, all actions at once, in registers.
-    #[inline]
+    #[inline(always)]
     fn sum_slots<const A: usize>(&mut self, slots: &[u32], rows: &[u32]) {
         let slots = slots.as_chunks::<A>().0;
         let mut values = rows.iter().map(|&row| slots[row as usize].map(|slot| self.values[slot as usize]));
@@ -57,7 +67,9 @@ mod tests {
             moved.values.push(values[weight]);
             moved.values[weight] = f64::NAN;
         }
+        let one_by_one: Vec<f64> = (0..A).map(|action| moved.value_at(&slots, rows, action)).collect();
         assert_eq!(moved.values_at(&slots, &rows), table.action_values(rows));
+        assert_eq!(one_by_one, table.action_values(rows));
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! A training run as a value, and the only training loop, with a shorter form for episodes of a single step.
 
+mod advance_loop;
 mod single_step;
 
+use self::advance_loop::AdvanceLoop;
 use crate::learners::Learner;
 use crate::memory::{AllocationError, reserve};
 use crate::random::Rng;
@@ -111,7 +113,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         self.reserve(budget)?;
         // The generator and the episode are local variables: behind `self` each step would load and store them.
         let mut rng = self.rng.clone();
-        let result = self.advance_with(&mut rng, budget);
+        let result = AdvanceLoop { trainer: self, rng: &mut rng, budget }.run();
         self.rng = rng;
         self.learner.complete_tables();
         result.map_err(TrainingError::Task)
@@ -123,7 +125,8 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         self.learner.reserve(budget.work)
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+    #[inline(always)]
     fn advance_with(&mut self, rng: &mut R, budget: Budget) -> Result<(), T::Error> {
         let mut work = i64::try_from(budget.work).unwrap_or(i64::MAX);
         while work > 0

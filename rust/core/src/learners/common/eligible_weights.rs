@@ -1,8 +1,10 @@
 //! The weights whose traces are not zero, side by side: learning is then a pass over contiguous memory.
 
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
 use std::hint::select_unpredictable;
 
-use super::trace_passes::{ApplyAndDecayTraces, ApplyTraces, BLOCK, DecayTraces, InstructionSet};
+use super::trace_passes::BLOCK;
 use crate::StopFlag;
 use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
 use crate::q_table::QTable;
@@ -12,27 +14,32 @@ const UNUSED: f64 = f64::NAN;
 
 /// The eligible weights, those whose traces are not zero. Each has a place. While the run learns, their values have moved
 /// out of the table, to the same places behind it; see [`QTable::values_at`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct EligibleWeights {
     /// The number of places in use. They are the first ones.
-    count: usize,
+    pub(super) count: usize,
     /// The trace at each place.
-    traces: Vec<f64>,
+    pub(super) traces: Vec<f64>,
+    /// No magnitude of a trace is smaller than this.
+    pub(super) smallest: f64,
+    /// Traces whose magnitudes fall to this become 0.
+    pub(super) cutoff: f64,
     /// The index of the weight at each place in use.
-    weights: Vec<u32>,
+    pub(super) weights: Vec<u32>,
     /// For each block of places, whether a trace has fallen to the cutoff.
-    fallen: Vec<bool>,
+    pub(super) fallen: Vec<bool>,
+    /// A buffer for the blocks where one has.
+    pub(super) fallen_blocks: Vec<u32>,
     /// For each weight the index of its value in the storage of the table: its own index, or that of its place, which is
     /// the number of weights more.
-    slots: Vec<u32>,
+    pub(super) slots: Vec<u32>,
     /// Whether the values of the eligible weights are at their places.
     moved: bool,
-    instructions: InstructionSet,
 }
 
 impl EligibleWeights {
     /// No eligible weights among so many, with room for all.
-    pub(super) fn new(weights: usize, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+    pub(super) fn new(weights: usize, cutoff: f64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
         // A table and as many places have indices of 32 bits.
         if weights > u32::MAX as usize / 2 - BLOCK {
             return Err(AllocationError::OutOfMemory { bytes: weights.saturating_mul(32) });
@@ -46,11 +53,13 @@ impl EligibleWeights {
         Ok(Self {
             count: 0,
             traces: with_capacity(places)?,
+            smallest: f64::INFINITY,
+            cutoff,
             weights: with_capacity(places)?,
             fallen: with_capacity(places / BLOCK)?,
+            fallen_blocks: with_capacity(places / BLOCK)?,
             slots,
             moved: false,
-            instructions: InstructionSet::detect(),
         })
     }
 
@@ -82,13 +91,13 @@ impl EligibleWeights {
     }
 
     /// The place of a weight; `None` if it is not eligible.
-    #[inline]
+    #[inline(always)]
     pub(super) fn place(&self, weight: usize) -> Option<usize> {
         (self.slots[weight] as usize).checked_sub(self.slots.len())
     }
 
     /// The trace of a weight.
-    #[inline]
+    #[inline(always)]
     pub(super) fn trace(&self, weight: usize) -> f64 {
         let (slot, len) = (self.slots[weight] as usize, self.slots.len());
         // No branch, because whether a weight is eligible is hard to predict.
@@ -98,7 +107,7 @@ impl EligibleWeights {
     }
 
     /// Makes room for so many more eligible weights.
-    #[inline]
+    #[inline(always)]
     fn grow(&mut self, additional: usize, storage: &mut Vec<f64>) {
         let places = self.count + additional;
         if places > self.traces.len() || self.slots.len() + places > storage.len() {
@@ -112,11 +121,12 @@ impl EligibleWeights {
         self.traces.resize(places, UNUSED);
         self.weights.resize(places, 0);
         self.fallen.resize(places / BLOCK, false);
+        self.fallen_blocks.resize(places / BLOCK, 0);
         storage.resize(self.slots.len() + places, 0.0);
     }
 
     /// Moves the values of the eligible weights to their places.
-    #[inline]
+    #[inline(always)]
     pub(super) fn move_out<const N: usize>(&mut self, table: &mut QTable<N>) {
         if !self.moved {
             self.move_all(table.storage_mut(), |weight, place| (weight, place));
@@ -143,12 +153,41 @@ impl EligibleWeights {
 
     /// Replaces the traces of some weights, one after the other, by a function of the trace. Returns the sum of the values
     /// from left to right.
-    #[inline]
+    #[inline(always)]
     pub(super) fn update<const N: usize>(
         &mut self,
         table: &mut QTable<N>,
         weights: impl ExactSizeIterator<Item = usize>,
         change: impl Fn(f64) -> f64,
+    ) -> f64 {
+        let mut smallest = self.smallest;
+        let sum = self.change(table, weights, |trace| {
+            let trace = change(trace);
+            smallest = if trace.abs() < smallest { trace.abs() } else { smallest };
+            trace
+        });
+        self.smallest = smallest;
+        sum
+    }
+
+    /// Sets the traces of some weights to 1. Returns the sum of the values from left to right.
+    #[inline(always)]
+    pub(super) fn replace<const N: usize>(
+        &mut self,
+        table: &mut QTable<N>,
+        weights: impl ExactSizeIterator<Item = usize>,
+    ) -> f64 {
+        self.smallest = self.smallest.min(1.0);
+        self.change(table, weights, |_| 1.0)
+    }
+
+    /// [`update`](Self::update) of the traces alone.
+    #[inline(always)]
+    fn change<const N: usize>(
+        &mut self,
+        table: &mut QTable<N>,
+        weights: impl ExactSizeIterator<Item = usize>,
+        mut change: impl FnMut(f64) -> f64,
     ) -> f64 {
         self.grow(weights.len(), table.storage_mut());
         // Local variables: behind `self` and `table` each weight would load them again.
@@ -182,15 +221,17 @@ impl EligibleWeights {
             self.traces.resize(place + BLOCK, UNUSED);
             self.weights.resize(place + BLOCK, 0);
             self.fallen.push(false);
+            self.fallen_blocks.push(0);
         }
         self.traces[place] = trace;
         self.weights[place] = weight;
         self.slots[weight as usize] = (self.slots.len() + place) as u32;
         self.count += 1;
+        self.smallest = self.smallest.min(trace.abs());
     }
 
     /// Sets the trace of a weight to 0.
-    #[inline]
+    #[inline(always)]
     pub(super) fn remove_weight<const N: usize>(&mut self, table: &mut QTable<N>, weight: usize) {
         if let Some(place) = self.place(weight) {
             self.remove(table.storage_mut(), place);
@@ -198,8 +239,8 @@ impl EligibleWeights {
     }
 
     /// Moves the value at a place back into the table, and the last eligible weight to that place.
-    #[inline]
-    fn remove(&mut self, storage: &mut [f64], place: usize) {
+    #[inline(always)]
+    pub(super) fn remove(&mut self, storage: &mut [f64], place: usize) {
         let (len, last) = (self.slots.len(), self.count - 1);
         let (weight, moving) = (self.weights[place], self.weights[last]);
         storage[weight as usize] = storage[len + place];
@@ -227,68 +268,7 @@ impl EligibleWeights {
         self.traces[..self.count].fill(UNUSED);
         self.count = 0;
         self.moved = false;
-    }
-
-    /// Adds to each eligible weight a step times its trace.
-    #[inline]
-    pub(super) fn apply<const N: usize>(&mut self, table: &mut QTable<N>, step: f64) {
-        let len = self.count.next_multiple_of(BLOCK);
-        let values = &mut table.storage_mut()[self.slots.len()..][..len];
-        self.instructions.run(ApplyTraces { values, traces: &self.traces[..len], step });
-    }
-
-    /// Adds to each eligible weight a function of its index and its trace.
-    pub(super) fn apply_each<const N: usize>(&mut self, table: &mut QTable<N>, change: impl Fn(usize, f64) -> f64) {
-        let values = &mut table.storage_mut()[self.slots.len()..];
-        let traces = self.weights.iter().zip(&self.traces).take(self.count);
-        for (value, (&weight, &trace)) in values.iter_mut().zip(traces) {
-            *value += change(weight as usize, trace);
-        }
-    }
-
-    /// Multiplies the traces by a factor; those whose magnitudes fall to the cutoff become 0.
-    #[inline]
-    pub(super) fn decay<const N: usize>(&mut self, table: &mut QTable<N>, factor: f64, cutoff: f64) {
-        let blocks = self.count.div_ceil(BLOCK);
-        let (traces, fallen) = (&mut self.traces[..blocks * BLOCK], &mut self.fallen[..blocks]);
-        if self.instructions.run(DecayTraces { traces, fallen, factor, cutoff }) {
-            self.remove_fallen(table.storage_mut(), cutoff);
-        }
-    }
-
-    /// [`apply`](Self::apply) and [`decay`](Self::decay) in one pass.
-    #[inline]
-    pub(super) fn apply_and_decay<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        step: f64,
-        factor: f64,
-        cutoff: f64,
-    ) {
-        let blocks = self.count.div_ceil(BLOCK);
-        let values = &mut table.storage_mut()[self.slots.len()..][..blocks * BLOCK];
-        let (traces, fallen) = (&mut self.traces[..blocks * BLOCK], &mut self.fallen[..blocks]);
-        if self.instructions.run(ApplyAndDecayTraces {
-            values,
-            step,
-            decay: DecayTraces { traces, fallen, factor, cutoff },
-        }) {
-            self.remove_fallen(table.storage_mut(), cutoff);
-        }
-    }
-
-    /// Sets to 0 the traces at or below the cutoff, in the blocks where a pass has found some. From the last one on, so that
-    /// the weight that takes the place of another one has been looked at.
-    fn remove_fallen(&mut self, storage: &mut [f64], cutoff: f64) {
-        for block in (0..self.count.div_ceil(BLOCK)).rev() {
-            if self.fallen[block] {
-                for place in (block * BLOCK..(block + 1) * BLOCK).rev() {
-                    if self.traces[place].abs() <= cutoff {
-                        self.remove(storage, place);
-                    }
-                }
-            }
-        }
+        self.smallest = f64::INFINITY;
     }
 }
 
@@ -296,4 +276,15 @@ impl EligibleWeights {
 #[inline]
 fn select(condition: bool, yes: f64, no: f64) -> f64 {
     f64::from_bits(select_unpredictable(condition, yes.to_bits(), no.to_bits()))
+}
+
+/// The bound and the buffers only say where to look for traces at the cutoff.
+impl PartialEq for EligibleWeights {
+    fn eq(&self, other: &Self) -> bool {
+        let parts = |weights: &Self| (weights.count, weights.cutoff, weights.moved);
+        parts(self) == parts(other)
+            && self.slots == other.slots
+            && self.weights[..self.count] == other.weights[..self.count]
+            && self.traces[..self.count] == other.traces[..self.count]
+    }
 }

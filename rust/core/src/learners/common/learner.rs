@@ -8,6 +8,9 @@ use crate::tasks::Next;
 /// A learner, which owns its table, its policy and its schedules. A state is given by its active rows `R`. Each learner
 /// draws from the agent's generator in the order of its Python reference.
 pub trait Learner<R> {
+    /// Whether the trainer's loop is worth compiling for wide vector registers too, because a step passes over many values.
+    const HAS_VECTOR_PASSES: bool = false;
+
     /// Samples the first action of an episode.
     fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize;
 

@@ -24,6 +24,8 @@ where
     P: Policy,
     A: StepSize,
 {
+    const HAS_VECTOR_PASSES: bool = U::HAS_VECTOR_PASSES;
+
     #[inline]
     fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
         let chosen = self.rule.first_action(&mut self.agent, state, rng);

@@ -1,5 +1,5 @@
-//! The passes over traces, compiled for each instruction set. They work in whole blocks, because the number of traces is
-//! hard to predict and the number of blocks is not.
+//! The passes over traces, inlined into the training loop, which is compiled for each instruction set. They work in whole
+//! blocks, because the number of traces is hard to predict and the number of blocks is not.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -11,117 +11,97 @@ const LANES: usize = 4;
 
 type Vector = [f64; LANES];
 
-/// z ← γλ z, where `factor` is γλ. Returns whether a trace has fallen to the cutoff, and writes to `fallen` in which
-/// blocks.
-pub(super) struct DecayTraces<'a> {
-    pub(super) traces: &'a mut [f64],
-    pub(super) fallen: &'a mut [bool],
-    pub(super) factor: f64,
-    pub(super) cutoff: f64,
-}
-
-impl DecayTraces<'_> {
-    /// Decays some traces. Bits of `fallen` are set in the lanes where one has fallen to the cutoff.
-    #[inline(always)]
-    fn decay(traces: &mut Vector, factor: f64, cutoff: f64, fallen: &mut [u64; LANES]) {
-        *traces = traces.map(|trace| trace * factor);
-        for (trace, fallen) in traces.iter().zip(fallen) {
-            *fallen |= if trace.abs() <= cutoff { u64::MAX } else { 0 };
+/// w ← w + `step` z.
+#[inline(always)]
+pub(super) fn apply(values: &mut [f64], traces: &[f64], step: f64) {
+    for (values, traces) in values.as_chunks_mut::<BLOCK>().0.iter_mut().zip(traces.as_chunks::<BLOCK>().0) {
+        for (values, traces) in values.as_chunks_mut().0.iter_mut().zip(traces.as_chunks().0) {
+            add(values, traces, step);
         }
     }
 }
 
-impl pulp::NullaryFnOnce for DecayTraces<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn call(self) -> bool {
-        let mut any = false;
-        for (traces, fallen) in self.traces.as_chunks_mut::<BLOCK>().0.iter_mut().zip(self.fallen) {
-            let mut lanes = [0; LANES];
-            for traces in traces.as_chunks_mut().0 {
-                Self::decay(traces, self.factor, self.cutoff, &mut lanes);
-            }
-            *fallen = lanes != [0; LANES];
-            any |= *fallen;
-        }
-        any
-    }
+/// z ← γλ z, where `factor` is γλ.
+#[inline(always)]
+pub(super) fn decay(traces: &mut [f64], factor: f64) {
+    traces.as_chunks_mut::<BLOCK>().0.as_flattened_mut().iter_mut().for_each(|trace| *trace *= factor);
 }
 
-/// w ← w + `step` z, then [`DecayTraces`].
-pub(super) struct ApplyAndDecayTraces<'a> {
-    pub(super) values: &'a mut [f64],
-    pub(super) step: f64,
-    pub(super) decay: DecayTraces<'a>,
-}
-
-impl pulp::NullaryFnOnce for ApplyAndDecayTraces<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn call(self) -> bool {
-        let Self { values, step, decay: DecayTraces { traces, fallen, factor, cutoff } } = self;
-        let mut any = false;
-        let blocks = values.as_chunks_mut::<BLOCK>().0.iter_mut().zip(traces.as_chunks_mut::<BLOCK>().0);
-        for ((values, traces), fallen) in blocks.zip(fallen) {
-            let mut lanes = [0; LANES];
-            for (values, traces) in values.as_chunks_mut::<LANES>().0.iter_mut().zip(traces.as_chunks_mut().0) {
-                apply(values, traces, step);
-                DecayTraces::decay(traces, factor, cutoff, &mut lanes);
-            }
-            *fallen = lanes != [0; LANES];
-            any |= *fallen;
+/// w ← w + `step` z, then z ← γλ z, where `factor` is γλ.
+#[inline(always)]
+pub(super) fn apply_and_decay(values: &mut [f64], traces: &mut [f64], step: f64, factor: f64) {
+    for (values, traces) in values.as_chunks_mut::<BLOCK>().0.iter_mut().zip(traces.as_chunks_mut::<BLOCK>().0) {
+        for (values, traces) in values.as_chunks_mut().0.iter_mut().zip(traces.as_chunks_mut().0) {
+            add(values, traces, step);
+            *traces = traces.map(|trace| trace * factor);
         }
-        any
     }
 }
 
 /// Reads all lanes before it writes one: the compiler does not know that the values and the traces are apart, and would
 /// compute lane by lane.
 #[inline(always)]
-fn apply(values: &mut Vector, traces: &Vector, step: f64) {
+fn add(values: &mut Vector, traces: &Vector, step: f64) {
     let old = *values;
     *values = std::array::from_fn(|lane| old[lane] + step * traces[lane]);
 }
 
-/// w ← w + `step` z.
-pub(super) struct ApplyTraces<'a> {
-    pub(super) values: &'a mut [f64],
-    pub(super) traces: &'a [f64],
-    pub(super) step: f64,
+/// [`decay`], which writes to `fallen` in which blocks a trace has fallen to the cutoff. Returns whether one has.
+#[inline(always)]
+pub(super) fn decay_and_find(traces: &mut [f64], factor: f64, cutoff: f64, fallen: &mut [bool]) -> bool {
+    let mut any = false;
+    for (traces, fallen) in traces.as_chunks_mut::<BLOCK>().0.iter_mut().zip(fallen) {
+        let mut lanes = [0; LANES];
+        for traces in traces.as_chunks_mut().0 {
+            decay_vector(traces, factor, cutoff, &mut lanes);
+        }
+        *fallen = lanes != [0; LANES];
+        any |= *fallen;
+    }
+    any
 }
 
-impl pulp::NullaryFnOnce for ApplyTraces<'_> {
-    type Output = ();
+/// [`apply`], then [`decay_and_find`].
+#[inline(always)]
+pub(super) fn apply_decay_and_find(
+    values: &mut [f64],
+    traces: &mut [f64],
+    step: f64,
+    factor: f64,
+    cutoff: f64,
+    fallen: &mut [bool],
+) -> bool {
+    let mut any = false;
+    let blocks = values.as_chunks_mut::<BLOCK>().0.iter_mut().zip(traces.as_chunks_mut::<BLOCK>().0);
+    for ((values, traces), fallen) in blocks.zip(fallen) {
+        let mut lanes = [0; LANES];
+        for (values, traces) in values.as_chunks_mut().0.iter_mut().zip(traces.as_chunks_mut().0) {
+            add(values, traces, step);
+            decay_vector(traces, factor, cutoff, &mut lanes);
+        }
+        *fallen = lanes != [0; LANES];
+        any |= *fallen;
+    }
+    any
+}
 
-    #[inline(always)]
-    fn call(self) {
-        let vectors = self.values.as_chunks_mut::<LANES>().0.iter_mut().zip(self.traces.as_chunks().0);
-        vectors.for_each(|(values, traces)| apply(values, traces, self.step));
+/// Decays some traces. Bits of `fallen` are set in the lanes where one has fallen to the cutoff.
+#[inline(always)]
+fn decay_vector(traces: &mut Vector, factor: f64, cutoff: f64, fallen: &mut [u64; LANES]) {
+    *traces = traces.map(|trace| trace * factor);
+    for (trace, fallen) in traces.iter().zip(fallen) {
+        *fallen |= if trace.abs() <= cutoff { u64::MAX } else { 0 };
     }
 }
 
-/// The instruction set that the passes run on.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct InstructionSet(pulp::Arch);
-
-impl InstructionSet {
-    /// The widest one that this machine has.
-    pub(super) fn detect() -> Self {
-        Self(pulp::Arch::new())
+/// The places of a block where a trace is at or below the cutoff, one bit each.
+#[inline(always)]
+pub(super) fn fallen_places(traces: &[f64; BLOCK], cutoff: f64) -> u64 {
+    let mut lanes = [0; LANES];
+    for (index, traces) in traces.as_chunks::<LANES>().0.iter().enumerate() {
+        for (trace, lane) in traces.iter().zip(&mut lanes) {
+            *lane |= if trace.abs() <= cutoff { 1 << (LANES * index) } else { 0 };
+        }
     }
-
-    /// Runs a pass.
-    #[inline]
-    pub(super) fn run<P: pulp::NullaryFnOnce>(self, pass: P) -> P::Output {
-        self.0.dispatch(pass)
-    }
-}
-
-/// All of them have the same results.
-impl PartialEq for InstructionSet {
-    fn eq(&self, _other: &Self) -> bool {
-        true
-    }
+    lanes.iter().enumerate().fold(0, |places, (lane, bits)| places | bits << lane)
 }

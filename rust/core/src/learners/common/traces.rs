@@ -1,6 +1,8 @@
 //! Eligibility traces, stored sparsely: a step takes time in proportion to the number of active traces, not to the size
 //! of the table.
 
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
 use super::eligible_weights::EligibleWeights;
 use super::{Agent, available};
 use crate::StopFlag;
@@ -30,7 +32,6 @@ pub enum TraceKind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traces {
     eligible: EligibleWeights,
-    cutoff: f64,
 }
 
 impl Traces {
@@ -39,7 +40,7 @@ impl Traces {
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
     pub fn new(weights: usize, cutoff: f64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
-        Ok(Self { eligible: EligibleWeights::new(weights, stop)?, cutoff })
+        Ok(Self { eligible: EligibleWeights::new(weights, cutoff, stop)? })
     }
 
     /// Makes room for what the traces keep in the table.
@@ -61,25 +62,25 @@ impl Traces {
     }
 
     /// The trace of a weight.
-    #[inline]
+    #[inline(always)]
     pub fn get(&self, weight_index: usize) -> f64 {
         self.eligible.trace(weight_index)
     }
 
     /// The sum of the traces of a state-action pair, from left to right.
-    #[inline]
+    #[inline(always)]
     pub fn sum<const N: usize>(&self, table: &QTable<N>, rows: &[u32], action: usize) -> f64 {
         rows.iter().fold(0.0, |sum, &row| sum + self.get(table.weight_index(row, action)))
     }
 
     /// Begins a step: the values of the weights whose traces are active move out of the rows of the table.
-    #[inline]
+    #[inline(always)]
     pub fn begin_step<const N: usize>(&mut self, table: &mut QTable<N>) {
         self.eligible.move_out(table);
     }
 
     /// Changes the traces for a visit of a state-action pair. Returns Q(S, A).
-    #[inline]
+    #[inline(always)]
     pub fn visit<const N: usize>(
         &mut self,
         kind: TraceKind,
@@ -89,9 +90,9 @@ impl Traces {
     ) -> f64 {
         match kind {
             TraceKind::Accumulating => self.update(table, rows, action, |trace| trace + 1.0),
-            TraceKind::Replacing => self.update(table, rows, action, |_| 1.0),
+            TraceKind::Replacing => self.replace(table, rows, action),
             TraceKind::Clearing => {
-                let value = self.update(table, &rows, action, |_| 1.0);
+                let value = self.replace(table, &rows, action);
                 for &row in rows.as_ref() {
                     for other in (0..table.num_actions()).filter(|&other| other != action) {
                         self.eligible.remove_weight(table, table.weight_index(row, other));
@@ -103,7 +104,7 @@ impl Traces {
     }
 
     /// Replaces the traces of a state-action pair by a function of each. They become active. Returns Q(S, A).
-    #[inline]
+    #[inline(always)]
     pub fn update<const N: usize>(
         &mut self,
         table: &mut QTable<N>,
@@ -116,15 +117,28 @@ impl Traces {
         self.eligible.update(table, weights, change)
     }
 
+    /// Sets the traces of a state-action pair to 1. Returns Q(S, A).
+    #[inline(always)]
+    fn replace<const N: usize>(&mut self, table: &mut QTable<N>, rows: impl AsRef<[u32]>, action: usize) -> f64 {
+        let num_actions = table.num_actions();
+        self.eligible.replace(table, rows.as_ref().iter().map(|&row| row as usize * num_actions + action))
+    }
+
     /// The action values of a state, as [`QTable::action_values`].
-    #[inline]
+    #[inline(always)]
     pub fn action_values<'a, const N: usize>(&self, table: &'a mut QTable<N>, rows: impl AsRef<[u32]>) -> &'a [f64] {
         table.values_at(self.eligible.slots(), &rows)
     }
 
+    /// Q(S, A), as [`QTable::value`].
+    #[inline(always)]
+    pub fn value<const N: usize>(&self, table: &QTable<N>, rows: &[u32], action: usize) -> f64 {
+        table.value_at(self.eligible.slots(), rows, action)
+    }
+
     /// Samples A′ in the next state S′ and returns it with Q(S′, A′); `None` if S′ is terminal. If the episode is truncated,
     /// A′ is sampled for its value and never taken.
-    #[inline]
+    #[inline(always)]
     pub fn sample_next<R: AsRef<[u32]>>(
         &self,
         agent: &mut Agent,
@@ -142,7 +156,7 @@ impl Traces {
     }
 
     /// Subtracts a number from the weights of a state-action pair, whose traces must be active.
-    #[inline]
+    #[inline(always)]
     pub fn subtract<const N: usize>(&self, table: &mut QTable<N>, rows: &[u32], action: usize, number: f64) {
         for &row in rows {
             let slot = self.eligible.slots()[table.weight_index(row, action)];
@@ -151,7 +165,7 @@ impl Traces {
     }
 
     /// w ← w + α δ z.
-    #[inline]
+    #[inline(always)]
     pub fn apply_td_error<const N: usize>(&mut self, table: &mut QTable<N>, learning_rate: &LearningRate, error: f64) {
         match learning_rate.uniform() {
             Some(step_size) => self.eligible.apply(table, step_size * error),
@@ -160,13 +174,13 @@ impl Traces {
     }
 
     /// z ← γλ z, where `factor` is γλ.
-    #[inline]
+    #[inline(always)]
     pub fn decay<const N: usize>(&mut self, table: &mut QTable<N>, factor: f64) {
-        self.eligible.decay(table, factor, self.cutoff);
+        self.eligible.decay(table, factor);
     }
 
     /// w ← w + α δ z and z ← γλ z in one pass.
-    #[inline]
+    #[inline(always)]
     pub fn apply_td_error_and_decay<const N: usize>(
         &mut self,
         table: &mut QTable<N>,
@@ -175,7 +189,7 @@ impl Traces {
         factor: f64,
     ) {
         if let Some(step_size) = learning_rate.uniform() {
-            self.eligible.apply_and_decay(table, step_size * error, factor, self.cutoff);
+            self.eligible.apply_and_decay(table, step_size * error, factor);
         } else {
             self.apply_td_error(table, learning_rate, error);
             self.decay(table, factor);

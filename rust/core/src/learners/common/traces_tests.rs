@@ -199,6 +199,18 @@ fn each_kind_changes_the_traces_as_defined() {
 }
 
 #[test]
+fn a_small_trace_is_found_after_all_were_0_and_decayed_to_nothing() {
+    let mut table = QTable::<1>::new(vec![0.0; 2], 1);
+    let mut traces = Traces::new(2, 0.2, &StopFlag::new()).expect("a few weights");
+    traces.begin_step(&mut table);
+    traces.decay(&mut table, 0.0);
+    traces.update(&mut table, [0], 0, |_| 0.21);
+    traces.visit(TraceKind::Replacing, &mut table, [1], 0);
+    traces.decay(&mut table, 0.9);
+    assert_eq!([traces.get(0), traces.get(1)], [0.0, 0.9]);
+}
+
+#[test]
 fn a_trace_at_the_cutoff_is_removed_and_the_others_stay() {
     let mut table = QTable::<1>::new(vec![1.0, 2.0, 3.0, 4.0], 1);
     let mut traces = Traces::new(4, 0.25, &StopFlag::new()).expect("a few weights");

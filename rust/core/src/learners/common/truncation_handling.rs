@@ -1,6 +1,8 @@
 //! What a learner is told of a step: truncated episodes (F. Pardo et al., "Time limits in reinforcement learning", 2018),
 //! and rewards with a bonus.
 
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
 use super::{CountBonus, Learner};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::delegate_learner;
@@ -21,7 +23,7 @@ pub struct TruncationHandling<L> {
 
 impl<L> TruncationHandling<L> {
     /// What the learner is told.
-    #[inline]
+    #[inline(always)]
     fn as_learned<R>(&self, next: Next<R>) -> Next<R> {
         match next {
             Next::Truncated(_) if self.terminate => Next::Terminal,
@@ -31,9 +33,11 @@ impl<L> TruncationHandling<L> {
 }
 
 impl<R: AsRef<[u32]>, L: Learner<R>> Learner<R> for TruncationHandling<L> {
+    const HAS_VECTOR_PASSES: bool = L::HAS_VECTOR_PASSES;
+
     delegate_learner!(rest R, learner in Self { learner, .. });
 
-    #[inline]
+    #[inline(always)]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
         let next = self.as_learned(next);
         let reward = match &mut self.bonus {

@@ -7,6 +7,9 @@ use crate::tasks::Next;
 
 /// The update rule of an algorithm for an agent `G`: its equation, and what it stores between steps.
 pub trait UpdateRule<R, G> {
+    /// As [`Learner::HAS_VECTOR_PASSES`](super::Learner::HAS_VECTOR_PASSES).
+    const HAS_VECTOR_PASSES: bool = false;
+
     /// Samples the first action of an episode; `None` leaves that to the policy.
     #[inline]
     fn first_action(&mut self, agent: &mut G, state: R, rng: &mut impl Rng) -> Option<usize> {
