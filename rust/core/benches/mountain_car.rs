@@ -37,6 +37,9 @@ fn learner(rng: &mut impl Rng) -> QLearner {
     TdLearner { agent, rule: QLearning }
 }
 
+/// The active row of a state, the action taken, and what followed.
+type WalkStep = ([u32; 1], usize, Transition<[u32; 1]>);
+
 /// Random states and actions.
 fn states(rng: &mut Pcg64) -> Vec<(MountainCarState, usize)> {
     let state =
@@ -68,8 +71,8 @@ fn discretizer(benchmarks: &mut Benchmarks) {
     });
 }
 
-/// The steps of a car that acts at random: the active row, the action and what followed.
-fn random_walk(rng: &mut Pcg64) -> Vec<([u32; 1], usize, Transition<[u32; 1]>)> {
+/// The steps of a car that acts at random.
+fn random_walk(rng: &mut Pcg64) -> Vec<WalkStep> {
     let mut task = task(rounding());
     let (mut state, mut active) = task.reset().expect(IN_BOUNDS);
     let mut walk = Vec::with_capacity(BATCH);
@@ -145,7 +148,7 @@ fn draws_only(steps: u64, rng: &mut Pcg64) -> u32 {
 }
 
 /// The table only: the largest value of the next row, and the update, along steps known in advance.
-fn table_only(walk: &[([u32; 1], usize, Transition<[u32; 1]>)], agent: &mut Agent<3, EpsilonGreedy, f64>) {
+fn table_only(walk: &[WalkStep], agent: &mut Agent<3, EpsilonGreedy, f64>) {
     for &(active, action, transition) in walk {
         if let Next::NonTerminal(next) = transition.next {
             let largest = agent.action_values(next).iter().copied().fold(f64::NEG_INFINITY, f64::max);
