@@ -1,6 +1,6 @@
 """The extension module: what Rust does. Its users are the other modules of this package."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal, final
 
 import numpy as np
@@ -50,6 +50,7 @@ def estimate_values(
     episodes: NDArray[np.uint64],
     weights: NDArray[np.float64],
     threads: int,
+    report: Callable[[int], object] | None,
 ) -> list[tuple[int, Exception]]: ...
 def matches_numpy(name: str) -> bool: ...
 def numpy_uses_libm() -> bool: ...

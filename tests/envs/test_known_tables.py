@@ -103,7 +103,7 @@ def test_gymnasium_makes_no_environment_for_a_known_table(name: str, made: list[
         {"discretizer": lambda state: state, "shape": (500,)},
         {"max_rows": 500},
     ],
-    ids=repr,
+    ids=["backend", "action_mask", "function", "max_rows"],
 )
 def test_python_steps_and_masks_the_environment_that_gymnasium_makes(chosen: dict[str, Any], made: list[str]) -> None:
     run = qtab.train("Taxi-v4", **SHORT, **chosen)
