@@ -126,19 +126,6 @@ def test_the_best_policy_known_returns_at_least_what_a_run_does():
     assert gap.greedy_return.max() <= gap.attainable <= gap.optimum
 
 
-@pytest.mark.slow
-def test_with_more_torques_the_table_of_the_pendulum_costs_less():
-    pendulum = qtab.optimum("Pendulum-v1")
-    settings: dict[str, Any] = {"seed": 0, "episodes": 1, "discretizer": "bins", "bins": (8, 8, 12)}
-    two, many = (pendulum.gap(qtab.train("Pendulum-v1", actions=actions, **settings)) for actions in (2, 7))
-    assert two.attainable is not None
-    assert many.attainable is not None
-    assert many.approximation is not None
-    assert many.learning is not None
-    assert -165 < two.attainable < many.attainable - 5 < pendulum.expected_return
-    assert many.approximation + many.learning == pytest.approx(many.greedy)
-
-
 def test_of_more_cells_than_can_be_sampled_no_best_policy_is_known(car):
     run = qtab.train("MountainCar-v0", seed=0, episodes=1, discretizer="bins", bins=(250, 250))
     assert car.gap(run).attainable is None
