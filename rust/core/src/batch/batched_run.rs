@@ -4,6 +4,7 @@ use super::SimdTrainer;
 use super::batch_loop::BatchLoop;
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, Features, OutOfBounds};
+use crate::numeric::SimdLevel;
 use crate::schedules::StepSize;
 use crate::trainer::Budget;
 use crate::training_error::TrainingError;
@@ -48,7 +49,7 @@ where
         }
         let mut work = budget.work;
         if runs[0].task.env.is_exact() && runs.iter().all(|run| compatible(run, &runs[0])) {
-            let advanced = pulp::Arch::new().dispatch(BatchLoop { runs, budget });
+            let advanced = SimdLevel::detect().run(BatchLoop { runs, budget });
             work = advanced.map_err(|(lane, error)| (lane, TrainingError::Task(error)))?;
         }
         let mut lanes = runs.iter_mut().enumerate();

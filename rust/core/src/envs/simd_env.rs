@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::Env;
-use crate::numeric::LANES;
+use crate::numeric::{LANES, SimdCode, SimdLevel};
 use crate::random::NoRng;
 
 /// An environment whose deterministic dynamics can be computed in SIMD lanes. The state is `M` numbers, and the
@@ -15,8 +15,8 @@ pub trait SimdEnv<const M: usize>:
     fn is_exact(&self) -> bool;
 
     /// One step in `K` lanes, in place. `fields` holds the states as a structure of arrays: one array per component.
-    /// Returns whether each next state is terminal.
-    fn step_soa<const K: usize>(&self, fields: &mut [[f64; K]; M], actions: &[usize; K]) -> [bool; K];
+    /// Returns whether each next state is terminal. `FUSED` is that of the [`SimdLevel`] which the code is compiled for.
+    fn step_soa<const FUSED: bool, const K: usize>(&self, fields: &mut [[f64; K]; M], actions: &[usize; K]) -> [bool; K];
 
     /// The reward of a step, which depends only on whether the next state is terminal.
     fn reward(&self, terminated: bool) -> f64;
@@ -36,7 +36,7 @@ pub(crate) fn step_batch<E: SimdEnv<M>, const M: usize>(
     if in_lanes > 0 {
         let (states, actions) = (chunks.as_chunks_mut().0, actions.as_chunks().0);
         let (terminated, inactive) = (terminated.as_chunks_mut().0, inactive.as_chunks().0);
-        pulp::Arch::new().dispatch(Chunks { env: *env, states, actions, terminated, inactive });
+        SimdLevel::detect().run(Chunks { env: *env, states, actions, terminated, inactive });
     }
     for (index, state) in (in_lanes..).zip(rest).filter(|(index, _)| !inactive[*index]) {
         let step = env.step(*state, actions[index], &mut NoRng);
@@ -47,7 +47,7 @@ pub(crate) fn step_batch<E: SimdEnv<M>, const M: usize>(
     }
 }
 
-/// Sub-environments in chunks of [`LANES`], as a closure that `pulp` compiles for each instruction set.
+/// Sub-environments in chunks of [`LANES`], compiled for each [`SimdLevel`].
 struct Chunks<'a, E, S> {
     env: E,
     states: &'a mut [[S; LANES]],
@@ -56,22 +56,21 @@ struct Chunks<'a, E, S> {
     inactive: &'a [[bool; LANES]],
 }
 
-impl<E: SimdEnv<M, State = S>, S: Copy + From<[f64; M]> + Into<[f64; M]>, const M: usize> pulp::NullaryFnOnce
-    for Chunks<'_, E, S>
+impl<E: SimdEnv<M, State = S>, S: Copy + From<[f64; M]> + Into<[f64; M]>, const M: usize> SimdCode for Chunks<'_, E, S>
 where
     E: Env<Observation = [f32; M]>,
 {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn run<const FUSED: bool>(self) {
         let env = self.env;
         let outputs = self.states.iter_mut().zip(self.terminated);
         for ((states, terminated), (actions, inactive)) in outputs.zip(self.actions.iter().zip(self.inactive)) {
             let actions = std::array::from_fn(|lane| if inactive[lane] { 0 } else { actions[lane] });
             let mut fields = [[0.0; LANES]; M];
             (0..LANES).for_each(|lane| scatter(&mut fields, lane, states[lane]));
-            *terminated = env.step_soa(&mut fields, &actions);
+            *terminated = env.step_soa::<FUSED, _>(&mut fields, &actions);
             for lane in (0..LANES).filter(|&lane| !inactive[lane]) {
                 states[lane] = gather(&fields, lane);
             }
