@@ -48,7 +48,7 @@ impl<E, F> Shared<E, F> {
         A: StepSize,
     {
         let Self { env, features, discount, .. } = self;
-        let mut tables = tables.each_mut().map(|values| values.as_chunks_mut::<N>().0);
+        let tables = tables.each_mut().map(|values| values.as_chunks_mut::<N>().0);
         let uniform = runs.each_ref().map(|run| run.learner.agent.learning_rate.uniform());
         let is_uniform = uniform.iter().all(Option::is_some);
         let mut learning_rates = uniform.map(Option::unwrap_or_default);

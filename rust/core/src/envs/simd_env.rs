@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::Env;
-use crate::numeric::{LANES, SimdCode, SimdLevel};
+use crate::numeric::{LANES, SimdCode, SimdLevel, cold_path};
 use crate::random::NoRng;
 
 /// An environment whose deterministic dynamics can be computed in SIMD lanes. The state is `M` numbers, and the
@@ -67,9 +67,15 @@ where
         let env = self.env;
         let outputs = self.states.iter_mut().zip(self.terminated);
         for ((states, terminated), (actions, inactive)) in outputs.zip(self.actions.iter().zip(self.inactive)) {
-            let actions = std::array::from_fn(|lane| if inactive[lane] { 0 } else { actions[lane] });
             let mut fields = [[0.0; LANES]; M];
             (0..LANES).for_each(|lane| scatter(&mut fields, lane, states[lane]));
+            if *inactive == [false; LANES] {
+                *terminated = env.step_soa::<FUSED, _>(&mut fields, actions);
+                (0..LANES).for_each(|lane| states[lane] = gather(&fields, lane));
+                continue;
+            }
+            cold_path();
+            let actions = std::array::from_fn(|lane| if inactive[lane] { 0 } else { actions[lane] });
             *terminated = env.step_soa::<FUSED, _>(&mut fields, &actions);
             for lane in (0..LANES).filter(|&lane| !inactive[lane]) {
                 states[lane] = gather(&fields, lane);

@@ -108,11 +108,11 @@ impl PrefetchedPcg64 {
             let explores = upper_53_bits(word) >= explore_from;
             let random = std::hint::select_unpredictable(half.has_uint32, half.buffered_u32, next_word as u32);
             let product = u64::from(random) * u64::from(below);
-            if (product as u32) < below && explores {
-                // The integer may have to be rejected, which is very rare.
+            if (product as u32) < below {
+                // The integer may have to be rejected. This is so rare, exploring or not, that a branch costs nothing.
                 cold_path();
                 (self.used, self.half) = (used + 1, half);
-                put(index, true, self.integers(below) as usize);
+                put(index, explores, if explores { self.integers(below) as usize } else { 0 });
                 if self.used + 2 * count > CAPACITY {
                     self.refill();
                 }
