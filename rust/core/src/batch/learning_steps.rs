@@ -2,7 +2,6 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-
 use super::SimdTrainer;
 use super::decisions::GREEDY;
 use super::episode_lanes::EpisodeLanes;

@@ -16,7 +16,11 @@ pub trait SimdEnv<const M: usize>:
 
     /// One step in `K` lanes, in place. `fields` holds the states as a structure of arrays: one array per component.
     /// Returns whether each next state is terminal. `FUSED` is that of the [`SimdLevel`] which the code is compiled for.
-    fn step_soa<const FUSED: bool, const K: usize>(&self, fields: &mut [[f64; K]; M], actions: &[usize; K]) -> [bool; K];
+    fn step_soa<const FUSED: bool, const K: usize>(
+        &self,
+        fields: &mut [[f64; K]; M],
+        actions: &[usize; K],
+    ) -> [bool; K];
 
     /// The reward of a step, which depends only on whether the next state is terminal.
     fn reward(&self, terminated: bool) -> f64;
@@ -100,4 +104,46 @@ pub(crate) fn scatter<S: Into<[f64; M]>, const K: usize, const M: usize>(
 #[inline(always)]
 pub(crate) fn gather<S: From<[f64; M]>, const K: usize, const M: usize>(fields: &[[f64; K]; M], lane: usize) -> S {
     std::array::from_fn(|field| fields[field][lane]).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::envs::classic_control::{CartPole, MountainCar};
+
+    /// Steps one chunk with plain and with the widest instructions, and each active state alone.
+    fn check<E, const M: usize>(env: E, states: [[f64; M]; LANES], actions: [usize; LANES], inactive: [bool; LANES])
+    where
+        E: SimdEnv<M> + Env<Observation = [f32; M], State: std::fmt::Debug + PartialEq>,
+    {
+        for level in [SimdLevel::PLAIN, SimdLevel::detect()] {
+            let (mut stepped, mut terminated) = ([states.map(E::State::from)], [[false; LANES]]);
+            let (actions, inactive) = (&[actions], &[inactive]);
+            level.run(Chunks { env, states: &mut stepped, actions, terminated: &mut terminated, inactive });
+            for lane in 0..LANES {
+                if inactive[0][lane] {
+                    assert_eq!(stepped[0][lane], states[lane].into());
+                    continue;
+                }
+                let step = env.step(states[lane].into(), actions[0][lane], &mut NoRng);
+                assert_eq!((stepped[0][lane], terminated[0][lane]), (step.state, step.terminated), "{level:?}");
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn chunks_step_as_single_environments(
+            cars in prop::array::uniform8(prop_oneof![(-1.2..0.6, -0.07..0.07), (0.45..0.6, 0.0..0.07), (-5.0..5.0, -1.0..1.0)]),
+            poles in prop::array::uniform8(prop::array::uniform4(-3.0..3.0)),
+            actions in prop::array::uniform8(0_usize..2),
+            inactive in prop_oneof![Just([false; LANES]), prop::array::uniform8(any::<bool>())],
+        ) {
+            check(MountainCar::default(), cars.map(|(position, velocity)| [position, velocity]), actions, inactive);
+            check(MountainCar::default(), [[-0.5, 0.01]; LANES], actions.map(|action| 2 * action), inactive);
+            check(CartPole::default(), poles, actions, inactive);
+        }
+    }
 }

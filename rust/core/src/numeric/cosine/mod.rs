@@ -126,7 +126,9 @@ mod tests {
                 }
             }
         }
-        assert!(f64::is_nan(SimdLevel::PLAIN.run(&Velocities { angles: [f64::NAN; 2], velocity: 0.0, gravity: 1.0 })[0]));
+        assert!(f64::is_nan(
+            SimdLevel::PLAIN.run(&Velocities { angles: [f64::NAN; 2], velocity: 0.0, gravity: 1.0 })[0]
+        ));
     }
 
     /// The angles whose cosines are the closest to powers of two, and their neighbours.
