@@ -1,6 +1,6 @@
 """The extension module: what Rust does. Its users are the other modules of this package."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal, final
 
 import numpy as np
@@ -50,6 +50,7 @@ def estimate_values(
     episodes: NDArray[np.uint64],
     weights: NDArray[np.float64],
     threads: int,
+    report: Callable[[int], object] | None,
 ) -> list[tuple[int, Exception]]: ...
 def matches_numpy(name: str) -> bool: ...
 def numpy_uses_libm() -> bool: ...
@@ -174,6 +175,12 @@ class Trainer:
 @final
 class TransitionTable:
     def __new__(cls, P: Any, initial_state_distrib: Sequence[float] | NDArray[np.float64]) -> TransitionTable: ...  # noqa: N803 - Gymnasium's name
+    @staticmethod
+    def cliff_walking(is_slippery: bool) -> TransitionTable: ...
+    @staticmethod
+    def taxi(lines: Sequence[bytes], rainy_probability: float | None) -> TransitionTable: ...
+    def __eq__(self, value: object, /) -> bool: ...
+    def __ne__(self, value: object, /) -> bool: ...
     @property
     def states(self) -> int: ...
     @property

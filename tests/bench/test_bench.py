@@ -205,7 +205,7 @@ def small_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(environments, "EPISODES", dict.fromkeys(environments.EPISODES, 20))
     monkeypatch.setattr(table_numba, "preset", lambda name, _: (None, {**preset(name, None)[1], "episodes": 20}))
     for module in (article_c, article_numba, sarsa_numba):
-        monkeypatch.setattr(module, "EPISODES", 5)
+        monkeypatch.setattr(module, "EPISODES", 1)
     numba = SimpleNamespace(njit=_not_compiled, prange=range, set_num_threads=lambda threads: None)
     monkeypatch.setitem(sys.modules, "numba", numba)
     monkeypatch.setattr(book, "EPISODES", 20)

@@ -52,7 +52,7 @@ def greedy_returns(env: str, runs: qtab.Runs) -> NDArray[np.float64]:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("env", "seeds", "mean"),
-    [("MountainCar-v0", 12, -102), ("FrozenLake-v1", 100, 0.7), ("FrozenLake8x8-v1", 8, 0.85)],
+    [("MountainCar-v0", 6, -102), ("FrozenLake-v1", 50, 0.7), ("FrozenLake8x8-v1", 8, 0.85)],
 )
 def test_every_seed_reaches_the_threshold_and_the_mean_ends_above_it(env, seeds, mean):
     runs = training(env, seeds)
@@ -64,7 +64,7 @@ def test_every_seed_reaches_the_threshold_and_the_mean_ends_above_it(env, seeds,
 @pytest.mark.slow
 def test_every_seed_finds_the_best_policy_of_the_small_lake_without_a_time_limit():
     # Under the time limit that policy returns 0.7402; the best time-dependent policy returns 0.7442.
-    assert greedy_returns("FrozenLake-v1", training("FrozenLake-v1", 100)) == pytest.approx(0.740165, abs=1e-6)
+    assert greedy_returns("FrozenLake-v1", training("FrozenLake-v1", 50)) == pytest.approx(0.740165, abs=1e-6)
 
 
 @pytest.mark.slow
@@ -80,7 +80,7 @@ def test_the_car_on_the_racetrack_comes_close_to_the_optimum():
 
 @pytest.mark.slow
 def test_every_seed_learns_an_optimal_policy_for_the_taxi():
-    runs = training("Taxi-v4", 100)
+    runs = training("Taxi-v4", 50)
     assert greedy_returns("Taxi-v4", runs) == pytest.approx(7.93, abs=1e-9)
     # Gymnasium's threshold of 8 is above the optimum: 100 episodes may reach it by luck, the mean of all does not.
     assert best_hundreds(runs).min() >= 8

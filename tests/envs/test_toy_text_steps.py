@@ -11,8 +11,8 @@ from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 import qtab
 from support.toy_text import IDS, TABLES, LockstepToyText
 
-STEPS = 6_000
-GOAL_STEPS = 15_000
+STEPS = 3_000
+GOAL_STEPS = 6_000
 """Enough for a hundred goals, and for rides from most of the 300 states that a taxi starts in."""
 
 
@@ -26,7 +26,7 @@ def optimal_policy(name: str) -> list[int]:
 def test_random_steps_equal_gymnasiums(name):
     terminated = LockstepToyText(name).run(STEPS, seed=3)
     if "FrozenLake" in name or "Blackjack" in name:  # random steps seldom reach the other goals
-        assert terminated > 100
+        assert terminated > 50
 
 
 @pytest.mark.parametrize("name", TABLES)
@@ -40,7 +40,7 @@ def test_every_action_in_every_state_equals_gymnasiums(name):
 
 @pytest.mark.parametrize("name", [name for name in TABLES if "Taxi" not in name])
 def test_steps_to_the_goal_equal_gymnasiums(name):
-    assert LockstepToyText(name).run(GOAL_STEPS, optimal_policy(name), seed=3) > 100
+    assert LockstepToyText(name).run(GOAL_STEPS, optimal_policy(name), seed=3) > 30
 
 
 @pytest.mark.slow
@@ -50,7 +50,7 @@ def test_steps_to_the_goal_equal_gymnasiums(name):
     ids=repr,
 )
 def test_rides_of_every_taxi_equal_gymnasiums(kwargs):
-    assert LockstepToyText("Taxi-v4", **kwargs).run(GOAL_STEPS, optimal_policy("Taxi-v4"), seed=4) > 300
+    assert LockstepToyText("Taxi-v4", **kwargs).run(GOAL_STEPS, optimal_policy("Taxi-v4"), seed=4) > 120
 
 
 LAKE = ["SFFHF", "FHFSF", "FFFFG"]

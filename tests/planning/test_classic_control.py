@@ -90,6 +90,19 @@ def test_the_pendulum_is_given_a_torque() -> None:
         qtab.plots.values(best)
 
 
+@pytest.mark.slow
+def test_with_more_torques_the_table_of_the_pendulum_costs_less() -> None:
+    pendulum = found("Pendulum-v1")
+    settings: dict[str, Any] = {"seed": 0, "episodes": 1, "discretizer": "bins", "bins": (8, 8, 12)}
+    two, many = (pendulum.gap(qtab.train("Pendulum-v1", actions=actions, **settings)) for actions in (2, 7))
+    assert two.attainable is not None
+    assert many.attainable is not None
+    assert many.approximation is not None
+    assert many.learning is not None
+    assert -165 < two.attainable < many.attainable - 5 < pendulum.expected_return
+    assert many.approximation + many.learning == pytest.approx(many.greedy)
+
+
 def test_an_acrobot_with_noise_has_no_route() -> None:
     env: Any = gym.make("Acrobot-v1")
     env.unwrapped.torque_noise_max = 0.5

@@ -126,6 +126,11 @@ def test_the_best_policy_known_returns_at_least_what_a_run_does():
     assert gap.greedy_return.max() <= gap.attainable <= gap.optimum
 
 
+def test_of_more_cells_than_can_be_sampled_no_best_policy_is_known(car):
+    run = qtab.train("MountainCar-v0", seed=0, episodes=1, discretizer="bins", bins=(250, 250))
+    assert car.gap(run).attainable is None
+
+
 def test_of_tile_coding_and_of_lost_tables_no_best_policy_is_known(car):
     solved = qtab.train("MountainCar-v0", preset="solved", seed=0, episodes=20)
     without = qtab.train_many("MountainCar-v0", 2, episodes=5)

@@ -41,15 +41,15 @@ def check(env: str, preset: Mapping[str, Any], exploration: Mapping[str, Any], r
 
 
 @pytest.mark.parametrize("env", sorted(_PRESETS))
-def test_every_preset_is_plotted_with_every_way_of_exploring(env: str) -> None:
+def test_every_preset_is_plotted_as_it_is_and_with_another_way_of_exploring(env: str) -> None:
     if env.startswith("LunarLander"):
         pytest.importorskip("Box2D", reason="LunarLander needs the extra box2d")
-    rates = itertools.cycle(RATES)
+    rates, explorations = itertools.cycle(RATES), itertools.cycle(EXPLORATIONS)
     for preset in qtab.presets(env).values():
         # Missing actions, which -inf stands for, have no softmax.
         has_all_actions = not np.isneginf(np.array(preset.get("initial_q", 0.0))).any()
-        explorations = EXPLORATIONS if preset.get("algorithm") not in PREFERENCES else [{}, SOFTMAX]
-        for exploration in explorations if has_all_actions else [{}]:
+        others = explorations if preset.get("algorithm") not in PREFERENCES else iter([SOFTMAX])
+        for exploration in [{}, next(others)] if has_all_actions else [{}]:
             check(env if env in gym.registry else f"qtab/{env}", preset, exploration, next(rates))
 
 

@@ -40,7 +40,7 @@ PROFILE: Any = settings.default
 
 
 @pytest.mark.parametrize("algorithm", get_args(Algorithm))
-@settings(max_examples=PROFILE.max_examples // 5)  # each resumes twice: the run, and the one that was saved
+@settings(max_examples=PROFILE.max_examples // 10)  # each resumes twice: the run, and the one that was saved
 @given(data=st.data())
 def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, data):
     config = data.draw(run_settings(algorithm))

@@ -14,8 +14,8 @@ from support import classic_control
 from support.machine import MACHINE
 from support.vector import IDS, MODES, LockstepVectorEnv
 
-STEPS = 250
-"""Steps of all sub-environments together, in each of eight examples of each of three modes."""
+STEPS = 220
+"""Steps of all sub-environments together, in each of four examples of each of three modes."""
 MAX_VECTOR_STEPS = 210
 """Steps of the vector environment in an example: more than the usual time limits, 100 and 200."""
 
@@ -47,7 +47,7 @@ NEAR_THE_END = {
 def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
     seen = np.zeros(2, np.int64)
 
-    @settings(max_examples=max(settings().max_examples // 6, 1))
+    @settings(max_examples=max(settings().max_examples // 12, 1))
     @given(
         num_envs=st.integers(1, 24),
         seed=st.integers(0, 2**70) | st.none(),

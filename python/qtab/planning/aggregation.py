@@ -22,14 +22,14 @@ MOST_SAMPLES = 60_000
 
 
 def aggregated_run(run: Run, known: GridEnvironment, axes: tuple[NDArray[np.float64], ...]) -> Run | None:
-    """Returns a run with the action values of its task on cells; None for a run without a grid of cells.
+    """Returns a run with the action values of its task on cells; None without cells, or with too many to sample each.
 
     Args:
         run: A run in the environment.
         known: What is known of the environment.
         axes: The coordinates of a grid over its states, for their range.
     """
-    if not known.has_discrete_actions or not isinstance(run.discretizer, Rounding | Edges):
+    if not isinstance(run.discretizer, Rounding | Edges) or run.tables.shape[1] > MOST_SAMPLES:
         return None
     tables = np.zeros_like(run.tables)
     tables[0] = _action_values(run, known, axes)
@@ -42,7 +42,7 @@ def _action_values(run: Run, known: GridEnvironment, axes: tuple[NDArray[np.floa
     count = min(SAMPLES_PER_CELL * shape[0], MOST_SAMPLES)
     states = even_points([axis[0] for axis in axes], [axis[-1] for axis in axes], count)
     cells = run.discretizer.active_rows(known.observations_of(states))[:, 0].astype(np.int64)
-    following, rewards, terminated = _steps(run, states, shape[1])
+    following, rewards, terminated = _steps(run, states)
     pairs = (cells[:, np.newaxis] * shape[1] + np.arange(shape[1])).ravel()
     visits = np.maximum(np.bincount(pairs, minlength=shape[0] * shape[1]), 1)
     mean_rewards = np.bincount(pairs, rewards, len(visits)) / visits
@@ -59,9 +59,7 @@ def _action_values(run: Run, known: GridEnvironment, axes: tuple[NDArray[np.floa
     return action_values
 
 
-def _steps(
-    run: Run, states: NDArray[np.float64], actions: int
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
+def _steps(run: Run, states: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
     """Steps each state with each action; returns (states * actions,) rows, rewards, and whether the episode ends."""
     env = make_run_env(run.config)
     try:
@@ -69,7 +67,7 @@ def _steps(
         plain: Any = env.unwrapped
         observations, rewards, terminated = [], [], []
         for state in states.tolist():
-            for action in range(actions):
+            for action in run.actions.take(np.arange(run.tables.shape[-1])):
                 plain.state = np.array(state)
                 if hasattr(plain, "steps_beyond_terminated"):
                     plain.steps_beyond_terminated = None  # what CartPole remembers of an episode that has ended

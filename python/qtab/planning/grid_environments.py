@@ -38,8 +38,6 @@ class GridEnvironment:
     """The value of each attribute of two values that Rust calls true."""
     fixed: Mapping[str, Any] = field(default_factory=dict)
     """Constants that the search takes for granted."""
-    has_discrete_actions: bool = True
-    """Whether its actions are the same for every learner."""
 
 
 def _midpoints(low: float, high: float, count: int) -> NDArray[np.float64]:
@@ -121,7 +119,6 @@ ENVIRONMENTS = (
         _pendulums,
         "cosine and sine of the angle and the angular velocity",
         3,
-        has_discrete_actions=False,
     ),
 )
 

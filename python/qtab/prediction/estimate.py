@@ -8,6 +8,7 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import ArrayLike
 
 from qtab._utils.memory import memory_limit
+from qtab._utils.progress import check_progress
 from qtab.config.choices import DiscretizerName, LearningRateSchedule
 from qtab.config.unknown import suggesting
 from qtab.planning.policies import GivenPolicy
@@ -59,6 +60,7 @@ def estimate_values(
     max_episode_steps: int | None = None,
     env_kwargs: Mapping[str, Any] | None = None,
     threads: int | None = None,
+    progress: bool | None = None,
 ) -> ValueEstimates:
     """Estimates the values of a policy from episodes that follow it. This is prediction; :func:`qtab.train` is control.
 
@@ -116,11 +118,14 @@ def estimate_values(
         max_episode_steps: The time limit in steps; None means the environment's own, or 10,000.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
         threads: The number of threads; None means one per core. It does not change the results.
+        progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the episodes take
+            more than a second and tqdm is installed.
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
         MemoryError: if what is recorded would take more than half of the machine's memory.
         OverflowError: if the values of a run overflow, because ``learning_rate`` or ``trace_decay`` is too large.
+        ModuleNotFoundError: if ``progress`` is True and tqdm is not installed.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range or that does not apply to the method, a policy of the wrong shape or
             with probabilities that do not sum to 1, or a ``behavior`` that does not cover it.
@@ -143,6 +148,7 @@ def estimate_values(
         on_truncation=cast("Any", on_truncation),
         bit_generator=cast("Any", bit_generator),
     )
+    check_progress(progress)
     limit = memory_limit(None)
     numbers = seed_sequence(seeds, limit)
     points = recorded_episodes(record, settings.episodes)
@@ -166,7 +172,7 @@ def estimate_values(
     log_default_limit(resolved)
     log_python_stepping(resolved)
     estimates, failed = run_prediction(
-        resolved, space, settings, policy, behavior, features, numbers, points, thread_count(threads), limit
+        resolved, space, settings, policy, behavior, features, numbers, points, thread_count(threads), limit, progress
     )
     for index, error in failed:
         if hasattr(error, "add_note"):

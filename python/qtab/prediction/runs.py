@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from qtab import _core
 from qtab._utils import checks
 from qtab._utils.memory import check_memory, memory_limit
+from qtab._utils.progress import ProgressBar
 from qtab._utils.shown import shown
 from qtab.discretizers import Discretizer
 from qtab.planning.policies import GivenPolicy, probabilities
@@ -34,6 +35,7 @@ def run_prediction(
     points: NDArray[np.uint64],
     threads: int,
     limit: int,
+    progress: bool | None = False,
 ) -> tuple[ValueEstimates, list[tuple[int, Exception]]]:
     """Runs a prediction; returns the estimates and the runs that failed, whose missing weights are NaN."""
     cells, actions = resolved.discretizer, resolved.actions
@@ -68,8 +70,12 @@ def run_prediction(
         "rows": rows,
         "initial_weights": initial,
     }
-    with resolved.environment.exclusively():
-        failed = _core.estimate_values(spec, prediction, seeds, points, weights, threads)
+    bar = ProgressBar(len(seeds) * settings.episodes, "episode", progress)
+    with resolved.environment.exclusively(), bar:
+        report = bar.move_to if bar.is_shown else None
+        failed = _core.estimate_values(spec, prediction, seeds, points, weights, threads, report)
+        if not failed:
+            bar.move_to(len(seeds) * settings.episodes)
     return ValueEstimates(
         env=resolved.config.env,
         settings=settings,

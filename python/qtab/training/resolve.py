@@ -22,6 +22,7 @@ from qtab.config.presets import preset
 from qtab.config.schedules import learning_rate
 from qtab.discretizers import Discretizer, Sparse
 from qtab.discretizers.actions import Actions, choose_actions
+from qtab.envs.known_tables import KnownTable, known_table
 from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import native_env
 from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
@@ -53,6 +54,8 @@ class _Request:
     """That of the environment."""
     python_reason: str | None = None
     """Why an environment object is stepped in Python although that was not asked for, and what would help."""
+    spec: EnvSpec | None = None
+    """That of an environment that was made here."""
 
 
 def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: bool = False) -> ResolvedRun:
@@ -96,11 +99,18 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
     entry = entry_for_spec(spec, config.env_kwargs)
     if entry is None and config.backend == "rust":
         raise rust_unavailable(f"Rust does not implement {spec.id} with these keyword arguments and wrappers")
+    known = None
+    if entry is not None and config.backend != "gymnasium" and not asks_for_masks(config.action_mask):
+        known = known_table(spec, config.env_kwargs)
+    made = _make(spec, config) if known is None else known
+    return _Request(made, entry, config, asked, spec.max_episode_steps, spec=spec)
+
+
+def _make(spec: EnvSpec, config: Config) -> gym.Env:
     limit: dict[str, Any] = {}
     if config.max_episode_steps is not None:
         limit["max_episode_steps"] = config.max_episode_steps
-    made = gym.make(spec, **config.env_kwargs, **limit)
-    return _Request(made, entry, config, asked, spec.max_episode_steps)
+    return gym.make(spec, **config.env_kwargs, **limit)
 
 
 def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:
@@ -162,6 +172,8 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     if masks is None:
         masks = observed_masks(config.action_mask, env)
     if not in_rust:
+        if isinstance(env, KnownTable) and request.spec is not None:
+            env = _make(request.spec, request.config)
         environment = PythonEnvironment(env, actions, owns_env, masks)
     seed = int(np.random.SeedSequence().generate_state(1)[0]) if config.seed is None else config.seed
     config = replace_checked(

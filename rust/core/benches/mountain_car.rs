@@ -1,4 +1,4 @@
-//! The speed of `MountainCar` in steps per second: the parts of a step, the article's training run, and its lower bound.
+//! The speed of `MountainCar` in steps per second: the parts of a step, the article's training run, and its lower bounds.
 //!
 //! `cargo bench --bench mountain_car`, or `cargo bench --bench mountain_car -- run` for the training run only.
 
@@ -15,7 +15,7 @@ use qtab_core::learners::{Agent, QLearning, TdLearner};
 use qtab_core::policies::EpsilonGreedy;
 use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{Mt19937, Pcg64, Rng, SeedSequence};
-use qtab_core::tasks::{Next, Task};
+use qtab_core::tasks::{Next, Task, Transition};
 use qtab_core::{Budget, Env, Features, Learner, QTable, Trainer};
 
 const EPISODES: usize = 500;
@@ -36,6 +36,9 @@ fn learner(rng: &mut impl Rng) -> QLearner {
     };
     TdLearner { agent, rule: QLearning }
 }
+
+/// The active row of a state, the action taken, and what followed.
+type WalkStep = ([u32; 1], usize, Transition<[u32; 1]>);
 
 /// Random states and actions.
 fn states(rng: &mut Pcg64) -> Vec<(MountainCarState, usize)> {
@@ -68,10 +71,9 @@ fn discretizer(benchmarks: &mut Benchmarks) {
     });
 }
 
-/// The update and the choice of the next action, along a random walk.
-fn update(benchmarks: &mut Benchmarks) {
-    let mut rng = agent_rng();
-    let (mut task, mut learner) = (task(rounding()), learner(&mut rng));
+/// The steps of a car that acts at random.
+fn random_walk(rng: &mut Pcg64) -> Vec<WalkStep> {
+    let mut task = task(rounding());
     let (mut state, mut active) = task.reset().expect(IN_BOUNDS);
     let mut walk = Vec::with_capacity(BATCH);
     while walk.len() < BATCH {
@@ -84,6 +86,13 @@ fn update(benchmarks: &mut Benchmarks) {
             (state, active) = task.reset().expect(IN_BOUNDS);
         }
     }
+    walk
+}
+
+/// The update and the choice of the next action, along a random walk.
+fn update(benchmarks: &mut Benchmarks) {
+    let mut rng = agent_rng();
+    let (walk, mut learner) = (random_walk(&mut rng), learner(&mut rng));
     benchmarks.add("update", "learn", || {
         for &(active, action, transition) in &walk {
             black_box(learner.learn(active, action, transition.reward, transition.next, &mut rng));
@@ -117,8 +126,8 @@ fn train_batch(runs: &mut [QLearningRun<Pcg64>; LANES]) -> u64 {
     runs.iter().flat_map(|run| &run.episodes().lengths).sum::<i64>() as u64
 }
 
-/// The dynamics only, with actions known in advance and no learning: a lower bound for a training run.
-fn lower_bound(steps: u64, actions: &[usize], rng: &mut Pcg64) -> f64 {
+/// The dynamics only, with actions known in advance and no learning.
+fn physics_only(steps: u64, actions: &[usize], rng: &mut Pcg64) -> f64 {
     let car = black_box(MountainCar::default());
     let start = MountainCarState { position: -0.5, velocity: 0.0 };
     let (mut state, mut travelled) = (start, 0.0);
@@ -132,15 +141,41 @@ fn lower_bound(steps: u64, actions: &[usize], rng: &mut Pcg64) -> f64 {
     travelled
 }
 
-/// The article's training run, and the lower bound for as many steps.
+/// The draws only: whether to explore, half of the time, and the random action.
+fn draws_only(steps: u64, rng: &mut Pcg64) -> u32 {
+    let greedy_below = black_box(0.5);
+    (0..steps).map(|_| if rng.random() < greedy_below { 0 } else { rng.integers(3) }).sum()
+}
+
+/// The table only: the largest value of the next row, and the update, along steps known in advance.
+fn table_only(walk: &[WalkStep], agent: &mut Agent<3, EpsilonGreedy, f64>) {
+    for &(active, action, transition) in walk {
+        if let Next::NonTerminal(next) = transition.next {
+            let largest = agent.action_values(next).iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            agent.update(active, action, transition.reward + agent.discount * largest);
+        }
+    }
+}
+
+/// The article's training run, and its lower bounds: each of its parts alone.
 fn run(benchmarks: &mut Benchmarks) {
     let steps = train(trainer(agent_rng()));
     let mut rng = agent_rng();
+    let mut agent = learner(&mut rng).agent;
     let actions: Vec<_> = (0..BATCH).map(|_| rng.integers(3) as usize).collect();
     benchmarks.add("run", "article, PCG64", || train(trainer(agent_rng())));
-    benchmarks.add("run", "lower bound", || {
-        black_box(lower_bound(steps, &actions, &mut rng));
+    benchmarks.add("run", "lower bound: physics", || {
+        black_box(physics_only(steps, &actions, &mut rng));
         steps
+    });
+    benchmarks.add("run", "lower bound: draws", || {
+        black_box(draws_only(steps, &mut rng));
+        steps
+    });
+    let walk = random_walk(&mut agent_rng());
+    benchmarks.add("run", "lower bound: table", || {
+        table_only(&walk, &mut agent);
+        BATCH as u64
     });
     benchmarks.add("run", "article, a batch of 8 on one core", || train_batch(&mut batch_of_runs()));
     benchmarks.add("run", "article, MT19937", || train(trainer(Mt19937::new(0))));

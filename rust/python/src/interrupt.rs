@@ -17,6 +17,17 @@ const POLL: Duration = Duration::from_millis(10);
 ///
 /// Where no thread can be started, this one does the work, and the flag asks for signals.
 pub(crate) fn run_interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&StopFlag<'_>) -> T + Send) -> PyResult<T> {
+    run_polled(py, |_| Ok(()), work)
+}
+
+/// The same, and whenever signals are handled `poll` is called as well; an error that it returns stops the work and is raised.
+///
+/// Where no thread can be started, it is not called.
+pub(crate) fn run_polled<T: Send>(
+    py: Python<'_>,
+    mut poll: impl FnMut(Python<'_>) -> PyResult<()>,
+    work: impl FnOnce(&StopFlag<'_>) -> T + Send,
+) -> PyResult<T> {
     let (stop, done, caller) = (StopFlag::new(), AtomicBool::new(false), thread::current());
     // Where the thread can take it, and this one can take it back.
     let work = Mutex::new(Some(work));
@@ -31,7 +42,7 @@ pub(crate) fn run_interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Stop
         while !done.load(Ordering::Acquire) {
             py.detach(|| thread::park_timeout(POLL));
             if signal.is_ok() {
-                signal = py.check_signals();
+                signal = py.check_signals().and_then(|()| poll(py));
                 if signal.is_err() {
                     stop.set();
                 }

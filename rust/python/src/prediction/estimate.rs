@@ -1,5 +1,6 @@
 //! Estimates with many seeds in one call, on threads of the call's own where Rust steps the environment.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
@@ -11,7 +12,7 @@ use qtab_core::{Budget, StopFlag};
 use super::PredictionSpec;
 use crate::convert::{Seed, Seeds};
 use crate::error::{RunError, invalid};
-use crate::interrupt::run_interruptible;
+use crate::interrupt::run_polled;
 use crate::runs::{Run, RunFactory, python_run};
 use crate::spec::{Fields, RunSpec};
 use crate::training::{EnvironmentSpec, WORK_BETWEEN_CHECKS};
@@ -26,9 +27,10 @@ type FailedRun = (usize, PyErr);
 type Rows<'a> = std::iter::Enumerate<std::slice::ChunksMut<'a, f64>>;
 
 /// Estimates values with one run for each seed on `threads` threads, and writes the weights after each of the ascending
-/// numbers of `episodes` into `weights`, (seeds, episodes, weights). Returns the runs that failed; what they had not reached
-/// is left as it was.
+/// numbers of `episodes` into `weights`, (seeds, episodes, weights). `report` is called now and then with the number of
+/// episodes that all runs have finished. Returns the runs that failed; what they had not reached is left as it was.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are Python's")]
 pub(crate) fn estimate_values(
     py: Python<'_>,
     spec: &Bound<'_, PyAny>,
@@ -37,7 +39,13 @@ pub(crate) fn estimate_values(
     episodes: PyReadonlyArray1<'_, u64>,
     mut weights: PyReadwriteArray3<'_, f64>,
     threads: usize,
+    report: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Vec<FailedRun>> {
+    let finished = AtomicU64::new(0);
+    let report = || match &report {
+        Some(report) => report.call1((finished.load(Ordering::Relaxed),)).map(|_| ()),
+        None => Ok(()),
+    };
     let fields = Fields::new(spec)?;
     let mut run_spec = RunSpec::parse(&fields)?;
     let prediction = PredictionSpec::parse(&Fields::new(prediction)?, run_spec.num_actions)?;
@@ -56,7 +64,8 @@ pub(crate) fn estimate_values(
         EnvironmentSpec::Native(env) => {
             let factory = env.runs(&run_spec, 0)?;
             if calls_python {
-                return Ok(run_attached(py, &*factory, &seeds, episodes, rows));
+                let check = || py.check_signals().and_then(|()| report());
+                return Ok(run_attached(py, &*factory, &seeds, episodes, rows, &finished, check));
             }
             let work = PredictionQueue {
                 factory: &*factory,
@@ -64,19 +73,24 @@ pub(crate) fn estimate_values(
                 episodes,
                 rows: Mutex::new(rows),
                 failed: Mutex::default(),
+                finished: &finished,
             };
-            run_interruptible(py, |stop| {
-                thread::scope(|scope| {
-                    // This thread is one of the workers.
-                    for _ in 1..threads.min(seeds.len()) {
-                        // Threads may run out. Those that there are then do all the work.
-                        if thread::Builder::new().spawn_scoped(scope, || work.run_worker(stop)).is_err() {
-                            break;
+            run_polled(
+                py,
+                |_| report(),
+                |stop| {
+                    thread::scope(|scope| {
+                        // This thread is one of the workers.
+                        for _ in 1..threads.min(seeds.len()) {
+                            // Threads may run out. Those that there are then do all the work.
+                            if thread::Builder::new().spawn_scoped(scope, || work.run_worker(stop)).is_err() {
+                                break;
+                            }
                         }
-                    }
-                    work.run_worker(stop);
-                });
-            })?;
+                        work.run_worker(stop);
+                    });
+                },
+            )?;
             let mut failed = work.failed.into_inner().unwrap_or_else(PoisonError::into_inner);
             failed.sort_by_key(|&(index, _)| index);
             Ok(failed)
@@ -85,8 +99,8 @@ pub(crate) fn estimate_values(
             let [seed] = &seeds[..] else { return Err(invalid("seeds", "one, where Python steps", seeds.len())) };
             let mut run = python_run(py, env, &run_spec, seed, (0, &StopFlag::new()))?.run;
             let Some((_, row)) = rows.next() else { return Ok(Vec::new()) };
-            let check = || py.check_signals().map_err(RunError::from);
-            advance(&mut *run, episodes, row, check).map_err(as_python)?;
+            let check = || Ok(py.check_signals().and_then(|()| report())?);
+            advance(&mut *run, episodes, row, &finished, check).map_err(as_python)?;
             Ok(Vec::new())
         }
     }
@@ -100,11 +114,13 @@ fn run_attached(
     seeds: &[Seed],
     episodes: &[u64],
     rows: Rows<'_>,
+    finished: &AtomicU64,
+    check: impl Fn() -> PyResult<()>,
 ) -> Vec<FailedRun> {
     let mut failed = Vec::new();
     for (seed, (index, row)) in seeds.iter().zip(rows) {
         let done = factory.build(seed, &StopFlag::new()).and_then(|mut built| {
-            advance(&mut *built.run, episodes, row, || Ok(py.check_signals()?)).map_err(as_python)
+            advance(&mut *built.run, episodes, row, finished, || Ok(check()?)).map_err(as_python)
         });
         if let Err(error) = done {
             let diverged = error.is_instance_of::<PyOverflowError>(py);
@@ -124,6 +140,7 @@ struct PredictionQueue<'a> {
     episodes: &'a [u64],
     rows: Mutex<Rows<'a>>,
     failed: Mutex<Vec<FailedRun>>,
+    finished: &'a AtomicU64,
 }
 
 impl PredictionQueue<'_> {
@@ -132,10 +149,9 @@ impl PredictionQueue<'_> {
         while !stop.is_set() {
             let Some((index, row)) = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
             let check = || if stop.is_set() { Err(RunError::Allocation(STOPPED)) } else { Ok(()) };
-            let done = self
-                .factory
-                .build(&self.seeds[index], stop)
-                .and_then(|mut built| advance(&mut *built.run, self.episodes, row, check).map_err(as_python));
+            let done = self.factory.build(&self.seeds[index], stop).and_then(|mut built| {
+                advance(&mut *built.run, self.episodes, row, self.finished, check).map_err(as_python)
+            });
             if let Err(error) = done {
                 self.failed.lock().unwrap_or_else(PoisonError::into_inner).push((index, error));
             }
@@ -145,11 +161,12 @@ impl PredictionQueue<'_> {
 
 const STOPPED: qtab_core::memory::AllocationError = qtab_core::memory::AllocationError::Stopped;
 
-/// Runs to each of these numbers of episodes, and writes the weights then.
+/// Runs to each of these numbers of episodes, and writes the weights then. Adds the finished episodes to `all_finished`.
 fn advance(
     run: &mut dyn Run,
     episodes: &[u64],
     row: &mut [f64],
+    all_finished: &AtomicU64,
     check: impl Fn() -> Result<(), RunError>,
 ) -> Result<(), RunError> {
     let width = row.len() / episodes.len();
@@ -157,12 +174,16 @@ fn advance(
     for (&point, weights) in episodes.iter().zip(row.chunks_mut(width.max(1))) {
         while finished < point {
             let goal = (point - finished).min(EPISODES_AT_ONCE);
-            while (run.episodes().returns.len() as u64) < goal {
+            let mut counted = 0;
+            while counted < goal {
                 let budget = Budget { episodes: goal as usize, work: WORK_BETWEEN_CHECKS };
                 run.advance(budget).map_err(|error| match error {
                     RunError::Diverged { episode } => RunError::Diverged { episode: episode + finished as usize },
                     error => error,
                 })?;
+                let count = run.episodes().returns.len() as u64;
+                all_finished.fetch_add(count - counted, Ordering::Relaxed);
+                counted = count;
                 check()?;
             }
             run.take_episodes();

@@ -1,9 +1,14 @@
-//! The environments of `gymnasium.envs.toy_text` that a transition table does not describe completely.
+//! Of `gymnasium.envs.toy_text`: the environments that a transition table does not describe completely, and the tables
+//! that take Gymnasium long to make.
 
 mod blackjack;
+mod cliff_walking;
 mod hand;
 mod taxi;
+mod taxi_table;
 
 pub use blackjack::{Blackjack, BlackjackState, DEALER_STICKS, DECK};
+pub use cliff_walking::cliff_walking;
 pub use hand::Hand;
 pub use taxi::{Taxi, TaxiState};
+pub use taxi_table::{TaxiMap, taxi_table};

@@ -4,7 +4,8 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use qtab_core::Env;
-use qtab_core::envs::tabular::{Outcome, TabularMdp};
+use qtab_core::envs::tabular::{InvalidMdp, Outcome, TabularMdp};
+use qtab_core::envs::toy_text::{TaxiMap, cliff_walking, taxi_table};
 use qtab_core::memory::reserve;
 
 use crate::convert::double;
@@ -16,8 +17,12 @@ const STATES_BETWEEN_CHECKS: usize = 1024;
 /// The table of an environment. It is an error where `NumPy` would add its probabilities differently than Python floats.
 pub(in crate::envs) fn table_of(env: &Bound<'_, PyAny>) -> PyResult<TabularMdp> {
     let py = env.py();
+    let table = env.getattr(intern!(py, "P"))?;
+    if let Ok(known) = table.cast::<PyTransitionTable>() {
+        return Ok(known.get().0.clone());
+    }
     let initial: Vec<f64> = env.getattr(intern!(py, "initial_state_distrib"))?.extract()?;
-    parse_table(&env.getattr(intern!(py, "P"))?, &initial, true)
+    parse_table(&table, &initial, true)
 }
 
 /// `P[state][action]` lists (probability, state, reward, terminated); `initial` is `initial_state_distrib`. With
@@ -92,7 +97,8 @@ fn parse_outcome(
 }
 
 /// A transition table that was checked.
-#[pyclass(frozen, name = "TransitionTable", module = "qtab._core")]
+#[pyclass(frozen, eq, name = "TransitionTable", module = "qtab._core")]
+#[derive(PartialEq)]
 pub(crate) struct PyTransitionTable(TabularMdp);
 
 #[pymethods]
@@ -104,6 +110,19 @@ impl PyTransitionTable {
         parse_table(P, &initial_state_distrib, false).map(Self)
     }
 
+    /// The table of Gymnasium's `CliffWalkingEnv`.
+    #[staticmethod]
+    fn cliff_walking(is_slippery: bool) -> PyResult<Self> {
+        known(cliff_walking(is_slippery))
+    }
+
+    /// The table of Gymnasium's `TaxiEnv` with a map of 7 lines of 11 characters; without a probability, in dry weather.
+    #[staticmethod]
+    #[pyo3(signature = (lines, rainy_probability))]
+    fn taxi(lines: TaxiMap, rainy_probability: Option<f64>) -> PyResult<Self> {
+        known(taxi_table(&lines, rainy_probability))
+    }
+
     #[getter]
     fn states(&self) -> usize {
         self.0.num_states()
@@ -113,4 +132,8 @@ impl PyTransitionTable {
     fn actions(&self) -> usize {
         self.0.num_actions()
     }
+}
+
+fn known(table: Result<TabularMdp, InvalidMdp>) -> PyResult<PyTransitionTable> {
+    table.map(PyTransitionTable).map_err(|error| PyValueError::new_err(error.to_string()))
 }

@@ -1,0 +1,153 @@
+"""The tables that Rust makes are Gymnasium's, to the last bit, and only Gymnasium's own environments have them."""
+
+from typing import Any
+
+import gymnasium as gym
+import pytest
+from gymnasium.envs.toy_text import cliffwalking, taxi
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import qtab
+from qtab import _core
+from qtab.envs import known_tables
+from qtab.envs.known_tables import known_table
+from support.parity import assert_same_run
+
+IDS = ("CliffWalking-v1", "CliffWalkingSlippery-v1", "Taxi-v4")
+SETTINGS: dict[str, Any] = {"episodes": 30, "max_episode_steps": 40}
+SHORT: dict[str, Any] = {**SETTINGS, "seed": 3}
+
+
+def table_of(env: Any) -> _core.TransitionTable:
+    return _core.TransitionTable(env.unwrapped.P, env.unwrapped.initial_state_distrib)
+
+
+def check(name: str, **kwargs: Any) -> None:
+    known: Any = known_table(gym.spec(name), kwargs)
+    theirs: Any = gym.make(name, **kwargs)
+    assert table_of(theirs) == known.P
+    assert (known.observation_space, known.action_space) == (theirs.observation_space, theirs.action_space)
+    for attribute in ("fickle_passenger", "fickle_probability"):
+        assert getattr(known, attribute, None) == getattr(theirs.unwrapped, attribute, None)
+
+
+@pytest.mark.parametrize("name", [*IDS, *(f"qtab/{name}" for name in IDS)])
+def test_the_tables_are_gymnasiums(name: str) -> None:
+    check(name)
+
+
+@pytest.mark.parametrize("is_slippery", [False, True])
+def test_the_cliffs_are_gymnasiums(is_slippery: bool) -> None:
+    check("CliffWalking-v1", is_slippery=is_slippery)
+
+
+@settings(max_examples=(settings.default or settings()).max_examples // 5)
+@given(st.booleans(), st.booleans(), st.floats(0, 1), st.floats(0, 1))
+def test_the_taxis_are_gymnasiums(is_rainy: bool, fickle_passenger: bool, rain: float, fickle: float) -> None:
+    check(
+        "Taxi-v4",
+        is_rainy=is_rainy,
+        fickle_passenger=fickle_passenger,
+        rainy_probability=rain,
+        fickle_probability=fickle,
+    )
+
+
+def test_tables_that_differ_are_not_equal() -> None:
+    dry, rainy = (_core.TransitionTable.taxi([line.encode() for line in taxi.MAP], rain) for rain in (None, 0.8))
+    assert dry != rainy
+    assert dry == table_of(gym.make("Taxi-v4"))
+    assert _core.TransitionTable.cliff_walking(True) != _core.TransitionTable.cliff_walking(False)
+
+
+def test_other_walls_of_the_taxi_are_followed(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines = [line.replace(":", "|", 1) if index % 2 else line for index, line in enumerate(taxi.MAP)]
+    assert lines != taxi.MAP
+    monkeypatch.setattr(taxi, "MAP", lines)
+    for is_rainy in (False, True):
+        check("Taxi-v4", is_rainy=is_rainy)
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The ids of the environments that Gymnasium makes."""
+    ids: list[str] = []
+    make = gym.make
+
+    def recorded(spec: Any, **kwargs: Any) -> gym.Env:
+        ids.append(spec if isinstance(spec, str) else spec.id)
+        return make(spec, **kwargs)
+
+    monkeypatch.setattr(gym, "make", recorded)
+    return ids
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_gymnasium_makes_no_environment_for_a_known_table(name: str, made: list[str]) -> None:
+    run = qtab.train(name, **SHORT)
+    runs = qtab.train_many(name, [3], tables=True, **SETTINGS)
+    assert made == []
+    assert run.config.backend == "rust"
+    assert run.tables.tobytes() == runs[0].tables.tobytes()
+    assert_same_run(run, qtab.train(gym.make(name, max_episode_steps=40), **SHORT))
+    assert_same_run(run, qtab.train(name, backend="gymnasium", **SHORT))
+    assert qtab.verify(run).equal
+
+
+@pytest.mark.parametrize(
+    "chosen",
+    [
+        {"backend": "gymnasium"},
+        {"action_mask": True},
+        {"discretizer": lambda state: state, "shape": (500,)},
+        {"max_rows": 500},
+    ],
+    ids=["backend", "action_mask", "function", "max_rows"],
+)
+def test_python_steps_and_masks_the_environment_that_gymnasium_makes(chosen: dict[str, Any], made: list[str]) -> None:
+    run = qtab.train("Taxi-v4", **SHORT, **chosen)
+    assert made == ["Taxi-v4"]
+    assert len(run.episode_returns) == 30
+
+
+@pytest.mark.parametrize(
+    ("name", "kwargs"),
+    [
+        ("Taxi-v4", {"is_rainy": 1}),
+        ("Taxi-v4", {"is_rainy": True, "rainy_probability": 1}),
+        ("Taxi-v4", {"is_rainy": True, "rainy_probability": 1.5}),
+        ("Taxi-v4", {"render_mode": None}),
+        ("CliffWalking-v1", {"nothing": 1}),
+        ("FrozenLake-v1", {}),
+    ],
+)
+def test_other_arguments_are_left_to_gymnasium(name: str, kwargs: dict[str, Any]) -> None:
+    assert known_table(gym.spec(name), kwargs) is None
+
+
+def test_a_replaced_method_is_gymnasiums(monkeypatch: pytest.MonkeyPatch) -> None:
+    def free_pickup(env: Any, at: Any, passenger: int, reward: int) -> tuple[int, int]:
+        return (4, 0) if passenger < 4 else (passenger, reward)
+
+    monkeypatch.setattr(taxi.TaxiEnv, "_pickup", free_pickup)
+    assert known_table(gym.spec("Taxi-v4"), {}) is None
+    run = qtab.train("Taxi-v4", **SHORT)
+    assert_same_run(run, qtab.train("Taxi-v4", backend="gymnasium", **SHORT))
+
+
+def test_a_replaced_class_or_map_and_other_directions_are_gymnasiums(monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as patched:
+        patched.setattr(taxi, "MAP", [*taxi.MAP, "+---------+"])
+        assert known_table(gym.spec("Taxi-v4"), {}) is None
+    with monkeypatch.context() as patched:
+        patched.setattr(taxi, "TaxiEnv", type("TaxiEnv", (taxi.TaxiEnv,), {}))
+        assert known_table(gym.spec("Taxi-v4"), {}) is None
+    monkeypatch.setitem(cliffwalking.POSITION_MAPPING, 0, [1, 0])
+    assert known_table(gym.spec("CliffWalking-v1"), {}) is None
+
+
+def test_another_version_of_gymnasium_makes_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gym, "__version__", "1.5.0")
+    assert all(known_table(gym.spec(name), {}) is None for name in IDS)
+    assert gym.__version__ != known_tables.VERSION
