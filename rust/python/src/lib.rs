@@ -58,7 +58,8 @@ mod _core {
         match std::env::var_os("QTAB_SIMD") {
             Some(level) if level == "plain" => SimdLevel::restrict_to_plain(),
             Some(level) if !level.is_empty() => {
-                let message = format!("the environment variable QTAB_SIMD must be 'plain' or unset, got {level:?}");
+                let message =
+                    format!("the environment variable QTAB_SIMD must be 'plain' or unset, got '{}'", level.display());
                 return Err(PyImportError::new_err(message));
             }
             _ => {}

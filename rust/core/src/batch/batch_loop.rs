@@ -112,8 +112,8 @@ where
         }
         if taken == BLOCK && running {
             taken = 0;
-            for lane in 0..K {
-                decisions.draw::<N>(lane, 0, lanes.explore_from[lane], &mut rngs[lane]);
+            for (lane, rng) in rngs.iter_mut().enumerate() {
+                decisions.draw::<N>(lane, 0, lanes.explore_from[lane], rng);
             }
         }
     }

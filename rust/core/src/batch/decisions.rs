@@ -5,7 +5,7 @@
 
 use std::hint::select_unpredictable;
 
-use crate::random::{Position, PrefetchedPcg64};
+use crate::random::{DrawIndex, PrefetchedPcg64};
 
 /// The number of steps that decisions are drawn for in advance. Few, because those after the end of an episode are drawn
 /// again, with the next epsilon.
@@ -19,7 +19,7 @@ pub(super) struct Decisions<const K: usize> {
     /// The random action of each lane after each step, or [`GREEDY`].
     pub(super) actions: [[usize; K]; BLOCK],
     /// Where each lane's decisions begin: at this step, with its generator at this position.
-    starts: [(usize, Position); K],
+    starts: [(usize, DrawIndex); K],
 }
 
 impl<const K: usize> Decisions<K> {

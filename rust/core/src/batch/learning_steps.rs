@@ -108,8 +108,8 @@ impl<E, F> Shared<E, F> {
             lanes.row = next_row;
             if any_terminal {
                 cold_path();
-                for lane in 0..K {
-                    lanes.episode_return[lane] += env.reward(terminal[lane]);
+                for (episode_return, &terminal) in lanes.episode_return.iter_mut().zip(&terminal) {
+                    *episode_return += env.reward(terminal);
                 }
                 return Stop { steps: steps + 1, terminal: Some(terminal), out_of_bounds: false };
             }

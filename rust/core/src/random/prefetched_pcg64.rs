@@ -33,7 +33,7 @@ struct Half {
 
 /// A position in the draws, to return to.
 #[derive(Clone, Copy)]
-pub(crate) struct Position {
+pub(crate) struct DrawIndex {
     /// The number of words drawn before.
     words: u64,
     half: Half,
@@ -61,12 +61,12 @@ impl PrefetchedPcg64 {
     }
 
     /// The position after the draws made so far.
-    pub(crate) fn position(&self) -> Position {
-        Position { words: self.skipped + self.used as u64, half: self.half }
+    pub(crate) fn position(&self) -> DrawIndex {
+        DrawIndex { words: self.skipped + self.used as u64, half: self.half }
     }
 
     /// Returns to an earlier position.
-    pub(crate) fn rewind(&mut self, position: Position) {
+    pub(crate) fn rewind(&mut self, position: DrawIndex) {
         self.half = position.half;
         if let Some(used) = position.words.checked_sub(self.skipped) {
             self.used = used as usize;
