@@ -20,7 +20,9 @@ use pyo3::prelude::*;
 // The module needs no interpreter's lock: docs/explanation/free_threading.md lists what threads share, and what guards it.
 #[pymodule(gil_used = false)]
 mod _core {
+    use pyo3::exceptions::PyImportError;
     use pyo3::types::PyTuple;
+    use qtab_core::numeric::SimdLevel;
 
     use super::spec::{ALGORITHMS, DISCRETIZERS, SCHEDULES};
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
@@ -49,10 +51,19 @@ mod _core {
     #[pymodule_export]
     const BUILD_PROFILE: &str = if cfg!(debug_assertions) { "debug" } else { "release" };
 
-    /// Adds the words that a spec may use.
+    /// Adds the words that a spec may use. `QTAB_SIMD=plain` turns wide vector instructions off.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         let py = module.py();
+        match std::env::var_os("QTAB_SIMD") {
+            Some(level) if level == "plain" => SimdLevel::restrict_to_plain(),
+            Some(level) if !level.is_empty() => {
+                let message =
+                    format!("the environment variable QTAB_SIMD must be 'plain' or unset, got '{}'", level.display());
+                return Err(PyImportError::new_err(message));
+            }
+            _ => {}
+        }
         module.add("ALGORITHMS", PyTuple::new(py, ALGORITHMS.iter().map(|(name, _)| name))?)?;
         module.add("DISCRETIZERS", PyTuple::new(py, DISCRETIZERS.iter().map(|(name, _)| name))?)?;
         module.add("SCHEDULES", PyTuple::new(py, SCHEDULES.iter().map(|(name, _)| name))?)

@@ -1,29 +1,26 @@
 //! The training loop over the lanes of a batch.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-#![expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be an unpredictable branch")]
-
-use std::hint::select_unpredictable;
 
 use super::SimdTrainer;
+use super::decisions::{BLOCK, Decisions};
 use super::episode_lanes::EpisodeLanes;
+use super::learning_steps::Shared;
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, OutOfBounds};
 use crate::learners::Agent;
-use crate::numeric::cold_path;
-use crate::q_table::TerminalUpdate;
+use crate::numeric::SimdCode;
 use crate::random::PrefetchedPcg64;
 use crate::schedules::StepSize;
 use crate::trainer::Budget;
 
-/// Compatible runs and their budget, as a closure that `pulp` compiles for each instruction set.
+/// Compatible runs and their budget, compiled for each [`SimdLevel`](crate::numeric::SimdLevel).
 pub(super) struct BatchLoop<'a, T, const K: usize> {
     pub(super) runs: &'a mut [T; K],
     pub(super) budget: Budget,
 }
 
-impl<E, F, A, const N: usize, const M: usize, const K: usize> pulp::NullaryFnOnce
-    for BatchLoop<'_, SimdTrainer<E, F, N, A>, K>
+impl<E, F, A, const N: usize, const M: usize, const K: usize> SimdCode for BatchLoop<'_, SimdTrainer<E, F, N, A>, K>
 where
     E: SimdEnv<M> + Env<Observation = [f32; M]>,
     F: BatchFeatures<M>,
@@ -34,10 +31,10 @@ where
     type Output = Result<u64, (usize, OutOfBounds)>;
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
+    fn run<const FUSED: bool>(self) -> Self::Output {
         let Self { runs, budget } = self;
         let mut rngs = runs.each_ref().map(|run| PrefetchedPcg64::new(&run.rng));
-        let result = advance(runs, &mut rngs, budget);
+        let result = advance::<_, _, _, N, M, K, FUSED>(runs, &mut rngs, budget);
         for (run, rng) in runs.iter_mut().zip(rngs) {
             run.rng = rng.into_pcg64();
         }
@@ -46,7 +43,7 @@ where
 }
 
 #[inline(always)]
-fn advance<E, F, A, const N: usize, const M: usize, const K: usize>(
+fn advance<E, F, A, const N: usize, const M: usize, const K: usize, const FUSED: bool>(
     runs: &mut [SimdTrainer<E, F, N, A>; K],
     rngs: &mut [PrefetchedPcg64; K],
     budget: Budget,
@@ -57,94 +54,75 @@ where
     A: StepSize,
 {
     let mut lanes = EpisodeLanes::<M, K>::begin(runs, rngs)?;
-    let env = runs[0].task.env;
-    let features = runs[0].task.features.clone();
     let max_episode_steps = runs[0].task.max_episode_steps;
     let Agent { discount, terminal_update, .. } = runs[0].learner.agent;
+    let shared = Shared { env: runs[0].task.env, features: runs[0].task.features.clone(), discount, terminal_update };
+    let mut decisions = Decisions::new(rngs);
+    let mut tables = [const { Vec::new() }; K];
+    for lane in 0..K {
+        runs[lane].learner.agent.table.swap_storage(&mut tables[lane]);
+        decisions.draw::<N>(lane, 0, lanes.explore_from[lane], &mut rngs[lane]);
+    }
     let mut result = Ok(0);
     let mut running = true;
-    let mut steps = budget.work;
-    while running && steps > 0 {
-        let before = lanes.fields;
-        let terminal = env.step_soa(&mut lanes.fields, &lanes.action);
-        let observations = lanes.fields.map(|field| field.map(|number| number as f32));
-        let Some(rows) = features.active_rows_batch(&observations) else {
-            lanes.fields = before;
-            result = Ok(steps);
+    let mut steps_left = budget.work;
+    // The number of steps of the block that have been taken.
+    let mut taken = 0;
+    while running && steps_left > 0 {
+        // An episode takes a step even if its time limit is 0.
+        let until_limit = lanes.elapsed.map(|elapsed| max_episode_steps.saturating_sub(elapsed).max(1));
+        let most = until_limit.into_iter().fold(steps_left.min((BLOCK - taken) as u64), u64::min) as usize;
+        let following = &decisions.actions[taken..][..most];
+        let stop = shared.learning_steps::<A, N, M, K, FUSED>(runs, &mut tables, &mut lanes, following);
+        taken += stop.steps;
+        steps_left -= stop.steps as u64;
+        for elapsed in &mut lanes.elapsed {
+            *elapsed += stop.steps as u64;
+        }
+        if stop.out_of_bounds {
+            result = Ok(steps_left);
             break;
-        };
-        steps -= 1;
-        let next_row_starts = rows.map(|row| row * N);
-        let mut done = [false; K];
-        let mut any_done = false;
-        for lane in 0..K {
-            lanes.elapsed[lane] += 1;
-            lanes.episode_return[lane] += env.reward(terminal[lane]);
-            done[lane] = terminal[lane] | (lanes.elapsed[lane] >= max_episode_steps);
-            any_done |= done[lane];
         }
+        let terminal = stop.terminal.unwrap_or([false; K]);
         for lane in 0..K {
-            let agent = &mut runs[lane].learner.agent;
-            let (weight_index, next_row_start) = (lanes.row_start[lane] + lanes.action[lane], next_row_starts[lane]);
-            agent.learning_rate.visit(weight_index);
-            let learning_rate = agent.learning_rate.at(weight_index);
-            let values = agent.table.values_mut();
-            let value = values[weight_index];
-            if terminal[lane] {
-                cold_path();
-                let reward = env.reward(true);
-                values[weight_index] = match terminal_update {
-                    TerminalUpdate::Assign => reward,
-                    TerminalUpdate::Target => value + learning_rate * (reward - value),
-                };
+            if !terminal[lane] && lanes.elapsed[lane] < max_episode_steps {
                 continue;
             }
-            let (_, largest) = argmax_and_maximum::<N>(values, next_row_start);
-            values[weight_index] = value + learning_rate * ((env.reward(false) + discount * largest) - value);
-            if done[lane] {
-                cold_path();
+            // No action follows the last step.
+            decisions.rewind::<N>(lane, taken - 1, lanes.explore_from[lane], &mut rngs[lane]);
+            let run = &mut runs[lane];
+            run.finish_episode(lanes.episode_return[lane], lanes.elapsed[lane].cast_signed(), terminal[lane]);
+            lanes.active[lane] = false;
+            running &= run.episodes.returns.len() < budget.episodes;
+            if !running {
                 continue;
             }
-            let (greedy, _) = argmax_and_maximum::<N>(values, next_row_start);
-            let (explores, random) = rngs[lane].explore(lanes.greedy_below[lane], N as u32);
-            lanes.action[lane] = select_unpredictable(explores, random as usize, greedy);
-            lanes.row_start[lane] = next_row_start;
-        }
-        if any_done {
-            for lane in (0..K).filter(|&lane| done[lane]) {
-                let run = &mut runs[lane];
-                let length = lanes.elapsed[lane].cast_signed();
-                run.finish_episode(lanes.episode_return[lane], length, terminal[lane]);
-                lanes.active[lane] = false;
-                running &= run.episodes.returns.len() < budget.episodes;
-                if !running {
+            run.learner.agent.table.swap_storage(&mut tables[lane]);
+            let begun = run.begin_episode(&mut rngs[lane]);
+            run.learner.agent.table.swap_storage(&mut tables[lane]);
+            match begun {
+                Ok(episode) => lanes.set(lane, &episode, run),
+                Err(error) => {
+                    result = Err((lane, error));
+                    running = false;
                     continue;
                 }
-                match run.begin_episode(&mut rngs[lane]) {
-                    Ok(episode) => lanes.set(lane, &episode, run),
-                    Err(error) => {
-                        result = Err((lane, error));
-                        running = false;
-                    }
-                }
+            }
+            decisions.draw::<N>(lane, taken, lanes.explore_from[lane], &mut rngs[lane]);
+        }
+        if taken == BLOCK && running {
+            taken = 0;
+            for (lane, rng) in rngs.iter_mut().enumerate() {
+                decisions.draw::<N>(lane, 0, lanes.explore_from[lane], rng);
             }
         }
     }
     for (lane, run) in runs.iter_mut().enumerate() {
-        run.episode = lanes.get::<E::State, N>(lane);
+        run.learner.agent.table.swap_storage(&mut tables[lane]);
+        if lanes.active[lane] {
+            decisions.rewind::<N>(lane, taken, lanes.explore_from[lane], &mut rngs[lane]);
+        }
+        run.episode = lanes.get::<E::State>(lane);
     }
     result
-}
-
-/// The argmax of a row, the first of equal values, and the maximum, without a branch.
-#[inline(always)]
-fn argmax_and_maximum<const N: usize>(values: &[f64], row_start: usize) -> (usize, f64) {
-    let row = &values[row_start..][..N];
-    let (mut best, mut largest) = (0, row[0]);
-    for (action, &value) in row.iter().enumerate().skip(1) {
-        let larger = value > largest;
-        best = select_unpredictable(larger, action, best);
-        largest = select_unpredictable(larger, value, largest);
-    }
-    (best, largest)
 }

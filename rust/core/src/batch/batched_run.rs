@@ -4,6 +4,7 @@ use super::SimdTrainer;
 use super::batch_loop::BatchLoop;
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, Features, OutOfBounds};
+use crate::numeric::SimdLevel;
 use crate::schedules::StepSize;
 use crate::trainer::Budget;
 use crate::training_error::TrainingError;
@@ -40,20 +41,34 @@ where
         runs: &mut [Self; K],
         budget: Budget,
     ) -> Result<(), (usize, TrainingError<OutOfBounds>)> {
-        if runs.iter().any(|run| run.episodes.returns.len() >= budget.episodes) {
-            return Ok(());
-        }
-        for (lane, run) in runs.iter_mut().enumerate() {
-            run.reserve(budget).map_err(|error| (lane, error.into()))?;
-        }
-        let mut work = budget.work;
-        if runs[0].task.env.is_exact() && runs.iter().all(|run| compatible(run, &runs[0])) {
-            let advanced = pulp::Arch::new().dispatch(BatchLoop { runs, budget });
-            work = advanced.map_err(|(lane, error)| (lane, TrainingError::Task(error)))?;
-        }
-        let mut lanes = runs.iter_mut().enumerate();
-        lanes.try_for_each(|(lane, run)| run.advance(Budget { work, ..budget }).map_err(|error| (lane, error)))
+        advance_all_at(SimdLevel::detect(), runs, budget)
     }
+}
+
+/// [`BatchedRun::advance_all`] with these vector instructions.
+pub(super) fn advance_all_at<E, F, A, const N: usize, const M: usize, const K: usize>(
+    level: SimdLevel,
+    runs: &mut [SimdTrainer<E, F, N, A>; K],
+    budget: Budget,
+) -> Result<(), (usize, TrainingError<OutOfBounds>)>
+where
+    E: SimdEnv<M> + Env<Observation = [f32; M]>,
+    F: BatchFeatures<M>,
+    A: StepSize,
+{
+    if runs.iter().any(|run| run.episodes.returns.len() >= budget.episodes) {
+        return Ok(());
+    }
+    for (lane, run) in runs.iter_mut().enumerate() {
+        run.reserve(budget).map_err(|error| (lane, error.into()))?;
+    }
+    let mut work = budget.work;
+    if runs[0].task.env.is_exact() && runs.iter().all(|run| compatible(run, &runs[0])) {
+        let advanced = level.run(BatchLoop { runs, budget });
+        work = advanced.map_err(|(lane, error)| (lane, TrainingError::Task(error)))?;
+    }
+    let mut lanes = runs.iter_mut().enumerate();
+    lanes.try_for_each(|(lane, run)| run.advance(Budget { work, ..budget }).map_err(|error| (lane, error)))
 }
 
 /// Whether two runs share all that a batch reads once, and neither can overflow.

@@ -15,12 +15,12 @@ pub(super) struct EpisodeLanes<const M: usize, const K: usize> {
     /// The components of the states.
     pub(super) fields: [[f64; K]; M],
     pub(super) elapsed: [u64; K],
-    /// The index of the first value of the current row.
-    pub(super) row_start: [usize; K],
+    /// The row of the current state.
+    pub(super) row: [usize; K],
     pub(super) action: [usize; K],
     pub(super) episode_return: [f64; K],
-    /// `1 - epsilon`: a random number below this selects the greedy action.
-    pub(super) greedy_below: [f64; K],
+    /// What [`PrefetchedPcg64::explore_from`] returns for `1 - epsilon`.
+    pub(super) explore_from: [u64; K],
 }
 
 type Episode<S> = EpisodeState<TimedState<S>, [u32; 1]>;
@@ -45,10 +45,10 @@ impl<const M: usize, const K: usize> EpisodeLanes<M, K> {
             active: [false; K],
             fields: [[0.0; K]; M],
             elapsed: [0; K],
-            row_start: [0; K],
+            row: [0; K],
             action: [0; K],
             episode_return: [0.0; K],
-            greedy_below: [0.0; K],
+            explore_from: [0; K],
         };
         for (lane, run) in runs.iter_mut().enumerate() {
             if let Some(episode) = run.episode.take() {
@@ -71,17 +71,17 @@ impl<const M: usize, const K: usize> EpisodeLanes<M, K> {
         self.active[lane] = true;
         scatter(&mut self.fields, lane, episode.state.state);
         self.elapsed[lane] = episode.state.elapsed;
-        self.row_start[lane] = episode.active[0] as usize * N;
+        self.row[lane] = episode.active[0] as usize;
         self.action[lane] = episode.action;
         self.episode_return[lane] = episode.episode_return;
-        self.greedy_below[lane] = 1.0 - run.learner.agent.policy.epsilon();
+        self.explore_from[lane] = PrefetchedPcg64::explore_from(1.0 - run.learner.agent.policy.epsilon());
     }
 
     /// The episode of a lane.
-    pub(super) fn get<S: From<[f64; M]>, const N: usize>(&self, lane: usize) -> Option<Episode<S>> {
+    pub(super) fn get<S: From<[f64; M]>>(&self, lane: usize) -> Option<Episode<S>> {
         self.active[lane].then(|| EpisodeState {
             state: TimedState { state: gather(&self.fields, lane), elapsed: self.elapsed[lane] },
-            active: [(self.row_start[lane] / N) as u32],
+            active: [self.row[lane] as u32],
             action: self.action[lane],
             episode_return: self.episode_return[lane],
             length: self.elapsed[lane].cast_signed(),

@@ -6,7 +6,9 @@
 
 mod batch_loop;
 mod batched_run;
+mod decisions;
 mod episode_lanes;
+mod learning_steps;
 mod simd_trainer;
 #[cfg(test)]
 mod tests;

@@ -2,11 +2,13 @@
 
 use proptest::prelude::*;
 
-use super::{BatchedRun, LANES, SimdTrainer};
+use super::batched_run::advance_all_at;
+use super::{LANES, SimdTrainer};
 use crate::envs::classic_control::{CartPole, MountainCar};
 use crate::envs::{Env, SimdEnv};
 use crate::features::{Axis, BatchFeatures, Bins, Edges, Rounding};
 use crate::learners::{Agent, QLearning, TdLearner};
+use crate::numeric::SimdLevel;
 use crate::policies::EpsilonGreedy;
 use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::{Pcg64, SeedSequence};
@@ -89,8 +91,25 @@ fn check<E, F, A, const N: usize, const M: usize, const K: usize>(
     F: BatchFeatures<M>,
     A: StepSize,
 {
+    for level in [SimdLevel::PLAIN, SimdLevel::detect()] {
+        check_at(level, seeds, &make, episodes, chunks);
+    }
+}
+
+/// The same with these vector instructions.
+fn check_at<E, F, A, const N: usize, const M: usize, const K: usize>(
+    level: SimdLevel,
+    seeds: [u32; K],
+    make: impl Fn(u32) -> SimdTrainer<E, F, N, A>,
+    episodes: usize,
+    chunks: &[u64],
+) where
+    E: SimdEnv<M> + Env<Observation = [f32; M]>,
+    F: BatchFeatures<M>,
+    A: StepSize,
+{
     let mut runs = seeds.map(&make);
-    let failed = chunks.iter().find_map(|&work| SimdTrainer::advance_all(&mut runs, Budget { episodes, work }).err());
+    let failed = chunks.iter().find_map(|&work| advance_all_at(level, &mut runs, Budget { episodes, work }).err());
     let end = Budget { episodes, work: u64::MAX };
     for (lane, (mut run, seed)) in runs.into_iter().zip(seeds).enumerate() {
         let result = match failed {

@@ -101,8 +101,8 @@ impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
             for (row, &value) in rows.iter_mut().zip(values) {
                 let cell = axis.rounded(value);
                 inside &= cell < size;
-                // Out of bounds, the cell may be any integer.
-                *row = row.wrapping_mul(size).wrapping_add(cell);
+                // Rows are below 2³², whose product is one instruction. Out of bounds, the cell may be any integer.
+                *row = ((*row & 0xffff_ffff) * size).wrapping_add(cell);
             }
         }
         inside.then_some(rows.map(|row| row as usize))

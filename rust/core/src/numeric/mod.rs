@@ -7,6 +7,7 @@ mod float;
 mod numpy_f32_cos_sin;
 mod python_float;
 mod scalar;
+mod simd_level;
 mod sum;
 
 pub(crate) use argmax::{argmax, maximum};
@@ -15,6 +16,8 @@ pub use float::Float;
 pub use numpy_f32_cos_sin::numpy_f32_cos_sin;
 pub(crate) use python_float::{clip, modulo, squared};
 pub use scalar::Scalar;
+pub(crate) use simd_level::SimdCode;
+pub use simd_level::SimdLevel;
 pub(crate) use sum::sum;
 
 /// The number of SIMD lanes that are computed together: eight f64 numbers fill two AVX2 registers.

@@ -43,6 +43,12 @@ impl<const N: usize> QTable<N> {
         &mut self.values[..self.len]
     }
 
+    /// Exchanges the storage of the values, and what a learner keeps behind them. The table can be used again when it has
+    /// been given back.
+    pub(crate) fn swap_storage(&mut self, storage: &mut Vec<f64>) {
+        std::mem::swap(&mut self.values, storage);
+    }
+
     /// The number of values per row.
     #[inline]
     pub fn num_actions(&self) -> usize {

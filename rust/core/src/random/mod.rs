@@ -11,7 +11,7 @@ mod standard_normal;
 pub use agent_rng::AgentRng;
 pub use mt19937::Mt19937;
 pub use pcg64::Pcg64;
-pub(crate) use prefetched_pcg64::PrefetchedPcg64;
+pub(crate) use prefetched_pcg64::{DrawIndex, PrefetchedPcg64};
 pub(crate) use rng::TWO_POW_53;
 pub use rng::{NoRng, Rng};
 pub use seed_sequence::SeedSequence;

@@ -36,6 +36,12 @@ impl Pcg64 {
         self.buffered_u32 = buffered_u32;
     }
 
+    /// Skips so many words.
+    pub(crate) fn advance(&mut self, words: u64) {
+        self.engine.advance(u128::from(words));
+        self.words_drawn += words;
+    }
+
     #[inline]
     pub(crate) fn next_u64(&mut self) -> u64 {
         self.words_drawn += 1;
@@ -78,7 +84,7 @@ pub(crate) fn u64_to_f64(word: u64) -> f64 {
 
 /// The upper 53 bits of a word.
 #[inline]
-fn upper_53_bits(word: u64) -> u64 {
+pub(super) fn upper_53_bits(word: u64) -> u64 {
     word >> 11
 }
 

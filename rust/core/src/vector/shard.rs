@@ -1,5 +1,7 @@
 //! The sub-environments that one thread steps.
 
+use std::ops::Range;
+
 use super::vector_config::VectorConfig;
 use super::{Autoreset, StepBuffers};
 use crate::StopFlag;
@@ -7,6 +9,9 @@ use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::Env;
 use crate::memory::{AllocationError, filled, with_capacity};
 use crate::random::Rng;
+
+/// So many sub-environments are looked through together for episodes that end.
+const CHUNK: usize = 16;
 
 /// The episodes of the sub-environments that one thread steps, as a structure of arrays.
 #[derive(Clone, Debug)]
@@ -92,22 +97,39 @@ impl<S: Copy> Shard<S> {
         let resets_done = config.autoreset == Autoreset::NextStep;
         assert!(resets_done || !self.done.contains(&true), "a finished episode must be reset before the next step");
         env.step_batch(&mut self.states, actions, rngs, rewards, terminated, &self.done);
-        for (index, rng) in rngs.iter_mut().enumerate() {
-            if self.done[index] {
-                self.begin(index, env.reset(rng));
-                (rewards[index], terminated[index], truncated[index]) = (0.0, false, false);
+        for first in (0..rngs.len()).step_by(CHUNK) {
+            let chunk = first..rngs.len().min(first + CHUNK);
+            if !self.count_steps(chunk.clone(), config.max_episode_steps, terminated, truncated) {
                 continue;
             }
-            self.elapsed[index] += 1;
-            truncated[index] = self.elapsed[index] >= config.max_episode_steps;
-            self.done[index] = terminated[index] || truncated[index];
-            if self.done[index] && config.autoreset == Autoreset::SameStep {
-                self.final_states.push((index, self.states[index]));
-                self.begin(index, env.reset(rng));
+            for index in chunk {
+                if self.done[index] {
+                    self.begin(index, env.reset(&mut rngs[index]));
+                    (rewards[index], terminated[index], truncated[index]) = (0.0, false, false);
+                    continue;
+                }
+                self.done[index] = terminated[index] || truncated[index];
+                if self.done[index] && config.autoreset == Autoreset::SameStep {
+                    self.final_states.push((index, self.states[index]));
+                    self.begin(index, env.reset(&mut rngs[index]));
+                }
             }
         }
         for (observation, state) in observations.iter_mut().zip(&self.states) {
             *observation = env.observe(state);
         }
+    }
+
+    /// Counts a step of these sub-environments and finds those at the time limit. Returns whether an episode ends or has
+    /// ended. Most chunks have none, and are done after this loop, which has no branch.
+    fn count_steps(&mut self, chunk: Range<usize>, limit: u64, terminated: &[bool], truncated: &mut [bool]) -> bool {
+        let flags = truncated[chunk.clone()].iter_mut().zip(&terminated[chunk.clone()]).zip(&self.done[chunk.clone()]);
+        let mut any = false;
+        for (elapsed, ((truncated, terminated), done)) in self.elapsed[chunk].iter_mut().zip(flags) {
+            *elapsed += 1;
+            *truncated = *elapsed >= limit;
+            any |= *truncated | terminated | done;
+        }
+        any
     }
 }

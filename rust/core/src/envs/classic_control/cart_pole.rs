@@ -220,7 +220,11 @@ impl SimdEnv<4> for CartPole {
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn step_soa<const K: usize>(&self, fields: &mut [[f64; K]; 4], actions: &[usize; K]) -> [bool; K] {
+    fn step_soa<const FUSED: bool, const K: usize>(
+        &self,
+        fields: &mut [[f64; K]; 4],
+        actions: &[usize; K],
+    ) -> [bool; K] {
         self.transition(fields, actions.map(|action| self.force(action)))
     }
 

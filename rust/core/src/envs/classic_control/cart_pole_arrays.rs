@@ -2,7 +2,7 @@
 
 use super::CartPole;
 use crate::envs::SimdEnv;
-use crate::numeric::LANES;
+use crate::numeric::{LANES, SimdCode, SimdLevel};
 
 impl CartPole {
     /// One step of many cart-poles, in place. `state` holds an array for each component. An action is 0 or 1. The results
@@ -16,7 +16,7 @@ impl CartPole {
         let in_lanes = count / LANES * LANES;
         let [x, x_dot, theta, theta_dot] = state.map(|field| field.split_at_mut(in_lanes));
         let (actions, terminated) = (actions.split_at(in_lanes), terminated.split_at_mut(in_lanes));
-        pulp::Arch::new().dispatch(ArrayChunks {
+        SimdLevel::detect().run(ArrayChunks {
             env: *self,
             state: [x.0, x_dot.0, theta.0, theta_dot.0],
             actions: actions.0,
@@ -24,13 +24,13 @@ impl CartPole {
         });
         for (index, (&action, terminated)) in actions.1.iter().zip(terminated.1).enumerate() {
             let mut fields = [[x.1[index]], [x_dot.1[index]], [theta.1[index]], [theta_dot.1[index]]];
-            [*terminated] = self.step_soa(&mut fields, &[action as usize]);
+            [*terminated] = self.step_soa::<false, _>(&mut fields, &[action as usize]);
             [[x.1[index]], [x_dot.1[index]], [theta.1[index]], [theta_dot.1[index]]] = fields;
         }
     }
 }
 
-/// Cart-poles in chunks of [`LANES`], as a closure that `pulp` compiles for each instruction set.
+/// Cart-poles in chunks of [`LANES`], compiled for each [`SimdLevel`].
 struct ArrayChunks<'a> {
     env: CartPole,
     state: [&'a mut [f64]; 4],
@@ -38,17 +38,17 @@ struct ArrayChunks<'a> {
     terminated: &'a mut [bool],
 }
 
-impl pulp::NullaryFnOnce for ArrayChunks<'_> {
+impl SimdCode for ArrayChunks<'_> {
     type Output = ();
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn call(self) {
+    fn run<const FUSED: bool>(self) {
         let [x, x_dot, theta, theta_dot] = self.state.map(|field| field.as_chunks_mut::<LANES>().0);
         let (actions, terminated) = (self.actions.as_chunks::<LANES>().0, self.terminated.as_chunks_mut::<LANES>().0);
         for (index, (actions, terminated)) in actions.iter().zip(terminated).enumerate() {
             let mut fields = [x[index], x_dot[index], theta[index], theta_dot[index]];
-            *terminated = self.env.step_soa(&mut fields, &actions.map(|action| action as usize));
+            *terminated = self.env.step_soa::<FUSED, _>(&mut fields, &actions.map(|action| action as usize));
             [x[index], x_dot[index], theta[index], theta_dot[index]] = fields;
         }
     }

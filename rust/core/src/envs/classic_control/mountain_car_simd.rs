@@ -11,15 +11,19 @@ use crate::numeric::cosine;
 impl SimdEnv<2> for MountainCar {
     /// The accelerations must be finite: infinite ones can cancel to NaN, and `map_cos` needs finite angles.
     fn is_exact(&self) -> bool {
-        cosine::IS_EXACT && self.force.is_finite() && self.gravity.is_finite()
+        cosine::is_exact() && self.force.is_finite() && self.gravity.is_finite()
     }
 
     #[inline(always)]
-    fn step_soa<const K: usize>(&self, [position, velocity]: &mut [[f64; K]; 2], actions: &[usize; K]) -> [bool; K] {
-        let acceleration = actions.map(|action| DIRECTIONS[action] * self.force);
+    fn step_soa<const FUSED: bool, const K: usize>(
+        &self,
+        [position, velocity]: &mut [[f64; K]; 2],
+        actions: &[usize; K],
+    ) -> [bool; K] {
+        let acceleration = actions.map(|action| direction(action) * self.force);
         let angle = position.map(|position| 3.0 * position);
         let before = *velocity;
-        cosine::map_cos(
+        cosine::map_cos::<FUSED, K>(
             &angle,
             |lane, cosine| before[lane] + (acceleration[lane] + cosine * (-self.gravity)),
             velocity,
@@ -40,6 +44,14 @@ impl SimdEnv<2> for MountainCar {
     fn reward(&self, _terminated: bool) -> f64 {
         REWARD
     }
+}
+
+/// `DIRECTIONS[action]` without a memory access: 2⁵² + `action` has the action in its low bits.
+#[inline(always)]
+fn direction(action: usize) -> f64 {
+    const TWO_POW_52: f64 = 4_503_599_627_370_496.0;
+    debug_assert!(action < DIRECTIONS.len(), "actions are checked before");
+    f64::from_bits(TWO_POW_52.to_bits() | action as u64) - (TWO_POW_52 - DIRECTIONS[0])
 }
 
 /// `np.clip` without a branch. The value must not be NaN.

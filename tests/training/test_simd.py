@@ -1,0 +1,46 @@
+"""Batches and vector environments give the same numbers with and without wide vector instructions."""
+
+import hashlib
+import os
+import subprocess
+import sys
+
+import gymnasium as gym
+import numpy as np
+
+import qtab
+
+PROGRAM = "from tests.training.test_simd import digest; print(digest())"
+
+
+def digest() -> str:
+    """Hashes the tables of batches, and the observations of a vector environment."""
+    hashed = hashlib.sha256()
+    for env_id in ("MountainCar-v0", "CartPole-v1"):
+        runs = qtab.train_many(env_id, seeds=range(8), episodes=30, tables=True, threads=1)
+        assert runs.tables is not None
+        hashed.update(runs.episode_returns.tobytes() + runs.tables.tobytes())
+        envs = gym.make_vec(f"qtab/{env_id}", num_envs=19)
+        envs.reset(seed=0)
+        rng = np.random.default_rng(0)
+        for _ in range(300):
+            observations, *_ = envs.step(rng.integers(2, size=19))
+            hashed.update(observations.tobytes())
+        envs.close()
+    return hashed.hexdigest()
+
+
+def run(simd: str) -> subprocess.CompletedProcess[str]:
+    """Computes the digest in a process with this value of the environment variable."""
+    env = {**os.environ, "QTAB_SIMD": simd}
+    return subprocess.run([sys.executable, "-c", PROGRAM], env=env, capture_output=True, text=True, check=False)
+
+
+def test_plain_vector_instructions_give_the_same_numbers() -> None:
+    plain = run("plain")
+    assert plain.stdout.strip() == digest(), plain.stderr
+
+
+def test_an_unknown_level_is_refused() -> None:
+    refused = run("avx9")
+    assert "QTAB_SIMD must be 'plain' or unset, got 'avx9'" in refused.stderr
