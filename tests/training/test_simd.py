@@ -9,8 +9,9 @@ import gymnasium as gym
 import numpy as np
 
 import qtab
+from support.repository import ROOT
 
-PROGRAM = "from tests.training.test_simd import digest; print(digest())"
+PROGRAM = "from training.test_simd import digest; print(digest())"
 
 
 def digest() -> str:
@@ -33,7 +34,9 @@ def digest() -> str:
 def run(simd: str) -> subprocess.CompletedProcess[str]:
     """Computes the digest in a process with this value of the environment variable."""
     env = {**os.environ, "QTAB_SIMD": simd}
-    return subprocess.run([sys.executable, "-c", PROGRAM], env=env, capture_output=True, text=True, check=False)
+    return subprocess.run(
+        [sys.executable, "-c", PROGRAM], env=env, capture_output=True, text=True, check=False, cwd=ROOT / "tests"
+    )
 
 
 def test_plain_vector_instructions_give_the_same_numbers() -> None:

@@ -4,10 +4,11 @@
 
 use super::{Budget, Trainer};
 use crate::learners::Learner;
+use crate::numeric::{SimdCode, SimdLevel};
 use crate::random::Rng;
 use crate::tasks::Task;
 
-/// A run and its budget, as a closure that `pulp` compiles for each instruction set.
+/// A run and its budget, compiled for each [`SimdLevel`].
 pub(super) struct AdvanceLoop<'a, T: Task, L, R> {
     pub(super) trainer: &'a mut Trainer<T, L, R>,
     pub(super) rng: &'a mut R,
@@ -15,19 +16,20 @@ pub(super) struct AdvanceLoop<'a, T: Task, L, R> {
 }
 
 impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> AdvanceLoop<'_, T, L, R> {
-    /// Runs the loop on the machine's instruction set. All of them have the same results: no multiplication is fused with
-    /// an addition.
+    /// Runs the loop with the machine's instructions. The results are the same with all of them: no multiplication is fused
+    /// with an addition.
     #[inline(always)]
-    pub(super) fn run(self) -> Result<(), T::Error> {
-        if L::HAS_VECTOR_PASSES { pulp::Arch::new().dispatch(self) } else { pulp::NullaryFnOnce::call(self) }
+    pub(super) fn dispatch(self) -> Result<(), T::Error> {
+        let level = if L::HAS_VECTOR_PASSES { SimdLevel::detect() } else { SimdLevel::PLAIN };
+        level.run(self)
     }
 }
 
-impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> pulp::NullaryFnOnce for AdvanceLoop<'_, T, L, R> {
+impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> SimdCode for AdvanceLoop<'_, T, L, R> {
     type Output = Result<(), T::Error>;
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
+    fn run<const FUSED: bool>(self) -> Self::Output {
         self.trainer.advance_with(self.rng, self.budget)
     }
 }

@@ -113,7 +113,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         self.reserve(budget)?;
         // The generator and the episode are local variables: behind `self` each step would load and store them.
         let mut rng = self.rng.clone();
-        let result = AdvanceLoop { trainer: self, rng: &mut rng, budget }.run();
+        let result = AdvanceLoop { trainer: self, rng: &mut rng, budget }.dispatch();
         self.rng = rng;
         self.learner.complete_tables();
         result.map_err(TrainingError::Task)

@@ -2,15 +2,15 @@
 //!
 //! [`map_cos`] computes `f(cos(angle))` for a monotone function `f`, such as the next velocity of the mountain car. It
 //! computes the cosine as an unevaluated sum of two numbers, `hi + lo`, which is far more precise than one f64. glibc
-//! states that its cosine is within 0.55 units in the last place (ulp) of the true value (in `sysdeps/ieee754/dbl-64/s_sin.c`,
-//! for every argument; for these angles it states less), so the platform's cosine
-//! lies between the roundings of `hi + (lo - bound)` and `hi + (lo + bound)`, where `bound` is 0.05 ulp and the error of
+//! states that its cosine is within 0.55 units in the last place (ulp) of the true value (in
+//! `sysdeps/ieee754/dbl-64/s_sin.c`, for every argument; for these angles it states less), so the platform's cosine lies
+//! between the roundings of `hi + (lo - bound)` and `hi + (lo + bound)`, where `bound` is 0.05 ulp and the error of
 //! `hi + lo`: a number below the rounding of `c - 0.05 ulp` is more than half an ulp below `c - 0.05 ulp`. Where `f` returns
 //! the same bits for both, it returns the same bits for the platform's cosine, because it is monotone. Otherwise (about
 //! one step in fifty) the platform's cosine is called.
 //!
-//! Only where the cosine is a power of two within 0.05 ulp does this not hold, as the numbers below it are twice as close;
-//! the tests try all angles for which that could be.
+//! The argument does not hold where the cosine is a power of two within 0.05 ulp, as the numbers below it are twice as
+//! close. A test compares the angles next to those whose cosines are powers of two.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
