@@ -1,5 +1,6 @@
 """The tables that Rust makes are Gymnasium's, to the last bit, and only Gymnasium's own environments have them."""
 
+import functools
 from typing import Any
 
 import gymnasium as gym
@@ -126,11 +127,23 @@ def test_other_arguments_are_left_to_gymnasium(name: str, kwargs: dict[str, Any]
     assert known_table(gym.spec(name), kwargs) is None
 
 
-def test_a_replaced_method_is_gymnasiums(monkeypatch: pytest.MonkeyPatch) -> None:
-    def free_pickup(env: Any, at: Any, passenger: int, reward: int) -> tuple[int, int]:
-        return (4, 0) if passenger < 4 else (passenger, reward)
+def free_pickup(env: Any, at: Any, passenger: int, reward: int) -> tuple[int, int]:
+    """The passenger is in the taxi at once."""
+    return (4, 0) if passenger < 4 else (passenger, reward)
 
-    monkeypatch.setattr(taxi.TaxiEnv, "_pickup", free_pickup)
+
+@pytest.mark.parametrize(
+    "replacement",
+    [
+        free_pickup,
+        functools.wraps(taxi.TaxiEnv._pickup)(lambda *arguments: free_pickup(*arguments)),
+        functools.partialmethod(free_pickup),
+        staticmethod(functools.partial(free_pickup, None)),
+    ],
+    ids=["function", "wraps", "partialmethod", "staticmethod"],
+)
+def test_a_replaced_method_is_gymnasiums(replacement: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(taxi.TaxiEnv, "_pickup", replacement)
     assert known_table(gym.spec("Taxi-v4"), {}) is None
     run = qtab.train("Taxi-v4", **SHORT)
     assert_same_run(run, qtab.train("Taxi-v4", backend="gymnasium", **SHORT))

@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Mapping
 from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 import gymnasium as gym
@@ -61,7 +62,7 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
         return None
     module_name, _, class_name = ENTRIES[name].gymnasium_entry_point.partition(":")
     module: Any = import_module(module_name)
-    if not _is_gymnasiums_own(getattr(module, class_name), module_name):
+    if not _is_gymnasiums_own(getattr(module, class_name), module):
         return None
     if name != "Taxi-v4":
         own = module.POSITION_MAPPING == _DIRECTIONS
@@ -75,7 +76,15 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
     return KnownTable(table, **fickle)
 
 
-def _is_gymnasiums_own(cls: type, module_name: str) -> bool:
-    """Whether neither the class nor one of its methods was replaced, as a test or a lesson may do."""
-    functions = [member for member in vars(cls).values() if inspect.isfunction(member)]
-    return all(one.__module__ == module_name for one in (cls, *functions))
+def _is_gymnasiums_own(cls: type, module: ModuleType) -> bool:
+    """Whether neither the class nor one of its methods was replaced, as a test or a lesson may do.
+
+    A function's globals show where its code is; its name and its module can be those of what it replaces.
+    """
+    if cls.__module__ != module.__name__:
+        return False
+    members = [member for member in vars(cls).values() if callable(member) or hasattr(member, "__get__")]
+    return all(
+        inspect.isgetsetdescriptor(member) or (inspect.isfunction(member) and member.__globals__ is vars(module))
+        for member in members
+    )
