@@ -30,8 +30,11 @@ pub trait States<E: Env>: Sized {
     /// Replaces the state of a sub-environment.
     fn set(&mut self, index: usize, state: E::State);
 
-    /// One step of each sub-environment, with the results of [`Env::step`]. Those that are `inactive` take none: their
-    /// states and outputs are unspecified, whatever their action, and nothing is drawn from their generators.
+    /// One step of each sub-environment, with the results of [`Env::step`]. Those that are `inactive` await a reset: nothing
+    /// is drawn from their generators, and their states and outputs are unspecified.
+    ///
+    /// # Panics
+    /// May panic if an action is out of range.
     fn step(
         &mut self,
         env: &E,

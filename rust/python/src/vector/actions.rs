@@ -94,7 +94,7 @@ fn read_integers(actions: &Bound<'_, PyArray1<i64>>, num_actions: usize, into: &
     if actions.len() != into.len() {
         return Ok(false);
     }
-    let last = num_actions as i64 - 1;
+    let last = num_actions.cast_signed() as i64 - 1;
     // Negative as soon as one of them was: an action below 0, or above the last one.
     let mut signs = 0;
     let mut put = |item: &mut usize, action: i64| {

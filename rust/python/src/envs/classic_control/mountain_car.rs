@@ -22,7 +22,7 @@ impl ClassicEnv for MountainCar {
     type States = LaneStates<2>;
 
     const LAYOUT: EnvLayout = EnvLayout { state_is_tuple: true, num_actions: Some(3), ..EnvLayout::new(2) };
-    const ENVS_PER_THREAD: usize = 16_384;
+    const ENVS_PER_THREAD: usize = 32_768;
 
     fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>> {
         reset_f64(self, 1, generator).map(Some)
