@@ -40,6 +40,21 @@ def test_a_method_equals_plain_numpy(method: Any) -> None:
     assert found.verify(episodes=5).equal
 
 
+@pytest.mark.parametrize("method", ["td", "importance_sampling"])
+def test_policies_and_features_may_have_any_order_in_memory(method: Any) -> None:
+    right = np.linspace(0.2, 0.8, 7)
+    policy, rows = np.stack([1 - right, right], axis=1), np.stack([np.arange(7), np.arange(7)[::-1] + 7], axis=1)
+    given: dict[str, Any] = {"td": {"features": rows}, "importance_sampling": {"behavior": policy}}[method]
+    options: dict[str, Any] = {"method": method, "env_kwargs": {"states": 7}, "episodes": 8, "seeds": 2}
+    target = policy if method == "td" else "random"
+    expected = qtab.estimate_values(WALK, target, **options, **given)
+    for order in (np.asfortranarray, lambda array: np.repeat(array, 2, axis=0)[::2]):
+        reordered = {name: order(array) for name, array in given.items()}
+        found = qtab.estimate_values(WALK, order(policy) if method == "td" else target, **options, **reordered)
+        assert found.weights.tobytes() == expected.weights.tobytes()
+        assert found.verify().equal
+
+
 @given(data=st.data())
 def test_any_settings_equal_plain_numpy(data: st.DataObject) -> None:
     method: Any = data.draw(st.sampled_from(METHODS))

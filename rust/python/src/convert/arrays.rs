@@ -1,6 +1,11 @@
 //! Arrays of any numeric dtype, converted as `astype` converts them.
 
-use numpy::{PyArray1, PyArrayDescrMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use std::sync::Arc;
+
+use numpy::ndarray::Dimension;
+use numpy::{
+    PyArray1, PyArrayDescrMethods, PyReadonlyArray, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
+};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -42,6 +47,13 @@ impl FromNumber for f64 {
     fn from_u64(number: u64) -> Self {
         number as Self
     }
+}
+
+/// The numbers of an array in C order. `as_slice` gives them in the order of the memory, also where that is Fortran's.
+pub(crate) fn in_c_order<T: numpy::Element + Copy, D: Dimension>(
+    array: &PyReadonlyArray<'_, T, D>,
+) -> PyResult<Arc<[T]>> {
+    collect(array.as_array().iter().copied()).map(Arc::from).map_err(allocation)
 }
 
 /// A new array of these values. `PyArray1::from_slice` would panic where memory runs out.

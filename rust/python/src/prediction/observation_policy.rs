@@ -5,13 +5,13 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
-use qtab_core::memory::collect;
 use qtab_core::prediction::{Choice, FixedPolicy, ObservationPolicy};
 use qtab_core::random::Rng;
 
 use super::box_features::ReadRows;
 use super::function_policy::FunctionPolicy;
-use crate::error::{RunError, allocation, invalid};
+use crate::convert::in_c_order;
+use crate::error::{RunError, invalid};
 use crate::spec::{DiscretizerSpec, Fields, Variant};
 
 /// A policy, before it reads observations.
@@ -41,13 +41,12 @@ pub(super) const POLICIES: &[Variant<ObservationPolicySpec>] =
 
 fn table(fields: &Fields<'_>) -> PyResult<ObservationPolicySpec> {
     let array: PyReadonlyArray2<'_, f64> = fields.get("probabilities")?;
-    let probabilities: Arc<[f64]> = collect(array.as_slice()?.iter().copied()).map_err(allocation)?.into();
-    Ok(ObservationPolicySpec::Table { probabilities, is_everywhere: array.shape()[0] == 1 })
+    Ok(ObservationPolicySpec::Table { probabilities: in_c_order(&array)?, is_everywhere: array.shape()[0] == 1 })
 }
 
 fn greedy(fields: &Fields<'_>) -> PyResult<ObservationPolicySpec> {
     let array: PyReadonlyArray3<'_, f64> = fields.get("tables")?;
-    let tables: Arc<[f64]> = collect(array.as_slice()?.iter().copied()).map_err(allocation)?.into();
+    let tables = in_c_order(&array)?;
     let discretizer = DiscretizerSpec::parse(&fields.nested("discretizer")?)?;
     Ok(ObservationPolicySpec::Greedy { discretizer, tables, n_tables: array.shape()[0] })
 }

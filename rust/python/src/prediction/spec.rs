@@ -15,6 +15,7 @@ use qtab_core::prediction::{
 use qtab_core::schedules::LearningRate;
 
 use super::observation_policy::{ObservationPolicies, ObservationPolicySpec, POLICIES};
+use crate::convert::in_c_order;
 use crate::error::{allocation, invalid};
 use crate::spec::{DiscretizerSpec, Fields, LearningRateSpec, RunSpec, Variant};
 
@@ -82,15 +83,14 @@ pub(crate) trait ObservedVisitor {
 impl PredictionSpec {
     pub(crate) fn parse(fields: &Fields<'_>, num_actions: usize) -> PyResult<Self> {
         let initial: PyReadonlyArray1<'_, f64> = fields.get("initial_weights")?;
-        let initial: Arc<[f64]> = collect(initial.as_slice()?.iter().copied()).map_err(allocation)?.into();
+        let initial = in_c_order(&initial)?;
         let n_weights = initial.len();
         let rows: Option<PyReadonlyArray2<'_, u32>> = fields.get("rows")?;
         let rows = match rows {
             None => None,
             Some(given) => {
                 let n_active = given.as_array().ncols();
-                let numbers: Arc<[u32]> = collect(given.as_slice()?.iter().copied()).map_err(allocation)?.into();
-                Some(StateRows::new(numbers, n_active, n_weights).ok_or_else(|| {
+                Some(StateRows::new(in_c_order(&given)?, n_active, n_weights).ok_or_else(|| {
                     invalid("rows", format!("an array (states, n_active) of rows below {n_weights}"), "others")
                 })?)
             }
@@ -270,11 +270,10 @@ impl PredictionSpec {
 /// A policy over numbered states: its probabilities.
 fn of_states(fields: &Fields<'_>, name: &str, num_actions: usize) -> PyResult<FixedPolicy> {
     let array: PyReadonlyArray2<'_, f64> = fields.get(name)?;
-    let values = array.as_slice()?;
+    let values = in_c_order(&array)?;
     let possible = |row: &[f64]| row.iter().any(|&probability| probability > 0.0);
     if num_actions == 0 || !values.len().is_multiple_of(num_actions) || !values.chunks(num_actions).all(possible) {
         return Err(invalid(name, format!("{num_actions} probabilities for each state"), "others"));
     }
-    let values: Arc<[f64]> = collect(values.iter().copied()).map_err(allocation)?.into();
     Ok(FixedPolicy::new(values, num_actions))
 }

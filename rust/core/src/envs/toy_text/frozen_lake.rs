@@ -5,11 +5,14 @@ use crate::envs::tabular::{InvalidMdp, Outcome, TabularMdp};
 /// The rows and the columns that an action moves by: left, down, right, up.
 const MOVES: [(isize, isize); 4] = [(0, -1), (1, 0), (0, 1), (-1, 0)];
 
-/// What the steps of a lake are worth.
+/// The reward of a step by where it leads to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LakeRewards {
+    /// To the goal.
     pub goal: f64,
+    /// Into a hole.
     pub hole: f64,
+    /// To frozen ground, the start included.
     pub frozen: f64,
 }
 
@@ -29,8 +32,11 @@ pub fn frozen_lake(
         return Err(InvalidMdp("the lines of the map must have the same length".into()));
     }
     let letters = lines.concat();
-    let starts = letters.iter().filter(|&&letter| letter == b'S').count() as f64;
-    let initial: Vec<f64> = letters.iter().map(|&letter| f64::from(u8::from(letter == b'S')) / starts).collect();
+    let mut initial: Vec<f64> = letters.iter().map(|&letter| f64::from(u8::from(letter == b'S'))).collect();
+    let starts: f64 = initial.iter().sum();
+    for probability in &mut initial {
+        *probability /= starts;
+    }
     let step = |state: usize, direction: usize, probability: f64| {
         let moved = |position: usize, by: isize, count: usize| position.saturating_add_signed(by).min(count - 1);
         let (down, right) = MOVES[direction];
@@ -40,10 +46,12 @@ pub fn frozen_lake(
             b'H' => (rewards.hole, true),
             _ => (rewards.frozen, false),
         };
-        Outcome { probability, state: next as i64, reward, terminated }
+        Outcome { probability, state: next.cast_signed() as i64, reward, terminated }
     };
     let outcomes = |state: usize, action: usize| match (letters[state], success_rate) {
-        (b'G' | b'H', _) => vec![Outcome { probability: 1.0, state: state as i64, reward: 0.0, terminated: true }],
+        (b'G' | b'H', _) => {
+            vec![Outcome { probability: 1.0, state: state.cast_signed() as i64, reward: 0.0, terminated: true }]
+        }
         (_, None) => vec![step(state, action, 1.0)],
         (_, Some(success_rate)) => {
             let fail_rate = (1.0 - success_rate) / 2.0;
