@@ -4,6 +4,7 @@
 
 use std::hint::select_unpredictable;
 
+use super::aligned_vec::{AlignedVec, MAX_PADDING, padding};
 use super::trace_passes::BLOCK;
 use crate::StopFlag;
 use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
@@ -19,7 +20,7 @@ pub(super) struct EligibleWeights {
     /// The number of places in use. They are the first ones.
     pub(super) count: usize,
     /// The trace at each place.
-    pub(super) traces: Vec<f64>,
+    pub(super) traces: AlignedVec,
     /// No magnitude of a trace is smaller than this.
     pub(super) smallest: f64,
     /// Traces whose magnitudes fall to this become 0.
@@ -31,8 +32,10 @@ pub(super) struct EligibleWeights {
     /// A buffer for the blocks where one has.
     pub(super) fallen_blocks: Vec<u32>,
     /// For each weight the index of its value in the storage of the table: its own index, or that of its place, which is
-    /// the number of weights more.
+    /// `base` more.
     pub(super) slots: Vec<u32>,
+    /// The index of the value at the first place, which is at the start of a cache line.
+    pub(super) base: usize,
     /// Whether the values of the eligible weights are at their places.
     moved: bool,
 }
@@ -41,7 +44,7 @@ impl EligibleWeights {
     /// No eligible weights among so many, with room for all.
     pub(super) fn new(weights: usize, cutoff: f64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
         // A table and as many places have indices of 32 bits.
-        if weights > u32::MAX as usize / 2 - BLOCK {
+        if weights > u32::MAX as usize / 2 - BLOCK - MAX_PADDING {
             return Err(AllocationError::OutOfMemory { bytes: weights.saturating_mul(32) });
         }
         let places = weights.next_multiple_of(BLOCK);
@@ -52,12 +55,13 @@ impl EligibleWeights {
         })?;
         Ok(Self {
             count: 0,
-            traces: with_capacity(places)?,
+            traces: AlignedVec::with_capacity(places)?,
             smallest: f64::INFINITY,
             cutoff,
             weights: with_capacity(places)?,
             fallen: with_capacity(places / BLOCK)?,
             fallen_blocks: with_capacity(places / BLOCK)?,
+            base: slots.len(),
             slots,
             moved: false,
         })
@@ -67,7 +71,7 @@ impl EligibleWeights {
     pub(super) fn reserve<const N: usize>(&self, table: &mut QTable<N>) -> Result<(), AllocationError> {
         let places = self.slots.len().next_multiple_of(BLOCK);
         let storage = table.storage_mut();
-        reserve(storage, (self.slots.len() + places).saturating_sub(storage.len()))
+        reserve(storage, (self.slots.len() + MAX_PADDING + places).saturating_sub(storage.len()))
     }
 
     /// The number of eligible weights.
@@ -93,13 +97,13 @@ impl EligibleWeights {
     /// The place of a weight; `None` if it is not eligible.
     #[inline(always)]
     pub(super) fn place(&self, weight: usize) -> Option<usize> {
-        (self.slots[weight] as usize).checked_sub(self.slots.len())
+        (self.slots[weight] as usize).checked_sub(self.base)
     }
 
     /// The trace of a weight.
     #[inline(always)]
     pub(super) fn trace(&self, weight: usize) -> f64 {
-        let (slot, len) = (self.slots[weight] as usize, self.slots.len());
+        let (slot, len) = (self.slots[weight] as usize, self.base);
         // No branch, because whether a weight is eligible is hard to predict.
         let eligible = slot >= len;
         let place = select_unpredictable(eligible, slot.wrapping_sub(len), 0);
@@ -110,7 +114,7 @@ impl EligibleWeights {
     #[inline(always)]
     fn grow(&mut self, additional: usize, storage: &mut Vec<f64>) {
         let places = self.count + additional;
-        if places > self.traces.len() || self.slots.len() + places > storage.len() {
+        if places > self.traces.len() || self.base + places > storage.len() {
             self.grow_to(places.next_multiple_of(BLOCK), storage);
         }
     }
@@ -122,13 +126,14 @@ impl EligibleWeights {
         self.weights.resize(places, 0);
         self.fallen.resize(places / BLOCK, false);
         self.fallen_blocks.resize(places / BLOCK, 0);
-        storage.resize(self.slots.len() + places, 0.0);
+        storage.resize(self.base + places, 0.0);
     }
 
     /// Moves the values of the eligible weights to their places.
     #[inline(always)]
     pub(super) fn move_out<const N: usize>(&mut self, table: &mut QTable<N>) {
         if !self.moved {
+            self.align(table.storage_mut());
             self.move_all(table.storage_mut(), |weight, place| (weight, place));
             self.moved = true;
         }
@@ -142,11 +147,21 @@ impl EligibleWeights {
         }
     }
 
+    /// Begins the places at a cache line, while the values are in the table.
+    #[cold]
+    fn align(&mut self, storage: &[f64]) {
+        let len = self.slots.len();
+        self.base = len + padding(storage, len);
+        for (place, &weight) in self.weights[..self.count].iter().enumerate() {
+            self.slots[weight as usize] = (self.base + place) as u32;
+        }
+    }
+
     #[cold]
     fn move_all(&mut self, storage: &mut Vec<f64>, direction: impl Fn(usize, usize) -> (usize, usize)) {
         self.grow(0, storage);
         for (place, &weight) in self.weights[..self.count].iter().enumerate() {
-            let (from, to) = direction(weight as usize, self.slots.len() + place);
+            let (from, to) = direction(weight as usize, self.base + place);
             storage[to] = storage[from];
         }
     }
@@ -191,9 +206,9 @@ impl EligibleWeights {
     ) -> f64 {
         self.grow(weights.len(), table.storage_mut());
         // Local variables: behind `self` and `table` each weight would load them again.
-        let len = self.slots.len();
+        let len = self.base;
         let slots = self.slots.as_mut_slice();
-        let traces = self.traces.as_mut_slice();
+        let traces = &mut *self.traces;
         let places = &mut self.weights[..traces.len()];
         let (storage, mut count) = (table.storage_mut().as_mut_slice(), self.count);
         let mut sum = None;
@@ -225,7 +240,7 @@ impl EligibleWeights {
         }
         self.traces[place] = trace;
         self.weights[place] = weight;
-        self.slots[weight as usize] = (self.slots.len() + place) as u32;
+        self.slots[weight as usize] = (self.base + place) as u32;
         self.count += 1;
         self.smallest = self.smallest.min(trace.abs());
     }
@@ -241,7 +256,7 @@ impl EligibleWeights {
     /// Moves the value at a place back into the table, and the last eligible weight to that place.
     #[inline(always)]
     pub(super) fn remove(&mut self, storage: &mut [f64], place: usize) {
-        let (len, last) = (self.slots.len(), self.count - 1);
+        let (len, last) = (self.base, self.count - 1);
         let (weight, moving) = (self.weights[place], self.weights[last]);
         storage[weight as usize] = storage[len + place];
         storage[len + place] = storage[len + last];
@@ -278,12 +293,12 @@ fn select(condition: bool, yes: f64, no: f64) -> f64 {
     f64::from_bits(select_unpredictable(condition, yes.to_bits(), no.to_bits()))
 }
 
-/// The bound and the buffers only say where to look for traces at the cutoff.
+/// The bound and the buffers only say where to look for traces at the cutoff; the slots follow from the weights.
 impl PartialEq for EligibleWeights {
     fn eq(&self, other: &Self) -> bool {
         let parts = |weights: &Self| (weights.count, weights.cutoff, weights.moved);
         parts(self) == parts(other)
-            && self.slots == other.slots
+            && self.slots.len() == other.slots.len()
             && self.weights[..self.count] == other.weights[..self.count]
             && self.traces[..self.count] == other.traces[..self.count]
     }

@@ -2,6 +2,7 @@
 
 mod action_masks;
 mod agent;
+mod aligned_vec;
 mod average_reward;
 mod count_bonus;
 mod critic;
