@@ -97,6 +97,8 @@ impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
 impl<T: Float, const D: usize, const N: usize> Features<[T; D]> for FixedTileCoding<T, D, N> {
     type Active = FixedTiles<N>;
 
+    const USES_VECTORS: bool = true;
+
     #[inline(always)]
     fn active_rows(&self, observation: &[T; D]) -> Result<FixedTiles<N>, OutOfBounds> {
         if let Some(tiles) = &self.general {

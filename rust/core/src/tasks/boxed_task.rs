@@ -1,24 +1,76 @@
 //! Any task behind one type.
 
-use super::{Task, Transition};
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
+use super::{Next, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::features::ActiveRows;
+use crate::numeric::{SimdCode, SimdLevel};
+
+/// What follows a step. Where it fails, the task keeps the error.
+#[derive(Clone, Copy)]
+enum Outcome {
+    NonTerminal,
+    Truncated,
+    Terminal,
+    Failed,
+}
 
 /// A task together with the state of its episode, so that the type of the state is hidden.
 struct StatefulTask<T: Task> {
     task: T,
     state: Option<T::State>,
+    error: Option<T::Error>,
+    /// What the steps are compiled for: the loop that calls them does not know of it.
+    level: SimdLevel,
 }
 
 /// [`Task`] without the state, for trait objects. `R` holds the active rows, `X` is the error.
 trait DynTask<R, X> {
     fn reset(&mut self) -> Result<R, X>;
-    fn step(&mut self, action: usize) -> Result<Transition<R>, X>;
+    /// Takes a step and writes the active rows, except after a terminal state. Returns the reward too: both are returned in
+    /// registers, and the rows are written once. A [`Transition`] is copied from one layout to another instead, and read
+    /// across the words in which it was written.
+    fn step(&mut self, action: usize, active: &mut R) -> (f64, Outcome);
+    /// The error of the step that has failed.
+    fn take_error(&mut self) -> X;
     fn action_mask(&self) -> Option<&[bool]>;
     fn visits(&self) -> Option<&[i64]>;
     fn active_rows(&self) -> Result<R, X>;
     fn resumes_episodes(&self) -> bool;
     fn persist(&mut self, in_episode: bool, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
+}
+
+/// A step, compiled for each [`SimdLevel`].
+struct StepCode<'a, T: Task> {
+    task: &'a mut T,
+    state: &'a mut T::State,
+    error: &'a mut Option<T::Error>,
+    action: usize,
+    active: &'a mut T::Active,
+}
+
+impl<T: Task> SimdCode for StepCode<'_, T> {
+    type Output = (f64, Outcome);
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> (f64, Outcome) {
+        match self.task.step(self.state, self.action) {
+            Ok(Transition { reward, next: Next::NonTerminal(active) }) => {
+                *self.active = active;
+                (reward, Outcome::NonTerminal)
+            }
+            Ok(Transition { reward, next: Next::Truncated(active) }) => {
+                *self.active = active;
+                (reward, Outcome::Truncated)
+            }
+            Ok(Transition { reward, next: Next::Terminal }) => (reward, Outcome::Terminal),
+            Err(error) => {
+                *self.error = Some(error);
+                (0.0, Outcome::Failed)
+            }
+        }
+    }
 }
 
 impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
@@ -28,9 +80,15 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
         Ok(active)
     }
 
-    fn step(&mut self, action: usize) -> Result<Transition<T::Active>, X> {
+    fn step(&mut self, action: usize, active: &mut T::Active) -> (f64, Outcome) {
         let Some(state) = &mut self.state else { unreachable!("a trainer resets a task before it steps it") };
-        Ok(self.task.step(state, action)?)
+        let step = StepCode { task: &mut self.task, state, error: &mut self.error, action, active };
+        if T::USES_VECTORS { self.level.run(step) } else { SimdLevel::PLAIN.run(step) }
+    }
+
+    fn take_error(&mut self) -> X {
+        let Some(error) = self.error.take() else { unreachable!("the step has failed") };
+        error.into()
     }
 
     fn action_mask(&self) -> Option<&[bool]> {
@@ -58,6 +116,8 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
 /// A boxed task with active rows `R` and errors `X`: generic code is compiled once for all tasks behind it.
 pub struct BoxedTask<R, X> {
     task: Box<dyn DynTask<R, X> + Send>,
+    /// What the last step wrote; `None` before the first reset.
+    active: Option<R>,
     step_work: u64,
     /// Whether the task has action masks. Where it has none, no call is made to ask for them.
     has_masks: bool,
@@ -67,13 +127,14 @@ impl<R: ActiveRows + 'static, X: 'static> BoxedTask<R, X> {
     /// Boxes a task and converts its errors to `X`.
     pub fn new<T>(task: T) -> Self
     where
-        T: Task<Active = R, State: Send> + Send + 'static,
+        T: Task<Active = R, State: Send, Error: Send> + Send + 'static,
         X: From<T::Error>,
     {
         Self {
             step_work: task.step_work(),
             has_masks: task.action_mask().is_some(),
-            task: Box::new(StatefulTask { task, state: None }),
+            task: Box::new(StatefulTask { task, state: None, error: None, level: SimdLevel::detect() }),
+            active: None,
         }
     }
 }
@@ -84,19 +145,30 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
     type Error = X;
 
     fn reset(&mut self) -> Result<((), R), X> {
-        Ok(((), self.task.reset()?))
+        let active = self.task.reset()?;
+        self.active = Some(active);
+        Ok(((), active))
     }
 
+    #[inline(always)]
     fn step(&mut self, (): &mut (), action: usize) -> Result<Transition<R>, X> {
-        self.task.step(action)
+        let Some(active) = &mut self.active else { unreachable!("a trainer resets a task before it steps it") };
+        let (reward, outcome) = self.task.step(action, active);
+        let next = match outcome {
+            Outcome::NonTerminal => Next::NonTerminal(*active),
+            Outcome::Truncated => Next::Truncated(*active),
+            Outcome::Terminal => Next::Terminal,
+            Outcome::Failed => return Err(self.task.take_error()),
+        };
+        Ok(Transition { reward, next })
     }
 
-    #[inline]
+    #[inline(always)]
     fn step_work(&self) -> u64 {
         self.step_work
     }
 
-    #[inline]
+    #[inline(always)]
     fn action_mask(&self) -> Option<&[bool]> {
         if self.has_masks { self.task.action_mask() } else { None }
     }
