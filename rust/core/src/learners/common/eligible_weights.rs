@@ -5,6 +5,7 @@
 use std::hint::select_unpredictable;
 
 use super::aligned_vec::{AlignedVec, MAX_PADDING, padding};
+use super::trace_changes::select;
 use super::trace_passes::BLOCK;
 use crate::StopFlag;
 use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
@@ -112,9 +113,10 @@ impl EligibleWeights {
 
     /// Makes room for so many more eligible weights.
     #[inline(always)]
-    fn grow(&mut self, additional: usize, storage: &mut Vec<f64>) {
+    pub(super) fn grow(&mut self, additional: usize, storage: &mut Vec<f64>) {
         let places = self.count + additional;
-        if places > self.traces.len() || self.base + places > storage.len() {
+        // As many values as traces: passes work in whole blocks.
+        if places > self.traces.len() || self.base + self.traces.len() > storage.len() {
             self.grow_to(places.next_multiple_of(BLOCK), storage);
         }
     }
@@ -166,69 +168,6 @@ impl EligibleWeights {
         }
     }
 
-    /// Replaces the traces of some weights, one after the other, by a function of the trace. Returns the sum of the values
-    /// from left to right.
-    #[inline(always)]
-    pub(super) fn update<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        weights: impl ExactSizeIterator<Item = usize>,
-        change: impl Fn(f64) -> f64,
-    ) -> f64 {
-        let mut smallest = self.smallest;
-        let sum = self.change(table, weights, |trace| {
-            let trace = change(trace);
-            smallest = if trace.abs() < smallest { trace.abs() } else { smallest };
-            trace
-        });
-        self.smallest = smallest;
-        sum
-    }
-
-    /// Sets the traces of some weights to 1. Returns the sum of the values from left to right.
-    #[inline(always)]
-    pub(super) fn replace<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        weights: impl ExactSizeIterator<Item = usize>,
-    ) -> f64 {
-        self.smallest = self.smallest.min(1.0);
-        self.change(table, weights, |_| 1.0)
-    }
-
-    /// [`update`](Self::update) of the traces alone.
-    #[inline(always)]
-    fn change<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        weights: impl ExactSizeIterator<Item = usize>,
-        mut change: impl FnMut(f64) -> f64,
-    ) -> f64 {
-        self.grow(weights.len(), table.storage_mut());
-        // Local variables: behind `self` and `table` each weight would load them again.
-        let len = self.base;
-        let slots = self.slots.as_mut_slice();
-        let traces = &mut *self.traces;
-        let places = &mut self.weights[..traces.len()];
-        let (storage, mut count) = (table.storage_mut().as_mut_slice(), self.count);
-        let mut sum = None;
-        for weight in weights {
-            let slot = slots[weight] as usize;
-            let value = storage[slot];
-            // No branch, because whether a weight is eligible is hard to predict.
-            let new = slot < len;
-            let place = select_unpredictable(new, count, slot.wrapping_sub(len));
-            traces[place] = change(select(new, 0.0, traces[place]));
-            places[place] = weight as u32;
-            storage[len + place] = value;
-            slots[weight] = (len + place) as u32;
-            count += usize::from(new);
-            sum = Some(sum.map_or(value, |sum| sum + value));
-        }
-        self.count = count;
-        sum.unwrap_or(0.0)
-    }
-
     /// Gives a weight a trace, while the values are in the table. The weight must not be eligible.
     pub(super) fn insert(&mut self, weight: u32, trace: f64) {
         let place = self.count;
@@ -271,8 +210,19 @@ impl EligibleWeights {
 
     /// Sets all traces to 0.
     pub(super) fn clear<const N: usize>(&mut self, table: &mut QTable<N>) {
-        self.move_back(table);
-        self.discard();
+        if self.moved {
+            // In one pass, not one to move the values back and another one to forget the places.
+            let (values, moved) = table.storage_mut().split_at_mut(self.base);
+            let slots = &mut self.slots[..];
+            let values = &mut values[..slots.len()];
+            for (&weight, &value) in self.weights[..self.count].iter().zip(&*moved) {
+                values[weight as usize] = value;
+                slots[weight as usize] = weight;
+            }
+            self.forget();
+        } else {
+            self.discard();
+        }
     }
 
     /// Sets all traces to 0, while the values are in the table.
@@ -280,17 +230,16 @@ impl EligibleWeights {
         for &weight in &self.weights[..self.count] {
             self.slots[weight as usize] = weight;
         }
+        self.forget();
+    }
+
+    /// No place is in use any more.
+    fn forget(&mut self) {
         self.traces[..self.count].fill(UNUSED);
         self.count = 0;
         self.moved = false;
         self.smallest = f64::INFINITY;
     }
-}
-
-/// One of two numbers, without a branch. Not every instruction set can select between floats.
-#[inline]
-fn select(condition: bool, yes: f64, no: f64) -> f64 {
-    f64::from_bits(select_unpredictable(condition, yes.to_bits(), no.to_bits()))
 }
 
 /// The bound and the buffers only say where to look for traces at the cutoff; the slots follow from the weights.

@@ -24,6 +24,7 @@ mod target_policy;
 mod td_learner;
 #[cfg(test)]
 pub(super) mod test_support;
+mod trace_changes;
 mod trace_decay;
 mod trace_passes;
 mod traces;
