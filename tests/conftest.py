@@ -27,8 +27,8 @@ with warnings.catch_warnings(), suppress(ModuleNotFoundError):
     import_module("Box2D")
 
 # CI draws the same examples every time: more of them would find nothing new. The profile "fuzz" does, every night.
-settings.register_profile("local", deadline=None, max_examples=50)
-settings.register_profile("ci", deadline=None, max_examples=50, derandomize=True, print_blob=True)
+settings.register_profile("local", deadline=None, max_examples=30)
+settings.register_profile("ci", deadline=None, max_examples=30, derandomize=True, print_blob=True)
 settings.register_profile("fuzz", deadline=None, max_examples=1000, print_blob=True)  # --hypothesis-profile fuzz
 settings.load_profile("ci" if os.environ.get("CI") else "local")
 

@@ -77,7 +77,7 @@ def test_an_experiment_equals_the_reference(name):
     lines = {setting.line: setting for setting in experiment.settings}
     for setting in {id(setting): setting for setting in (*list(lines.values())[:1], experiment.settings[-1])}.values():
         env = setting.env if isinstance(setting.env, str) else setting.env()
-        config = {**experiment.config(setting), "episodes": 3, "max_episode_steps": 120}
+        config = {**experiment.config(setting), "episodes": 2, "max_episode_steps": 80}
         run = qtab.train(env, seed=2, **config)
         assert run.config.backend == "rust"
         assert qtab.verify(run, env=None if isinstance(env, str) else env).equal

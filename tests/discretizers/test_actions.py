@@ -109,7 +109,7 @@ def test_settings_that_do_not_fit_are_refused(space: Any, actions: Any, error: s
 
 @pytest.mark.parametrize("env", ["Pendulum-v1", "MountainCarContinuous-v0"])
 def test_a_run_predicts_and_is_saved_evaluated_replayed_and_verified(env: str, tmp_path: Any) -> None:
-    run = qtab.train(env, seed=2, episodes=12, actions=(-0.9, 0.0, 0.4), record=2, **BINS)
+    run = qtab.train(env, seed=2, episodes=4, actions=(-0.9, 0.0, 0.4), record=2, **BINS)
     space = gym.make(env).action_space
     made = gym.make(env)
     observation, _ = made.reset(seed=0)

@@ -161,7 +161,7 @@ def test_nan_in_an_observation_is_refused_with_its_index() -> None:
     ids=str,
 )
 def test_a_run_is_saved_loaded_evaluated_and_verified(chosen: dict[str, Any], tmp_path: Any) -> None:
-    run = qtab.train("MountainCar-v0", seed=1, episodes=40, **chosen)
+    run = qtab.train("MountainCar-v0", seed=1, episodes=8, **chosen)
     run.save(tmp_path / "run.npz")
     loaded = qtab.load(tmp_path / "run.npz")
     assert vars(loaded.config) == vars(run.config)

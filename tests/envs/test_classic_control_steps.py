@@ -11,7 +11,7 @@ from qtab.envs.classic_control import AcrobotEnv
 from support.classic_control import CONTINUOUS, EDITS, IDS, LockstepClassicControl, heuristic_policy
 from support.machine import MACHINE
 
-STEPS = 6_000
+STEPS = 4_000
 """Random steps; as many are taken by a policy that reaches the goal."""
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import gymnasium as gym
 import pytest
-from gymnasium.envs.toy_text import cliffwalking, taxi
+from gymnasium.envs.toy_text import cliffwalking, frozen_lake, taxi
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -15,7 +15,7 @@ from qtab.envs import known_tables
 from qtab.envs.known_tables import known_table
 from support.parity import assert_same_run
 
-IDS = ("CliffWalking-v1", "CliffWalkingSlippery-v1", "Taxi-v4")
+IDS = ("CliffWalking-v1", "CliffWalkingSlippery-v1", "FrozenLake-v1", "FrozenLake8x8-v1", "Taxi-v4")
 SETTINGS: dict[str, Any] = {"episodes": 30, "max_episode_steps": 40}
 SHORT: dict[str, Any] = {**SETTINGS, "seed": 3}
 
@@ -41,6 +41,32 @@ def test_the_tables_are_gymnasiums(name: str) -> None:
 @pytest.mark.parametrize("is_slippery", [False, True])
 def test_the_cliffs_are_gymnasiums(is_slippery: bool) -> None:
     check("CliffWalking-v1", is_slippery=is_slippery)
+
+
+REWARDS = st.integers(-10, 10) | st.floats(-1e9, 1e9)
+
+
+@settings(max_examples=(settings.default or settings()).max_examples // 3)
+@given(st.sampled_from(["4x4", "8x8"]), st.booleans(), st.floats(0, 1), st.tuples(REWARDS, REWARDS, REWARDS))
+def test_the_lakes_are_gymnasiums(map_name: str, is_slippery: bool, success_rate: float, rewards: Any) -> None:
+    check(
+        "FrozenLake-v1",
+        map_name=map_name,
+        is_slippery=is_slippery,
+        success_rate=success_rate,
+        reward_schedule=rewards,
+    )
+
+
+@settings(max_examples=(settings.default or settings()).max_examples // 3)
+@given(st.integers(2, 6).flatmap(lambda width: st.lists(st.text("SFHG", min_size=width, max_size=width), min_size=1)))
+def test_edited_maps_of_the_lake_are_followed(lines: list[str]) -> None:
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setitem(frozen_lake.MAPS, "4x4", lines)
+        if any("S" in line for line in lines):
+            check("FrozenLake-v1")
+        else:
+            assert known_table(gym.spec("FrozenLake-v1"), {}) is None
 
 
 @settings(max_examples=(settings.default or settings()).max_examples // 5)
@@ -120,7 +146,15 @@ def test_python_steps_and_masks_the_environment_that_gymnasium_makes(chosen: dic
         ("Taxi-v4", {"is_rainy": True, "rainy_probability": 1.5}),
         ("Taxi-v4", {"render_mode": None}),
         ("CliffWalking-v1", {"nothing": 1}),
-        ("FrozenLake-v1", {}),
+        ("FrozenLake-v1", {"desc": ["SF", "FG"]}),
+        ("FrozenLake-v1", {"map_name": None}),
+        ("FrozenLake-v1", {"map_name": "5x5"}),
+        ("FrozenLake-v1", {"success_rate": 1}),
+        ("FrozenLake-v1", {"success_rate": 1.5}),
+        ("FrozenLake-v1", {"reward_schedule": [1, 0, 0]}),
+        ("FrozenLake-v1", {"reward_schedule": (1, 0)}),
+        ("FrozenLake-v1", {"reward_schedule": (True, 0, 0)}),
+        ("FrozenLake-v1", {"reward_schedule": (10**400, 0, 0)}),
     ],
 )
 def test_other_arguments_are_left_to_gymnasium(name: str, kwargs: dict[str, Any]) -> None:
@@ -156,6 +190,13 @@ def test_a_replaced_class_or_map_and_other_directions_are_gymnasiums(monkeypatch
     with monkeypatch.context() as patched:
         patched.setattr(taxi, "TaxiEnv", type("TaxiEnv", (taxi.TaxiEnv,), {}))
         assert known_table(gym.spec("Taxi-v4"), {}) is None
+    for lines in (["SF", "F"], ["SX", "FG"], ("SF", "FG"), [b"SF", b"FG"], ["S"], []):
+        with monkeypatch.context() as patched:
+            patched.setitem(frozen_lake.MAPS, "4x4", lines)
+            assert known_table(gym.spec("FrozenLake-v1"), {}) is None
+    with monkeypatch.context() as patched:
+        patched.setattr(frozen_lake, "LEFT", 2)
+        assert known_table(gym.spec("FrozenLake-v1"), {}) is None
     monkeypatch.setitem(cliffwalking.POSITION_MAPPING, 0, [1, 0])
     assert known_table(gym.spec("CliffWalking-v1"), {}) is None
 

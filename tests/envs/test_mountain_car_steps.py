@@ -13,7 +13,7 @@ import qtab  # noqa: F401 - registers the environment
 from support.exact import assert_identical
 from support.parity import energy_policy, state_bytes
 
-STEPS_PER_SEED = 7_000
+STEPS_PER_SEED = 4_000
 
 
 def pair(**kwargs: Any) -> tuple[Any, Any]:

@@ -11,7 +11,7 @@ from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 import qtab
 from support.toy_text import IDS, TABLES, LockstepToyText
 
-STEPS = 3_000
+STEPS = 2_000
 GOAL_STEPS = 6_000
 """Enough for a hundred goals, and for rides from most of the 300 states that a taxi starts in."""
 

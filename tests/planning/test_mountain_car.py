@@ -13,7 +13,7 @@ from support.command import qtab_here, refused
 from support.interrupts import in_a_process
 from support.posix import posix_only
 
-EPISODES = 100
+EPISODES = 40
 
 
 @pytest.fixture(scope="module")

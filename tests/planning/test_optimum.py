@@ -71,7 +71,7 @@ def test_the_optimal_policy_earns_the_optimum_in_gymnasium(name):
     found = qtab.optimum(name)
     env = gym.make(name)
     returns = []
-    for episode in range(100):
+    for episode in range(40):
         observation, _ = env.reset(seed=0 if episode == 0 else None)
         state, total, over = None, 0.0, False
         while not over:

@@ -41,8 +41,9 @@ def luminance(color: Any) -> float:
     return float(np.dot(to_rgb(color), (0.2126, 0.7152, 0.0722)))
 
 
-@pytest.mark.parametrize("layout", [None, "constrained"])
-@pytest.mark.parametrize("size", [(2.6, 2.4), (8, 4.5)], ids=["small", "large"])
+@pytest.mark.parametrize(
+    ("size", "layout"), [((2.6, 2.4), None), ((2.6, 2.4), "constrained"), ((8, 4.5), "constrained")], ids=str
+)
 @pytest.mark.parametrize("draw", DRAWN.values(), ids=DRAWN)
 def test_a_legend_covers_neither_labels_nor_data_and_stays_in_the_figure(draw: Any, size: Any, layout: Any) -> None:
     figure, ax = plt.subplots(figsize=size, layout=layout)

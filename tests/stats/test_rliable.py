@@ -18,7 +18,7 @@ def test_aggregates_match_rliable():
     points, intervals = library.get_interval_estimates(
         {"x": scores},
         lambda table: np.array([aggregate(table) for aggregate in theirs]),
-        reps=2000,
+        reps=1000,
         random_state=np.random.RandomState(1),
     )
     for index, statistic in enumerate(STATISTICS):

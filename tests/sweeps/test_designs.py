@@ -32,7 +32,7 @@ def test_sobol_points_are_spread_evenly():
         designs.sobol({"a": (0.0, 8.0)}, 7)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=settings().max_examples, deadline=None)
 @given(low=st.floats(1e-6, 1.0), span=st.floats(0.01, 100), seed=st.integers(0, 2**32))
 def test_points_lie_within_their_space(low, span, seed):
     space = {"a": (low, low + span), "b": (low, low + span, "log"), "c": [1, 2, 3]}

@@ -35,7 +35,7 @@ CALLS = {
     "the article's settings": (0, THE_ARTICLES_CALL),
     "a later seed, other rates": (
         2**32 - 1,
-        {"learning": 0.5, "discount": 0.99, "epsilon": 0.6, "min_eps": 0.1, "episodes": 100},
+        {"learning": 0.5, "discount": 0.99, "epsilon": 0.6, "min_eps": 0.1, "episodes": 100, "max_episode_steps": 60},
     ),
     "goals in long episodes": (
         1542,  # seven of the hundred episodes reach the goal

@@ -32,15 +32,15 @@ def same_everywhere(env: str, **settings: Any) -> qtab.Run:
 @pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
 def test_rust_trains_as_gymnasium_and_numpy_do(name, bit_generator):
     limit: dict[str, Any] = {"max_episode_steps": 200} if "Cliff" in name else {}  # else 10,000
-    run = same_everywhere(name, bit_generator=bit_generator, episodes=25, **limit)
+    run = same_everywhere(name, bit_generator=bit_generator, episodes=10, **limit)
     assert run.config.discretizer == "identity"
-    assert run.episode_lengths.sum() > 25
+    assert run.episode_lengths.sum() > 10
 
 
 @pytest.mark.parametrize("algorithm", LEARNERS)
 @pytest.mark.parametrize("name", ["FrozenLake-v1", "Taxi-v4", "Blackjack-v1"])
 def test_every_algorithm_learns_the_same(name, algorithm):
-    run = same_everywhere(name, algorithm=algorithm, episodes=12, max_episode_steps=40)
+    run = same_everywhere(name, algorithm=algorithm, episodes=5, max_episode_steps=40)
     assert len(run.tables) == n_tables(algorithm)
 
 

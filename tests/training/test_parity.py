@@ -108,7 +108,7 @@ def test_an_environment_of_a_user_gives_the_references_table(terminal_update, bi
     run = qtab.train(
         Walk(dtype, start, actions),
         seed=8,
-        episodes=12,
+        episodes=5,
         scale=(2.0, 3.0),
         max_episode_steps=60,
         terminal_update=terminal_update,

@@ -87,7 +87,7 @@ def test_visits_are_those_of_the_reference(algorithm: Any, env: str) -> None:
 @pytest.mark.parametrize("env", ["FrozenLake-v1", "Taxi-v4", "Blackjack-v1", "CartPole-v1"])
 @pytest.mark.parametrize("algorithm", ["q_learning", "sarsa", "expected_sarsa", "double_q_learning"])
 def test_visits_of_each_environment_are_those_of_the_reference(env: str, algorithm: Any) -> None:
-    run = qtab.train(env, algorithm=algorithm, episodes=30, seed=1, visits=True, max_episode_steps=50)
+    run = qtab.train(env, algorithm=algorithm, episodes=10, seed=1, visits=True, max_episode_steps=50)
     np.testing.assert_array_equal(run.visits, visits_of_the_reference(run))
 
 

@@ -47,7 +47,7 @@ NEAR_THE_END = {
 def test_lock_step_with_gymnasium(name: str, mode: Any) -> None:
     seen = np.zeros(2, np.int64)
 
-    @settings(max_examples=max(settings().max_examples // 12, 1))
+    @settings(max_examples=max(settings().max_examples // 7, 1))
     @given(
         num_envs=st.integers(1, 24),
         seed=st.integers(0, 2**70) | st.none(),

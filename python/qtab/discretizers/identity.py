@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -53,7 +54,7 @@ class Identity(Discretizer):
             raise ValueError("its bounds are not those of a discrete space")
         return cls(low, high)
 
-    @property
+    @cached_property  # a call of train() asks seven times
     def shape(self) -> tuple[int, ...]:
         """How many integers each component takes."""
         return tuple(np.ravel(self.high - self.low + 1).tolist())

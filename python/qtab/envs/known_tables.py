@@ -1,7 +1,7 @@
 """Environments of Gymnasium whose transition tables Rust makes: Gymnasium's constructors take milliseconds for them."""
 
 import inspect
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -18,15 +18,10 @@ VERSION = "1.4."
 
 _DIRECTIONS = {0: [-1, 0], 1: [0, 1], 2: [1, 0], 3: [0, -1]}
 """Where the actions of CliffWalking lead to."""
-_CLIFF_WALKING: Mapping[str, Any] = {"is_slippery": False}
-_TAXI: Mapping[str, Any] = {
-    "is_rainy": False,
-    "fickle_passenger": False,
-    "rainy_probability": 0.8,
-    "fickle_probability": 0.3,
-}
-_DEFAULTS = {"CliffWalking-v1": _CLIFF_WALKING, "CliffWalkingSlippery-v1": _CLIFF_WALKING, "Taxi-v4": _TAXI}
-"""The keyword arguments of the constructors, with their defaults, by the environment's id."""
+_LEFT_DOWN_RIGHT_UP = (0, 1, 2, 3)
+"""The actions of FrozenLake."""
+_LETTERS = frozenset("SFHG")
+"""Of a frozen lake: start, frozen, hole, goal."""
 
 
 class KnownTable(gym.Env[int, int]):
@@ -54,9 +49,10 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
         kwargs: Keyword arguments of the constructor.
     """
     name = gymnasium_id(spec.id)
-    defaults = _DEFAULTS.get(name)
-    if defaults is None or not gym.__version__.startswith(VERSION):
+    known = _KNOWN.get(name)
+    if known is None or not gym.__version__.startswith(VERSION):
         return None
+    defaults, table_of = known
     arguments = {**defaults, **spec.kwargs, **kwargs}
     if arguments.keys() != defaults.keys() or any(type(arguments[key]) is not type(defaults[key]) for key in defaults):
         return None
@@ -64,16 +60,71 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
     module: Any = import_module(module_name)
     if not _is_gymnasiums_own(getattr(module, class_name), module):
         return None
-    if name != "Taxi-v4":
-        own = module.POSITION_MAPPING == _DIRECTIONS
-        return KnownTable(_core.TransitionTable.cliff_walking(arguments["is_slippery"])) if own else None
-    rainy = arguments["rainy_probability"] if arguments["is_rainy"] else None
     try:
-        table = _core.TransitionTable.taxi([line.encode("ascii") for line in module.MAP], rainy)
-    except ValueError:  # a map of another size, or what is no probability
+        return table_of(module, **arguments)
+    except (OverflowError, ValueError):  # what Gymnasium refuses, or a map of another size
         return None
-    fickle = {name: arguments[name] for name in ("fickle_passenger", "fickle_probability")}
-    return KnownTable(table, **fickle)
+
+
+def _cliff_walking(module: Any, *, is_slippery: bool) -> KnownTable | None:
+    own = module.POSITION_MAPPING == _DIRECTIONS
+    return KnownTable(_core.TransitionTable.cliff_walking(is_slippery)) if own else None
+
+
+def _frozen_lake(
+    module: Any,
+    *,
+    desc: None,  # noqa: ARG001 - a map of the user's is left to Gymnasium
+    map_name: str,
+    is_slippery: bool,
+    success_rate: float,
+    reward_schedule: tuple[float, ...],
+) -> KnownTable | None:
+    lines = module.MAPS.get(map_name)
+    if (
+        (module.LEFT, module.DOWN, module.RIGHT, module.UP) != _LEFT_DOWN_RIGHT_UP
+        or not isinstance(lines, list)
+        or not all(isinstance(line, str) and len(line) > 1 and _LETTERS.issuperset(line) for line in lines)
+        or len(reward_schedule) != 3
+        or not all(type(reward) in (int, float) for reward in reward_schedule)
+    ):
+        return None
+    rate = success_rate if is_slippery else None
+    return KnownTable(_core.TransitionTable.frozen_lake([line.encode() for line in lines], rate, reward_schedule))
+
+
+def _taxi(
+    module: Any, *, is_rainy: bool, fickle_passenger: bool, rainy_probability: float, fickle_probability: float
+) -> KnownTable:
+    rain = rainy_probability if is_rainy else None
+    table = _core.TransitionTable.taxi([line.encode("ascii") for line in module.MAP], rain)
+    return KnownTable(table, fickle_passenger=fickle_passenger, fickle_probability=fickle_probability)
+
+
+_Maker = Callable[..., KnownTable | None]
+_CLIFF_WALKING: tuple[Mapping[str, Any], _Maker] = ({"is_slippery": False}, _cliff_walking)
+_FROZEN_LAKE: tuple[Mapping[str, Any], _Maker] = (
+    {
+        "desc": None,
+        "map_name": "4x4",
+        "is_slippery": True,
+        "success_rate": 1.0 / 3.0,
+        "reward_schedule": (1, 0, 0),
+    },
+    _frozen_lake,
+)
+_TAXI: tuple[Mapping[str, Any], _Maker] = (
+    {"is_rainy": False, "fickle_passenger": False, "rainy_probability": 0.8, "fickle_probability": 0.3},
+    _taxi,
+)
+_KNOWN = {
+    "CliffWalking-v1": _CLIFF_WALKING,
+    "CliffWalkingSlippery-v1": _CLIFF_WALKING,
+    "FrozenLake-v1": _FROZEN_LAKE,
+    "FrozenLake8x8-v1": _FROZEN_LAKE,
+    "Taxi-v4": _TAXI,
+}
+"""By the environment's id: the keyword arguments of its constructor with their defaults, and what makes its table."""
 
 
 def _is_gymnasiums_own(cls: type, module: ModuleType) -> bool:
@@ -83,7 +134,11 @@ def _is_gymnasiums_own(cls: type, module: ModuleType) -> bool:
     """
     if cls.__module__ != module.__name__:
         return False
-    members = [member for member in vars(cls).values() if callable(member) or hasattr(member, "__get__")]
+    members = [
+        member.__func__ if isinstance(member, staticmethod) else member
+        for member in vars(cls).values()
+        if callable(member) or hasattr(member, "__get__")
+    ]
     return all(
         inspect.isgetsetdescriptor(member) or (inspect.isfunction(member) and member.__globals__ is vars(module))
         for member in members

@@ -161,8 +161,8 @@ def versioned(env: str) -> str:
     package, colon, name = env.rpartition(":")
     import_package(env)
     namespace, bare_name, version = parse_env_id(name)
-    newest = find_highest_version(namespace, bare_name)
-    if version is not None or newest is None:
+    newest = find_highest_version(namespace, bare_name) if version is None else None
+    if newest is None:
         return env
     full_name = get_env_id(namespace, bare_name, newest)
     gym.logger.warn(

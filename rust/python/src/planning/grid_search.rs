@@ -83,7 +83,7 @@ impl PyGridSearch {
     /// The values at every point of the grid, and of every action there, both in C order.
     fn values<'py>(&self, py: Python<'py>) -> (Array<'py, f64>, Array<'py, f64>) {
         on_grid!(&self.grid, values => {
-            (PyArray1::from_slice(py, values.grid()), PyArray1::from_vec(py, values.action_grid()))
+            (PyArray1::from_slice(py, values.grid()), PyArray1::from_slice(py, values.action_grid()))
         })
     }
 

@@ -77,6 +77,14 @@ impl PyTrainer {
             }
             return Ok(());
         }
+        // A short run, or the episodes until the next callback, are over before a thread would have started.
+        if run.episodes().returns.len() < episodes {
+            py.detach(|| run.advance(budget))?;
+            py.check_signals()?;
+        }
+        if run.episodes().returns.len() >= episodes {
+            return Ok(());
+        }
         let advanced: Result<(), RunError> = run_interruptible(py, |stop| {
             while run.episodes().returns.len() < episodes && !stop.is_set() {
                 run.advance(budget)?;

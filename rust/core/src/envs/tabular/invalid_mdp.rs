@@ -5,7 +5,7 @@ use std::fmt;
 
 /// Why a transition table is invalid, and where, in Python's notation.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct InvalidMdp(pub(super) String);
+pub struct InvalidMdp(pub(in crate::envs) String);
 
 impl fmt::Display for InvalidMdp {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {

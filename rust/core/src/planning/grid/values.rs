@@ -6,7 +6,7 @@
 use super::super::PlanningError;
 use super::GridTask;
 use crate::StopFlag;
-use crate::memory::collect;
+use crate::memory::{collect, reserve};
 
 /// The number of grid points around a state of four numbers.
 const MAX_CORNERS: usize = 16;
@@ -19,6 +19,8 @@ pub struct GridValues<T, const D: usize> {
     corners: [usize; MAX_CORNERS],
     /// The values at the grid points, in C order.
     values: Vec<f64>,
+    /// The values of all actions at the grid points, in C order, actions last.
+    action_values: Vec<f64>,
     lowest: f64,
 }
 
@@ -26,10 +28,13 @@ pub struct GridValues<T, const D: usize> {
 /// next point along each axis. It is compact because there are millions of them.
 #[derive(Clone, Copy)]
 struct Successor<const D: usize> {
-    reward: f32,
+    reward: f64,
     point: u32,
     fractions: [f32; D],
 }
+
+/// How many grid points are stepped from between two looks at the stop flag: about a millisecond.
+const POINTS_BETWEEN_CHECKS: usize = 1024;
 
 /// The point of a terminal state, whose value is 0.
 const TERMINAL: u32 = u32::MAX;
@@ -48,39 +53,63 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
         let fits = finest_stride.is_power_of_two() && finest_stride <= coarsest;
         assert!(fits, "stride must be a power of two up to {coarsest}, got {finest_stride}");
         let lowest = task.lowest_value(max_steps);
-        let mut coarser = Self { task, points: [2; D], corners: corners([2; D]), values: vec![0.0; 1 << D], lowest };
+        let on = |points| Self {
+            task,
+            points,
+            corners: corners(points),
+            values: Vec::new(),
+            action_values: Vec::new(),
+            lowest,
+        };
+        let mut coarser = Self { values: vec![0.0; 1 << D], ..on([2; D]) };
         let mut stride = coarsest;
         loop {
             let points = T::POINTS.map(|points| (points - 1) / stride + 1);
-            let mut finer = Self { task, points, corners: corners(points), values: Vec::new(), lowest };
+            let mut finer = on(points);
             finer.values = collect((0..points.iter().product()).map(|point| coarser.value(finer.state(point))))?;
-            finer.converge(stop)?;
+            let successors = finer.successors(stop)?;
+            finer.converge(&successors, stop)?;
             if stride == finest_stride {
+                finer.action_values = collect(successors.iter().map(|outcome| finer.outcome_value(outcome)))?;
                 return Ok(finer);
             }
             (coarser, stride) = (finer, stride / 2);
         }
     }
 
-    /// Value iteration in place: v(s) ← maxₐ r + γ v(s′).
-    fn converge(&mut self, stop: &StopFlag<'_>) -> Result<(), PlanningError> {
+    /// What follows each action at each grid point, in C order, actions last.
+    fn successors(&self, stop: &StopFlag<'_>) -> Result<Vec<Successor<D>>, PlanningError> {
         let num_actions = self.task.num_actions();
-        let successors = collect((0..self.values.len() * num_actions).map(|pair| {
-            let taken = self.task.transition(self.state(pair / num_actions), pair % num_actions);
-            let (point, fractions) = if taken.terminated { (TERMINAL, [0.0; D]) } else { self.position(taken.state) };
-            Successor { reward: taken.reward as f32, point, fractions }
-        }))?;
+        let mut successors = Vec::new();
+        reserve(&mut successors, self.values.len() * num_actions)?;
+        for point in 0..self.values.len() {
+            if point % POINTS_BETWEEN_CHECKS == 0 && stop.is_set() {
+                return Err(PlanningError::Stopped);
+            }
+            let state = self.state(point);
+            successors.extend((0..num_actions).map(|action| {
+                let taken = self.task.transition(state, action);
+                let (point, fractions) =
+                    if taken.terminated { (TERMINAL, [0.0; D]) } else { self.position(taken.state) };
+                Successor { reward: taken.reward, point, fractions }
+            }));
+        }
+        Ok(successors)
+    }
+
+    /// Value iteration in place: v(s) ← maxₐ r + γ v(s′).
+    fn converge(&mut self, successors: &[Successor<D>], stop: &StopFlag<'_>) -> Result<(), PlanningError> {
+        let num_actions = self.task.num_actions();
         let last = self.values.len() - 1;
         loop {
             let mut change = 0.0_f64;
             // Forwards and backwards, so that changes spread in both directions.
             for point in (0..=last).chain((0..=last).rev()) {
                 let possible = successors[point * num_actions..][..num_actions].iter();
-                let outcomes = possible.map(|outcome| {
-                    let value = self.interpolate(outcome.point, outcome.fractions);
-                    f64::from(outcome.reward) + T::DISCOUNT * value
-                });
-                let best = outcomes.fold(self.lowest, f64::max);
+                // A sweep reads rewards in float32, as the fractions are. That is what the best known values were found with.
+                let outcomes =
+                    possible.map(|&outcome| Successor { reward: f64::from(outcome.reward as f32), ..outcome });
+                let best = outcomes.map(|outcome| self.outcome_value(&outcome)).fold(self.lowest, f64::max);
                 change = change.max((best - self.values[point]).abs());
                 self.values[point] = best;
             }
@@ -138,10 +167,14 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
     }
 
     /// The values of all actions at all grid points, in C order, actions last.
-    pub fn action_grid(&self) -> Vec<f64> {
-        let actions = self.task.num_actions();
-        let pairs = 0..self.values.len() * actions;
-        pairs.map(|pair| self.action_value(self.state(pair / actions), pair % actions)).collect()
+    pub fn action_grid(&self) -> &[f64] {
+        &self.action_values
+    }
+
+    /// The value of a state-action pair: its reward, and the value of what follows it.
+    #[inline]
+    fn outcome_value(&self, outcome: &Successor<D>) -> f64 {
+        outcome.reward + T::DISCOUNT * self.interpolate(outcome.point, outcome.fractions)
     }
 
     fn coordinate(&self, axis: usize, index: usize) -> f64 {

@@ -5,7 +5,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use qtab_core::Env;
 use qtab_core::envs::tabular::{InvalidMdp, Outcome, TabularMdp};
-use qtab_core::envs::toy_text::{TaxiMap, cliff_walking, taxi_table};
+use qtab_core::envs::toy_text::{LakeRewards, TaxiMap, cliff_walking, frozen_lake, taxi_table};
 use qtab_core::memory::reserve;
 
 use crate::convert::double;
@@ -114,6 +114,15 @@ impl PyTransitionTable {
     #[staticmethod]
     fn cliff_walking(is_slippery: bool) -> PyResult<Self> {
         known(cliff_walking(is_slippery))
+    }
+
+    /// The table of Gymnasium's `FrozenLakeEnv` with a map of these lines, all of the same length, and rewards for reaching
+    /// the goal, a hole and frozen ground; without a success rate, on ice that is not slippery.
+    #[staticmethod]
+    #[pyo3(signature = (lines, success_rate, rewards))]
+    fn frozen_lake(lines: Vec<Vec<u8>>, success_rate: Option<f64>, rewards: [f64; 3]) -> PyResult<Self> {
+        let [goal, hole, frozen] = rewards;
+        known(frozen_lake(&lines, success_rate, LakeRewards { goal, hole, frozen }))
     }
 
     /// The table of Gymnasium's `TaxiEnv` with a map of 7 lines of 11 characters; without a probability, in dry weather.
