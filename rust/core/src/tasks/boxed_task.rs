@@ -17,10 +17,10 @@ enum Outcome {
 }
 
 /// A task together with the state of its episode, so that the type of the state is hidden.
-struct StatefulTask<T: Task> {
+struct StatefulTask<T: Task, X> {
     task: T,
     state: Option<T::State>,
-    error: Option<T::Error>,
+    error: Option<X>,
     /// What the steps are compiled for: the loop that calls them does not know of it.
     level: SimdLevel,
 }
@@ -42,15 +42,15 @@ trait DynTask<R, X> {
 }
 
 /// A step, compiled for each [`SimdLevel`].
-struct StepCode<'a, T: Task> {
+struct StepCode<'a, T: Task, X> {
     task: &'a mut T,
     state: &'a mut T::State,
-    error: &'a mut Option<T::Error>,
+    error: &'a mut Option<X>,
     action: usize,
     active: &'a mut T::Active,
 }
 
-impl<T: Task> SimdCode for StepCode<'_, T> {
+impl<T: Task, X: From<T::Error>> SimdCode for StepCode<'_, T, X> {
     type Output = (f64, Outcome);
 
     #[inline(always)]
@@ -66,14 +66,14 @@ impl<T: Task> SimdCode for StepCode<'_, T> {
             }
             Ok(Transition { reward, next: Next::Terminal }) => (reward, Outcome::Terminal),
             Err(error) => {
-                *self.error = Some(error);
+                *self.error = Some(error.into());
                 (0.0, Outcome::Failed)
             }
         }
     }
 }
 
-impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
+impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T, X> {
     fn reset(&mut self) -> Result<T::Active, X> {
         let (state, active) = self.task.reset()?;
         self.state = Some(state);
@@ -88,7 +88,7 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
 
     fn take_error(&mut self) -> X {
         let Some(error) = self.error.take() else { unreachable!("the step has failed") };
-        error.into()
+        error
     }
 
     fn action_mask(&self) -> Option<&[bool]> {
@@ -123,11 +123,11 @@ pub struct BoxedTask<R, X> {
     has_masks: bool,
 }
 
-impl<R: ActiveRows + 'static, X: 'static> BoxedTask<R, X> {
+impl<R: ActiveRows + 'static, X: Send + 'static> BoxedTask<R, X> {
     /// Boxes a task and converts its errors to `X`.
     pub fn new<T>(task: T) -> Self
     where
-        T: Task<Active = R, State: Send, Error: Send> + Send + 'static,
+        T: Task<Active = R, State: Send> + Send + 'static,
         X: From<T::Error>,
     {
         Self {
