@@ -14,17 +14,34 @@ impl EligibleWeights {
     pub(super) fn update<const N: usize>(
         &mut self,
         table: &mut QTable<N>,
-        weights: impl ExactSizeIterator<Item = u32>,
+        weights: impl ExactSizeIterator<Item = usize>,
         change: impl Fn(f64) -> f64,
     ) -> f64 {
-        let mut smallest = self.smallest;
-        let sum = self.change(table, weights, |trace| {
-            let trace = change(trace);
+        self.grow(weights.len(), table.storage_mut());
+        // Local variables: behind `self` and `table` each weight would load them again.
+        let base = self.base;
+        let slots = self.slots.as_mut_slice();
+        let traces = &mut *self.traces;
+        let places = &mut self.weights[..traces.len()];
+        let (storage, mut count) = (table.storage_mut().as_mut_slice(), self.count);
+        let (mut sum, mut smallest) = (None, self.smallest);
+        for weight in weights {
+            let slot = slots[weight] as usize;
+            let value = storage[slot];
+            // No branch, because whether a weight is eligible is hard to predict.
+            let new = slot < base;
+            let place = select_unpredictable(new, count, slot.wrapping_sub(base));
+            let trace = change(select(new, 0.0, traces[place]));
             smallest = if trace.abs() < smallest { trace.abs() } else { smallest };
-            trace
-        });
-        self.smallest = smallest;
-        sum
+            traces[place] = trace;
+            places[place] = weight as u32;
+            storage[base + place] = value;
+            slots[weight] = (base + place) as u32;
+            count += usize::from(new);
+            sum = Some(sum.map_or(value, |sum| sum + value));
+        }
+        (self.count, self.smallest) = (count, smallest);
+        sum.unwrap_or(0.0)
     }
 
     /// Sets the traces of some weights to 1. Returns the sum of the values from left to right.
@@ -35,20 +52,9 @@ impl EligibleWeights {
         weights: impl ExactSizeIterator<Item = u32>,
     ) -> f64 {
         self.smallest = self.smallest.min(1.0);
-        self.change(table, weights, |_| 1.0)
-    }
-
-    /// [`update`](Self::update) of the traces alone.
-    #[inline(always)]
-    fn change<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        weights: impl ExactSizeIterator<Item = u32>,
-        mut change: impl FnMut(f64) -> f64,
-    ) -> f64 {
         self.grow(weights.len(), table.storage_mut());
-        // Local variables: behind `self` and `table` each weight would load them again. In 32 bits, so that no sum of them
-        // overflows: the compiler then knows that the value at a place that has a trace is in the storage.
+        // Local variables, as in `update`. In 32 bits, so that no sum of them overflows: the compiler then knows that the
+        // value at a place that has a trace is in the storage. `update`, whose next pass waits for it, would be slower so.
         let (base, places) = (self.base as u32, self.traces.len() as u32);
         let (slots, traces) = (self.slots.as_mut_slice(), &mut self.traces[..places as usize]);
         let place_weights = &mut self.weights[..places as usize];
@@ -58,11 +64,9 @@ impl EligibleWeights {
         for weight in weights {
             let slot = &mut slots[weight as usize];
             let value = storage[*slot as usize];
-            // No branch, because whether a weight is eligible is hard to predict.
             let new = *slot < base;
             let place = select_unpredictable(new, count, slot.wrapping_sub(base)) as usize;
-            let trace = &mut traces[place];
-            *trace = change(select(new, 0.0, *trace));
+            traces[place] = 1.0;
             place_weights[place] = weight;
             storage[base as usize + place] = value;
             *slot = base + place as u32;

@@ -112,7 +112,8 @@ impl Traces {
         action: usize,
         change: impl Fn(f64) -> f64,
     ) -> f64 {
-        let weights = weight_indices(rows.as_ref(), table.num_actions(), action);
+        let num_actions = table.num_actions();
+        let weights = rows.as_ref().iter().map(|&row| row as usize * num_actions + action);
         self.eligible.update(table, weights, change)
     }
 
