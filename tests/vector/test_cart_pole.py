@@ -115,6 +115,16 @@ def test_any_state_steps_as_gymnasium_has_it(numbers, dtype):
         step_both(envs, np.array([1, 0]))
 
 
+@pytest.mark.parametrize("arrange", [np.asfortranarray, lambda state: np.repeat(state, 2, axis=1)[:, ::2]])
+def test_a_state_in_any_memory_order_steps_as_gymnasiums(arrange):
+    envs = pair()
+    for env in envs:
+        env.reset(seed=1)
+        env.state = arrange(env.state)
+    for _ in range(3):
+        step_both(envs, np.array([1, 0, 1, 1, 0]))
+
+
 @pytest.mark.parametrize("dtype", [np.int64, np.int32, np.uint8, np.int8, bool])
 def test_actions_of_any_integer_dtype(dtype):
     envs = pair()

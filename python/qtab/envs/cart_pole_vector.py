@@ -60,23 +60,16 @@ class CartPoleVectorEnv(GymnasiumCartPoleVectorEnv):
         """
         old_state: Any = self.state
         arrays = type(old_state) is np.ndarray and type(action) is np.ndarray
-        stepped = _core.step_cart_poles(self, old_state, action) if arrays else None
+        stepped = _core.step_cart_poles(self, old_state, action, self.prev_done) if arrays else None
         if stepped is None:
             return super().step(action)
-        state, terminated = stepped
+        state, rewards, terminated, over = stepped
         self.state: Any = state
         self.steps += 1
         truncated = self.steps >= self.max_episode_steps
-        if self._sutton_barto_reward:
-            rewards = -terminated.astype(np.float32)
-        else:
-            rewards = np.ones(len(terminated), np.float32)
-        over = np.flatnonzero(self.prev_done)
         if len(over):
             state[:, over] = self.np_random.uniform(low=self.low, high=self.high, size=(4, len(over)))
             self.steps[over] = 0
-            rewards[over] = 0.0
-            terminated[over] = False
             truncated[over] = False
         self.prev_done = np.logical_or(terminated, truncated)
         return state.T.astype(np.float32), rewards, terminated, truncated, {}

@@ -6,22 +6,24 @@ mod benchmarks;
 
 use benchmarks::Benchmarks;
 use qtab_core::Env;
+use qtab_core::envs::SimdEnv;
 use qtab_core::envs::classic_control::{CartPole, MountainCar};
 use qtab_core::random::{Pcg64, Rng, SeedSequence};
-use qtab_core::vector::{Autoreset, StepBuffers, VectorEnv};
+use qtab_core::vector::{Autoreset, LaneStates, StepBuffers, VectorEnv};
 
 const NUM_ENVS: usize = 4096;
 const LIMIT: u64 = 200;
 
-fn step<E>(benchmarks: &mut Benchmarks, name: &str, env: E)
+fn step<E, const M: usize>(benchmarks: &mut Benchmarks, name: &str, env: E)
 where
-    E: Env<Action = usize, Observation: Copy + Default + Send, State: Send> + Sync,
+    E: SimdEnv<M> + Env<Observation = [f32; M], State: Send> + Sync,
 {
     let mut rngs: Vec<_> = (0..NUM_ENVS as u32).map(|seed| Pcg64::new(&SeedSequence::new(&[seed]))).collect();
     let actions: Vec<_> = rngs.iter_mut().map(|rng| rng.integers(env.num_actions() as u32) as usize).collect();
-    let mut vector = VectorEnv::new(env, NUM_ENVS, Some(LIMIT), Autoreset::SameStep, 1).expect("it fits");
+    let mut vector =
+        VectorEnv::<_, LaneStates<M>>::new(env, NUM_ENVS, Some(LIMIT), Autoreset::SameStep, 1).expect("it fits");
     rngs.iter_mut().enumerate().for_each(|(index, rng)| vector.reset(index, None, rng));
-    let (mut observations, mut rewards) = (vec![E::Observation::default(); NUM_ENVS], vec![0.0; NUM_ENVS]);
+    let (mut observations, mut rewards) = (vec![[0.0; M]; NUM_ENVS], vec![0.0; NUM_ENVS]);
     let (mut terminated, mut truncated) = (vec![false; NUM_ENVS], vec![false; NUM_ENVS]);
     benchmarks.add("vector", name, || {
         let buffers = StepBuffers {

@@ -45,30 +45,6 @@ pub trait Env {
     /// May panic if the action is out of range. The caller checks actions that come from outside.
     fn step(&self, state: Self::State, action: Self::Action, rng: &mut impl Rng) -> Step<Self::State>;
 
-    /// One step of each of several sub-environments, in place. Those that are `inactive` keep their state, whatever their
-    /// action, and their outputs are unspecified. An implementation may compute several at once, but with the results of
-    /// `step`.
-    #[inline]
-    fn step_batch(
-        &self,
-        states: &mut [Self::State],
-        actions: &[Self::Action],
-        rngs: &mut [impl Rng],
-        rewards: &mut [f64],
-        terminated: &mut [bool],
-        inactive: &[bool],
-    ) {
-        let outputs = rewards.iter_mut().zip(terminated).zip(inactive);
-        for (((state, &action), rng), ((reward, terminated), &inactive)) in
-            states.iter_mut().zip(actions).zip(rngs).zip(outputs)
-        {
-            if !inactive {
-                let step = self.step(*state, action, rng);
-                (*state, *reward, *terminated) = (step.state, step.reward, step.terminated);
-            }
-        }
-    }
-
     /// The observation of a state.
     fn observe(&self, state: &Self::State) -> Self::Observation;
 }

@@ -1,7 +1,7 @@
 //! The sub-environments that one thread steps.
 
-use std::ops::Range;
-
+use super::flags::{CHUNK, Flags};
+use super::states::{States, StepOutputs};
 use super::vector_config::VectorConfig;
 use super::{Autoreset, StepBuffers};
 use crate::StopFlag;
@@ -10,44 +10,49 @@ use crate::envs::Env;
 use crate::memory::{AllocationError, filled, with_capacity};
 use crate::random::Rng;
 
-/// So many sub-environments are looked through together for episodes that end.
-const CHUNK: usize = 16;
-
-/// The episodes of the sub-environments that one thread steps, as a structure of arrays.
+/// The episodes of the sub-environments that one thread steps.
 #[derive(Clone, Debug)]
-pub(super) struct Shard<S> {
-    states: Vec<S>,
-    /// The number of steps since the last reset.
-    elapsed: Vec<u64>,
+pub(super) struct Shard<E: Env, S> {
+    states: S,
+    /// The number of steps that were taken.
+    steps: u64,
+    /// The value of `steps` when each episode began. Differences wrap around: a restored episode can have begun before
+    /// the first step.
+    begun: Vec<u64>,
+    /// For each chunk a number of steps, counted as in `begun`, before which none of its episodes began: until these reach
+    /// the time limit, no episode does.
+    earliest: Vec<u64>,
     /// Whether the episode has ended without a reset since.
     done: Vec<bool>,
     /// With `Autoreset::SameStep`, the index and the last state of each episode that ended in the last step. It has
     /// capacity for all sub-environments, so that a step allocates nothing.
-    final_states: Vec<(usize, S)>,
+    final_states: Vec<(usize, E::State)>,
 }
 
-impl<S: Copy> Shard<S> {
+impl<E: Env, S: States<E>> Shard<E, S> {
     /// `size` sub-environments that await their first reset. `placeholder` fills the states until then.
-    pub(super) fn new(placeholder: S, size: usize) -> Result<Self, AllocationError> {
+    pub(super) fn new(placeholder: E::State, size: usize) -> Result<Self, AllocationError> {
         let stop = StopFlag::new();
         Ok(Self {
-            states: filled(&placeholder, size, &stop)?,
-            elapsed: filled(&0, size, &stop)?,
+            states: S::new(placeholder, size)?,
+            steps: 0,
+            begun: filled(&0, size, &stop)?,
+            earliest: filled(&0, size.div_ceil(CHUNK), &stop)?,
             done: filled(&false, size, &stop)?,
             final_states: with_capacity(size)?,
         })
     }
 
-    pub(super) fn states(&self) -> impl Iterator<Item = &S> + Clone {
-        self.states.iter()
+    pub(super) fn states(&self) -> impl Iterator<Item = E::State> + Clone {
+        (0..self.done.len()).map(|index| self.state(index))
     }
 
-    pub(super) fn state(&self, index: usize) -> &S {
-        &self.states[index]
+    pub(super) fn state(&self, index: usize) -> E::State {
+        self.states.get(index)
     }
 
     pub(super) fn elapsed(&self, index: usize) -> u64 {
-        self.elapsed[index]
+        self.steps.wrapping_sub(self.begun[index])
     }
 
     pub(super) fn is_done(&self, index: usize) -> bool {
@@ -58,33 +63,41 @@ impl<S: Copy> Shard<S> {
         self.done.iter().copied()
     }
 
-    pub(super) fn final_states(&self) -> &[(usize, S)] {
+    pub(super) fn final_states(&self) -> &[(usize, E::State)] {
         &self.final_states
     }
 
     /// Saves or restores the episodes. Which of them ended in the last step is not part of it.
-    pub(super) fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>
-    where
-        S: Persist,
-    {
+    pub(super) fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         if checkpoint.is_restoring() {
             self.final_states.clear();
         }
-        for ((state, elapsed), done) in self.states.iter_mut().zip(&mut self.elapsed).zip(&mut self.done) {
-            (state, elapsed, done).persist(checkpoint)?;
+        for index in 0..self.done.len() {
+            let (mut state, mut elapsed) = (self.state(index), self.elapsed(index));
+            (&mut state, &mut elapsed, &mut self.done[index]).persist(checkpoint)?;
+            self.states.set(index, state);
+            self.begun[index] = self.steps.wrapping_sub(elapsed);
         }
+        (0..self.earliest.len()).for_each(|chunk| self.find_earliest(chunk));
         Ok(())
     }
 
     /// Begins an episode in this state.
-    pub(super) fn begin(&mut self, index: usize, state: S) {
-        self.states[index] = state;
-        self.elapsed[index] = 0;
+    pub(super) fn begin(&mut self, index: usize, state: E::State) {
+        self.states.set(index, state);
+        self.begun[index] = self.steps;
         self.done[index] = false;
     }
 
+    fn find_earliest(&mut self, chunk: usize) {
+        let steps = self.steps;
+        let begun = self.begun.chunks(CHUNK).nth(chunk).into_iter().flatten();
+        let longest = begun.map(|&begun| steps.wrapping_sub(begun)).max();
+        self.earliest[chunk] = steps.wrapping_sub(longest.unwrap_or(0));
+    }
+
     /// One step of all sub-environments.
-    pub(super) fn step<E: Env<State = S>>(
+    pub(super) fn step(
         &mut self,
         env: &E,
         config: VectorConfig,
@@ -96,40 +109,53 @@ impl<S: Copy> Shard<S> {
         self.final_states.clear();
         let resets_done = config.autoreset == Autoreset::NextStep;
         assert!(resets_done || !self.done.contains(&true), "a finished episode must be reset before the next step");
-        env.step_batch(&mut self.states, actions, rngs, rewards, terminated, &self.done);
-        for first in (0..rngs.len()).step_by(CHUNK) {
-            let chunk = first..rngs.len().min(first + CHUNK);
-            if !self.count_steps(chunk.clone(), config.max_episode_steps, terminated, truncated) {
+        let outputs = StepOutputs { observations, rewards, terminated };
+        self.states.step(env, actions, rngs, &self.done, outputs);
+        self.steps = self.steps.wrapping_add(1);
+        for chunk in 0..self.earliest.len() {
+            let range = chunk * CHUNK..self.done.len().min((chunk + 1) * CHUNK);
+            let (terminated, truncated) = (&mut terminated[range.clone()], &mut truncated[range.clone()]);
+            let was_done = Flags::read(&self.done[range.clone()]);
+            // An episode that had ended before this step cannot end in it.
+            let terminations = Flags::read(terminated) & !was_done;
+            let truncations = self.find_truncations(chunk, config.max_episode_steps) & !was_done;
+            let ended = terminations | truncations;
+            truncations.write(truncated);
+            if (was_done | ended) == Flags::NONE {
                 continue;
             }
-            for index in chunk {
-                if self.done[index] {
-                    self.begin(index, env.reset(&mut rngs[index]));
-                    (rewards[index], terminated[index], truncated[index]) = (0.0, false, false);
-                    continue;
+            terminations.write(terminated);
+            let resets = match config.autoreset {
+                Autoreset::NextStep => was_done,
+                Autoreset::SameStep => ended,
+                Autoreset::Disabled => Flags::NONE,
+            };
+            ended.write(&mut self.done[range.clone()]);
+            for index in resets.lanes().map(|lane| range.start + lane) {
+                if resets_done {
+                    rewards[index] = 0.0;
+                } else {
+                    self.final_states.push((index, self.state(index)));
                 }
-                self.done[index] = terminated[index] || truncated[index];
-                if self.done[index] && config.autoreset == Autoreset::SameStep {
-                    self.final_states.push((index, self.states[index]));
-                    self.begin(index, env.reset(&mut rngs[index]));
-                }
+                let state = env.reset(&mut rngs[index]);
+                observations[index] = env.observe(&state);
+                self.begin(index, state);
             }
-        }
-        for (observation, state) in observations.iter_mut().zip(&self.states) {
-            *observation = env.observe(state);
         }
     }
 
-    /// Counts a step of these sub-environments and finds those at the time limit. Returns whether an episode ends or has
-    /// ended. Most chunks have none, and are done after this loop, which has no branch.
-    fn count_steps(&mut self, chunk: Range<usize>, limit: u64, terminated: &[bool], truncated: &mut [bool]) -> bool {
-        let flags = truncated[chunk.clone()].iter_mut().zip(&terminated[chunk.clone()]).zip(&self.done[chunk.clone()]);
-        let mut any = false;
-        for (elapsed, ((truncated, terminated), done)) in self.elapsed[chunk].iter_mut().zip(flags) {
-            *elapsed += 1;
-            *truncated = *elapsed >= limit;
-            any |= *truncated | terminated | done;
+    /// Which episodes of the chunk are at the time limit.
+    #[inline]
+    fn find_truncations(&mut self, chunk: usize, limit: u64) -> Flags {
+        if self.steps.wrapping_sub(self.earliest[chunk]) < limit {
+            return Flags::NONE;
         }
-        any
+        self.find_earliest(chunk);
+        let begun = self.begun.chunks(CHUNK).nth(chunk).unwrap_or_default();
+        let mut truncated = [false; CHUNK];
+        for (truncated, begun) in truncated.iter_mut().zip(begun) {
+            *truncated = self.steps.wrapping_sub(*begun) >= limit;
+        }
+        Flags::read(&truncated)
     }
 }

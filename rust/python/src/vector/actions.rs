@@ -94,11 +94,12 @@ fn read_integers(actions: &Bound<'_, PyArray1<i64>>, num_actions: usize, into: &
     if actions.len() != into.len() {
         return Ok(false);
     }
-    let mut valid = true;
+    let last = num_actions.cast_signed() as i64 - 1;
+    // Negative as soon as one of them was: an action below 0, or above the last one.
+    let mut signs = 0;
     let mut put = |item: &mut usize, action: i64| {
-        // A negative number becomes a large one.
         *item = action as usize;
-        valid &= *item < num_actions;
+        signs |= action | last.wrapping_sub(action);
     };
     if into.len() <= READ_ONE_BY_ONE {
         for (index, item) in into.iter_mut().enumerate() {
@@ -106,9 +107,13 @@ fn read_integers(actions: &Bound<'_, PyArray1<i64>>, num_actions: usize, into: &
         }
     } else {
         let view = actions.try_readonly()?;
-        into.iter_mut().zip(view.as_array()).for_each(|(item, &action)| put(item, action));
+        match view.as_slice() {
+            // The usual case, which the compiler turns into SIMD code.
+            Ok(items) => into.iter_mut().zip(items).for_each(|(item, &action)| put(item, action)),
+            Err(_) => into.iter_mut().zip(view.as_array()).for_each(|(item, &action)| put(item, action)),
+        }
     }
-    Ok(valid)
+    Ok(signs >= 0)
 }
 
 /// Gymnasium's error for an invalid action, with the index of the sub-environment.

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use qtab_core::Env;
 use qtab_core::VectorEnv;
+use qtab_core::vector::States;
 
 use super::BatchObservation;
 
@@ -54,22 +55,28 @@ impl<'py> Infos<'py> {
     }
 
     /// Adds what all sub-environments report after a step.
-    pub(super) fn add_step<E: Env>(&self, envs: &VectorEnv<E>, info: &EnvInfo<E>) -> PyResult<()> {
+    pub(super) fn add_step<E: Env, S: States<E>>(&self, envs: &VectorEnv<E, S>, info: &EnvInfo<E>) -> PyResult<()> {
         let Some(transition) = &info.transition else { return Ok(()) };
         self.add_transition(&self.dict, transition, envs.states().enumerate(), false)
     }
 
     /// Adds what the sub-environments of these indices report after a reset.
-    pub(super) fn add_reset<E: Env>(&self, envs: &VectorEnv<E>, info: &EnvInfo<E>, indices: &[usize]) -> PyResult<()> {
+    pub(super) fn add_reset<E: Env, S: States<E>>(
+        &self,
+        envs: &VectorEnv<E, S>,
+        info: &EnvInfo<E>,
+        indices: &[usize],
+    ) -> PyResult<()> {
         let Some(transition) = &info.transition else { return Ok(()) };
         let states = indices.iter().map(|&index| (index, envs.state(index)));
         self.add_transition(&self.dict, transition, states, transition.integer_after_reset)
     }
 
     /// Adds the final observations and infos of the episodes that ended and were reset in the same step.
-    pub(super) fn add_final<E>(&self, envs: &VectorEnv<E>, info: &EnvInfo<E>) -> PyResult<()>
+    pub(super) fn add_final<E, S>(&self, envs: &VectorEnv<E, S>, info: &EnvInfo<E>) -> PyResult<()>
     where
         E: Env<Observation: BatchObservation>,
+        S: States<E>,
     {
         if envs.final_states().next().is_none() {
             return Ok(());
@@ -81,7 +88,8 @@ impl<'py> Infos<'py> {
         }
         let infos = PyDict::new(py);
         if let Some(transition) = &info.transition {
-            self.add_transition(&infos, transition, envs.final_states(), false)?;
+            let states = envs.final_states().map(|(index, &state)| (index, state));
+            self.add_transition(&infos, transition, states, false)?;
         }
         self.dict.set_item(intern!(py, "final_obs"), observations)?;
         self.dict.set_item(intern!(py, "_final_obs"), self.mask(envs.final_states().map(|(index, _)| index)))?;
@@ -89,17 +97,17 @@ impl<'py> Infos<'py> {
         self.dict.set_item(intern!(py, "_final_info"), self.mask(envs.final_states().map(|(index, _)| index)))
     }
 
-    fn add_transition<'a, S: 'a>(
+    fn add_transition<S>(
         &self,
         dict: &Bound<'py, PyDict>,
         info: &TransitionInfo<S>,
-        states: impl Iterator<Item = (usize, &'a S)> + Clone,
+        states: impl Iterator<Item = (usize, S)> + Clone,
         as_integers: bool,
     ) -> PyResult<()> {
         let (py, num_envs) = (self.py, self.num_envs);
         let mask = || self.mask(states.clone().map(|(index, _)| index));
         let mut probabilities = vec![0.0; num_envs];
-        states.clone().for_each(|(index, state)| probabilities[index] = (info.probability)(state));
+        states.clone().for_each(|(index, state)| probabilities[index] = (info.probability)(&state));
         let name = intern!(py, "prob");
         if as_integers {
             dict.set_item(name, PyArray1::from_iter(py, probabilities.into_iter().map(|number| number as i64)))?;
@@ -112,7 +120,7 @@ impl<'py> Infos<'py> {
             {
                 let mut rows = array.try_readwrite()?;
                 let (rows, _) = rows.as_slice_mut()?.as_chunks_mut::<6>();
-                states.clone().for_each(|(index, state)| rows[index] = masks[index_of(state)]);
+                states.clone().for_each(|(index, state)| rows[index] = masks[index_of(&state)]);
             }
             dict.set_item(intern!(py, "action_mask"), array)?;
             dict.set_item(intern!(py, "_action_mask"), mask())?;

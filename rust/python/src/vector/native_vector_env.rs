@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::memory::{filled, with_capacity};
-use qtab_core::vector::{Autoreset, StepBuffers};
+use qtab_core::vector::{Autoreset, States, StepBuffers};
 use qtab_core::{Env, StopFlag, VectorEnv};
 
 use super::infos::{EnvInfo, Infos};
@@ -52,8 +52,8 @@ pub(crate) trait DynVectorEnv: Send + Sync {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
 
-/// Sub-environments that are copies of `env`.
-pub(crate) fn native_vector_env<E>(
+/// Sub-environments that are copies of `env`, whose states are stored as `S`.
+pub(crate) fn native_vector_env<E, S>(
     py: Python<'_>,
     env: E,
     info: EnvInfo<E>,
@@ -61,16 +61,17 @@ pub(crate) fn native_vector_env<E>(
 ) -> PyResult<Box<dyn DynVectorEnv>>
 where
     E: Env<State: Send + Sync, Action: BatchAction, Observation: BatchObservation + Sync> + Send + Sync + 'static,
+    S: States<E> + Send + Sync + 'static,
 {
-    Ok(Box::new(NativeVectorEnv::new(py, env, info, options)?))
+    Ok(Box::new(NativeVectorEnv::<E, S>::new(py, env, info, options)?))
 }
 
 fn repeated<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
     filled(&value, count, &StopFlag::new()).map_err(allocation)
 }
 
-struct NativeVectorEnv<E: Env> {
-    envs: VectorEnv<E>,
+struct NativeVectorEnv<E: Env, S> {
+    envs: VectorEnv<E, S>,
     info: EnvInfo<E>,
     /// The last actions, and the actions that are being read.
     actions: [Vec<E::Action>; 2],
@@ -83,9 +84,10 @@ struct NativeVectorEnv<E: Env> {
     out: Option<Py<PyAny>>,
 }
 
-impl<E> NativeVectorEnv<E>
+impl<E, S> NativeVectorEnv<E, S>
 where
     E: Env<Action: BatchAction, Observation: BatchObservation>,
+    S: States<E>,
 {
     fn new(py: Python<'_>, env: E, info: EnvInfo<E>, options: VectorOptions) -> PyResult<Self> {
         let VectorOptions { num_envs, max_episode_steps, autoreset, copy, threads } = options;
@@ -95,7 +97,7 @@ where
         });
         let envs = VectorEnv::new(env, num_envs, max_episode_steps, autoreset, threads).map_err(allocation)?;
         let mut observations = with_capacity(num_envs).map_err(allocation)?;
-        observations.extend(envs.states().map(|state| envs.env().observe(state)));
+        observations.extend(envs.states().map(|state| envs.env().observe(&state)));
         let out = if copy { None } else { Some(E::Observation::batched(py, &observations)?.unbind()) };
         Ok(Self {
             envs,
@@ -118,9 +120,10 @@ where
     }
 }
 
-impl<E> DynVectorEnv for NativeVectorEnv<E>
+impl<E, S> DynVectorEnv for NativeVectorEnv<E, S>
 where
     E: Env<State: Send + Sync, Action: BatchAction, Observation: BatchObservation + Sync> + Send + Sync,
+    S: States<E> + Send + Sync,
 {
     fn step<'py>(&mut self, actions: &Bound<'py, PyAny>, rngs: &mut [SubEnvRng]) -> PyResult<VectorStep<'py>> {
         let py = actions.py();
@@ -182,7 +185,7 @@ where
         let (state, elapsed) = (self.envs.state(index), self.envs.elapsed(index));
         let attributes = PyDict::new(py);
         let last_action = (elapsed > 0).then(|| self.actions[0][index]);
-        (self.info.snapshot)(&attributes, self.envs.env(), state, last_action)?;
+        (self.info.snapshot)(&attributes, self.envs.env(), &state, last_action)?;
         let done = self.envs.is_done(index);
         if done && self.terminated[index] {
             self.info.terminal_counter.map_or(Ok(()), |name| attributes.set_item(name, 0))?;

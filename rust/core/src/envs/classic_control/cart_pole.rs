@@ -2,7 +2,8 @@
 //! Gymnasium's dynamics follow R. Florian, "Correct equations for the dynamics of the cart-pole system", 2005.
 
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::envs::{Env, Flag, Parameters, SimdEnv, Step, step_batch};
+use crate::envs::{Env, Flag, Parameters, SimdEnv, Step};
+use crate::numeric::cos_sin;
 use crate::random::Rng;
 
 /// The bounds of each component of the initial state, which is uniform.
@@ -127,7 +128,8 @@ impl CartPole {
         if action == 1 { self.force_mag } else { -self.force_mag }
     }
 
-    /// One step of `K` cart-poles, in place. Returns whether each next state is terminal.
+    /// One step of `K` cart-poles, in place, given cosine and sine of their angles. Returns whether each next state is
+    /// terminal.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be an unpredictable branch")]
@@ -135,9 +137,8 @@ impl CartPole {
         &self,
         [x, x_dot, theta, theta_dot]: &mut [[f64; K]; 4],
         force: [f64; K],
+        [costheta, sintheta]: [[f64; K]; 2],
     ) -> [bool; K] {
-        let costheta = theta.map(f64::cos);
-        let sintheta = theta.map(f64::sin);
         let mut terminated = [false; K];
         for lane in 0..K {
             let (costheta, sintheta) = (costheta[lane], sintheta[lane]);
@@ -189,21 +190,9 @@ impl Env for CartPole {
     #[inline(always)]
     fn step(&self, state: CartPoleState, action: usize, _rng: &mut impl Rng) -> Step<CartPoleState> {
         let mut fields = <[f64; 4]>::from(state).map(|number| [number]);
-        let [terminated] = self.transition(&mut fields, [self.force(action)]);
+        let trigonometry = [[state.theta.cos()], [state.theta.sin()]];
+        let [terminated] = self.transition(&mut fields, [self.force(action)], trigonometry);
         Step { state: fields.map(|[number]| number).into(), reward: self.reward(terminated), terminated }
-    }
-
-    #[inline]
-    fn step_batch(
-        &self,
-        states: &mut [CartPoleState],
-        actions: &[usize],
-        _rngs: &mut [impl Rng],
-        rewards: &mut [f64],
-        terminated: &mut [bool],
-        inactive: &[bool],
-    ) {
-        step_batch(self, states, actions, rewards, terminated, inactive);
     }
 
     #[inline]
@@ -212,7 +201,6 @@ impl Env for CartPole {
     }
 }
 
-/// Sine and cosine are the platform's, lane by lane; the rest of the arithmetic is SIMD code.
 impl SimdEnv<4> for CartPole {
     fn is_exact(&self) -> bool {
         true
@@ -225,7 +213,8 @@ impl SimdEnv<4> for CartPole {
         fields: &mut [[f64; K]; 4],
         actions: &[usize; K],
     ) -> [bool; K] {
-        self.transition(fields, actions.map(|action| self.force(action)))
+        let trigonometry = cos_sin::<FUSED, K>(&fields[2]);
+        self.transition(fields, actions.map(|action| self.force(action)), trigonometry)
     }
 
     #[inline]

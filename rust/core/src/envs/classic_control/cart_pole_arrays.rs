@@ -6,28 +6,49 @@ use crate::numeric::{LANES, SimdCode, SimdLevel};
 
 impl CartPole {
     /// One step of many cart-poles, in place. `state` holds an array for each component. An action is 0 or 1. The results
-    /// are those of `step`.
+    /// are those of `step`. Returns whether no number was larger than `largest` before, and all are finite after it.
     ///
     /// # Panics
     /// If the arrays differ in length.
-    pub fn step_arrays(&self, state: [&mut [f64]; 4], actions: &[i64], terminated: &mut [bool]) {
+    #[must_use]
+    pub fn step_arrays(&self, state: [&mut [f64]; 4], actions: &[i64], terminated: &mut [bool], largest: f64) -> bool {
         let count = actions.len();
         assert!(terminated.len() == count && state.iter().all(|field| field.len() == count), "lengths differ");
         let in_lanes = count / LANES * LANES;
         let [x, x_dot, theta, theta_dot] = state.map(|field| field.split_at_mut(in_lanes));
         let (actions, terminated) = (actions.split_at(in_lanes), terminated.split_at_mut(in_lanes));
-        SimdLevel::detect().run(ArrayChunks {
+        let mut supported = SimdLevel::detect().run(ArrayChunks {
             env: *self,
             state: [x.0, x_dot.0, theta.0, theta_dot.0],
             actions: actions.0,
             terminated: terminated.0,
+            largest,
         });
         for (index, (&action, terminated)) in actions.1.iter().zip(terminated.1).enumerate() {
             let mut fields = [[x.1[index]], [x_dot.1[index]], [theta.1[index]], [theta_dot.1[index]]];
+            supported &= larger(&fields, largest) == [0];
             [*terminated] = self.step_soa::<false, _>(&mut fields, &[action as usize]);
+            supported &= larger(&fields, f64::MAX) == [0];
             [[x.1[index]], [x_dot.1[index]], [theta.1[index]], [theta_dot.1[index]]] = fields;
         }
+        supported
     }
+}
+
+/// Not 0 where the magnitude of a component is not at most the limit. An integer, as a `bool` is a byte and takes SIMD code
+/// another register.
+#[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+#[inline(always)]
+fn larger<const K: usize>(fields: &[[f64; K]; 4], limit: f64) -> [u64; K] {
+    let mut any = [0; K];
+    for field in fields {
+        for lane in 0..K {
+            // NaN is not in the range.
+            let in_range = field[lane].abs() <= limit;
+            any[lane] |= u64::from(!in_range);
+        }
+    }
+    any
 }
 
 /// Cart-poles in chunks of [`LANES`], compiled for each [`SimdLevel`].
@@ -36,21 +57,29 @@ struct ArrayChunks<'a> {
     state: [&'a mut [f64]; 4],
     actions: &'a [i64],
     terminated: &'a mut [bool],
+    largest: f64,
 }
 
 impl SimdCode for ArrayChunks<'_> {
-    type Output = ();
+    type Output = bool;
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
+    fn run<const FUSED: bool>(self) -> bool {
         let [x, x_dot, theta, theta_dot] = self.state.map(|field| field.as_chunks_mut::<LANES>().0);
         let (actions, terminated) = (self.actions.as_chunks::<LANES>().0, self.terminated.as_chunks_mut::<LANES>().0);
+        let mut any_larger = [0; LANES];
         for (index, (actions, terminated)) in actions.iter().zip(terminated).enumerate() {
             let mut fields = [x[index], x_dot[index], theta[index], theta_dot[index]];
+            let before = larger(&fields, self.largest);
             *terminated = self.env.step_soa::<FUSED, _>(&mut fields, &actions.map(|action| action as usize));
+            let after = larger(&fields, f64::MAX);
+            for lane in 0..LANES {
+                any_larger[lane] |= before[lane] | after[lane];
+            }
             [x[index], x_dot[index], theta[index], theta_dot[index]] = fields;
         }
+        any_larger == [0; LANES]
     }
 }
 
@@ -70,12 +99,31 @@ mod tests {
             let before: Vec<[f64; 4]> =
                 (0..count).map(|index| std::array::from_fn(|field| fields[field][index])).collect();
             let mut terminated = vec![false; count];
-            env.step_arrays(fields.each_mut().map(Vec::as_mut_slice), &actions, &mut terminated);
+            let supported = env.step_arrays(fields.each_mut().map(Vec::as_mut_slice), &actions, &mut terminated, 1.0);
+            assert!(supported);
             for (index, &state) in before.iter().enumerate() {
                 let step = env.step(state.into(), actions[index] as usize, &mut NoRng);
                 assert_eq!(<[f64; 4]>::from(step.state), std::array::from_fn(|field| fields[field][index]));
                 assert_eq!(terminated[index], step.terminated);
             }
+        }
+    }
+
+    #[test]
+    fn a_large_number_or_an_infinite_result_is_reported_in_every_place() {
+        let env = CartPole { gravity: f64::MAX, length: 0.1, ..CartPole::default() };
+        for (lane, field) in (0..=LANES).flat_map(|lane| (0..4).map(move |field| (lane, field))) {
+            for (number, largest) in [(1.5, 1.0), (f64::NAN, f64::MAX), (f64::INFINITY, f64::MAX)] {
+                let mut fields = [(); 4].map(|()| vec![0.0; LANES + 1]);
+                fields[field][lane] = number;
+                let state = fields.each_mut().map(Vec::as_mut_slice);
+                let terminated = &mut [false; LANES + 1];
+                assert!(!CartPole::default().step_arrays(state, &[0; LANES + 1], terminated, largest));
+            }
+            let mut fields = [(); 4].map(|()| vec![0.0; LANES + 1]);
+            fields[2][lane] = 0.2;
+            let state = fields.each_mut().map(Vec::as_mut_slice);
+            assert!(!env.step_arrays(state, &[0; LANES + 1], &mut [false; LANES + 1], 1.0));
         }
     }
 }

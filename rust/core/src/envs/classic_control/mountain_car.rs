@@ -1,7 +1,7 @@
 //! `MountainCar-v0`: an underpowered car in a sinusoidal valley (A. W. Moore, 1990; Sutton & Barto, Example 10.1).
 
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::envs::{Env, Parameters, Step, step_batch};
+use crate::envs::{Env, Parameters, Step};
 use crate::numeric::cold_path;
 use crate::random::Rng;
 
@@ -113,19 +113,6 @@ impl Env for MountainCar {
     #[inline]
     fn step(&self, state: MountainCarState, action: usize, _rng: &mut impl Rng) -> Step<MountainCarState> {
         self.transition(state, action)
-    }
-
-    #[inline]
-    fn step_batch(
-        &self,
-        states: &mut [MountainCarState],
-        actions: &[usize],
-        _rngs: &mut [impl Rng],
-        rewards: &mut [f64],
-        terminated: &mut [bool],
-        inactive: &[bool],
-    ) {
-        step_batch(self, states, actions, rewards, terminated, inactive);
     }
 
     #[inline]

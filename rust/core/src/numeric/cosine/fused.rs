@@ -1,46 +1,44 @@
 //! The bounds of the cosine with fused multiply-adds, which round once: fewer operations, and a single sine per cell.
 //!
-//! An angle is the middle of a cell plus a rest `r` of at most 2⁻⁷, and with cosine and sine of the middle
-//! `cos(middle + r) = cos + (cos_lo - sin·sin(r) - cos·(1 - cos(r)))`. The parenthesis, `small`, stays below 2⁻⁷, as
-//! `|cos(a) - cos(b)| ≤ 2 sin(|a - b| / 2)`. A number below 2⁻⁷ is rounded by at most 2⁻⁶¹. In units of that, the errors
-//! of `cos + small` are at most:
+//! An angle is the middle of a cell plus a rest `r` of at most 2⁻⁷, and with cosine and sine of the middle, which are sums
+//! of two numbers, `cos(middle + r) = cos - sin·r + small`, where
+//! `small = cos_lo - sin_lo·r - sin·(sin(r) - r) - cos·(1 - cos(r))` stays below 2⁻¹⁴. The product and the first sum are
+//! computed as two numbers each, without an error: `|cos|` is at least 2⁻⁸ in the middle of every cell, so its exponent is at
+//! least that of the product (T. Dekker's fast sum). In units of 2⁻⁶¹, the errors of `hi + lo` are at most:
 //!
 //! | error | source |
 //! |---|---|
 //! | 0 | `r`: the subtractions are exact (Sterbenz) |
-//! | 1 | `sin` is rounded to f64, by 2⁻⁵⁴, and multiplied by at most 2⁻⁷ |
-//! | 0.82 | the series of `sin(r)` is cut off at r⁷/5040 |
-//! | 1 | `sin_rest` is rounded |
-//! | 1 | the inner sum of `small` is rounded |
-//! | 1 | the outer sum of `small` is rounded |
-//! | 0.04 | three roundings of `one_minus_cos`, which is at most 2⁻¹⁵; its series, cut off at r⁸/40320; the inner roundings of `sin_rest`, whose terms are at most 2⁻²³; `cos_lo` |
+//! | 0.04 | the roundings of `small`, of it plus `product_lo`, of `lo`, and of `lo` plus or minus the bound, each at most 2⁻⁶⁸ |
+//! | 0.04 | three roundings of `one_minus_cos`, which is at most 2⁻¹⁵, and those of `sin_rest`, which is below 2⁻²³; their series, cut off at r⁸/8! and r⁹/9! |
 //!
-//! Together they are below 5; 1 more is left for a cosine so close to a power of two that `hi` is on its other side.
-//! `hi + lo` equals `cos + small` exactly, as `|cos|` is at least 2⁻⁸ in the middle of every cell, so its exponent is at
-//! least that of `small` (T. Dekker's fast sum).
+//! Together they are below 1/8.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use super::BEYOND_HALF_ULP;
-use super::table::{CELLS, ONE, ROUND_TO_CELL, cos_sin, power_of_two};
+use super::PLATFORM_ERROR;
+use super::table::{CELLS, ONE, ROUND_TO_CELL, cos_sin};
 
-/// `[cos, cos_lo, -sin, 0]` in the middle of each cell, first of those from 0 on, then of the negative ones. The fourth
-/// number aligns the entries.
+/// `[cos, cos_lo, -sin, -sin_lo]` in the middle of each cell, first of those from 0 on, then of the negative ones.
 static TABLE: [[f64; 4]; 2 * CELLS] = {
     let mut table = [[0.0; 4]; 2 * CELLS];
     let mut index = 0;
     while index < 2 * CELLS {
         let (cos, sin) = cos_sin(if index < CELLS { index as i128 } else { index as i128 - 2 * CELLS as i128 });
-        let rounded = cos as f64;
-        table[index] =
-            [rounded / ONE as f64, (cos - rounded as i128) as f64 / ONE as f64, -(sin as f64) / ONE as f64, 0.0];
+        let (cos_hi, sin_hi) = (cos as f64, sin as f64);
+        table[index] = [cos_hi, (cos - cos_hi as i128) as f64, -sin_hi, (sin_hi as i128 - sin) as f64];
+        let mut column = 0;
+        while column < 4 {
+            table[index][column] /= ONE as f64;
+            column += 1;
+        }
         index += 1;
     }
     table
 };
 
-/// The error bound of `hi + lo`, 6 × 2⁻⁶¹.
-const APPROXIMATION_ERROR: f64 = 6.0 / 2_305_843_009_213_693_952.0;
+/// The error bound of `hi + lo` and of the platform's cosine: 2⁻⁶⁴ of the first.
+const BOUND: f64 = 1.0 / 18_446_744_073_709_551_616.0 + PLATFORM_ERROR;
 
 /// `f` of the least and of the largest value that the platform's cosine can have.
 #[inline(always)]
@@ -51,7 +49,7 @@ pub(super) fn bounds<const K: usize>(angles: &[f64; K], f: impl Fn(usize, f64) -
         rests[lane] = angles[lane] - (shifted - ROUND_TO_CELL);
         cells[lane] = shifted.to_bits();
     }
-    let mut entries = [[0.0; K]; 3];
+    let mut entries = [[0.0; K]; 4];
     for lane in 0..K {
         let entry = &TABLE[cells[lane] as usize % (2 * CELLS)];
         for (column, number) in entries.iter_mut().zip(entry) {
@@ -60,16 +58,19 @@ pub(super) fn bounds<const K: usize>(angles: &[f64; K], f: impl Fn(usize, f64) -
     }
     let (mut lower, mut upper) = ([0.0; K], [0.0; K]);
     for lane in 0..K {
-        let (cos, cos_lo, minus_sin, rest) = (entries[0][lane], entries[1][lane], entries[2][lane], rests[lane]);
+        let [cos, cos_lo, minus_sin, minus_sin_lo] = entries.each_ref().map(|column| column[lane]);
+        let rest = rests[lane];
         let square = rest * rest;
-        let sin_rest = (rest * square).mul_add(square.mul_add(1.0 / 120.0, -1.0 / 6.0), rest);
+        let sin_rest = rest * square * square.mul_add(square.mul_add(-1.0 / 5040.0, 1.0 / 120.0), -1.0 / 6.0);
         let one_minus_cos = square * square.mul_add(square.mul_add(1.0 / 720.0, -1.0 / 24.0), 0.5);
-        let small = (-cos).mul_add(one_minus_cos, minus_sin.mul_add(sin_rest, cos_lo));
-        let hi = cos + small;
-        let lo = (cos - hi) + small;
-        let bound = power_of_two(hi).mul_add(BEYOND_HALF_ULP, APPROXIMATION_ERROR);
-        lower[lane] = f(lane, hi + (lo - bound));
-        upper[lane] = f(lane, hi + (lo + bound));
+        let lows = minus_sin_lo.mul_add(rest, cos_lo);
+        let small = (-cos).mul_add(one_minus_cos, minus_sin.mul_add(sin_rest, lows));
+        let product = minus_sin * rest;
+        let product_lo = minus_sin.mul_add(rest, -product);
+        let hi = cos + product;
+        let lo = ((cos - hi) + product) + (product_lo + small);
+        lower[lane] = f(lane, hi + (lo - BOUND));
+        upper[lane] = f(lane, hi + (lo + BOUND));
     }
     (lower, upper)
 }

@@ -1,16 +1,18 @@
 //! Functions of the platform's cosine, computed in SIMD lanes with the same bits.
 //!
 //! [`map_cos`] computes `f(cos(angle))` for a monotone function `f`, such as the next velocity of the mountain car. It
-//! computes the cosine as an unevaluated sum of two numbers, `hi + lo`, which is far more precise than one f64. glibc
-//! states that its cosine is within 0.55 units in the last place (ulp) of the true value (in
-//! `sysdeps/ieee754/dbl-64/s_sin.c`, for every argument; for these angles it states less), so the platform's cosine lies
-//! between the roundings of `hi + (lo - bound)` and `hi + (lo + bound)`, where `bound` is 0.05 ulp and the error of
-//! `hi + lo`: a number below the rounding of `c - 0.05 ulp` is more than half an ulp below `c - 0.05 ulp`. Where `f` returns
-//! the same bits for both, it returns the same bits for the platform's cosine, because it is monotone. Otherwise (about
-//! one step in fifty) the platform's cosine is called.
+//! computes the cosine as an unevaluated sum of two numbers, `hi + lo`, which is far more precise than one f64. glibc's
+//! last operation is a rounded addition, and what it rounds is within 3.5 × 2⁻⁶² of the cosine. Rounding is monotone, so
+//! the platform's cosine lies between the roundings of `hi + (lo - bound)` and `hi + (lo + bound)`, where `bound` is that
+//! and the error of `hi + lo`. Where `f` returns the same bits for both, it returns the same bits for the platform's
+//! cosine, because it is monotone. Otherwise (about one step in a hundred) the platform's cosine is called.
 //!
-//! The argument does not hold where the cosine is a power of two within 0.05 ulp, as the numbers below it are twice as
-//! close. A test compares the angles next to those whose cosines are powers of two.
+//! glibc's error follows from `do_cos` and `do_sin` in `sysdeps/ieee754/dbl-64/s_sin.c`, with or without fused
+//! multiply-adds; before version 2.28 the result was always the correctly rounded one. An angle, reduced to at most 0.86 with
+//! more than 100 bits, is the middle of a cell of width 2⁻⁷ plus a rest, and what is added to the cosine of the middle stays
+//! below 2⁻⁸, so that each of its roundings errs by at most 2⁻⁶². There are four: of the rest, of its sine (both then
+//! multiplied by at most 0.76), of the product with the sine of the middle and of the last sum. Reduced angles below 0.126
+//! have a shorter series, whose terms after the first are below 2⁻¹¹ and are rounded six times.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -23,8 +25,8 @@ use std::sync::OnceLock;
 /// Larger angles use the platform's cosine.
 const MAX_ANGLE: f64 = 3.99;
 
-/// glibc's error bound of 0.55 ulp, minus the half ulp of rounding, for a number between 1 and 2.
-const BEYOND_HALF_ULP: f64 = 0.05 * f64::EPSILON;
+/// The error bound of the number that glibc rounds to the cosine, 2⁻⁶⁰.
+const PLATFORM_ERROR: f64 = 1.0 / 1_152_921_504_606_846_976.0;
 
 /// Whether the platform's cosine has the error bound that [`map_cos`] relies on: glibc's does. Another C library in its
 /// place would show itself at a few thousand angles.

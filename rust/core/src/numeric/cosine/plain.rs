@@ -2,8 +2,8 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use super::BEYOND_HALF_ULP;
-use super::table::{CELLS, FRACTION, ONE, ROUND_TO_CELL, cos_sin, power_of_two};
+use super::PLATFORM_ERROR;
+use super::table::{CELLS, FRACTION, ONE, ROUND_TO_CELL, cos_sin};
 
 /// The number of fractional bits of `sin_hi`: so few that its product with the rest of an angle is exact.
 const SIN_HI_BITS: u32 = 7;
@@ -27,8 +27,9 @@ static TABLE: [[f64; 4]; CELLS] = {
     table
 };
 
-/// The error bound of `hi + lo`: terms of 2⁻¹⁵ are rounded four times, and the series is truncated below 2⁻⁷⁰.
-const APPROXIMATION_ERROR: f64 = 1.0 / 36_893_488_147_419_103_232.0; // 2⁻⁶⁵
+/// The error bound of `hi + lo` and of the platform's cosine. Of the first: terms of 2⁻¹⁵ are rounded four times, and the
+/// series is truncated below 2⁻⁷⁰, together less than 2⁻⁶⁵.
+const BOUND: f64 = 1.0 / 36_893_488_147_419_103_232.0 + PLATFORM_ERROR;
 
 /// `f` of the least and of the largest value that the platform's cosine can have.
 #[inline(always)]
@@ -57,9 +58,8 @@ pub(super) fn bounds<const K: usize>(angles: &[f64; K], f: impl Fn(usize, f64) -
         let small = ((sin + sin_lo) * rest_minus_sin - sin_lo * rest) - cos * one_minus_cos;
         let hi = main + small;
         let lo = ((main - hi) + small) + (((cos - main) - sin * rest) + cos_lo);
-        let bound = power_of_two(hi) * BEYOND_HALF_ULP + APPROXIMATION_ERROR;
-        lower[lane] = f(lane, hi + (lo - bound));
-        upper[lane] = f(lane, hi + (lo + bound));
+        lower[lane] = f(lane, hi + (lo - BOUND));
+        upper[lane] = f(lane, hi + (lo + BOUND));
     }
     (lower, upper)
 }

@@ -31,10 +31,3 @@ pub(super) const fn cos_sin(cell: i128) -> (i128, i128) {
     }
     (cos, sin)
 }
-
-/// The largest power of two that the magnitude of a number is not below; `f64::EPSILON` times it is the number's ulp.
-#[inline]
-pub(super) fn power_of_two(number: f64) -> f64 {
-    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    f64::from_bits(number.to_bits() & EXPONENT)
-}

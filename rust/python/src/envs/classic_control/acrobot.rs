@@ -20,6 +20,8 @@ use crate::spec::RunSpec;
 const TORQUES: &str = "AVAIL_TORQUE";
 
 impl ClassicEnv for Acrobot {
+    type States = Vec<<Self as qtab_core::Env>::State>;
+
     const LAYOUT: EnvLayout = EnvLayout { calls_numpy_trigonometry: true, ..EnvLayout::new(4) };
     const OTHER_PARAMETERS: &'static [&'static str] = &[TORQUES];
     const ENVS_PER_THREAD: usize = 512;

@@ -8,6 +8,7 @@ use pyo3::types::PyDict;
 use qtab_core::Env;
 use qtab_core::envs::classic_control::{CartPole, CartPoleState};
 use qtab_core::random::NoRng;
+use qtab_core::vector::LaneStates;
 
 use super::reset::reset_f64;
 use super::snapshot::set_state;
@@ -17,6 +18,8 @@ use crate::runs::{QLearningBatching, RunFactory, generic_box, specialized};
 use crate::spec::{DiscretizerSpec, RunSpec};
 
 impl ClassicEnv for CartPole {
+    type States = LaneStates<4>;
+
     const LAYOUT: EnvLayout = EnvLayout {
         num_actions: Some(2),
         calls_numpy_trigonometry: true,

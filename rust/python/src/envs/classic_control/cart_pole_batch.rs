@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use qtab_core::StopFlag;
 use qtab_core::envs::classic_control::CartPole;
-use qtab_core::memory::{filled, with_capacity};
+use qtab_core::memory::{AllocationError, collect, filled, with_capacity};
 
 use super::dyn_env::read_parameters;
 use super::numpy_uses_libm;
@@ -13,20 +13,25 @@ use crate::error::allocation;
 /// `NumPy` warns of what it computes with larger numbers, so it computes with them.
 const LARGEST: f64 = 1e6;
 
-/// The next state, and whether it is terminal.
-type NextStates<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<bool>>);
+/// The next states, their rewards, whether they are terminal, and the indices of those to reset.
+type NextStates<'py> =
+    (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<bool>>, Bound<'py, PyArray1<i64>>);
 
 /// One step of all cart-poles, with the parameters that the attributes of `env` have. `state` is a (4, n) array of float64,
-/// `actions` an (n,) array of int64. Returns the next state in a new array, and whether it is terminal; None for what Rust
-/// would not compute as `NumPy` does, or where `NumPy` would warn.
+/// `actions` an (n,) array of int64, and `done` an (n,) array of whether the episode ended in the step before: its reward
+/// is then 0, and the caller resets it. Returns None for what Rust would not compute as `NumPy` does, or where `NumPy` would
+/// warn.
 #[pyfunction]
 pub(crate) fn step_cart_poles<'py>(
     env: &Bound<'py, PyAny>,
     state: &Bound<'py, PyAny>,
     actions: &Bound<'py, PyAny>,
+    done: &Bound<'py, PyAny>,
 ) -> PyResult<Option<NextStates<'py>>> {
     let py = env.py();
-    let (Ok(state), Ok(actions)) = (state.cast::<PyArray2<f64>>(), actions.cast::<PyArray1<i64>>()) else {
+    let (Ok(state), Ok(actions), Ok(done)) =
+        (state.cast::<PyArray2<f64>>(), actions.cast::<PyArray1<i64>>(), done.cast::<PyArray1<bool>>())
+    else {
         return Ok(None);
     };
     let mut cart_pole = CartPole::default();
@@ -34,14 +39,15 @@ pub(crate) fn step_cart_poles<'py>(
         return Ok(None);
     }
     let count = actions.len();
-    if state.shape() != [4, count] {
+    if state.shape() != [4, count] || !state.is_c_contiguous() || done.len() != count {
         return Ok(None);
     }
-    let (state, actions) = (state.try_readonly()?, actions.try_readonly()?);
-    let (Ok(numbers), Ok(actions)) = (state.as_slice(), actions.as_slice()) else { return Ok(None) };
-    let supported =
-        numbers.iter().all(|number| number.abs() <= LARGEST) && actions.iter().all(|&action| action >> 1 == 0);
-    if !supported {
+    let (state, actions, done) = (state.try_readonly()?, actions.try_readonly()?, done.try_readonly()?);
+    let (Ok(numbers), Ok(actions), Ok(done)) = (state.as_slice(), actions.as_slice(), done.as_slice()) else {
+        return Ok(None);
+    };
+    // All bits that occur: without a branch for each action, which would keep the compiler from SIMD code.
+    if actions.iter().fold(0, |bits, action| bits | action) >> 1 != 0 {
         return Ok(None);
     }
 
@@ -51,9 +57,24 @@ pub(crate) fn step_cart_poles<'py>(
     let (x, rest) = next.split_at_mut(count);
     let (x_dot, rest) = rest.split_at_mut(count);
     let (theta, theta_dot) = rest.split_at_mut(count);
-    cart_pole.step_arrays([x, x_dot, theta, theta_dot], actions, &mut terminated);
-    if !next.iter().all(|number| number.is_finite()) {
+    if !cart_pole.step_arrays([x, x_dot, theta, theta_dot], actions, &mut terminated, LARGEST) {
         return Ok(None);
     }
-    Ok(Some((PyArray1::from_vec(py, next).reshape([4, count])?, PyArray1::from_vec(py, terminated))))
+    let mut rewards = rewards(&cart_pole, &terminated).map_err(allocation)?;
+    let mut over = Vec::new();
+    for index in (0..count).filter(|&index| done[index]) {
+        (rewards[index], terminated[index]) = (0.0, false);
+        over.push(index.cast_signed() as i64);
+    }
+    let state = PyArray1::from_vec(py, next).reshape([4, count])?;
+    Ok(Some((state, PyArray1::from_vec(py, rewards), PyArray1::from_vec(py, terminated), PyArray1::from_vec(py, over))))
+}
+
+/// The rewards of Gymnasium's `CartPoleVectorEnv`: those of the book are `-terminated`, so that 0 has a sign.
+fn rewards(cart_pole: &CartPole, terminated: &[bool]) -> Result<Vec<f32>, AllocationError> {
+    collect(terminated.iter().map(
+        |&terminated| {
+            if cart_pole.sutton_barto_reward { -f32::from(u8::from(terminated)) } else { 1.0 }
+        },
+    ))
 }

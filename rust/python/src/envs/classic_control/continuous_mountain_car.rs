@@ -18,6 +18,8 @@ use crate::runs::RunFactory;
 use crate::spec::RunSpec;
 
 impl ClassicEnv for ContinuousMountainCar {
+    type States = Vec<<Self as Env>::State>;
+
     const LAYOUT: EnvLayout = EnvLayout::new(2);
     const ENVS_PER_THREAD: usize = 4096;
 

@@ -102,6 +102,6 @@ impl<E: ClassicEnv> NativeEnv for ClassicControl<E> {
             snapshot: E::snapshot,
             terminal_counter: E::LAYOUT.terminal_counter,
         };
-        native_vector_env(py, self.env, info, options).map(Some)
+        native_vector_env::<_, E::States>(py, self.env, info, options).map(Some)
     }
 }

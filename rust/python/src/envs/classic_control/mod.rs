@@ -20,6 +20,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use qtab_core::Env;
 use qtab_core::envs::Parameters;
+use qtab_core::vector::States;
 
 pub(crate) use cart_pole_batch::step_cart_poles;
 pub(super) use env_layout::EnvLayout;
@@ -43,6 +44,9 @@ pub(super) trait ClassicEnv:
     + 'static
 {
     const LAYOUT: EnvLayout;
+
+    /// How vector environments store the states.
+    type States: States<Self> + Send + Sync + 'static;
 
     /// The names of parameters that are neither numbers nor flags.
     const OTHER_PARAMETERS: &'static [&'static str] = &[];

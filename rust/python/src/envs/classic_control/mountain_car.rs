@@ -9,6 +9,7 @@ use qtab_core::Env;
 use qtab_core::envs::classic_control::{MountainCar, MountainCarState};
 use qtab_core::numeric::Scalar;
 use qtab_core::random::NoRng;
+use qtab_core::vector::LaneStates;
 
 use super::reset::reset_f64;
 use super::snapshot::set_state;
@@ -18,8 +19,10 @@ use crate::runs::{QLearningBatching, RunFactory, generic_box, specialized};
 use crate::spec::{DiscretizerSpec, RunSpec};
 
 impl ClassicEnv for MountainCar {
+    type States = LaneStates<2>;
+
     const LAYOUT: EnvLayout = EnvLayout { state_is_tuple: true, num_actions: Some(3), ..EnvLayout::new(2) };
-    const ENVS_PER_THREAD: usize = 16_384;
+    const ENVS_PER_THREAD: usize = 32_768;
 
     fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>> {
         reset_f64(self, 1, generator).map(Some)

@@ -22,6 +22,8 @@ use crate::spec::RunSpec;
 const LAST_TORQUE: &str = "last_u";
 
 impl ClassicEnv for Pendulum {
+    type States = Vec<<Self as Env>::State>;
+
     const LAYOUT: EnvLayout =
         EnvLayout { calls_numpy_trigonometry: true, last_action: Some(LAST_TORQUE), ..EnvLayout::new(2) };
     const ENVS_PER_THREAD: usize = 2048;

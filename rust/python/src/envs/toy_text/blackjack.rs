@@ -52,7 +52,7 @@ impl NativeEnv for BlackjackEnv {
 
     fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {
         let info = EnvInfo { envs_per_thread: 4096, transition: None, snapshot, terminal_counter: None };
-        native_vector_env(py, BlackjackWithHistory(self.0), info, options).map(Some)
+        native_vector_env::<_, Vec<_>>(py, BlackjackWithHistory(self.0), info, options).map(Some)
     }
 
     fn mdp(&self) -> PyResult<Option<Mdp>> {

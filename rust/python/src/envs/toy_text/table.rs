@@ -58,7 +58,7 @@ impl NativeEnv for TableEnv {
             action_masks: None,
         };
         let info = EnvInfo { envs_per_thread: 16_384, transition: Some(transition), snapshot, terminal_counter: None };
-        native_vector_env(py, WithTransitionProbability(self.0.clone()), info, options).map(Some)
+        native_vector_env::<_, Vec<_>>(py, WithTransitionProbability(self.0.clone()), info, options).map(Some)
     }
 
     fn mdp(&self) -> PyResult<Option<Mdp>> {

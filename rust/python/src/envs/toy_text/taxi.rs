@@ -66,7 +66,7 @@ impl NativeEnv for TaxiEnv {
             }),
         };
         let info = EnvInfo { envs_per_thread: 16_384, transition: Some(transition), snapshot, terminal_counter: None };
-        native_vector_env(py, WithTransitionProbability(self.taxi.clone()), info, options).map(Some)
+        native_vector_env::<_, Vec<_>>(py, WithTransitionProbability(self.taxi.clone()), info, options).map(Some)
     }
 
     fn mdp(&self) -> PyResult<Option<Mdp>> {
