@@ -9,7 +9,7 @@ use crate::numeric::{SimdCode, SimdLevel};
 
 /// What follows a step. Where it fails, the task keeps the error.
 #[derive(Clone, Copy)]
-enum Outcome {
+enum StepOutcome {
     NonTerminal,
     Truncated,
     Terminal,
@@ -31,7 +31,7 @@ trait DynTask<R, X> {
     /// Takes a step and writes the active rows, except after a terminal state. Returns the reward too: both are returned in
     /// registers, and the rows are written once. A [`Transition`] is copied from one layout to another instead, and read
     /// across the words in which it was written.
-    fn step(&mut self, action: usize, active: &mut R) -> (f64, Outcome);
+    fn step(&mut self, action: usize, active: &mut R) -> (f64, StepOutcome);
     /// The error of the step that has failed.
     fn take_error(&mut self) -> X;
     fn action_mask(&self) -> Option<&[bool]>;
@@ -51,23 +51,23 @@ struct StepCode<'a, T: Task, X> {
 }
 
 impl<T: Task, X: From<T::Error>> SimdCode for StepCode<'_, T, X> {
-    type Output = (f64, Outcome);
+    type Output = (f64, StepOutcome);
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> (f64, Outcome) {
+    fn run<const FUSED: bool>(self) -> (f64, StepOutcome) {
         match self.task.step(self.state, self.action) {
             Ok(Transition { reward, next: Next::NonTerminal(active) }) => {
                 *self.active = active;
-                (reward, Outcome::NonTerminal)
+                (reward, StepOutcome::NonTerminal)
             }
             Ok(Transition { reward, next: Next::Truncated(active) }) => {
                 *self.active = active;
-                (reward, Outcome::Truncated)
+                (reward, StepOutcome::Truncated)
             }
-            Ok(Transition { reward, next: Next::Terminal }) => (reward, Outcome::Terminal),
+            Ok(Transition { reward, next: Next::Terminal }) => (reward, StepOutcome::Terminal),
             Err(error) => {
                 *self.error = Some(error.into());
-                (0.0, Outcome::Failed)
+                (0.0, StepOutcome::Failed)
             }
         }
     }
@@ -80,7 +80,7 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T, X> {
         Ok(active)
     }
 
-    fn step(&mut self, action: usize, active: &mut T::Active) -> (f64, Outcome) {
+    fn step(&mut self, action: usize, active: &mut T::Active) -> (f64, StepOutcome) {
         let Some(state) = &mut self.state else { unreachable!("a trainer resets a task before it steps it") };
         let step = StepCode { task: &mut self.task, state, error: &mut self.error, action, active };
         if T::USES_VECTORS { self.level.run(step) } else { SimdLevel::PLAIN.run(step) }
@@ -155,10 +155,10 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
         let Some(active) = &mut self.active else { unreachable!("a trainer resets a task before it steps it") };
         let (reward, outcome) = self.task.step(action, active);
         let next = match outcome {
-            Outcome::NonTerminal => Next::NonTerminal(*active),
-            Outcome::Truncated => Next::Truncated(*active),
-            Outcome::Terminal => Next::Terminal,
-            Outcome::Failed => return Err(self.task.take_error()),
+            StepOutcome::NonTerminal => Next::NonTerminal(*active),
+            StepOutcome::Truncated => Next::Truncated(*active),
+            StepOutcome::Terminal => Next::Terminal,
+            StepOutcome::Failed => return Err(self.task.take_error()),
         };
         Ok(Transition { reward, next })
     }

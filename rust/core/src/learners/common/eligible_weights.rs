@@ -211,7 +211,7 @@ impl EligibleWeights {
     /// Sets all traces to 0.
     pub(super) fn clear<const N: usize>(&mut self, table: &mut QTable<N>) {
         if self.moved {
-            // In one pass, not one to move the values back and another one to forget the places.
+            // In one pass, not one to move the values back and another one to take them out of use.
             let (values, moved) = table.storage_mut().split_at_mut(self.base);
             let slots = &mut self.slots[..];
             let values = &mut values[..slots.len()];
@@ -219,7 +219,7 @@ impl EligibleWeights {
                 values[weight as usize] = value;
                 slots[weight as usize] = weight;
             }
-            self.forget();
+            self.empty();
         } else {
             self.discard();
         }
@@ -230,11 +230,11 @@ impl EligibleWeights {
         for &weight in &self.weights[..self.count] {
             self.slots[weight as usize] = weight;
         }
-        self.forget();
+        self.empty();
     }
 
     /// No place is in use any more.
-    fn forget(&mut self) {
+    fn empty(&mut self) {
         self.traces[..self.count].fill(UNUSED);
         self.count = 0;
         self.moved = false;
