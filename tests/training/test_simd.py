@@ -1,4 +1,4 @@
-"""Batches and vector environments give the same numbers with and without wide vector instructions."""
+"""Batches, tile coding and vector environments give the same numbers with and without wide vector instructions."""
 
 import hashlib
 import os
@@ -15,19 +15,22 @@ PROGRAM = "from training.test_simd import digest; print(digest())"
 
 
 def digest() -> str:
-    """Hashes the tables of batches, and the observations of vector environments."""
+    """Hashes the tables of batches, values of tile coding, and the observations of vector environments."""
     hashed = hashlib.sha256()
     for env_id in ("MountainCar-v0", "CartPole-v1"):
         runs = qtab.train_many(env_id, seeds=range(8), episodes=30, tables=True, threads=1)
         assert runs.tables is not None
         hashed.update(runs.episode_returns.tobytes() + runs.tables.tobytes())
         for envs in (gym.make_vec(f"qtab/{env_id}", num_envs=19), qtab.RustVectorEnv(env_id, 19)):
-            envs.reset(seed=0)
+            observation = envs.reset(seed=0)[0][0]
             rng = np.random.default_rng(0)
             for _ in range(300):
                 observations, *_ = envs.step(rng.integers(2, size=19))
                 hashed.update(observations.tobytes())
             envs.close()
+        for algorithm in ("q_learning", "sarsa_lambda"):
+            tiled = qtab.train(env_id, seed=0, algorithm=algorithm, discretizer="tiles", tilings=8, episodes=5)
+            hashed.update(tiled.q_values(observation).tobytes())
     return hashed.hexdigest()
 
 

@@ -10,14 +10,16 @@ use std::fmt::Debug;
 
 use benchmarks::Benchmarks;
 use mountain_car_task::{IN_BOUNDS, MountainCarTask, rounding, task};
-use qtab_core::features::{Features, FixedTileCoding, TileCoding};
+use qtab_core::features::{Features, FixedTileCoding, OutOfBounds, TileCoding};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
     TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
 };
 use qtab_core::policies::{AnyPolicy, TieBreaking};
 use qtab_core::q_table::TerminalUpdate;
+use qtab_core::random::Rng;
 use qtab_core::schedules::{LearningRate, Schedule};
+use qtab_core::tasks::BoxedTask;
 use qtab_core::{Budget, Learner, QTable, StopFlag, Task, Trainer};
 
 /// What the benchmarks store is small.
@@ -64,9 +66,7 @@ where
         let (features, n_active) = (&self.features, self.n_active);
         let run = || {
             let learner = learner(agent(features.len(), n_active));
-            let mut trainer = Trainer::new(task(features.clone()), learner, mountain_car_task::agent_rng());
-            trainer.advance(Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
-            trainer.episodes().lengths.iter().sum::<i64>() as u64
+            steps(Trainer::new(task(features.clone()), learner, mountain_car_task::agent_rng()))
         };
         self.benchmarks.add(self.group, name, run);
     }
@@ -102,12 +102,47 @@ fn grid(benchmarks: &mut Benchmarks) {
     });
 }
 
-fn tilings(benchmarks: &mut Benchmarks) {
+/// `N` tilings of the car's box.
+fn tile_coding<const N: usize>() -> FixedTileCoding<f32, 2, N> {
     let bounds = [[-1.2_f32, -0.07], [0.6, 0.07]].map(|bound| bound.map(f64::from));
-    let tiles = TileCoding::<f32, TILINGS>::new(&bounds[0], &bounds[1], &[8, 8], TILINGS as u32);
-    let features = FixedTileCoding::<f32, 2, TILINGS>::new(&tiles).expect("the numbers agree");
-    let mut tilings = Bench { benchmarks, group: "tilings", features, n_active: TILINGS };
+    let tiles = TileCoding::<f32, N>::new(&bounds[0], &bounds[1], &[8, 8], N as u32);
+    FixedTileCoding::new(&tiles).expect("the numbers agree")
+}
+
+fn tilings(benchmarks: &mut Benchmarks) {
+    let mut tilings = Bench { benchmarks, group: "tilings", features: tile_coding::<TILINGS>(), n_active: TILINGS };
     tilings.all();
+    boxed_tilings::<TILINGS>(benchmarks, "8 tilings, boxed");
+    boxed_tilings::<16>(benchmarks, "16 tilings, boxed");
+}
+
+/// Learners on a boxed task, as the Python package runs them.
+fn boxed_tilings<const N: usize>(benchmarks: &mut Benchmarks, group: &'static str) {
+    type Boxed<const N: usize> = BoxedTask<<FixedTileCoding<f32, 2, N> as Features<[f32; 2]>>::Active, OutOfBounds>;
+    let features = tile_coding::<N>();
+    let mut add = |name, with_traces| {
+        let run = || {
+            let agent = agent(Features::<[f32; 2]>::len(&features), N);
+            let boxed: Boxed<N> = BoxedTask::new(task(features.clone()));
+            let rng = mountain_car_task::agent_rng();
+            if with_traces {
+                let traces = Traces::new(agent.table.values().len(), 0.0, &StopFlag::new()).expect(FITS);
+                let rule = SarsaLambda { traces, kind: TraceKind::Replacing, trace_decay: TRACE_DECAY };
+                steps(Trainer::new(boxed, TdLearner { agent, rule }, rng))
+            } else {
+                steps(Trainer::new(boxed, TdLearner { agent, rule: QLearning }, rng))
+            }
+        };
+        benchmarks.add(group, name, run);
+    };
+    add("Q-learning", false);
+    add("Sarsa(0.9)", true);
+}
+
+/// Trains, and returns the number of steps.
+fn steps<T: Task<Error: Debug>, L: Learner<T::Active>, R: Rng + Clone>(mut trainer: Trainer<T, L, R>) -> u64 {
+    trainer.advance(Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
+    trainer.episodes().lengths.iter().sum::<i64>() as u64
 }
 
 fn main() {

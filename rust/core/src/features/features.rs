@@ -12,6 +12,10 @@ pub trait Features<O: ?Sized> {
     /// The active rows, in the order in which a learner sums their values.
     type Active: ActiveRows;
 
+    /// Whether the active rows are computed in vector registers, so that code which finds them is worth compiling for wide
+    /// ones too. [`active_rows`](Self::active_rows) is then always inlined.
+    const USES_VECTORS: bool = false;
+
     /// The active rows of an observation.
     ///
     /// # Errors

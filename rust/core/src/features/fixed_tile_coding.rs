@@ -32,40 +32,29 @@ impl<const N: usize> TryFrom<&[u32]> for FixedTiles<N> {
 /// `N` tilings of a box of `D` components: the rows of [`TileCoding`], found without a loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FixedTileCoding<T, const D: usize, const N: usize> {
-    axes: [FixedAxis; D],
+    axes: [FixedAxis<N>; D],
     /// The first row of each tiling.
     first_rows: [u32; N],
-    /// Hashing takes its time, so it needs no code of its own here.
-    hashed: Option<Box<TileCoding<T, N>>>,
+    /// What finds the rows where there is no code of its own for it here: hashing, and boxes of almost no width.
+    general: Option<Box<TileCoding<T, N>>>,
     len: usize,
 }
 
 /// The tiles along one component.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct FixedAxis {
+struct FixedAxis<const N: usize> {
     low: f64,
     high: f64,
-    tiles_per_unit: f64,
+    /// A part is the `N`-th part of a tile.
+    parts_per_unit: f64,
     /// The number of rows from one tile to the next.
     stride: u32,
+    /// The offset of each tiling, in parts. Not a constant: the compiler would then leave out the sum where it is 0, and
+    /// add one by one the others, which are a vector.
+    offsets: [u32; N],
 }
 
 impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
-    /// The offset of each tiling along each component, in parts of a tile.
-    const OFFSETS: [[u32; N]; D] = {
-        let mut offsets = [[0; N]; D];
-        let mut index = 0;
-        while index < D {
-            let mut tiling = 0;
-            while tiling < N {
-                offsets[index][tiling] = (tiling * (2 * index + 1) % N) as u32;
-                tiling += 1;
-            }
-            index += 1;
-        }
-        offsets
-    };
-
     /// The same rows as those of `tiles`; `None` if it has another number of tilings or of components.
     pub fn new(tiles: &TileCoding<T, N>) -> Option<Self> {
         let axes: &[TiledAxis<N>; D] = tiles.axes().try_into().ok()?;
@@ -78,50 +67,59 @@ impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
         let mut fixed = axes.map(|axis| FixedAxis {
             low: axis.low,
             high: axis.high,
-            tiles_per_unit: axis.tiles_per_unit,
+            parts_per_unit: axis.tiles_per_unit * N as f64,
             stride: axis.tiles,
+            offsets: axis.offsets,
         });
         for axis in fixed.iter_mut().rev() {
             (axis.stride, stride) = (stride, axis.stride.wrapping_mul(stride));
         }
         let first_rows = std::array::from_fn(|tiling| (tiling as u32).wrapping_mul(stride));
-        Some(Self { axes: fixed, first_rows, hashed: tiles.is_hashed().then(|| Box::new(tiles.clone())), len })
+        // Otherwise a product with the number of parts is the product with the number of tiles, scaled.
+        let scales = N.is_power_of_two() && fixed.iter().all(|axis| axis.parts_per_unit.is_finite());
+        let general = (tiles.is_hashed() || !scales).then(|| Box::new(tiles.clone()));
+        Some(Self { axes: fixed, first_rows, general, len })
     }
 
     #[inline(never)]
-    fn hashed_rows(tiles: &TileCoding<T, N>, observation: &[T; D]) -> Result<FixedTiles<N>, OutOfBounds> {
+    fn general_rows(tiles: &TileCoding<T, N>, observation: &[T; D]) -> Result<FixedTiles<N>, OutOfBounds> {
         tiles.active_rows(observation).map(|active| FixedTiles(active.rows()))
+    }
+
+    /// The error of an observation of which a component is NaN.
+    #[cold]
+    fn out_of_bounds(values: [f64; D]) -> OutOfBounds {
+        let axis = values.iter().position(|value| value.is_nan()).unwrap_or(0);
+        OutOfBounds { axis, value: values[axis] }
     }
 }
 
 impl<T: Float, const D: usize, const N: usize> Features<[T; D]> for FixedTileCoding<T, D, N> {
     type Active = FixedTiles<N>;
 
+    const USES_VECTORS: bool = true;
+
     #[inline(always)]
     fn active_rows(&self, observation: &[T; D]) -> Result<FixedTiles<N>, OutOfBounds> {
-        if let Some(tiles) = &self.hashed {
-            return Self::hashed_rows(tiles, observation);
+        if let Some(tiles) = &self.general {
+            return Self::general_rows(tiles, observation);
+        }
+        let values: [f64; D] = std::array::from_fn(|index| observation[index].into());
+        // Without a branch for each component.
+        if values.iter().fold(false, |any, value| any | value.is_nan()) {
+            return Err(Self::out_of_bounds(values));
         }
         let mut rows = self.first_rows;
-        let mut first_tile = 0;
-        for (index, axis) in self.axes.iter().enumerate() {
-            let value = observation[index].into();
-            if value.is_nan() {
-                return Err(OutOfBounds { axis: index, value });
-            }
+        for (axis, value) in self.axes.iter().zip(values) {
             let value = if value < axis.low { axis.low } else { value };
             let value = if value > axis.high { axis.high } else { value };
             // The conversion rounds down, because the number is not negative.
-            let parts = ((value - axis.low) * axis.tiles_per_unit * N as f64) as u32;
-            let (tile, part) = (parts / N as u32, parts % N as u32);
-            first_tile += tile * axis.stride;
-            for (row, offset) in rows.iter_mut().zip(Self::OFFSETS[index]) {
-                // Signed numbers are compared in one instruction.
-                let next_tile = (part + offset).cast_signed() >= (N as u32).cast_signed();
-                *row += if next_tile { axis.stride } else { 0 };
+            let parts = ((value - axis.low) * axis.parts_per_unit) as u32;
+            for (row, offset) in rows.iter_mut().zip(axis.offsets) {
+                *row += (parts + offset) / N as u32 * axis.stride;
             }
         }
-        Ok(FixedTiles(rows.map(|row| row + first_tile)))
+        Ok(FixedTiles(rows))
     }
 
     fn len(&self) -> usize {

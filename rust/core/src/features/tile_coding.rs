@@ -52,7 +52,7 @@ pub(super) struct TiledAxis<const M: usize> {
     /// The tiles of a tiling: one more than requested, because its offset moves the first tile across the lower bound.
     pub(super) tiles: u32,
     /// The offset of each tiling, in units of a tile divided by the number of tilings.
-    offsets: [u32; M],
+    pub(super) offsets: [u32; M],
 }
 
 /// Several tilings of a box. Along component `i` (from 0), tiling `t` of `n` is offset by `t (2i + 1) mod n` parts, where

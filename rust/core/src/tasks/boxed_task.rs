@@ -1,19 +1,39 @@
 //! Any task behind one type.
 
-use super::{Task, Transition};
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
+use super::{Next, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::features::ActiveRows;
+use crate::numeric::{SimdCode, SimdLevel};
+
+/// What follows a step. Where it fails, the task keeps the error.
+#[derive(Clone, Copy)]
+enum StepOutcome {
+    NonTerminal,
+    Truncated,
+    Terminal,
+    Failed,
+}
 
 /// A task together with the state of its episode, so that the type of the state is hidden.
-struct StatefulTask<T: Task> {
+struct StatefulTask<T: Task, X> {
     task: T,
     state: Option<T::State>,
+    error: Option<X>,
+    /// What the steps are compiled for: the loop that calls them does not know of it.
+    level: SimdLevel,
 }
 
 /// [`Task`] without the state, for trait objects. `R` holds the active rows, `X` is the error.
 trait DynTask<R, X> {
     fn reset(&mut self) -> Result<R, X>;
-    fn step(&mut self, action: usize) -> Result<Transition<R>, X>;
+    /// Takes a step and writes the active rows, except after a terminal state. Returns the reward too: both are returned in
+    /// registers, and the rows are written once. A [`Transition`] is copied from one layout to another instead, and read
+    /// across the words in which it was written.
+    fn step(&mut self, action: usize, active: &mut R) -> (f64, StepOutcome);
+    /// The error of the step that has failed.
+    fn take_error(&mut self) -> X;
     fn action_mask(&self) -> Option<&[bool]>;
     fn visits(&self) -> Option<&[i64]>;
     fn active_rows(&self) -> Result<R, X>;
@@ -21,16 +41,54 @@ trait DynTask<R, X> {
     fn persist(&mut self, in_episode: bool, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
 
-impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
+/// A step, compiled for each [`SimdLevel`].
+struct StepCode<'a, T: Task, X> {
+    task: &'a mut T,
+    state: &'a mut T::State,
+    error: &'a mut Option<X>,
+    action: usize,
+    active: &'a mut T::Active,
+}
+
+impl<T: Task, X: From<T::Error>> SimdCode for StepCode<'_, T, X> {
+    type Output = (f64, StepOutcome);
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> (f64, StepOutcome) {
+        match self.task.step(self.state, self.action) {
+            Ok(Transition { reward, next: Next::NonTerminal(active) }) => {
+                *self.active = active;
+                (reward, StepOutcome::NonTerminal)
+            }
+            Ok(Transition { reward, next: Next::Truncated(active) }) => {
+                *self.active = active;
+                (reward, StepOutcome::Truncated)
+            }
+            Ok(Transition { reward, next: Next::Terminal }) => (reward, StepOutcome::Terminal),
+            Err(error) => {
+                *self.error = Some(error.into());
+                (0.0, StepOutcome::Failed)
+            }
+        }
+    }
+}
+
+impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T, X> {
     fn reset(&mut self) -> Result<T::Active, X> {
         let (state, active) = self.task.reset()?;
         self.state = Some(state);
         Ok(active)
     }
 
-    fn step(&mut self, action: usize) -> Result<Transition<T::Active>, X> {
+    fn step(&mut self, action: usize, active: &mut T::Active) -> (f64, StepOutcome) {
         let Some(state) = &mut self.state else { unreachable!("a trainer resets a task before it steps it") };
-        Ok(self.task.step(state, action)?)
+        let step = StepCode { task: &mut self.task, state, error: &mut self.error, action, active };
+        if T::USES_VECTORS { self.level.run(step) } else { SimdLevel::PLAIN.run(step) }
+    }
+
+    fn take_error(&mut self) -> X {
+        let Some(error) = self.error.take() else { unreachable!("the step has failed") };
+        error
     }
 
     fn action_mask(&self) -> Option<&[bool]> {
@@ -58,12 +116,14 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T> {
 /// A boxed task with active rows `R` and errors `X`: generic code is compiled once for all tasks behind it.
 pub struct BoxedTask<R, X> {
     task: Box<dyn DynTask<R, X> + Send>,
+    /// What the last step wrote; `None` before the first reset.
+    active: Option<R>,
     step_work: u64,
     /// Whether the task has action masks. Where it has none, no call is made to ask for them.
     has_masks: bool,
 }
 
-impl<R: ActiveRows + 'static, X: 'static> BoxedTask<R, X> {
+impl<R: ActiveRows + 'static, X: Send + 'static> BoxedTask<R, X> {
     /// Boxes a task and converts its errors to `X`.
     pub fn new<T>(task: T) -> Self
     where
@@ -73,7 +133,8 @@ impl<R: ActiveRows + 'static, X: 'static> BoxedTask<R, X> {
         Self {
             step_work: task.step_work(),
             has_masks: task.action_mask().is_some(),
-            task: Box::new(StatefulTask { task, state: None }),
+            task: Box::new(StatefulTask { task, state: None, error: None, level: SimdLevel::detect() }),
+            active: None,
         }
     }
 }
@@ -84,19 +145,30 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
     type Error = X;
 
     fn reset(&mut self) -> Result<((), R), X> {
-        Ok(((), self.task.reset()?))
+        let active = self.task.reset()?;
+        self.active = Some(active);
+        Ok(((), active))
     }
 
+    #[inline(always)]
     fn step(&mut self, (): &mut (), action: usize) -> Result<Transition<R>, X> {
-        self.task.step(action)
+        let Some(active) = &mut self.active else { unreachable!("a trainer resets a task before it steps it") };
+        let (reward, outcome) = self.task.step(action, active);
+        let next = match outcome {
+            StepOutcome::NonTerminal => Next::NonTerminal(*active),
+            StepOutcome::Truncated => Next::Truncated(*active),
+            StepOutcome::Terminal => Next::Terminal,
+            StepOutcome::Failed => return Err(self.task.take_error()),
+        };
+        Ok(Transition { reward, next })
     }
 
-    #[inline]
+    #[inline(always)]
     fn step_work(&self) -> u64 {
         self.step_work
     }
 
-    #[inline]
+    #[inline(always)]
     fn action_mask(&self) -> Option<&[bool]> {
         if self.has_masks { self.task.action_mask() } else { None }
     }

@@ -45,6 +45,8 @@ where
     type Active = F::Active;
     type Error = OutOfBounds;
 
+    const USES_VECTORS: bool = F::USES_VECTORS;
+
     #[inline]
     fn reset(&mut self) -> Result<(Self::State, F::Active), OutOfBounds> {
         let state = self.env.reset(&mut self.rng);

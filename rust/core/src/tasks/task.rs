@@ -33,6 +33,9 @@ pub trait Task {
     /// Why a reset or a step can fail.
     type Error;
 
+    /// Whether a step is worth compiling for wide vector registers too. [`step`](Self::step) is then always inlined.
+    const USES_VECTORS: bool = false;
+
     /// Begins an episode. Returns its first state and the active rows.
     ///
     /// # Errors

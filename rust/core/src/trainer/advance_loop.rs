@@ -1,4 +1,4 @@
-//! The training loop, compiled for wide vector registers too where a learner has use for them.
+//! The training loop, compiled for wide vector registers too where a learner or a task has use for them.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -20,7 +20,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> AdvanceLoop<'_, T, L, R> {
     /// with an addition.
     #[inline(always)]
     pub(super) fn dispatch(self) -> Result<(), T::Error> {
-        let level = if L::HAS_VECTOR_PASSES { SimdLevel::detect() } else { SimdLevel::PLAIN };
+        let level = if L::HAS_VECTOR_PASSES || T::USES_VECTORS { SimdLevel::detect() } else { SimdLevel::PLAIN };
         level.run(self)
     }
 }

@@ -4,6 +4,8 @@
 
 use std::hint::select_unpredictable;
 
+use super::aligned_vec::{AlignedVec, MAX_PADDING, padding};
+use super::trace_changes::select;
 use super::trace_passes::BLOCK;
 use crate::StopFlag;
 use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
@@ -19,7 +21,7 @@ pub(super) struct EligibleWeights {
     /// The number of places in use. They are the first ones.
     pub(super) count: usize,
     /// The trace at each place.
-    pub(super) traces: Vec<f64>,
+    pub(super) traces: AlignedVec,
     /// No magnitude of a trace is smaller than this.
     pub(super) smallest: f64,
     /// Traces whose magnitudes fall to this become 0.
@@ -31,8 +33,10 @@ pub(super) struct EligibleWeights {
     /// A buffer for the blocks where one has.
     pub(super) fallen_blocks: Vec<u32>,
     /// For each weight the index of its value in the storage of the table: its own index, or that of its place, which is
-    /// the number of weights more.
+    /// `base` more.
     pub(super) slots: Vec<u32>,
+    /// The index of the value at the first place, which is at the start of a cache line.
+    pub(super) base: usize,
     /// Whether the values of the eligible weights are at their places.
     moved: bool,
 }
@@ -41,7 +45,7 @@ impl EligibleWeights {
     /// No eligible weights among so many, with room for all.
     pub(super) fn new(weights: usize, cutoff: f64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
         // A table and as many places have indices of 32 bits.
-        if weights > u32::MAX as usize / 2 - BLOCK {
+        if weights > u32::MAX as usize / 2 - BLOCK - MAX_PADDING {
             return Err(AllocationError::OutOfMemory { bytes: weights.saturating_mul(32) });
         }
         let places = weights.next_multiple_of(BLOCK);
@@ -52,12 +56,13 @@ impl EligibleWeights {
         })?;
         Ok(Self {
             count: 0,
-            traces: with_capacity(places)?,
+            traces: AlignedVec::with_capacity(places)?,
             smallest: f64::INFINITY,
             cutoff,
             weights: with_capacity(places)?,
             fallen: with_capacity(places / BLOCK)?,
             fallen_blocks: with_capacity(places / BLOCK)?,
+            base: slots.len(),
             slots,
             moved: false,
         })
@@ -67,7 +72,7 @@ impl EligibleWeights {
     pub(super) fn reserve<const N: usize>(&self, table: &mut QTable<N>) -> Result<(), AllocationError> {
         let places = self.slots.len().next_multiple_of(BLOCK);
         let storage = table.storage_mut();
-        reserve(storage, (self.slots.len() + places).saturating_sub(storage.len()))
+        reserve(storage, (self.slots.len() + MAX_PADDING + places).saturating_sub(storage.len()))
     }
 
     /// The number of eligible weights.
@@ -93,13 +98,13 @@ impl EligibleWeights {
     /// The place of a weight; `None` if it is not eligible.
     #[inline(always)]
     pub(super) fn place(&self, weight: usize) -> Option<usize> {
-        (self.slots[weight] as usize).checked_sub(self.slots.len())
+        (self.slots[weight] as usize).checked_sub(self.base)
     }
 
     /// The trace of a weight.
     #[inline(always)]
     pub(super) fn trace(&self, weight: usize) -> f64 {
-        let (slot, len) = (self.slots[weight] as usize, self.slots.len());
+        let (slot, len) = (self.slots[weight] as usize, self.base);
         // No branch, because whether a weight is eligible is hard to predict.
         let eligible = slot >= len;
         let place = select_unpredictable(eligible, slot.wrapping_sub(len), 0);
@@ -108,9 +113,10 @@ impl EligibleWeights {
 
     /// Makes room for so many more eligible weights.
     #[inline(always)]
-    fn grow(&mut self, additional: usize, storage: &mut Vec<f64>) {
+    pub(super) fn grow(&mut self, additional: usize, storage: &mut Vec<f64>) {
         let places = self.count + additional;
-        if places > self.traces.len() || self.slots.len() + places > storage.len() {
+        // As many values as traces: passes work in whole blocks.
+        if places > self.traces.len() || self.base + self.traces.len() > storage.len() {
             self.grow_to(places.next_multiple_of(BLOCK), storage);
         }
     }
@@ -122,13 +128,14 @@ impl EligibleWeights {
         self.weights.resize(places, 0);
         self.fallen.resize(places / BLOCK, false);
         self.fallen_blocks.resize(places / BLOCK, 0);
-        storage.resize(self.slots.len() + places, 0.0);
+        storage.resize(self.base + places, 0.0);
     }
 
     /// Moves the values of the eligible weights to their places.
     #[inline(always)]
     pub(super) fn move_out<const N: usize>(&mut self, table: &mut QTable<N>) {
         if !self.moved {
+            self.align(table.storage_mut());
             self.move_all(table.storage_mut(), |weight, place| (weight, place));
             self.moved = true;
         }
@@ -142,76 +149,23 @@ impl EligibleWeights {
         }
     }
 
+    /// Begins the places at a cache line, while the values are in the table.
+    #[cold]
+    fn align(&mut self, storage: &[f64]) {
+        let len = self.slots.len();
+        self.base = len + padding(storage, len);
+        for (place, &weight) in self.weights[..self.count].iter().enumerate() {
+            self.slots[weight as usize] = (self.base + place) as u32;
+        }
+    }
+
     #[cold]
     fn move_all(&mut self, storage: &mut Vec<f64>, direction: impl Fn(usize, usize) -> (usize, usize)) {
         self.grow(0, storage);
         for (place, &weight) in self.weights[..self.count].iter().enumerate() {
-            let (from, to) = direction(weight as usize, self.slots.len() + place);
+            let (from, to) = direction(weight as usize, self.base + place);
             storage[to] = storage[from];
         }
-    }
-
-    /// Replaces the traces of some weights, one after the other, by a function of the trace. Returns the sum of the values
-    /// from left to right.
-    #[inline(always)]
-    pub(super) fn update<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        weights: impl ExactSizeIterator<Item = usize>,
-        change: impl Fn(f64) -> f64,
-    ) -> f64 {
-        let mut smallest = self.smallest;
-        let sum = self.change(table, weights, |trace| {
-            let trace = change(trace);
-            smallest = if trace.abs() < smallest { trace.abs() } else { smallest };
-            trace
-        });
-        self.smallest = smallest;
-        sum
-    }
-
-    /// Sets the traces of some weights to 1. Returns the sum of the values from left to right.
-    #[inline(always)]
-    pub(super) fn replace<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        weights: impl ExactSizeIterator<Item = usize>,
-    ) -> f64 {
-        self.smallest = self.smallest.min(1.0);
-        self.change(table, weights, |_| 1.0)
-    }
-
-    /// [`update`](Self::update) of the traces alone.
-    #[inline(always)]
-    fn change<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        weights: impl ExactSizeIterator<Item = usize>,
-        mut change: impl FnMut(f64) -> f64,
-    ) -> f64 {
-        self.grow(weights.len(), table.storage_mut());
-        // Local variables: behind `self` and `table` each weight would load them again.
-        let len = self.slots.len();
-        let slots = self.slots.as_mut_slice();
-        let traces = self.traces.as_mut_slice();
-        let places = &mut self.weights[..traces.len()];
-        let (storage, mut count) = (table.storage_mut().as_mut_slice(), self.count);
-        let mut sum = None;
-        for weight in weights {
-            let slot = slots[weight] as usize;
-            let value = storage[slot];
-            // No branch, because whether a weight is eligible is hard to predict.
-            let new = slot < len;
-            let place = select_unpredictable(new, count, slot.wrapping_sub(len));
-            traces[place] = change(select(new, 0.0, traces[place]));
-            places[place] = weight as u32;
-            storage[len + place] = value;
-            slots[weight] = (len + place) as u32;
-            count += usize::from(new);
-            sum = Some(sum.map_or(value, |sum| sum + value));
-        }
-        self.count = count;
-        sum.unwrap_or(0.0)
     }
 
     /// Gives a weight a trace, while the values are in the table. The weight must not be eligible.
@@ -225,7 +179,7 @@ impl EligibleWeights {
         }
         self.traces[place] = trace;
         self.weights[place] = weight;
-        self.slots[weight as usize] = (self.slots.len() + place) as u32;
+        self.slots[weight as usize] = (self.base + place) as u32;
         self.count += 1;
         self.smallest = self.smallest.min(trace.abs());
     }
@@ -241,7 +195,7 @@ impl EligibleWeights {
     /// Moves the value at a place back into the table, and the last eligible weight to that place.
     #[inline(always)]
     pub(super) fn remove(&mut self, storage: &mut [f64], place: usize) {
-        let (len, last) = (self.slots.len(), self.count - 1);
+        let (len, last) = (self.base, self.count - 1);
         let (weight, moving) = (self.weights[place], self.weights[last]);
         storage[weight as usize] = storage[len + place];
         storage[len + place] = storage[len + last];
@@ -256,8 +210,19 @@ impl EligibleWeights {
 
     /// Sets all traces to 0.
     pub(super) fn clear<const N: usize>(&mut self, table: &mut QTable<N>) {
-        self.move_back(table);
-        self.discard();
+        if self.moved {
+            // In one pass, not one to move the values back and another one to take them out of use.
+            let (values, moved) = table.storage_mut().split_at_mut(self.base);
+            let slots = &mut self.slots[..];
+            let values = &mut values[..slots.len()];
+            for (&weight, &value) in self.weights[..self.count].iter().zip(&*moved) {
+                values[weight as usize] = value;
+                slots[weight as usize] = weight;
+            }
+            self.empty();
+        } else {
+            self.discard();
+        }
     }
 
     /// Sets all traces to 0, while the values are in the table.
@@ -265,6 +230,11 @@ impl EligibleWeights {
         for &weight in &self.weights[..self.count] {
             self.slots[weight as usize] = weight;
         }
+        self.empty();
+    }
+
+    /// No place is in use any more.
+    fn empty(&mut self) {
         self.traces[..self.count].fill(UNUSED);
         self.count = 0;
         self.moved = false;
@@ -272,18 +242,12 @@ impl EligibleWeights {
     }
 }
 
-/// One of two numbers, without a branch. Not every instruction set can select between floats.
-#[inline]
-fn select(condition: bool, yes: f64, no: f64) -> f64 {
-    f64::from_bits(select_unpredictable(condition, yes.to_bits(), no.to_bits()))
-}
-
-/// The bound and the buffers only say where to look for traces at the cutoff.
+/// The bound and the buffers only say where to look for traces at the cutoff; the slots follow from the weights.
 impl PartialEq for EligibleWeights {
     fn eq(&self, other: &Self) -> bool {
         let parts = |weights: &Self| (weights.count, weights.cutoff, weights.moved);
         parts(self) == parts(other)
-            && self.slots == other.slots
+            && self.slots.len() == other.slots.len()
             && self.weights[..self.count] == other.weights[..self.count]
             && self.traces[..self.count] == other.traces[..self.count]
     }

@@ -2,6 +2,7 @@
 
 mod action_masks;
 mod agent;
+mod aligned_vec;
 mod average_reward;
 mod count_bonus;
 mod critic;
@@ -23,6 +24,7 @@ mod target_policy;
 mod td_learner;
 #[cfg(test)]
 pub(super) mod test_support;
+mod trace_changes;
 mod trace_decay;
 mod trace_passes;
 mod traces;

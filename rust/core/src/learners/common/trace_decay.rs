@@ -11,14 +11,14 @@ impl EligibleWeights {
     #[inline(always)]
     pub(super) fn apply<const N: usize>(&mut self, table: &mut QTable<N>, step: f64) {
         let len = self.count.next_multiple_of(BLOCK);
-        let values = &mut table.storage_mut()[self.slots.len()..][..len];
+        let values = &mut table.storage_mut()[self.base..][..len];
         trace_passes::apply(values, &self.traces[..len], step);
     }
 
     /// Adds to each eligible weight a function of its index and its trace.
     pub(super) fn apply_each<const N: usize>(&mut self, table: &mut QTable<N>, change: impl Fn(usize, f64) -> f64) {
-        let values = &mut table.storage_mut()[self.slots.len()..];
-        let traces = self.weights.iter().zip(&self.traces).take(self.count);
+        let values = &mut table.storage_mut()[self.base..];
+        let traces = self.weights.iter().zip(&*self.traces).take(self.count);
         for (value, (&weight, &trace)) in values.iter_mut().zip(traces) {
             *value += change(weight as usize, trace);
         }
@@ -40,7 +40,7 @@ impl EligibleWeights {
     #[inline(always)]
     pub(super) fn apply_and_decay<const N: usize>(&mut self, table: &mut QTable<N>, step: f64, factor: f64) {
         let blocks = self.count.div_ceil(BLOCK);
-        let values = &mut table.storage_mut()[self.slots.len()..][..blocks * BLOCK];
+        let values = &mut table.storage_mut()[self.base..][..blocks * BLOCK];
         let traces = &mut self.traces[..blocks * BLOCK];
         if none_falls(&mut self.smallest, factor, self.cutoff) {
             trace_passes::apply_and_decay(values, traces, step, factor);

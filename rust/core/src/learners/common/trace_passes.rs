@@ -51,11 +51,11 @@ fn add(values: &mut Vector, traces: &Vector, step: f64) {
 pub(super) fn decay_and_find(traces: &mut [f64], factor: f64, cutoff: f64, fallen: &mut [bool]) -> bool {
     let mut any = false;
     for (traces, fallen) in traces.as_chunks_mut::<BLOCK>().0.iter_mut().zip(fallen) {
-        let mut lanes = [0; LANES];
+        let mut smallest = [f64::INFINITY; LANES];
         for traces in traces.as_chunks_mut().0 {
-            decay_vector(traces, factor, cutoff, &mut lanes);
+            decay_vector(traces, factor, &mut smallest);
         }
-        *fallen = lanes != [0; LANES];
+        *fallen = any_fallen(&smallest, cutoff);
         any |= *fallen;
     }
     any
@@ -74,24 +74,32 @@ pub(super) fn apply_decay_and_find(
     let mut any = false;
     let blocks = values.as_chunks_mut::<BLOCK>().0.iter_mut().zip(traces.as_chunks_mut::<BLOCK>().0);
     for ((values, traces), fallen) in blocks.zip(fallen) {
-        let mut lanes = [0; LANES];
+        let mut smallest = [f64::INFINITY; LANES];
         for (values, traces) in values.as_chunks_mut().0.iter_mut().zip(traces.as_chunks_mut().0) {
             add(values, traces, step);
-            decay_vector(traces, factor, cutoff, &mut lanes);
+            decay_vector(traces, factor, &mut smallest);
         }
-        *fallen = lanes != [0; LANES];
+        *fallen = any_fallen(&smallest, cutoff);
         any |= *fallen;
     }
     any
 }
 
-/// Decays some traces. Bits of `fallen` are set in the lanes where one has fallen to the cutoff.
+/// Decays some traces, and keeps in `smallest` the smallest magnitude in each lane.
 #[inline(always)]
-fn decay_vector(traces: &mut Vector, factor: f64, cutoff: f64, fallen: &mut [u64; LANES]) {
+fn decay_vector(traces: &mut Vector, factor: f64, smallest: &mut Vector) {
     *traces = traces.map(|trace| trace * factor);
-    for (trace, fallen) in traces.iter().zip(fallen) {
-        *fallen |= if trace.abs() <= cutoff { u64::MAX } else { 0 };
+    for (trace, smallest) in traces.iter().zip(smallest) {
+        // One instruction, unlike `f64::min`. NaN, the trace of a place in use by no weight, is never the smallest.
+        *smallest = if trace.abs() < *smallest { trace.abs() } else { *smallest };
     }
+}
+
+/// Whether one of some magnitudes has fallen to the cutoff.
+#[inline(always)]
+fn any_fallen(smallest: &Vector, cutoff: f64) -> bool {
+    // Numbers as wide as the magnitudes, so that the lanes are compared at once.
+    smallest.map(|magnitude| if magnitude <= cutoff { u64::MAX } else { 0 }) != [0; LANES]
 }
 
 /// The places of a block where a trace is at or below the cutoff, one bit each.

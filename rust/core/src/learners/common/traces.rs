@@ -120,8 +120,8 @@ impl Traces {
     /// Sets the traces of a state-action pair to 1. Returns Q(S, A).
     #[inline(always)]
     fn replace<const N: usize>(&mut self, table: &mut QTable<N>, rows: impl AsRef<[u32]>, action: usize) -> f64 {
-        let num_actions = table.num_actions();
-        self.eligible.replace(table, rows.as_ref().iter().map(|&row| row as usize * num_actions + action))
+        let weights = weight_indices(rows.as_ref(), table.num_actions(), action);
+        self.eligible.replace(table, weights)
     }
 
     /// The action values of a state, as [`QTable::action_values`].
@@ -205,6 +205,14 @@ impl Traces {
     pub fn complete_table<const N: usize>(&mut self, table: &mut QTable<N>) {
         self.eligible.move_back(table);
     }
+}
+
+/// The indices of the weights of a state-action pair: [`QTable::weight_index`] in 32 bits, in which those of all weights with
+/// traces fit, as a vector register holds more of them.
+#[inline(always)]
+fn weight_indices(rows: &[u32], num_actions: usize, action: usize) -> impl ExactSizeIterator<Item = u32> {
+    let (num_actions, action) = (num_actions as u32, action as u32);
+    rows.iter().map(move |&row| row * num_actions + action)
 }
 
 /// The active traces in their order.

@@ -1,0 +1,85 @@
+//! What a visit does to the traces of a state-action pair.
+
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
+use std::hint::select_unpredictable;
+
+use super::eligible_weights::EligibleWeights;
+use crate::q_table::QTable;
+
+impl EligibleWeights {
+    /// Replaces the traces of some weights, one after the other, by a function of the trace. Returns the sum of the values
+    /// from left to right.
+    #[inline(always)]
+    pub(super) fn update<const N: usize>(
+        &mut self,
+        table: &mut QTable<N>,
+        weights: impl ExactSizeIterator<Item = usize>,
+        change: impl Fn(f64) -> f64,
+    ) -> f64 {
+        self.grow(weights.len(), table.storage_mut());
+        // Local variables: behind `self` and `table` each weight would load them again.
+        let base = self.base;
+        let slots = self.slots.as_mut_slice();
+        let traces = &mut *self.traces;
+        let places = &mut self.weights[..traces.len()];
+        let (storage, mut count) = (table.storage_mut().as_mut_slice(), self.count);
+        let (mut sum, mut smallest) = (None, self.smallest);
+        for weight in weights {
+            let slot = slots[weight] as usize;
+            let value = storage[slot];
+            // No branch, because whether a weight is eligible is hard to predict.
+            let new = slot < base;
+            let place = select_unpredictable(new, count, slot.wrapping_sub(base));
+            let trace = change(select(new, 0.0, traces[place]));
+            smallest = if trace.abs() < smallest { trace.abs() } else { smallest };
+            traces[place] = trace;
+            places[place] = weight as u32;
+            storage[base + place] = value;
+            slots[weight] = (base + place) as u32;
+            count += usize::from(new);
+            sum = Some(sum.map_or(value, |sum| sum + value));
+        }
+        (self.count, self.smallest) = (count, smallest);
+        sum.unwrap_or(0.0)
+    }
+
+    /// Sets the traces of some weights to 1. Returns the sum of the values from left to right.
+    #[inline(always)]
+    pub(super) fn replace<const N: usize>(
+        &mut self,
+        table: &mut QTable<N>,
+        weights: impl ExactSizeIterator<Item = u32>,
+    ) -> f64 {
+        self.smallest = self.smallest.min(1.0);
+        self.grow(weights.len(), table.storage_mut());
+        // Local variables, as in `update`. In 32 bits, so that no sum of them overflows: the compiler then knows that the
+        // value at a place that has a trace is in the storage. `update`, whose next pass waits for it, would be slower so.
+        let (base, places) = (self.base as u32, self.traces.len() as u32);
+        let (slots, traces) = (self.slots.as_mut_slice(), &mut self.traces[..places as usize]);
+        let place_weights = &mut self.weights[..places as usize];
+        let storage = &mut table.storage_mut()[..base as usize + places as usize];
+        let mut count = self.count as u32;
+        let mut sum = None;
+        for weight in weights {
+            let slot = &mut slots[weight as usize];
+            let value = storage[*slot as usize];
+            let new = *slot < base;
+            let place = select_unpredictable(new, count, slot.wrapping_sub(base)) as usize;
+            traces[place] = 1.0;
+            place_weights[place] = weight;
+            storage[base as usize + place] = value;
+            *slot = base + place as u32;
+            count += u32::from(new);
+            sum = Some(sum.map_or(value, |sum| sum + value));
+        }
+        self.count = count as usize;
+        sum.unwrap_or(0.0)
+    }
+}
+
+/// One of two numbers, without a branch. Not every instruction set can select between floats.
+#[inline]
+pub(super) fn select(condition: bool, yes: f64, no: f64) -> f64 {
+    f64::from_bits(select_unpredictable(condition, yes.to_bits(), no.to_bits()))
+}
