@@ -48,7 +48,8 @@ def test_policies_and_features_may_have_any_order_in_memory(method: Any) -> None
     options: dict[str, Any] = {"method": method, "env_kwargs": {"states": 7}, "episodes": 8, "seeds": 2}
     target = policy if method == "td" else "random"
     expected = qtab.estimate_values(WALK, target, **options, **given)
-    for order in (np.asfortranarray, lambda array: np.repeat(array, 2, axis=0)[::2]):
+    orders: list[Any] = [np.asfortranarray, lambda array: np.repeat(array, 2, axis=0)[::2]]
+    for order in orders:
         reordered = {name: order(array) for name, array in given.items()}
         found = qtab.estimate_values(WALK, order(policy) if method == "td" else target, **options, **reordered)
         assert found.weights.tobytes() == expected.weights.tobytes()
