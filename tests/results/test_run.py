@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -129,6 +130,17 @@ def test_presets_are_listed_per_environment():
     assert list(qtab.presets("CartPole-v1")) == ["tuned", "solved"]
     assert list(qtab.presets("LunarLander-v3")) == ["solved"]
     assert dict(qtab.presets("BipedalWalker-v3")) == {}
+
+
+def test_changing_the_settings_of_a_preset_changes_no_later_run() -> None:
+    before = dict(qtab.presets("FrozenLake-v1")["solved"])
+    qtab.presets("FrozenLake-v1")["solved"]["learning_rate"] = 0.9
+    assert qtab.presets("FrozenLake-v1")["solved"] == before
+    values: Any = qtab.presets("ShortCorridor-v0")["book"]["initial_q"]
+    values += 1.0
+    assert (qtab.presets("ShortCorridor-v0")["book"]["initial_q"] != values).all()
+    run = qtab.train("FrozenLake-v1", preset="solved", seed=0, episodes=1)
+    assert run.config.learning_rate == before["learning_rate"]
 
 
 def test_an_explicit_setting_wins_over_the_preset():

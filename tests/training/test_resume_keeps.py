@@ -180,6 +180,31 @@ def test_train_refuses_another_setting_by_name(other, message):
     assert str(caught.value).startswith(message)
 
 
+OTHER_ENV: list[tuple[gym.Env, str]] = [
+    (gym.make("Taxi-v4"), "env must be that of the run to resume, 'MountainCar-v0', got 'Taxi-v4'"),
+    (Room(), "env must be that of the run to resume, 'MountainCar-v0', got 'Room'"),
+    (gym.make(CAR, goal_velocity=0.1), "env_kwargs must be that of the run to resume, {}, got {'goal_velocity': 0.1}"),
+    (gym.make(CAR, max_episode_steps=50), "max_episode_steps must be that of the run to resume, 200, got 50"),
+]
+
+
+@pytest.mark.parametrize(("env", "message"), OTHER_ENV, ids=["id", "class", "keyword arguments", "time limit"])
+def test_another_environment_is_refused_by_name(env, message):
+    part = stopped(8, CAR, seed=3, episodes=12)
+    for call in (lambda: qtab.resume(part, env=env), lambda: qtab.train(env, resume=part)):
+        with pytest.raises(ValueError) as caught:
+            call()
+        assert str(caught.value) == f"{message}: of the settings, only episodes may change"
+
+
+def test_the_environment_of_the_run_may_be_given_with_its_id():
+    for limit in (None, 50, 300):
+        part = stopped(8, CAR, seed=3, episodes=12, max_episode_steps=limit)
+        whole = qtab.train(CAR, seed=3, episodes=12, max_episode_steps=limit)
+        env = gym.make(CAR) if limit is None else gym.make(CAR, max_episode_steps=limit)
+        assert_same_arrays(qtab.resume(part, env=env), whole)
+
+
 def test_train_refuses_what_is_no_run_by_name(tmp_path):
     with pytest.raises(TypeError, match=r"^resume must be a Run or the path of a saved run, got 3$"):
         qtab.train(CAR, resume=3)  # type: ignore[arg-type]

@@ -1,6 +1,7 @@
 """Named settings for environments: the article's, the textbook's, and ones that learn well."""
 
 from collections.abc import Mapping
+from copy import deepcopy
 from types import MappingProxyType
 from typing import Any
 
@@ -174,6 +175,8 @@ _PRESETS: Mapping[str, Mapping[str, SharedSettings]] = {
 def presets(env: str) -> Mapping[str, SharedSettings]:
     """Returns the presets of an environment by name, the default one first; none for one that has no presets.
 
+    The settings of each are a copy: changing them changes no preset.
+
     Args:
         env: The environment's id in Gymnasium.
 
@@ -190,7 +193,7 @@ def presets(env: str) -> Mapping[str, SharedSettings]:
         except (gym.error.Error, ModuleNotFoundError):
             suggestion = did_you_mean(env, _PRESETS)
             raise ValueError(f"env must be a registered environment id, got {shown(env)}{suggestion}") from None
-    return MappingProxyType(known)
+    return MappingProxyType(deepcopy(dict(known)))
 
 
 def _presets(env: str) -> Mapping[str, SharedSettings]:

@@ -2,7 +2,7 @@
 
 import logging
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -31,6 +31,8 @@ from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
 
 _LOGGER = logging.getLogger("qtab")
+_OF_ENV = ("env_kwargs", "max_episode_steps")
+"""The settings that an environment object brings along: another value changes the dynamics."""
 
 
 def earlier_run(name: str, run: Any, action_mask: Any = None) -> Run:
@@ -68,13 +70,17 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
     Raises:
         gymnasium.error.Error: if the environment is not registered.
         TypeError: for an argument of the wrong type.
-        ValueError: if the run cannot be resumed, or has finished as many episodes already.
+        ValueError: if the run cannot be resumed, has finished as many episodes already, or ``env`` is not that of
+            ``run``.
     """
     config = _config(name, run, episodes)
     if env is None:
         spec_of_run(config.env)  # the name of a class without an id is not taken for one
-    resolved = continued(resolve(config.env if env is None else env, over(_without_kwargs(config, env), {})), run)
-    return replace(resolved, extensions=extensions(run, config))
+    _check_id(run, env)
+    resolved = resolve(config.env if env is None else env, over(_without_kwargs(config, env), {}))
+    if env is not None:
+        _check_settings(run, resolved.config, _OF_ENV)
+    return replace(continued(resolved, run), extensions=extensions(run, config))
 
 
 def with_function(run: Run, function: Any) -> Run:
@@ -100,14 +106,24 @@ def check_agrees(run: Run, env: str | EnvSpec | gym.Env | None, settings: Mappin
     given = {name: value for name, value in settings.items() if is_set(value) and name != "episodes"}
     if env is None and not given:
         return
-    if env is not None and (id_given := _id(env)) is not None and _bare(id_given) != _bare(run.config.env):
-        raise _differs("env", run.config.env, id_given)
+    _check_id(run, env)
     if env is None:
         spec_of_run(run.config.env)
     resolved = resolve(run.config.env if env is None else env, over(_without_kwargs(run.config, env), given))
     resolved.close()
-    for name in ("env_kwargs", *given):
-        wanted = getattr(resolved.config, name)
+    _check_settings(run, resolved.config, (*_OF_ENV, *given))
+
+
+def _check_id(run: Run, env: Any) -> None:
+    """Checks that an environment that is given, if any, has the id or the class of the run's."""
+    if env is not None and (id_given := _id(env)) is not None and _bare(id_given) != _bare(run.config.env):
+        raise _differs("env", run.config.env, id_given)
+
+
+def _check_settings(run: Run, config: Config, names: Iterable[str]) -> None:
+    """Checks that a config has those settings of the run that are named."""
+    for name in names:
+        wanted = getattr(config, name)
         if replace_checked(run.config, **{name: wanted}) != run.config:
             raise _differs(name, getattr(run.config, name), wanted)
 

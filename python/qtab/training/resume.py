@@ -42,7 +42,8 @@ def resume(
     Args:
         run: The run, or the path of a file that :meth:`qtab.Run.save` wrote.
         episodes: The number of episodes of the whole run, those that are finished included. None takes that of the run.
-        env: The environment, for a run that was trained on an environment without an id. It is not closed.
+        env: The environment, for a run that was trained on an environment without an id. It is not closed. It must have
+            the id or the class, the keyword arguments and the time limit of the run's.
         callback: As for :func:`qtab.train`; it sees the whole run.
         callback_every: As for :func:`qtab.train`.
         record: As for :func:`qtab.train`.
@@ -58,7 +59,8 @@ def resume(
     Raises:
         OSError: if the file cannot be read.
         TypeError: for an argument of the wrong type.
-        ValueError: for a file that is not a run, a run that has finished, or one that cannot be resumed: it says why.
+        ValueError: for a file that is not a run, a run that has finished or cannot be resumed, or an environment other
+            than the run's: it says why.
         KeyboardInterrupt: on Ctrl-C. Like any exception raised by the environment or the callback, it carries the run
             so far as ``.run``, which can be resumed again.
     """
