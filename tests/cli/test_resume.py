@@ -55,6 +55,14 @@ def test_it_trains_longer_into_another_file(tmp_path: Path) -> None:
     assert longer.snapshots.episodes.tolist() == [6, 9]
 
 
+def test_verify_tells_how_to_compare_the_first_part_of_a_run_that_was_trained_longer(tmp_path: Path) -> None:
+    qtab.resume(stopped(tmp_path / "run.npz", seed=0, episodes=4), 9).save(tmp_path / "longer.npz")
+    answer = refused("verify", "longer.npz", cwd=tmp_path)
+    assert answer.startswith("qtab verify: error: --episodes must be given for a run that was extended after 4")
+    assert answer.rstrip().endswith("; --episodes=4 compares them")
+    assert qtab_here("verify", "longer.npz", "--episodes=4", cwd=tmp_path).returncode == 0
+
+
 class Interrupts(gym.Env[Any, Any]):
     """Ctrl-C comes after some steps."""
 

@@ -24,9 +24,13 @@ def test_verify_repeats_the_episodes_before_the_extension_and_refuses_the_others
     report = qtab.verify(run, episodes=30)
     assert report.equal, report
     assert report.episodes == 30
-    for episodes in (None, 31):
-        with pytest.raises(ValueError, match=r"^episodes must be at most 30 for a run that was extended"):
-            qtab.verify(run, episodes=episodes)
+    reason = "only those can be repeated, because its falling rates were then spread over more episodes"
+    start = f"episodes must be at most 30 for a run that was extended after 30 episodes: {reason}"
+    with pytest.raises(ValueError, match=rf"^{start}, got 31$"):
+        qtab.verify(run, episodes=31)
+    start = f"episodes must be given for a run that was extended after 30 episodes: {reason}"
+    with pytest.raises(ValueError, match=rf"^{start}; episodes=30 compares them$"):
+        qtab.verify(run)
 
 
 def test_explain_shows_the_rates_that_an_episode_had() -> None:

@@ -23,7 +23,7 @@ from qtab.reference.observer import observed_by
 from qtab.reference.schedules import LearningRate
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
-from qtab.training.extensions import repeatable
+from qtab.training.extensions import ONLY_FIRST, repeatable
 from qtab.training.run_env import make_run_env
 
 N_STEP = ("n_step_sarsa", "n_step_tree_backup", "n_step_q_sigma")
@@ -69,8 +69,8 @@ def explain(
     run, most = repeatable(run)
     if episode >= most:
         raise ValueError(
-            f"episode must be at most {most - 1:,} for a run that was extended after {most:,} episodes, since its "
-            f"rates then fell over more of them, got {episode}"
+            f"episode must be at most {most - 1:,} for a run that was extended after {most:,} episodes: {ONLY_FIRST}, "
+            f"got {episode}"
         )
     start = checks.integer("start", start, least=0, most=int(run.episode_lengths[episode]) - 1)
     steps = checks.integer("steps", steps, least=1)

@@ -6,6 +6,8 @@ from qtab.config import Config
 from qtab.results.run import Run
 
 _RATES = ("epsilon", "learning_rate")
+ONLY_FIRST = "only those can be repeated, because its falling rates were then spread over more episodes"
+"""Why the later episodes of a run that was extended cannot be repeated, for messages."""
 
 
 def falling_rates(config: Config) -> list[str]:

@@ -23,7 +23,7 @@ from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.envs.stored import spec_of_run
 from qtab.reference import LEARNERS
 from qtab.results.run import Run
-from qtab.training.extensions import repeatable
+from qtab.training.extensions import ONLY_FIRST, repeatable
 from qtab.training.given_env import check_env, check_spaces
 from qtab.training.repetition import repeats_itself, wrapper_with_statistics
 from qtab.training.resolve import resolve
@@ -154,11 +154,16 @@ def verify(
     run, most = repeatable(run)
     if episodes is None and not run.completed:
         raise ValueError(f"episodes must be given for a run that was stopped early, at most {most}")
+    if episodes is None and most < finished:
+        raise ValueError(
+            f"episodes must be given for a run that was extended after {most:,} episodes: {ONLY_FIRST}; "
+            f"episodes={most} compares them"
+        )
     count = checks.integer("episodes", finished if episodes is None else episodes, least=1, most=finished)
     if count > most:
         raise ValueError(
-            f"episodes must be at most {most:,} for a run that was extended after so many, since its rates then fell "
-            f"over more of them, got {episodes!r}"
+            f"episodes must be at most {most:,} for a run that was extended after {most:,} episodes: {ONLY_FIRST}, "
+            f"got {episodes!r}"
         )
     config = run.config
     if env is None:
