@@ -199,3 +199,22 @@ def test_a_value_is_shown_shortly() -> None:
     assert len(shown("a" * 10_000)) < LONGEST + 10
     assert shown(HUGE) == "<int of 16,610 bits>"
     assert shown([1, "b"]) == "[1, 'b']"
+
+
+def test_keyword_arguments_that_a_constructor_cannot_use_are_named_with_the_environment() -> None:
+    lake = "FrozenLake-v1"
+    message = f"env_kwargs must be keyword arguments that {lake} accepts, got {{'map_name': '9x9'}}: KeyError('9x9')"
+    run = Q.train(lake, seed=0, episodes=1)
+    for call in (Q.train, Q.optimum, lambda env, **given: Q.evaluate(run, env=env, **given)):
+        with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+            call(lake, env_kwargs={"map_name": "9x9"})
+
+
+def test_an_error_of_a_constructor_without_keyword_arguments_is_raised_unchanged() -> None:
+    def make(**_: Any) -> gym.Env:
+        raise KeyError("door")
+
+    gym.register("NoDoor-v0", make)
+    with pytest.raises(KeyError, match="door"):
+        qtab.train("NoDoor-v0")
+    del gym.registry["NoDoor-v0"]

@@ -118,7 +118,9 @@ def test_a_bad_table_is_refused_with_the_entry(changes, error, text):
     [
         (5, TypeError, "P must hold"),
         ({0: 3, 1: 3}, TypeError, "P must hold"),
-        ({}, ValueError, "P must have rows|initial_state_distrib"),
+        ({}, ValueError, "^P must have at least 1 state, got none$"),
+        ([], ValueError, "^P must have at least 1 state, got none$"),
+        ([[], []], ValueError, r"^P\[0\] must have at least 1 action, got none$"),
         ({0: chain()[0], 2: chain()[1]}, ValueError, "P must have the states 0 to 1, it lacks 1"),
         ({0: chain()[0], 1: {0: [], 7: []}}, ValueError, r"P\[1\] must have the actions 0 to 1, it lacks 1"),
     ],

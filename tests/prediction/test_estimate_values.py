@@ -225,6 +225,8 @@ def test_pictures_and_tables_of_estimates() -> None:
         ({"policy": np.zeros((18, 2))}, ValueError, r"policy must have the shape \(19,\) of actions"),
         ({"policy": np.full((19, 2), 0.4)}, ValueError, "policy must sum to 1 in every state, got 0.8"),
         ({"features": [0, 1]}, ValueError, "features must have a row of numbers for each of the 19 states"),
+        ({"features": np.full(19, 10**12)}, ValueError, "^features must hold numbers from 0 to 2147483647, got 10"),
+        ({"features": np.full(19, -1)}, ValueError, "^features must hold numbers from 0 to 2147483647, got -1$"),
         ({"features": np.zeros(19)}, TypeError, "features must be None or an array of integers"),
         (
             {"method": "batch_td", "features": tile_coding(19, 4, 2, 1)},

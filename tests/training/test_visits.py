@@ -137,7 +137,7 @@ def test_a_number_of_snapshots_is_spread_over_the_run(snapshots: Any, episodes: 
         ({"snapshots": True}, TypeError, "snapshots must be an integer or a sequence of episode numbers, got True"),
         ({"snapshots": "3"}, TypeError, "snapshots must be an integer or a sequence of episode numbers, got '3'"),
         ({"snapshots": []}, ValueError, "snapshots must be how many, or hold at least one episode number"),
-        ({"snapshots": [11]}, ValueError, r"snapshots\[\.\.\.\] must be an integer from 0 to 10, got 11"),
+        ({"snapshots": [11]}, ValueError, r"^snapshots\[0\] must be an integer from 0 to 10, got 11$"),
         ({"visits": 1}, TypeError, "visits must be True or False, got 1"),
     ],
 )

@@ -7,6 +7,7 @@ from typing import Any
 import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec, find_highest_version, get_env_id, parse_env_id
 
+from qtab._utils.shown import shown
 from qtab.envs.stored import StoredId, import_package, unregistered
 
 PACKAGE = "qtab"
@@ -169,6 +170,23 @@ def versioned(env: str) -> str:
         f"Using the latest versioned environment `{full_name}` instead of the unversioned environment `{name}`."
     )
     return type(env)(f"{package}{colon}{full_name}")
+
+
+def make_env(spec: EnvSpec, env_kwargs: Mapping[str, Any], **of_gymnasium: Any) -> gym.Env:
+    """Returns ``gymnasium.make(spec, **env_kwargs, **of_gymnasium)``.
+
+    Raises:
+        ValueError: if the constructor raises ``LookupError`` or ``ValueError``; the message names the environment and
+            ``env_kwargs``, as Gymnasium's does for ``TypeError``. Without ``env_kwargs`` errors are raised unchanged.
+    """
+    try:
+        return gym.make(spec, **env_kwargs, **of_gymnasium)
+    except (LookupError, ValueError) as error:
+        if not env_kwargs:
+            raise
+        raise ValueError(
+            f"env_kwargs must be keyword arguments that {spec.id} accepts, got {shown(dict(env_kwargs))}: {error!r}"
+        ) from error
 
 
 def spec_of(env: str) -> EnvSpec:

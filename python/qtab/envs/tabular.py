@@ -1,6 +1,6 @@
 """``qtab.TabularEnv``: a finite Markov decision process given as a transition table."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Sized
 from typing import Any, TypeAlias
 
 import gymnasium as gym
@@ -46,6 +46,7 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
             raise TypeError("initial_state_distrib must hold numbers, got None")
         if self.initial_state_distrib.ndim != 1:
             raise ValueError(f"initial_state_distrib must have one axis, got {self.initial_state_distrib.ndim}")
+        _check_not_empty(P)
         checked = _core.TransitionTable(P, self.initial_state_distrib)
         states, actions = checked.states, checked.actions
         # Copied, so that later changes to the argument do not change the environment.
@@ -80,6 +81,17 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
         assert self.action_space.contains(action), f"{action!r} ({type(action)}) invalid"  # noqa: S101
         step: Any = FrozenLakeEnv.step  # it uses only attributes that this class has
         return step(self, action)
+
+
+def _check_not_empty(P: TransitionTable) -> None:  # noqa: N803 - Gymnasium's name
+    if isinstance(P, Sized) and len(P) == 0:
+        raise ValueError("P must have at least 1 state, got none")
+    try:
+        first = P[0]
+    except (LookupError, TypeError):  # refused when the table is read
+        return
+    if isinstance(first, Sized) and len(first) == 0:
+        raise ValueError("P[0] must have at least 1 action, got none")
 
 
 class _Copies:

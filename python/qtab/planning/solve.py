@@ -19,7 +19,7 @@ from qtab.discretizers import Identity
 from qtab.discretizers.actions import choose_actions
 from qtab.envs.matching import time_limit, unknown_wrapper
 from qtab.envs.native import table_env
-from qtab.envs.registry import spec_of, versioned
+from qtab.envs.registry import make_env, spec_of, versioned
 from qtab.envs.stored import spec_of_run
 from qtab.planning.classic_control import GridSolver, search_grid
 from qtab.planning.grid_environments import GridEnvironment, grid_environment
@@ -90,7 +90,7 @@ def optimum(
         raise TypeError(f"env_kwargs must map names to values, got {shown(env_kwargs)}")
     name = env.id if isinstance(env, EnvSpec) else versioned(env)
     spec = env if isinstance(env, EnvSpec) else spec_of(name)
-    made = gym.make(spec, **(env_kwargs or {}))
+    made = make_env(spec, env_kwargs or {})
     try:
         return _optimum_for_env(name, made, max_episode_steps, discount, method, progress)
     finally:

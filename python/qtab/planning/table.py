@@ -15,7 +15,7 @@ from qtab.discretizers import Identity
 from qtab.discretizers.actions import Actions, choose_actions
 from qtab.envs.matching import unknown_wrapper
 from qtab.envs.native import table_env
-from qtab.envs.registry import spec_of, versioned
+from qtab.envs.registry import make_env, spec_of, versioned
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ def opened_table(env: str | EnvSpec | gym.Env, env_kwargs: Mapping[str, Any] | N
         raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
     if env_kwargs is not None and not isinstance(env_kwargs, Mapping):
         raise TypeError(f"env_kwargs must map names to values, got {shown(env_kwargs)}")
-    made = gym.make(env if isinstance(env, EnvSpec) else spec_of(versioned(env)), **(env_kwargs or {}))
+    made = make_env(env if isinstance(env, EnvSpec) else spec_of(versioned(env)), env_kwargs or {})
     try:
         yield _table(made)
     finally:

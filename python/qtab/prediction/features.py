@@ -67,7 +67,7 @@ def feature_rows(features: ArrayLike | None, states: int) -> tuple[Rows, int]:
 
     Raises:
         TypeError: if they are no integers.
-        ValueError: if they have another shape, or a negative number.
+        ValueError: if they have another shape, or a number that is negative or too large.
     """
     if features is None:
         return np.arange(states, dtype=np.uint32)[:, None], states
@@ -79,7 +79,8 @@ def feature_rows(features: ArrayLike | None, states: int) -> tuple[Rows, int]:
         raise TypeError(f"features must be None or an array of integers, got {shown(features)}")
     if given.ndim not in (1, 2) or len(given) != states or given.size == 0:
         raise ValueError(f"features must have a row of numbers for each of the {states} states, got {given.shape}")
-    if int(given.min()) < 0 or int(given.max()) >= 2**31:
-        raise ValueError(f"features must hold numbers from 0, got {int(given.min())} to {int(given.max())}")
+    least, most = int(given.min()), int(given.max())
+    if least < 0 or most >= 2**31:
+        raise ValueError(f"features must hold numbers from 0 to {2**31 - 1}, got {least if least < 0 else most}")
     rows = np.ascontiguousarray(given.reshape(states, -1).astype(np.uint32))
     return rows, int(rows.max()) + 1

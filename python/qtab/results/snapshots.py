@@ -47,7 +47,9 @@ def snapshot_episodes(wanted: int | Sequence[int] | None, total: int) -> tuple[i
     if hasattr(wanted, "__index__") or isinstance(wanted, bool | str | bytes) or not np.iterable(wanted):
         count = min(_count(wanted), total)
         return tuple(total * (index + 1) // count for index in range(count))
-    numbers = {checks.integer("snapshots[...]", number, least=0, most=total) for number in wanted}
+    numbers = {
+        checks.integer(f"snapshots[{index}]", number, least=0, most=total) for index, number in enumerate(wanted)
+    }
     if not numbers:
         raise ValueError("snapshots must be how many, or hold at least one episode number, got an empty sequence")
     return tuple(sorted(numbers))

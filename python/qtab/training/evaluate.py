@@ -21,7 +21,7 @@ from qtab.config.options import OPTIONS
 from qtab.config.unknown import suggesting
 from qtab.discretizers import Sparse
 from qtab.envs.matching import time_limit
-from qtab.envs.registry import spec_of
+from qtab.envs.registry import make_env, spec_of
 from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
 from qtab.training.assigned_rows import greedy_table, with_assigned_rows
@@ -171,7 +171,7 @@ def evaluate(
             )
     else:
         spec = env if isinstance(env, EnvSpec) else spec_of(env)
-        with closing(gym.make(env, **(env_kwargs or {}))) as made:
+        with closing(make_env(spec, env_kwargs or {})) as made:
             check_spaces(run, made)
     # With a learning rate and an exploration rate of 0, training is evaluation.
     settings: dict[str, Any] = {

@@ -25,7 +25,7 @@ from qtab.discretizers.actions import Actions, choose_actions
 from qtab.envs.known_tables import KnownTable, known_table
 from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import native_env
-from qtab.envs.registry import EnvEntry, entry_for_spec, spec_of, versioned
+from qtab.envs.registry import EnvEntry, entry_for_spec, make_env, spec_of, versioned
 from qtab.training.action_masks import NO_MASKS, asks_for_masks, known_masks, observed_masks
 from qtab.training.preset_fit import infer_discretizer, set_aside
 from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun
@@ -110,7 +110,7 @@ def _make(spec: EnvSpec, config: Config) -> gym.Env:
     limit: dict[str, Any] = {}
     if config.max_episode_steps is not None:
         limit["max_episode_steps"] = config.max_episode_steps
-    return gym.make(spec, **config.env_kwargs, **limit)
+    return make_env(spec, config.env_kwargs, **limit)
 
 
 def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:

@@ -140,8 +140,8 @@ def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
     if not checks.is_sequence(seeds):
         raise TypeError(f"seeds must be an integer or a sequence of integers, got {shown(seeds)}")
     numbers: dict[int, None] = {}
-    for seed in seeds:
-        number = checks.integer("seeds", seed, least=0)
+    for index, seed in enumerate(seeds):
+        number = checks.integer(f"seeds[{index}]", seed, least=0)
         if number in numbers:
             raise ValueError(f"seeds must differ from each other, got {number} twice")
         numbers[number] = None
