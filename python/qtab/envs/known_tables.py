@@ -52,7 +52,7 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
     known = _KNOWN.get(name)
     if known is None or not gym.__version__.startswith(VERSION):
         return None
-    defaults, table_of = known
+    defaults, make_table = known
     arguments = {**defaults, **spec.kwargs, **kwargs}
     if arguments.keys() != defaults.keys() or any(type(arguments[key]) is not type(defaults[key]) for key in defaults):
         return None
@@ -61,7 +61,7 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
     if not _is_gymnasiums_own(getattr(module, class_name), module):
         return None
     try:
-        return table_of(module, **arguments)
+        return make_table(module, **arguments)
     except (OverflowError, ValueError):  # what Gymnasium refuses, or a map of another size
         return None
 
