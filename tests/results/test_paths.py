@@ -27,5 +27,5 @@ def test_what_is_no_path_is_refused_by_name(name: str) -> None:
             CALLS[name](wrong)
     with pytest.raises(ValueError, match=r"^path must be a path, got 'a\\x00b\.gif', which has a null character$"):
         CALLS[name]("a\0b.gif")
-    with pytest.raises(ValueError, match=r"^path must be a path, got '', which is empty$"):
+    with pytest.raises(ValueError, match=r"^path must name a file, got ''$"):
         CALLS[name]("")

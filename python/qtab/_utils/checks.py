@@ -150,15 +150,26 @@ def path(name: str, value: Any) -> Path:
 
     Raises:
         TypeError: if ``value`` is neither a string nor a path.
-        ValueError: if it is empty, which would be the current folder, or has a null character, which no path can have.
+        ValueError: if it has a null character, which no path can have.
     """
     if not isinstance(value, str | PathLike) or not isinstance(fspath(value), str):
         raise TypeError(f"{name} must be a path, got {shown(value)}")
-    if not fspath(value):
-        raise ValueError(f"{name} must be a path, got {shown(fspath(value))}, which is empty")
     if "\0" in fspath(value):
         raise ValueError(f"{name} must be a path, got {shown(fspath(value))}, which has a null character")
     return Path(value)
+
+
+def file_path(name: str, value: Any) -> Path:
+    """Returns the path of a file.
+
+    Raises:
+        TypeError: if ``value`` is neither a string nor a path.
+        ValueError: if it is empty, which would be the current folder, or has a null character.
+    """
+    found = path(name, value)
+    if not fspath(value):
+        raise ValueError(f"{name} must name a file, got {shown(value)}")
+    return found
 
 
 def load_hint(value: Any) -> str:

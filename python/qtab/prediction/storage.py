@@ -52,13 +52,13 @@ def save(estimates: "ValueEstimates", path: Path | str) -> None:
         about["discretizer"] = {name: getattr(config, name) for name in DISCRETIZER}
         arrays |= {f"discretizer_{name}": array for name, array in cells.arrays().items()}
     text = np.array(json.dumps({**about, "seconds": estimates.seconds}))
-    with replacing(checks.path("path", path)) as temporary, temporary.open("wb") as file:
+    with replacing(checks.file_path("path", path)) as temporary, temporary.open("wb") as file:
         np.savez_compressed(file, about=text, **arrays)
 
 
 def load(cls: type["ValueEstimates"], path: Path | str) -> "ValueEstimates":
     """Reads estimates from a file; see :meth:`qtab.ValueEstimates.load`."""
-    with checks.path("path", path).open("rb") as file:
+    with checks.file_path("path", path).open("rb") as file:
         try:
             with np.load(file, allow_pickle=False) as arrays:
                 about: Any = json.loads(str(arrays["about"]))

@@ -37,7 +37,7 @@ def check_video_path(path: Any) -> Path:
         TypeError: if it is not a path.
         ValueError: if the suffix is not that of a known format.
     """
-    target = checks.path("path", path)
+    target = checks.file_path("path", path)
     if target.suffix.lower() not in FORMATS:
         suggestion = did_you_mean(target.suffix.lower(), FORMATS) if target.suffix else ""
         raise ValueError(f"path must end in one of {', '.join(FORMATS)}, got {str(path)!r}{suggestion}")

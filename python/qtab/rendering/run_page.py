@@ -50,7 +50,7 @@ def write_page(
     progress: bool | None = None,
 ) -> None:
     """Writes the page; see :meth:`qtab.Run.to_html` for the arguments and the errors."""
-    target = checks.path("path", path)
+    target = checks.file_path("path", path)
     check_env(env)
     check_writable("path", target)
     text = _page(run, optimum, at, layout, env, progress)

@@ -266,7 +266,7 @@ class Run(WithPage):
 
         It raises what :meth:`save` does.
         """
-        plain_data.write(self, checks.path("path", path))
+        plain_data.write(self, checks.file_path("path", path))
 
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes the run to one ``.npz`` file: arrays and a JSON header, never a pickle. :func:`qtab.load` reads it.
@@ -294,4 +294,4 @@ class Run(WithPage):
                 header["snapshots"] = self.state.snapshots
             if self.state.extensions:
                 header["extensions"] = self.state.extensions
-        saving.write(checks.path("path", path), run_file.RUN, self, header, arrays)
+        saving.write(checks.file_path("path", path), run_file.RUN, self, header, arrays)

@@ -193,7 +193,7 @@ class Runs:
             TypeError: if the environment's keyword arguments hold what JSON cannot.
             ValueError: if they hold a number that JSON cannot, or the runs are not what training returns.
         """
-        save_runs(self, checks.path("path", path))
+        save_runs(self, checks.file_path("path", path))
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns the columns of :meth:`summaries` as a data frame with one row per run.

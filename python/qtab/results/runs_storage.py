@@ -35,7 +35,7 @@ def load_runs(
         ValueError: if it is not a file of runs, is damaged, or comes from another version of the format; the message
             says why.
     """
-    path = checks.path("path", path)
+    path = checks.file_path("path", path)
     with opened(path, "file of runs") as file:
         runs = _runs(run_file.read(file, run_file.RUNS), discretizer)
     check_function(discretizer, runs.config)

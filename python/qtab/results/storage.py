@@ -63,7 +63,7 @@ def load(
         ValueError: if it is not a run file, is damaged, or comes from another version of the format; the
             message says why.
     """
-    path = checks.path("path", path)
+    path = checks.file_path("path", path)
     with opened(path, "run file") as file:
         run = _run(run_file.read(file), discretizer)
     check_function(discretizer, run.config)
