@@ -144,7 +144,7 @@ DEFINITIONS: dict[str, dict[str, str]] = {
         "watch": "check_finite",
         "Way": "Parent",
         "Wide": "SimdEnv",
-        "Words": "PrefetchedPcg64",
+        "Words": "Pcg64Lanes",
         "World": "Task",
         "worlds": "tasks",
     },

@@ -3,13 +3,13 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::SimdTrainer;
-use super::decisions::GREEDY;
 use super::episode_lanes::EpisodeLanes;
 use crate::envs::{Env, SimdEnv};
 use crate::features::BatchFeatures;
 use crate::learners::Agent;
-use crate::numeric::cold_path;
+use crate::numeric::{cold_path, mask, select};
 use crate::q_table::TerminalUpdate;
+use crate::random::Pcg64Lanes;
 use crate::schedules::StepSize;
 
 /// What all runs of a batch share.
@@ -23,7 +23,7 @@ pub(super) struct Shared<E, F> {
 /// Where the steps stopped.
 pub(super) struct Stop<const K: usize> {
     /// The number of steps that each lane took.
-    pub(super) steps: usize,
+    pub(super) steps: u64,
     /// Which lanes reached a terminal state in the last step.
     pub(super) terminal: Option<[bool; K]>,
     /// Whether a further step would lead to an observation without a row.
@@ -31,15 +31,16 @@ pub(super) struct Stop<const K: usize> {
 }
 
 impl<E, F> Shared<E, F> {
-    /// Takes a step for each of the decisions that follow them, and learns from it. Stops early after a terminal state,
-    /// or before an observation without a row. All is computed in lanes but for reading and writing the table.
+    /// Chooses an action, takes a step and learns from it, in every lane and so many times. Stops early after a terminal
+    /// state, or before an observation without a row. All is computed in lanes but for reading and writing the tables.
     #[inline(always)]
     pub(super) fn learning_steps<A, const N: usize, const M: usize, const K: usize, const FUSED: bool>(
         &self,
         runs: &mut [SimdTrainer<E, F, N, A>; K],
         tables: &mut [Vec<f64>; K],
-        lanes: &mut EpisodeLanes<M, K>,
-        decisions: &[[usize; K]],
+        lanes: &mut EpisodeLanes<N, M, K>,
+        rngs: &mut Pcg64Lanes<K>,
+        most: u64,
     ) -> Stop<K>
     where
         E: SimdEnv<M> + Env<Observation = [f32; M]>,
@@ -51,7 +52,10 @@ impl<E, F> Shared<E, F> {
         let uniform = runs.each_ref().map(|run| run.learner.agent.learning_rate.uniform());
         let is_uniform = uniform.iter().all(Option::is_some);
         let mut learning_rates = uniform.map(Option::unwrap_or_default);
-        for (steps, decision) in decisions.iter().enumerate() {
+        for steps in 0..most {
+            if !lanes.actions_chosen {
+                lanes.choose(rngs);
+            }
             let before = lanes.fields;
             let terminal = env.step_soa::<FUSED, K>(&mut lanes.fields, &lanes.action);
             let observations = lanes.fields.map(|field| field.map(|number| number as f32));
@@ -60,6 +64,7 @@ impl<E, F> Shared<E, F> {
                 lanes.fields = before;
                 return Stop { steps, terminal: None, out_of_bounds: true };
             };
+            lanes.actions_chosen = false;
             let weight_index: [usize; K] = std::array::from_fn(|lane| lanes.row[lane] * N + lanes.action[lane]);
             if !is_uniform {
                 for (lane, run) in runs.iter_mut().enumerate() {
@@ -68,21 +73,32 @@ impl<E, F> Shared<E, F> {
                     learning_rates[lane] = learning_rate.at(weight_index[lane]);
                 }
             }
-            let (mut next_values, mut value) = ([[0.0; K]; N], [0.0; K]);
+            let mut next_values = [[0.0; K]; N];
             for lane in 0..K {
                 let row = &tables[lane][next_row[lane]];
                 for (values, &value) in next_values.iter_mut().zip(row) {
                     values[lane] = value;
                 }
-                value[lane] = tables[lane].as_flattened()[weight_index[lane]];
+            }
+            let mut value = lanes.values[0];
+            for (action, values) in lanes.values.iter().enumerate().skip(1) {
+                for lane in 0..K {
+                    let is_chosen = mask(lanes.action[lane] == action);
+                    value[lane] = f64::from_bits(select(is_chosen, values[lane].to_bits(), value[lane].to_bits()));
+                }
+            }
+            let mut largest = next_values[0];
+            for values in &next_values[1..] {
+                for lane in 0..K {
+                    largest[lane] = if values[lane] > largest[lane] { values[lane] } else { largest[lane] };
+                }
             }
             let mut updated = [0.0; K];
             for lane in 0..K {
-                let (_, largest) = argmax_and_maximum(next_values.each_ref().map(|values| values[lane]));
-                let target = env.reward(false) + discount * largest;
+                let target = env.reward(false) + discount * largest[lane];
                 updated[lane] = value[lane] + learning_rates[lane] * (target - value[lane]);
             }
-            let any_terminal = terminal.iter().fold(false, |any, &terminal| any | terminal);
+            let any_terminal = terminal != [false; K];
             if any_terminal {
                 cold_path();
                 let reward = env.reward(true);
@@ -96,14 +112,13 @@ impl<E, F> Shared<E, F> {
             for lane in 0..K {
                 tables[lane].as_flattened_mut()[weight_index[lane]] = updated[lane];
             }
-            for lane in 0..K {
-                // The update can have changed the next row.
-                let next_values = std::array::from_fn::<_, N, _>(|action| {
+            lanes.values = next_values;
+            for (action, values) in lanes.values.iter_mut().enumerate() {
+                for lane in 0..K {
+                    // The update can have changed the next row.
                     let is_updated = next_row[lane] * N + action == weight_index[lane];
-                    if is_updated { updated[lane] } else { next_values[action][lane] }
-                });
-                let (greedy, _) = argmax_and_maximum(next_values);
-                lanes.action[lane] = if decision[lane] == GREEDY { greedy } else { decision[lane] };
+                    values[lane] = if is_updated { updated[lane] } else { values[lane] };
+                }
             }
             lanes.row = next_row;
             if any_terminal {
@@ -117,18 +132,6 @@ impl<E, F> Shared<E, F> {
                 *episode_return += env.reward(false);
             }
         }
-        Stop { steps: decisions.len(), terminal: None, out_of_bounds: false }
+        Stop { steps: most, terminal: None, out_of_bounds: false }
     }
-}
-
-/// The argmax of a row, the first of equal values, and the maximum, without a branch.
-#[inline(always)]
-fn argmax_and_maximum<const N: usize>(row: [f64; N]) -> (usize, f64) {
-    let (mut best, mut largest) = (0, row[0]);
-    for (action, value) in row.into_iter().enumerate().skip(1) {
-        let larger = value > largest;
-        best = if larger { action } else { best };
-        largest = if larger { value } else { largest };
-    }
-    (best, largest)
 }

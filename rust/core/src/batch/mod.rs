@@ -1,12 +1,11 @@
 //! Several runs trained together on one core, one per SIMD lane.
 //!
 //! A single run is bound by latency (the cosine's above all) and by mispredicted branches. A batch computes the physics
-//! of several runs in SIMD registers and selects explored actions without a branch, and the chains of operations of the
-//! runs overlap. Each run's results equal those of the same run trained alone, to the bit.
+//! of several runs in SIMD registers, draws their random numbers there and selects explored actions without a branch, and
+//! the chains of operations of the runs overlap. Each run's results equal those of the same run trained alone, to the bit.
 
 mod batch_loop;
 mod batched_run;
-mod decisions;
 mod episode_lanes;
 mod learning_steps;
 mod simd_trainer;

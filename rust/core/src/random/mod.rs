@@ -3,7 +3,8 @@
 mod agent_rng;
 mod mt19937;
 mod pcg64;
-mod prefetched_pcg64;
+mod pcg64_engine;
+mod pcg64_lanes;
 mod rng;
 mod seed_sequence;
 mod standard_normal;
@@ -11,7 +12,7 @@ mod standard_normal;
 pub use agent_rng::AgentRng;
 pub use mt19937::Mt19937;
 pub use pcg64::Pcg64;
-pub(crate) use prefetched_pcg64::{DrawIndex, PrefetchedPcg64};
+pub(crate) use pcg64_lanes::Pcg64Lanes;
 pub(crate) use rng::TWO_POW_53;
 pub use rng::{NoRng, Rng};
 pub use seed_sequence::SeedSequence;

@@ -1,24 +1,23 @@
 //! `numpy.random.Generator(PCG64(…))`, the generator of Gymnasium's environments and the agents' default.
 
-use rand_core::Rng as _;
-
+use super::pcg64_engine::Pcg64Engine;
 use super::{Rng, SeedSequence, TWO_POW_53};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
 /// PCG-XSL-RR 128/64 with `NumPy`'s seeding and its buffer of one 32-bit half.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pcg64 {
-    engine: rand_pcg::Pcg64,
+    pub(super) engine: Pcg64Engine,
     /// The upper half of a 64-bit word whose lower half has been used. `random()` does not touch it.
-    buffered_u32: Option<u32>,
-    words_drawn: u64,
+    pub(super) buffered_u32: Option<u32>,
+    pub(super) words_drawn: u64,
 }
 
 impl Pcg64 {
     /// `numpy.random.PCG64(seed_sequence)`.
     pub fn new(seed: &SeedSequence) -> Self {
         let [state_high, state_low, stream_high, stream_low] = seed.generate_state().map(u128::from);
-        let engine = rand_pcg::Pcg64::new((state_high << 64) | state_low, (stream_high << 64) | stream_low);
+        let engine = Pcg64Engine::new((state_high << 64) | state_low, (stream_high << 64) | stream_low);
         Self { engine, buffered_u32: None, words_drawn: 0 }
     }
 
@@ -30,16 +29,6 @@ impl Pcg64 {
     /// The buffered 32-bit half: `NumPy`'s `uinteger` if `has_uint32` is set.
     pub fn buffered_u32(&self) -> Option<u32> {
         self.buffered_u32
-    }
-
-    pub(crate) fn set_buffered_u32(&mut self, buffered_u32: Option<u32>) {
-        self.buffered_u32 = buffered_u32;
-    }
-
-    /// Skips so many words.
-    pub(crate) fn advance(&mut self, words: u64) {
-        self.engine.advance(u128::from(words));
-        self.words_drawn += words;
     }
 
     #[inline]
