@@ -198,10 +198,10 @@ def test_another_environment_is_refused_by_name(env, message):
 
 
 def test_the_environment_of_the_run_may_be_given_with_its_id():
-    for limit in (None, 50, 300):
+    for limit, of_env in ((None, None), (50, 50), (300, 300), (50, 200)):
         part = stopped(8, CAR, seed=3, episodes=12, max_episode_steps=limit)
         whole = qtab.train(CAR, seed=3, episodes=12, max_episode_steps=limit)
-        env = gym.make(CAR) if limit is None else gym.make(CAR, max_episode_steps=limit)
+        env = gym.make(CAR) if of_env is None else gym.make(CAR, max_episode_steps=of_env)
         assert_same_arrays(qtab.resume(part, env=env), whole)
 
 
