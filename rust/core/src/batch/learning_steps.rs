@@ -31,7 +31,7 @@ pub(super) struct Stop<const K: usize> {
 }
 
 impl<E, F> Shared<E, F> {
-    /// Chooses an action, takes a step and learns from it, in every lane and so many times. Stops early after a terminal
+    /// Chooses an action, takes a step and learns from it, in every lane, up to `most` times. Stops early after a terminal
     /// state, or before an observation without a row. All is computed in lanes but for reading and writing the tables.
     #[inline(always)]
     pub(super) fn learning_steps<A, const N: usize, const M: usize, const K: usize, const FUSED: bool>(
@@ -80,6 +80,7 @@ impl<E, F> Shared<E, F> {
                     values[lane] = value;
                 }
             }
+            // A select between f64 would be an unpredictable branch where there are no vector registers.
             let mut value = lanes.values[0];
             for (action, values) in lanes.values.iter().enumerate().skip(1) {
                 for lane in 0..K {

@@ -13,7 +13,8 @@ pub trait SimdEnv<const M: usize>:
     fn is_exact(&self) -> bool;
 
     /// One step in `K` lanes, in place. `fields` holds the states as a structure of arrays: one array per component.
-    /// Returns whether each next state is terminal. `FUSED` is that of the [`SimdLevel`](crate::numeric::SimdLevel) which the code is compiled for.
+    /// Returns whether each next state is terminal. `FUSED` is that of the [`SimdLevel`](crate::numeric::SimdLevel) which
+    /// the code is compiled for.
     fn step_soa<const FUSED: bool, const K: usize>(
         &self,
         fields: &mut [[f64; K]; M],
