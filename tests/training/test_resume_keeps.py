@@ -180,16 +180,20 @@ def test_train_refuses_another_setting_by_name(other, message):
     assert str(caught.value).startswith(message)
 
 
-OTHER_ENV: list[tuple[gym.Env, str]] = [
-    (gym.make("Taxi-v4"), "env must be that of the run to resume, 'MountainCar-v0', got 'Taxi-v4'"),
-    (Room(), "env must be that of the run to resume, 'MountainCar-v0', got 'Room'"),
-    (gym.make(CAR, goal_velocity=0.1), "env_kwargs must be that of the run to resume, {}, got {'goal_velocity': 0.1}"),
-    (gym.make(CAR, max_episode_steps=50), "max_episode_steps must be that of the run to resume, 200, got 50"),
+OTHER_ENV: list[tuple[Callable[[], gym.Env], str]] = [
+    (lambda: gym.make("Taxi-v4"), "env must be that of the run to resume, 'MountainCar-v0', got 'Taxi-v4'"),
+    (Room, "env must be that of the run to resume, 'MountainCar-v0', got 'Room'"),
+    (
+        lambda: gym.make(CAR, goal_velocity=0.1),
+        "env_kwargs must be that of the run to resume, {}, got {'goal_velocity': 0.1}",
+    ),
+    (lambda: gym.make(CAR, max_episode_steps=50), "max_episode_steps must be that of the run to resume, 200, got 50"),
 ]
 
 
-@pytest.mark.parametrize(("env", "message"), OTHER_ENV, ids=["id", "class", "keyword arguments", "time limit"])
-def test_another_environment_is_refused_by_name(env, message):
+@pytest.mark.parametrize(("make", "message"), OTHER_ENV, ids=["id", "class", "keyword arguments", "time limit"])
+def test_another_environment_is_refused_by_name(make, message):
+    env = make()
     part = stopped(8, CAR, seed=3, episodes=12)
     for call in (lambda: qtab.resume(part, env=env), lambda: qtab.train(env, resume=part)):
         with pytest.raises(ValueError) as caught:

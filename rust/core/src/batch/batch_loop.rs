@@ -39,7 +39,7 @@ where
             run.learner.agent.table.swap_storage(table);
         }
         let result = advance::<_, _, _, N, M, K, FUSED>(runs, &mut tables, &mut lanes, &mut rngs, budget);
-        lanes.choose_if_active(&mut rngs);
+        lanes.choose_if_missing(&mut rngs);
         for (lane, (run, table)) in runs.iter_mut().zip(&mut tables).enumerate() {
             run.learner.agent.table.swap_storage(table);
             run.rng = rngs.get(lane);

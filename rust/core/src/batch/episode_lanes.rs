@@ -5,8 +5,8 @@
 use super::SimdTrainer;
 use crate::envs::{Env, SimdEnv, gather, scatter};
 use crate::features::{BatchFeatures, OutOfBounds};
-use crate::numeric::{argmax, select};
-use crate::random::Pcg64Lanes;
+use crate::numeric::{argmax, argmax_without_branch, select};
+use crate::random::{Pcg64Lanes, explore_from};
 use crate::schedules::StepSize;
 use crate::tasks::{Task, TimedState};
 use crate::trainer::EpisodeState;
@@ -26,7 +26,7 @@ pub(super) struct EpisodeLanes<const N: usize, const M: usize, const K: usize> {
     /// Whether `action` is the action to take next, rather than the one taken last.
     pub(super) actions_chosen: bool,
     pub(super) episode_return: [f64; K],
-    /// What [`Pcg64Lanes::explore_from`] returns for `1 - epsilon`.
+    /// What [`explore_from`] returns for `1 - epsilon`.
     pub(super) explore_from: [u64; K],
 }
 
@@ -102,7 +102,7 @@ impl<const N: usize, const M: usize, const K: usize> EpisodeLanes<N, M, K> {
         for (values, value) in self.values.iter_mut().zip(table.as_chunks::<N>().0[row as usize]) {
             values[lane] = value;
         }
-        self.explore_from[lane] = Pcg64Lanes::<K>::explore_from(1.0 - run.learner.agent.policy.epsilon());
+        self.explore_from[lane] = explore_from(1.0 - run.learner.agent.policy.epsilon());
     }
 
     /// Chooses the next action of every lane.
@@ -116,9 +116,12 @@ impl<const N: usize, const M: usize, const K: usize> EpisodeLanes<N, M, K> {
         self.actions_chosen = true;
     }
 
-    /// Chooses the next actions of the active lanes, if they are not chosen.
-    pub(super) fn choose_if_active(&mut self, rngs: &mut Pcg64Lanes<K>) {
-        for lane in (0..K).filter(|&lane| self.active[lane] && !self.actions_chosen) {
+    /// Chooses the next actions of the active lanes, unless they are chosen.
+    pub(super) fn choose_if_missing(&mut self, rngs: &mut Pcg64Lanes<K>) {
+        if self.actions_chosen {
+            return;
+        }
+        for lane in (0..K).filter(|&lane| self.active[lane]) {
             let random = rngs.explore_one(lane, self.explore_from[lane], N as u32);
             self.action[lane] = random.unwrap_or_else(|| argmax(&self.values.map(|values| values[lane])));
         }
@@ -136,16 +139,4 @@ impl<const N: usize, const M: usize, const K: usize> EpisodeLanes<N, M, K> {
             unfinished: None,
         })
     }
-}
-
-/// The argmax of a row, the first of equal values.
-#[inline(always)]
-fn argmax_without_branch<const N: usize>(row: [f64; N]) -> usize {
-    let (mut best, mut largest) = (0, row[0]);
-    for (action, value) in row.into_iter().enumerate().skip(1) {
-        let larger = value > largest;
-        best = if larger { action } else { best };
-        largest = if larger { value } else { largest };
-    }
-    best
 }

@@ -12,7 +12,7 @@ mod scalar;
 mod simd_level;
 mod sum;
 
-pub(crate) use argmax::{argmax, maximum};
+pub(crate) use argmax::{argmax, argmax_without_branch, maximum};
 pub(crate) use cold_path::cold_path;
 pub(crate) use cos_sin::cos_sin;
 pub use float::Float;

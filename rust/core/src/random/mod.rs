@@ -12,7 +12,7 @@ mod standard_normal;
 pub use agent_rng::AgentRng;
 pub use mt19937::Mt19937;
 pub use pcg64::Pcg64;
-pub(crate) use pcg64_lanes::Pcg64Lanes;
+pub(crate) use pcg64_lanes::{Pcg64Lanes, explore_from};
 pub(crate) use rng::TWO_POW_53;
 pub use rng::{NoRng, Rng};
 pub use seed_sequence::SeedSequence;

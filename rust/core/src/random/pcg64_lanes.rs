@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::pcg64::upper_53_bits;
-use super::pcg64_engine::{MULTIPLIER, Pcg64Engine};
+use super::pcg64_engine::{MULTIPLIER, Pcg64Engine, word};
 use super::{Pcg64, Rng, TWO_POW_53};
 use crate::numeric::{cold_path, mask, select};
 
@@ -28,6 +28,13 @@ pub(crate) struct Decisions<const K: usize> {
     pub(crate) explores: [u64; K],
     /// The random action, which is arbitrary if the lane does not explore.
     pub(crate) random: [usize; K],
+}
+
+/// The least draw of `random_u53` that explores if `random()` is to be at least `greedy_below`, which must not be negative.
+/// `random()` is an integer `n` times 2⁻⁵³, so `random() >= greedy_below` says that `n` is at least 2⁵³ × `greedy_below`,
+/// which is exact, or the next integer above it.
+pub(crate) fn explore_from(greedy_below: f64) -> u64 {
+    (greedy_below * TWO_POW_53).ceil() as u64
 }
 
 impl<const K: usize> Pcg64Lanes<K> {
@@ -67,15 +74,7 @@ impl<const K: usize> Pcg64Lanes<K> {
         self.words_drawn[lane] = *words_drawn;
     }
 
-    /// The words from which on `random()` is at least `greedy_below`, which must not be negative, as an argument of
-    /// [`explore`](Self::explore). `random()` is an integer `n` times 2⁻⁵³, so `random() >= greedy_below` says that `n` is
-    /// at least 2⁵³ × `greedy_below`, which is exact, or the next integer above it.
-    pub(crate) fn explore_from(greedy_below: f64) -> u64 {
-        (greedy_below * TWO_POW_53).ceil() as u64
-    }
-
-    /// An ε-greedy decision of one lane: `integers(below)` if `random()` is at least the probability that `explore_from`
-    /// was made of.
+    /// An ε-greedy decision of one lane: `integers(below)` if `random_u53()` is at least [`explore_from`].
     pub(crate) fn explore_one(&mut self, lane: usize, explore_from: u64, below: u32) -> Option<usize> {
         let mut rng = self.get(lane);
         let random = (rng.random_u53() >= explore_from).then(|| rng.integers(below) as usize);
@@ -90,11 +89,11 @@ impl<const K: usize> Pcg64Lanes<K> {
     pub(crate) fn explore(&mut self, explore_from: &[u64; K], below: u32) -> Decisions<K> {
         let first = self.next_states(&self.state);
         let second = self.next_states(&first);
-        let (word, next_word) = (words(&first), words(&second));
+        let (first_word, next_word) = (words(&first), words(&second));
         let mut decisions = Decisions { explores: [0; K], random: [0; K] };
         let mut rejected = 0;
         for lane in 0..K {
-            let explores = mask(upper_53_bits(word[lane]) >= explore_from[lane]);
+            let explores = mask(upper_53_bits(first_word[lane]) >= explore_from[lane]);
             let half = select(self.has_buffered_u32[lane], self.buffered_u32[lane], next_word[lane]) & LOWER_HALF;
             let product = half * u64::from(below);
             rejected |= explores & mask((product & LOWER_HALF) < u64::from(below));
@@ -156,7 +155,7 @@ impl<const K: usize> Pcg64Lanes<K> {
 /// The words of these states.
 #[inline(always)]
 fn words<const K: usize>([low, high]: &[[u64; K]; 2]) -> [u64; K] {
-    std::array::from_fn(|lane| (low[lane] ^ high[lane]).rotate_right((high[lane] >> 58) as u32))
+    std::array::from_fn(|lane| word(low[lane], high[lane]))
 }
 
 #[cfg(test)]
@@ -191,7 +190,7 @@ mod tests {
             });
             let mut lanes = Pcg64Lanes::new(rngs.each_ref());
             for (greedy_below, below) in draws {
-                let explore_from = greedy_below.map(Pcg64Lanes::<LANES>::explore_from);
+                let explore_from = greedy_below.map(explore_from);
                 let decisions = lanes.explore(&explore_from, below);
                 for (lane, rng) in rngs.iter_mut().enumerate() {
                     let expected = (rng.random() >= greedy_below[lane]).then(|| rng.integers(below) as usize);
@@ -209,7 +208,7 @@ mod tests {
             for greedy_below in [near, 1.0 - epsilon, near / 3.0, f64::MIN_POSITIVE, 0.0, 1.0] {
                 for random in [random, (greedy_below * TWO_POW_53) as u64] {
                     let explores = u64_to_f64(random << 11) >= greedy_below;
-                    prop_assert_eq!(random >= Pcg64Lanes::<1>::explore_from(greedy_below), explores || random >= 1 << 53);
+                    prop_assert_eq!(random >= explore_from(greedy_below), explores || random >= 1 << 53);
                 }
             }
         }
