@@ -123,7 +123,7 @@ except KeyboardInterrupt as interrupt:
 
 
 def test_a_run_that_was_interrupted_within_a_step_goes_on_to_the_same_table():
-    # Each step plans for some 20 ms; an alarm interrupts it again and again.
+    # Each step plans for 10 ms or more; an alarm interrupts it again and again.
     done = in_a_process("""
 from qtab import _core
 from qtab.training.resolve import resolve
@@ -133,7 +133,7 @@ signal.signal(signal.SIGALRM, signal.default_int_handler)
 trainer = _core.Trainer(resolved.spec(), resolved.seed)
 interrupts = 0
 while True:
-    signal.setitimer(signal.ITIMER_REAL, 0.02)
+    signal.setitimer(signal.ITIMER_REAL, 0.005)
     try:
         trainer.advance(2)
         break
