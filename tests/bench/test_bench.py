@@ -233,6 +233,7 @@ def test_the_bench_prints_its_tables_with_versions_and_build(small_rounds: None)
         mountain_car.NUMBA_ON_TWO,
         *tables,
         *learners.SETTINGS,
+        *learners.MANY,
         *(name for _, names in book.GROUPS for name in names),
     ):
         assert f"\n{name}  " in printed

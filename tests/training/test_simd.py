@@ -4,6 +4,7 @@ import hashlib
 import os
 import subprocess
 import sys
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -28,8 +29,12 @@ def digest() -> str:
                 observations, *_ = envs.step(rng.integers(2, size=19))
                 hashed.update(observations.tobytes())
             envs.close()
+        tiles: dict[str, Any] = {"discretizer": "tiles", "tilings": 8, "episodes": 5}
+        tiled_runs = qtab.train_many(env_id, seeds=range(8), algorithm="sarsa", tables=True, threads=1, **tiles)
+        assert tiled_runs.tables is not None
+        hashed.update(tiled_runs.tables.tobytes())
         for algorithm in ("q_learning", "sarsa_lambda"):
-            tiled = qtab.train(env_id, seed=0, algorithm=algorithm, discretizer="tiles", tilings=8, episodes=5)
+            tiled = qtab.train(env_id, seed=0, algorithm=algorithm, **tiles)
             hashed.update(tiled.q_values(observation).tobytes())
     return hashed.hexdigest()
 

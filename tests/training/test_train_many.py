@@ -13,6 +13,8 @@ from support.parity import assert_same_as_single_runs, run_of
 
 CAR = "MountainCar-v0"
 POLE = "CartPole-v1"
+LAKE = "FrozenLake-v1"
+CLIFF = "CliffWalking-v1"
 SHORT: dict[str, Any] = {"episodes": 30}
 
 
@@ -74,6 +76,70 @@ def test_runs_of_cart_pole_equal_gymnasiums():
     runs = qtab.train_many(POLE, 9, threads=1, tables=True, episodes=40)
     assert runs.config.backend == "rust"
     assert_same_as_single_runs(runs, env=POLE, episodes=40, backend="gymnasium")
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    env=st.sampled_from([CAR, POLE]),
+    seeds=st.lists(st.integers(0, 2**32 - 1), min_size=4, max_size=12, unique=True),
+    episodes=st.integers(1, 12),
+    config=st.fixed_dictionaries(
+        {
+            "algorithm": st.sampled_from(["q_learning", "sarsa"]),
+            "learning_rate": st.floats(0, 1),
+            "learning_rate_schedule": st.sampled_from(["constant", "linear"]),
+            "discount": st.floats(0, 1),
+            "epsilon": st.floats(0, 1),
+            "tiles": st.integers(1, 6),
+            "hashed_rows": st.sampled_from([None, 64]),
+            "max_episode_steps": st.sampled_from([1, 37, 200]),
+        }
+    ),
+)
+def test_each_run_with_eight_tilings_equals_the_single_run_for_any_config(env, seeds, episodes, config):
+    config = {**config, "discretizer": "tiles", "tilings": 8}
+    runs = qtab.train_many(env, seeds, threads=1, tables=True, episodes=episodes, **config)
+    assert_same_as_single_runs(runs, env=env, episodes=episodes, **config)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    env=st.sampled_from([LAKE, CLIFF]),
+    seeds=st.lists(st.integers(0, 2**32 - 1), min_size=4, max_size=12, unique=True),
+    episodes=st.integers(1, 60),
+    config=st.fixed_dictionaries(
+        {
+            "algorithm": st.sampled_from(["q_learning", "sarsa"]),
+            "learning_rate": st.floats(0, 1),
+            "learning_rate_schedule": st.sampled_from(["constant", "linear"]),
+            "discount": st.floats(0, 1),
+            "epsilon": st.floats(0, 1),
+            "terminal_update": st.sampled_from(["assign", "target"]),
+            "max_episode_steps": st.sampled_from([1, 37, 200]),
+            "env_kwargs": st.sampled_from([{"is_slippery": True}, {"is_slippery": False}]),
+        }
+    ),
+)
+def test_each_run_on_a_table_equals_the_single_run_for_any_config(env, seeds, episodes, config):
+    runs = qtab.train_many(env, seeds, threads=1, tables=True, episodes=episodes, **config)
+    assert_same_as_single_runs(runs, env=env, episodes=episodes, **config)
+
+
+@pytest.mark.parametrize("algorithm", ["q_learning", "sarsa"])
+@pytest.mark.parametrize(
+    ("env", "config"),
+    [
+        (LAKE, {"episodes": 100}),
+        (CAR, {"episodes": 20}),
+        (CAR, {"episodes": 6, "discretizer": "tiles", "tilings": 8}),
+        (POLE, {"episodes": 20, "discretizer": "tiles", "tilings": 8}),
+    ],
+)
+def test_runs_of_a_batch_equal_gymnasiums(algorithm, env, config):
+    config = {**config, "algorithm": algorithm}
+    runs = qtab.train_many(env, 8, threads=1, tables=True, **config)
+    assert runs.config.backend == "rust"
+    assert_same_as_single_runs(runs, env=env, **config, backend="gymnasium")
 
 
 TWO_TABLES: dict[str, Any] = {"algorithm": "double_q_learning"}

@@ -10,14 +10,15 @@ use std::fmt::Debug;
 
 use benchmarks::Benchmarks;
 use mountain_car_task::{IN_BOUNDS, MountainCarTask, rounding, task};
-use qtab_core::features::{Features, FixedTileCoding, OutOfBounds, TileCoding};
+use qtab_core::batch::{BatchRule, BatchedRun, LANES};
+use qtab_core::features::{Features, FixedTileCoding, FixedTiles, OutOfBounds, TileCoding};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
     TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
 };
-use qtab_core::policies::{AnyPolicy, TieBreaking};
+use qtab_core::policies::{AnyPolicy, EpsilonGreedy, TieBreaking};
 use qtab_core::q_table::TerminalUpdate;
-use qtab_core::random::Rng;
+use qtab_core::random::{Pcg64, Rng, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
 use qtab_core::tasks::BoxedTask;
 use qtab_core::{Budget, Learner, QTable, StopFlag, Task, Trainer};
@@ -113,7 +114,36 @@ fn tilings(benchmarks: &mut Benchmarks) {
     let mut tilings = Bench { benchmarks, group: "tilings", features: tile_coding::<TILINGS>(), n_active: TILINGS };
     tilings.all();
     boxed_tilings::<TILINGS>(benchmarks, "8 tilings, boxed");
+    compiled_tilings(benchmarks, "Q-learning", &QLearning);
+    compiled_tilings(benchmarks, "Sarsa", &Sarsa);
     boxed_tilings::<16>(benchmarks, "16 tilings, boxed");
+}
+
+/// A learner compiled for its policy and its learning rate: a run alone, and a batch of runs on one core.
+fn compiled_tilings<U>(benchmarks: &mut Benchmarks, name: &str, rule: &U)
+where
+    U: UpdateRule<FixedTiles<TILINGS>, Agent<ACTIONS, EpsilonGreedy, f64>> + BatchRule + Clone,
+{
+    let run = |seed| {
+        let features = tile_coding::<TILINGS>();
+        let agent = Agent {
+            table: QTable::new(vec![0.0; Features::<[f32; 2]>::len(&features) * ACTIONS], ACTIONS),
+            policy: EpsilonGreedy::linear(0.1, 0.0, EPISODES as u64),
+            learning_rate: 0.3 / TILINGS as f64,
+            discount: 1.0,
+            terminal_update: TerminalUpdate::Target,
+            masks: None,
+        };
+        let rng = Pcg64::new(&SeedSequence::new(&[seed]).child(0));
+        Trainer::new(task(features), TdLearner { agent, rule: rule.clone() }, rng)
+    };
+    let group = "8 tilings, compiled for the policy";
+    benchmarks.add(group, name, || steps(run(0)));
+    benchmarks.add(group, &format!("{name}, a batch of 8 on one core"), || {
+        let mut runs: [_; LANES] = std::array::from_fn(|seed| run(seed as u32));
+        BatchedRun::advance_all(&mut runs, Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
+        runs.iter().flat_map(|run| &run.episodes().lengths).sum::<i64>() as u64
+    });
 }
 
 /// Learners on a boxed task, as the Python package runs them.

@@ -2,13 +2,14 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use super::SimdTrainer;
 use super::episode_lanes::EpisodeLanes;
 use super::learning_steps::Shared;
+use super::{BatchRule, SimdTrainer};
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, OutOfBounds};
-use crate::learners::Agent;
+use crate::learners::{Agent, Learner, UpdateRule};
 use crate::numeric::SimdCode;
+use crate::policies::EpsilonGreedy;
 use crate::random::Pcg64Lanes;
 use crate::schedules::StepSize;
 use crate::trainer::Budget;
@@ -19,11 +20,13 @@ pub(super) struct BatchLoop<'a, T, const K: usize> {
     pub(super) budget: Budget,
 }
 
-impl<E, F, A, const N: usize, const M: usize, const K: usize> SimdCode for BatchLoop<'_, SimdTrainer<E, F, N, A>, K>
+impl<E, F, A, U, const N: usize, const M: usize, const K: usize> SimdCode
+    for BatchLoop<'_, SimdTrainer<E, F, N, A, U>, K>
 where
     E: SimdEnv<M> + Env<Observation = [f32; M]>,
     F: BatchFeatures<M>,
     A: StepSize,
+    U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
     /// How many steps the runs must take one by one, because the next step leads one of them to an observation without
     /// a row; usually 0. A step is one unit of work.
@@ -32,28 +35,29 @@ where
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Self::Output {
         let Self { runs, budget } = self;
-        let mut lanes = EpisodeLanes::<N, M, K>::begin(runs)?;
+        let mut lanes = EpisodeLanes::<_, N, M, K>::begin(runs)?;
         let mut rngs = Pcg64Lanes::new(runs.each_ref().map(|run| &run.rng));
         let mut tables = [const { Vec::new() }; K];
         for (run, table) in runs.iter_mut().zip(&mut tables) {
             run.learner.agent.table.swap_storage(table);
         }
-        let result = advance::<_, _, _, N, M, K, FUSED>(runs, &mut tables, &mut lanes, &mut rngs, budget);
+        let result = advance::<_, _, _, _, N, M, K, FUSED>(runs, &mut tables, &mut lanes, &mut rngs, budget);
         lanes.choose_if_missing(&mut rngs);
         for (lane, (run, table)) in runs.iter_mut().zip(&mut tables).enumerate() {
             run.learner.agent.table.swap_storage(table);
             run.rng = rngs.get(lane);
-            run.episode = lanes.get::<E::State>(lane);
+            run.learner.agent.table.check_finite(lanes.divergence[lane]);
+            run.episode = lanes.get(lane);
         }
         result
     }
 }
 
 #[inline(always)]
-fn advance<E, F, A, const N: usize, const M: usize, const K: usize, const FUSED: bool>(
-    runs: &mut [SimdTrainer<E, F, N, A>; K],
+fn advance<E, F, A, U, const N: usize, const M: usize, const K: usize, const FUSED: bool>(
+    runs: &mut [SimdTrainer<E, F, N, A, U>; K],
     tables: &mut [Vec<f64>; K],
-    lanes: &mut EpisodeLanes<N, M, K>,
+    lanes: &mut EpisodeLanes<F::Rows, N, M, K>,
     rngs: &mut Pcg64Lanes<K>,
     budget: Budget,
 ) -> Result<u64, (usize, OutOfBounds)>
@@ -61,6 +65,7 @@ where
     E: SimdEnv<M> + Env<Observation = [f32; M]>,
     F: BatchFeatures<M>,
     A: StepSize,
+    U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
     let max_episode_steps = runs[0].task.max_episode_steps;
     let Agent { discount, terminal_update, .. } = runs[0].learner.agent;
@@ -70,7 +75,7 @@ where
         // An episode takes a step even if its time limit is 0.
         let until_limit = lanes.elapsed.map(|elapsed| max_episode_steps.saturating_sub(elapsed).max(1));
         let most = until_limit.into_iter().fold(steps_left, u64::min);
-        let stop = shared.learning_steps::<A, N, M, K, FUSED>(runs, tables, lanes, rngs, most);
+        let stop = shared.learning_steps::<A, U, N, M, K, FUSED>(runs, tables, lanes, rngs, most);
         steps_left -= stop.steps;
         for elapsed in &mut lanes.elapsed {
             *elapsed += stop.steps;
@@ -88,10 +93,15 @@ where
             let run = &mut runs[lane];
             run.finish_episode(lanes.episode_return[lane], lanes.elapsed[lane].cast_signed(), terminal[lane]);
             lanes.active[lane] = false;
-            running &= run.episodes.returns.len() < budget.episodes;
-            if running && let Err(error) = lanes.reset(lane, run, &tables[lane]) {
-                result = Err((lane, error));
-                running = false;
+            run.learner.agent.table.check_finite(lanes.divergence[lane]);
+            running &= run.episodes.returns.len() < budget.episodes && !run.learner.diverged();
+            if running {
+                if let Err(error) = lanes.reset(lane, run, &tables[lane]) {
+                    result = Err((lane, error));
+                    running = false;
+                } else if U::ON_POLICY {
+                    lanes.choose_one(lane, rngs);
+                }
             }
         }
         result?;

@@ -1,16 +1,18 @@
 //! The trait of runs that can be trained in batches.
 
-use super::SimdTrainer;
 use super::batch_loop::BatchLoop;
+use super::{BatchRule, SimdTrainer};
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, Features, OutOfBounds};
+use crate::learners::{Agent, UpdateRule};
 use crate::numeric::SimdLevel;
+use crate::policies::EpsilonGreedy;
 use crate::schedules::StepSize;
 use crate::trainer::Budget;
 use crate::training_error::TrainingError;
 
-/// With rewards of at most 1 per step, values below this bound cannot reach infinity, so a batch need not check for
-/// divergence.
+/// With rewards of at most 1 per step, the values of single rows below this bound cannot reach infinity. Sums over several
+/// rows can: of these a batch checks the errors.
 const FAR_FROM_OVERFLOW: f64 = 1e300;
 
 /// A run that can be trained together with others of its type.
@@ -19,8 +21,8 @@ pub trait BatchedRun: Sized {
     /// Afterwards each run is in the state that it would have after as many steps alone. It can be continued alone or in
     /// any batch.
     ///
-    /// Runs that differ in more than their seeds, tables and learning rates advance one after the other. So do all runs
-    /// once one of them reaches an observation without a row.
+    /// Runs that differ in more than their seeds, tables and learning rates advance one after the other, and so do those
+    /// whose learning rates depend on visits. So do all runs once one of them reaches an observation without a row.
     ///
     /// # Errors
     /// As [`Trainer::advance`](crate::Trainer::advance), with the index of the run that failed. The others can be
@@ -31,11 +33,12 @@ pub trait BatchedRun: Sized {
     ) -> Result<(), (usize, TrainingError<OutOfBounds>)>;
 }
 
-impl<E, F, A, const N: usize, const M: usize> BatchedRun for SimdTrainer<E, F, N, A>
+impl<E, F, A, U, const N: usize, const M: usize> BatchedRun for SimdTrainer<E, F, N, A, U>
 where
     E: SimdEnv<M> + Env<Observation = [f32; M]>,
     F: BatchFeatures<M>,
     A: StepSize,
+    U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
     fn advance_all<const K: usize>(
         runs: &mut [Self; K],
@@ -46,15 +49,16 @@ where
 }
 
 /// [`BatchedRun::advance_all`] with these vector instructions.
-pub(super) fn advance_all_at<E, F, A, const N: usize, const M: usize, const K: usize>(
+pub(super) fn advance_all_at<E, F, A, U, const N: usize, const M: usize, const K: usize>(
     level: SimdLevel,
-    runs: &mut [SimdTrainer<E, F, N, A>; K],
+    runs: &mut [SimdTrainer<E, F, N, A, U>; K],
     budget: Budget,
 ) -> Result<(), (usize, TrainingError<OutOfBounds>)>
 where
     E: SimdEnv<M> + Env<Observation = [f32; M]>,
     F: BatchFeatures<M>,
     A: StepSize,
+    U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
     if runs.iter().any(|run| run.episodes.returns.len() >= budget.episodes) {
         return Ok(());
@@ -71,11 +75,12 @@ where
     lanes.try_for_each(|(lane, run)| run.advance(Budget { work, ..budget }).map_err(|error| (lane, error)))
 }
 
-/// Whether two runs share all that a batch reads once, and neither can overflow.
-fn compatible<E, F, A, const N: usize>(one: &SimdTrainer<E, F, N, A>, other: &SimdTrainer<E, F, N, A>) -> bool
+/// Whether two runs share all that a batch reads once, and the values of one are far from overflowing.
+fn compatible<E, F, A, U, const N: usize>(one: &SimdTrainer<E, F, N, A, U>, other: &SimdTrainer<E, F, N, A, U>) -> bool
 where
     E: Env<Action = usize> + PartialEq,
     F: Features<E::Observation> + PartialEq,
+    A: StepSize,
 {
     let (task, agent) = (&one.task, &one.learner.agent);
     let other_agent = &other.learner.agent;
@@ -84,6 +89,7 @@ where
         && task.max_episode_steps == other.task.max_episode_steps
         && agent.discount == other_agent.discount
         && agent.terminal_update == other_agent.terminal_update
+        && agent.learning_rate.uniform().is_some()
         && agent.table.values().len() == other_agent.table.values().len()
         && agent.table.values().iter().all(|value| value.abs() < FAR_FROM_OVERFLOW)
 }

@@ -5,13 +5,17 @@
 //! the chains of operations of the runs overlap. Each run's results equal those of the same run trained alone, to the bit.
 
 mod batch_loop;
+mod batch_rule;
 mod batched_run;
 mod episode_lanes;
 mod learning_steps;
+mod row_values;
 mod simd_trainer;
 #[cfg(test)]
 mod tests;
+mod updates;
 
+pub use batch_rule::BatchRule;
 pub use batched_run::BatchedRun;
 pub use simd_trainer::SimdTrainer;
 

@@ -1,12 +1,13 @@
 //! The type of the runs that can be trained in a batch.
 
-use crate::learners::{Agent, QLearning, TdLearner};
+use crate::learners::{Agent, TdLearner};
 use crate::policies::EpsilonGreedy;
 use crate::random::Pcg64;
 use crate::tasks::NativeTask;
 use crate::trainer::Trainer;
 
-/// ε-greedy Q-learning with `N` actions. It can be trained in a batch if its environment `E` steps in SIMD lanes and its
-/// features `F` are a grid; see [`BatchedRun`](super::BatchedRun).
-pub type SimdTrainer<E, F, const N: usize, A> =
-    Trainer<NativeTask<E, F>, TdLearner<QLearning, Agent<N, EpsilonGreedy, A>>, Pcg64>;
+/// An ε-greedy one-step learner with `N` actions. It can be trained in a batch if its update rule `U` is a
+/// [`BatchRule`](super::BatchRule) and its environment `E`, observed through features `F`, a
+/// [`BatchEnv`](crate::envs::BatchEnv).
+pub type SimdTrainer<E, F, const N: usize, A, U> =
+    Trainer<NativeTask<E, F>, TdLearner<U, Agent<N, EpsilonGreedy, A>>, Pcg64>;

@@ -99,6 +99,8 @@ impl<T: Float, A: AsRef<[Edges]>, O: AsRef<[T]> + ?Sized> Features<O> for Bins<T
 }
 
 impl<const M: usize> BatchFeatures<M> for Bins<f32, [Edges; M]> {
+    type Rows = usize;
+
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {

@@ -5,7 +5,7 @@
 use std::array::TryFromSliceError;
 
 use super::tile_coding::TiledAxis;
-use super::{Features, OutOfBounds, TileCoding};
+use super::{BatchFeatures, Features, OutOfBounds, TileCoding};
 use crate::numeric::Float;
 
 /// The active tiles, one per tiling. Their alignment is that of the vector registers in which they are computed and copied:
@@ -13,6 +13,20 @@ use crate::numeric::Float;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(16))]
 pub struct FixedTiles<const N: usize>([u32; N]);
+
+impl<const N: usize> FixedTiles<N> {
+    #[inline(always)]
+    pub(super) fn rows(self) -> [u32; N] {
+        self.0
+    }
+}
+
+/// The first row of each tiling.
+impl<const N: usize> Default for FixedTiles<N> {
+    fn default() -> Self {
+        Self([0; N])
+    }
+}
 
 impl<const N: usize> AsRef<[u32]> for FixedTiles<N> {
     #[inline(always)]
@@ -124,6 +138,24 @@ impl<T: Float, const D: usize, const N: usize> Features<[T; D]> for FixedTileCod
 
     fn len(&self) -> usize {
         self.len
+    }
+}
+
+impl<const D: usize, const N: usize> BatchFeatures<D> for FixedTileCoding<f32, D, N> {
+    type Rows = FixedTiles<N>;
+
+    #[inline(always)]
+    fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; D]) -> Option<[FixedTiles<N>; K]> {
+        let mut rows = [FixedTiles([0; N]); K];
+        let mut nan = false;
+        for (lane, rows) in rows.iter_mut().enumerate() {
+            let observation = observations.map(|values| values[lane]);
+            match self.active_rows(&observation) {
+                Ok(active) => *rows = active,
+                Err(_) => nan = true,
+            }
+        }
+        (!nan).then_some(rows)
     }
 }
 

@@ -91,6 +91,8 @@ impl<T: Float, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Roun
 }
 
 impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
+    type Rows = usize;
+
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {

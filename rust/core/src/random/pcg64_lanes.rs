@@ -11,6 +11,7 @@ use crate::numeric::{cold_path, mask, select};
 const LOWER_HALF: u64 = 0xffff_ffff;
 
 /// One [`Pcg64`] per lane, as a structure of arrays.
+#[derive(Clone)]
 pub(crate) struct Pcg64Lanes<const K: usize> {
     /// The lower and the upper 64 bits of the states.
     state: [[u64; K]; 2],
@@ -63,7 +64,8 @@ impl<const K: usize> Pcg64Lanes<K> {
         }
     }
 
-    fn set(&mut self, lane: usize, rng: &Pcg64) {
+    /// Continues the draws of a generator in a lane.
+    pub(crate) fn set(&mut self, lane: usize, rng: &Pcg64) {
         let Pcg64 { engine: Pcg64Engine { state, increment }, buffered_u32, words_drawn } = rng;
         for (lanes, number) in [(&mut self.state, state), (&mut self.increment, increment)] {
             lanes[0][lane] = *number as u64;

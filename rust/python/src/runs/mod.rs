@@ -14,6 +14,7 @@ mod python_task;
 mod run;
 mod specialized;
 mod testbed;
+mod tilings;
 
 pub(crate) use bandit::bandit_runs;
 pub(crate) use factory::{RunBatch, RunFactory};
@@ -21,5 +22,6 @@ pub(crate) use generic::{boxed_factory, generic, generic_box};
 pub(crate) use python_env::PythonEnv;
 pub(crate) use python_task::python_run;
 pub(crate) use run::{AnyRecordings, BuiltRun, Run};
-pub(crate) use specialized::{QLearningBatching, specialized};
+pub(crate) use specialized::{OneStepBatching, specialized};
 pub(crate) use testbed::run_testbed;
+pub(crate) use tilings::tiled_box;

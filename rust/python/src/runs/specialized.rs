@@ -23,39 +23,50 @@ use crate::spec::{LearningRateSpec, PolicySpec, RunSpec, ScheduleSpec};
 /// A run of an update rule `U` with a policy `P` and a learning rate `A`.
 type OneStepRun<E, F, U, P, A, const N: usize> = Trainer<NativeTask<E, F>, TdLearner<U, Agent<N, P, A>>, Pcg64>;
 
-/// How Q-learning runs advance together, by the type of their learning rate.
-pub(crate) struct QLearningBatching<E, F, P, const N: usize>
+/// How runs of one-step learners advance together, by the types of their update rule and their learning rate.
+pub(crate) struct OneStepBatching<E, F, P, const N: usize>
 where
     E: Env<Action = usize>,
     F: Features<E::Observation>,
 {
-    constant: Batching<OneStepRun<E, F, QLearning, P, f64, N>>,
-    scheduled: Batching<OneStepRun<E, F, QLearning, P, Schedule, N>>,
+    q_learning: Batching<OneStepRun<E, F, QLearning, P, f64, N>>,
+    scheduled_q_learning: Batching<OneStepRun<E, F, QLearning, P, Schedule, N>>,
+    sarsa: Batching<OneStepRun<E, F, Sarsa, P, Schedule, N>>,
 }
 
-impl<E, F, P, const N: usize> QLearningBatching<E, F, P, N>
+impl<E, F, P, const N: usize> OneStepBatching<E, F, P, N>
 where
     E: Env<Action = usize>,
     F: Features<E::Observation>,
     OneStepRun<E, F, QLearning, P, f64, N>: Run,
     OneStepRun<E, F, QLearning, P, Schedule, N>: Run,
+    OneStepRun<E, F, Sarsa, P, Schedule, N>: Run,
 {
     /// Each run by itself.
     pub(crate) fn one_by_one() -> Self {
-        Self { constant: Batching::one_by_one(), scheduled: Batching::one_by_one() }
+        Self {
+            q_learning: Batching::one_by_one(),
+            scheduled_q_learning: Batching::one_by_one(),
+            sarsa: Batching::one_by_one(),
+        }
     }
 }
 
-impl<E, F, P, const N: usize> QLearningBatching<E, F, P, N>
+impl<E, F, P, const N: usize> OneStepBatching<E, F, P, N>
 where
     E: Env<Action = usize>,
     F: Features<E::Observation>,
     OneStepRun<E, F, QLearning, P, f64, N>: Run + BatchedRun,
     OneStepRun<E, F, QLearning, P, Schedule, N>: Run + BatchedRun,
+    OneStepRun<E, F, Sarsa, P, Schedule, N>: Run + BatchedRun,
 {
     /// Several runs in the processor's vector registers.
     pub(crate) fn in_lanes() -> Self {
-        Self { constant: Batching::in_lanes(), scheduled: Batching::in_lanes() }
+        Self {
+            q_learning: Batching::in_lanes(),
+            scheduled_q_learning: Batching::in_lanes(),
+            sarsa: Batching::in_lanes(),
+        }
     }
 }
 
@@ -65,7 +76,7 @@ pub(crate) fn specialized<E, F, const N: usize>(
     features: F,
     spec: &Arc<RunSpec>,
     record: usize,
-    batching: QLearningBatching<E, F, EpsilonGreedy, N>,
+    batching: OneStepBatching<E, F, EpsilonGreedy, N>,
 ) -> PyResult<Box<dyn RunFactory>>
 where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
@@ -77,29 +88,43 @@ where
         }
         return generic(env, features, spec, record);
     }
-    if spec.time_aware {
-        return generic(env, features, spec, record);
-    }
     let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else {
         return generic(env, features, spec, record);
     };
     let one_step =
         matches!(spec.algorithm, AnyAlgorithm::QLearning | AnyAlgorithm::Sarsa | AnyAlgorithm::ExpectedSarsa);
-    let fits = spec.num_actions == N && env.num_actions() == N && spec.bit_generator == BitGenerator::Pcg64;
-    let counts = matches!(spec.policy, PolicySpec::Ucb { .. }) || spec.count_bonus != 0.0;
-    if !one_step || !fits || counts || !spec.action_masks.is_none() || spec.terminate_on_truncation || record > 0 {
+    let counts = matches!(spec.policy, PolicySpec::Ucb { .. });
+    if !one_step || counts || record > 0 || !is_plain(&env, spec, N) {
         return generic(env, features, spec, record);
     }
     let builder = Builder::<E, F, N> { env, features, spec: Arc::clone(spec) };
-    Ok(match spec.policy {
+    Ok(match plain_epsilon_greedy(spec) {
+        Some(epsilon_greedy) => builder.factory(epsilon_greedy, learning_rate, batching),
+        None => builder.factory(policy(spec), learning_rate, OneStepBatching::one_by_one()),
+    })
+}
+
+/// Whether a spec for so many actions leaves out what only generic runs have.
+pub(super) fn is_plain(env: &impl Env, spec: &RunSpec, num_actions: usize) -> bool {
+    spec.num_actions == num_actions
+        && env.num_actions() == num_actions
+        && spec.bit_generator == BitGenerator::Pcg64
+        && spec.prediction.is_none()
+        && !spec.time_aware
+        && spec.count_bonus == 0.0
+        && spec.action_masks.is_none()
+        && !spec.terminate_on_truncation
+}
+
+/// The policy of the article, if it is the one of a spec.
+pub(super) fn plain_epsilon_greedy(spec: &RunSpec) -> Option<EpsilonGreedy> {
+    match spec.policy {
         PolicySpec::EpsilonGreedy {
             epsilon: ScheduleSpec::Linear { value, minimum, warm_up: 0 },
             ties: TieBreaking::First,
-        } if !spec.initial_q.has_masked_actions() => {
-            builder.factory(EpsilonGreedy::linear(value, minimum, spec.episodes), learning_rate, batching)
-        }
-        _ => builder.factory(policy(spec), learning_rate, QLearningBatching::one_by_one()),
-    })
+        } if !spec.initial_q.has_masked_actions() => Some(EpsilonGreedy::linear(value, minimum, spec.episodes)),
+        _ => None,
+    }
 }
 
 /// Builds the runs of a spec, once the types of the policy, the learning rate and the update rule are chosen.
@@ -118,17 +143,17 @@ where
         self,
         policy: P,
         learning_rate: ScheduleSpec,
-        batching: QLearningBatching<E, F, P, N>,
+        batching: OneStepBatching<E, F, P, N>,
     ) -> Box<dyn RunFactory>
     where
         P: Policy + Clone + Send + Sync + 'static,
     {
         let schedule = learning_rate.build(self.spec.episodes);
         match (self.spec.algorithm, learning_rate) {
-            (AnyAlgorithm::Sarsa, _) => self.with_rule(Sarsa, policy, schedule, Batching::one_by_one()),
+            (AnyAlgorithm::Sarsa, _) => self.with_rule(Sarsa, policy, schedule, batching.sarsa),
             (AnyAlgorithm::ExpectedSarsa, _) => self.with_rule(ExpectedSarsa, policy, schedule, Batching::one_by_one()),
-            (_, ScheduleSpec::Constant { value }) => self.with_rule(QLearning, policy, value, batching.constant),
-            _ => self.with_rule(QLearning, policy, schedule, batching.scheduled),
+            (_, ScheduleSpec::Constant { value }) => self.with_rule(QLearning, policy, value, batching.q_learning),
+            _ => self.with_rule(QLearning, policy, schedule, batching.scheduled_q_learning),
         }
     }
 

@@ -14,7 +14,7 @@ use super::reset::reset_f64;
 use super::snapshot::set_state;
 use super::{ClassicEnv, EnvLayout, ResetResult, StepResult};
 use crate::convert::{StateArray, discrete_action};
-use crate::runs::{QLearningBatching, RunFactory, generic_box, specialized};
+use crate::runs::{OneStepBatching, RunFactory, specialized, tiled_box};
 use crate::spec::{DiscretizerSpec, RunSpec};
 
 impl ClassicEnv for CartPole {
@@ -63,8 +63,8 @@ impl ClassicEnv for CartPole {
             && let DiscretizerSpec::Bins(bins) = &spec.discretizer
             && let Some(grid) = bins.bins::<4>()
         {
-            return specialized::<_, _, 2>(*self, grid, spec, record, QLearningBatching::in_lanes());
+            return specialized::<_, _, 2>(*self, grid, spec, record, OneStepBatching::in_lanes());
         }
-        generic_box(*self, spec, record)
+        tiled_box::<_, 4, 2>(*self, spec, record)
     }
 }

@@ -15,7 +15,7 @@ use super::reset::reset_f64;
 use super::snapshot::set_state;
 use super::{ClassicEnv, EnvLayout, ResetResult, StepResult};
 use crate::convert::{StateArray, discrete_action, numpy_scalar};
-use crate::runs::{QLearningBatching, RunFactory, generic_box, specialized};
+use crate::runs::{OneStepBatching, RunFactory, specialized, tiled_box};
 use crate::spec::{DiscretizerSpec, RunSpec};
 
 impl ClassicEnv for MountainCar {
@@ -62,8 +62,8 @@ impl ClassicEnv for MountainCar {
             && let DiscretizerSpec::Round(round) = &spec.discretizer
             && let Some(grid) = round.rounding::<2>()
         {
-            return specialized::<_, _, 3>(*self, grid, spec, record, QLearningBatching::in_lanes());
+            return specialized::<_, _, 3>(*self, grid, spec, record, OneStepBatching::in_lanes());
         }
-        generic_box(*self, spec, record)
+        tiled_box::<_, 2, 3>(*self, spec, record)
     }
 }

@@ -18,7 +18,7 @@ use super::super::gymnasium::{attribute_after_reset, generator, is_numpy_generat
 use super::super::native_env::NativeEnv;
 use super::sampling::step_fallback;
 use crate::convert::discrete_action;
-use crate::runs::{QLearningBatching, RunFactory, specialized};
+use crate::runs::{OneStepBatching, RunFactory, specialized};
 use crate::spec::RunSpec;
 use crate::vector::{DynVectorEnv, EnvInfo, VectorOptions, native_vector_env};
 
@@ -47,7 +47,7 @@ impl NativeEnv for BlackjackEnv {
     fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
         spec.discretizer.check_identity(Blackjack::OBSERVATION_SHAPE.iter().product())?;
         let features = MultiDiscreteIndex(Blackjack::OBSERVATION_SHAPE.map(|count| count as u32));
-        specialized::<_, _, 2>(self.0, features, spec, record, QLearningBatching::one_by_one())
+        specialized::<_, _, 2>(self.0, features, spec, record, OneStepBatching::one_by_one())
     }
 
     fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {

@@ -16,7 +16,7 @@ use super::super::gymnasium::render_if_human;
 use super::super::native_env::NativeEnv;
 use super::sampling::{python_int, reset_fallback, sample_initial, sample_transition, set_snapshot, step_fallback};
 use super::transition_table::table_of;
-use crate::runs::{QLearningBatching, RunFactory, specialized};
+use crate::runs::{OneStepBatching, RunFactory, specialized};
 use crate::spec::RunSpec;
 use crate::vector::{DynVectorEnv, EnvInfo, TransitionInfo, VectorOptions, native_vector_env};
 
@@ -40,9 +40,9 @@ pub(super) fn identity(table: &TabularMdp, spec: &RunSpec) -> PyResult<Identity>
 pub(super) fn table_runs(table: TabularMdp, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
     let features = identity(&table, spec)?;
     if table.num_actions() == 4 {
-        specialized::<_, _, 4>(table, features, spec, record, QLearningBatching::one_by_one())
+        specialized::<_, _, 4>(table, features, spec, record, OneStepBatching::one_by_one())
     } else {
-        specialized::<_, _, 6>(table, features, spec, record, QLearningBatching::one_by_one())
+        specialized::<_, _, 6>(table, features, spec, record, OneStepBatching::one_by_one())
     }
 }
 

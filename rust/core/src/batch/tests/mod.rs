@@ -1,95 +1,34 @@
 //! Every run of a batch equals the same run alone, for any settings, wherever the batch is interrupted.
 
+mod runs;
+
 use proptest::prelude::*;
 
+use self::runs::{DEFAULT, Settings, cart_pole, mountain_car, tiled_mountain_car};
 use super::batched_run::advance_all_at;
-use super::{LANES, SimdTrainer};
+use super::{BatchRule, LANES, SimdTrainer};
 use crate::envs::classic_control::{CartPole, MountainCar};
 use crate::envs::{Env, SimdEnv};
-use crate::features::{Axis, BatchFeatures, Bins, Edges, Rounding};
-use crate::learners::{Agent, QLearning, TdLearner};
+use crate::features::BatchFeatures;
+use crate::learners::{Agent, Learner, QLearning, Sarsa, UpdateRule};
 use crate::numeric::SimdLevel;
 use crate::policies::EpsilonGreedy;
-use crate::q_table::{QTable, TerminalUpdate};
-use crate::random::{Pcg64, SeedSequence};
-use crate::schedules::{Schedule, StepSize};
-use crate::tasks::NativeTask;
-use crate::trainer::{Budget, Trainer};
-
-/// Runs on a grid of rounded cells with a constant learning rate.
-type MountainCarRun = SimdTrainer<MountainCar, Rounding<f32, [Axis<f32>; 2]>, 3, f64>;
-/// Runs on bins with a scheduled learning rate.
-type CartPoleRun = SimdTrainer<CartPole, Bins<f32, [Edges; 4]>, 2, Schedule>;
-
-/// The settings of a run.
-#[derive(Clone, Copy, Debug)]
-struct Settings {
-    terminal_update: TerminalUpdate,
-    learning_rate: f64,
-    discount: f64,
-    epsilon: f64,
-    max_episode_steps: u64,
-    episodes: usize,
-}
-
-const DEFAULT: Settings = Settings {
-    terminal_update: TerminalUpdate::Assign,
-    learning_rate: 0.2,
-    discount: 0.9,
-    epsilon: 0.8,
-    max_episode_steps: 200,
-    episodes: 20,
-};
-
-fn run<E, F, A, const N: usize, const M: usize>(
-    env: E,
-    features: F,
-    learning_rate: A,
-    settings: Settings,
-    seed: u32,
-) -> SimdTrainer<E, F, N, A>
-where
-    E: SimdEnv<M> + Env<Observation = [f32; M]>,
-    F: BatchFeatures<M>,
-    A: StepSize,
-{
-    let seed = SeedSequence::new(&[seed]);
-    let mut rng = Pcg64::new(&seed.child(0));
-    let agent = Agent {
-        table: QTable::uniform(features.len(), N, -1.0, 1.0, &mut rng),
-        policy: EpsilonGreedy::linear(settings.epsilon, 0.0, settings.episodes as u64),
-        learning_rate,
-        discount: settings.discount,
-        terminal_update: settings.terminal_update,
-        masks: None,
-    };
-    let task = NativeTask::new(env, features, Some(settings.max_episode_steps), Pcg64::new(&seed));
-    Trainer::new(task, TdLearner { agent, rule: QLearning }, rng)
-}
-
-fn mountain_car(env: MountainCar, settings: Settings, seed: u32) -> MountainCarRun {
-    let grid = Rounding::new([Axis::new(-1.2, 0.6, 10.0), Axis::new(-0.07, 0.07, 100.0)]);
-    run(env, grid, settings.learning_rate, settings, seed)
-}
-
-fn cart_pole(env: CartPole, settings: Settings, seed: u32) -> CartPoleRun {
-    // Few edges, none, and enough for the binary search.
-    let bins = [3, 1, 6, 70].map(|bins| Edges::equal_width(-0.21_f32, 0.21, bins));
-    let learning_rate = Schedule::linear(settings.learning_rate, 0.0, settings.episodes as u64, 1);
-    run(env, Bins::new(bins), learning_rate, settings, seed)
-}
+use crate::q_table::TerminalUpdate;
+use crate::schedules::StepSize;
+use crate::trainer::Budget;
 
 /// Trains a batch in chunks of steps, then each run alone to its end or its error, and compares with runs that were
 /// always alone.
-fn check<E, F, A, const N: usize, const M: usize, const K: usize>(
+fn check<E, F, A, U, const N: usize, const M: usize, const K: usize>(
     seeds: [u32; K],
-    make: impl Fn(u32) -> SimdTrainer<E, F, N, A>,
+    make: impl Fn(u32) -> SimdTrainer<E, F, N, A, U>,
     episodes: usize,
     chunks: &[u64],
 ) where
     E: SimdEnv<M> + Env<Observation = [f32; M]>,
     F: BatchFeatures<M>,
     A: StepSize,
+    U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
     for level in [SimdLevel::PLAIN, SimdLevel::detect()] {
         check_at(level, seeds, &make, episodes, chunks);
@@ -97,16 +36,17 @@ fn check<E, F, A, const N: usize, const M: usize, const K: usize>(
 }
 
 /// The same with these vector instructions.
-fn check_at<E, F, A, const N: usize, const M: usize, const K: usize>(
+fn check_at<E, F, A, U, const N: usize, const M: usize, const K: usize>(
     level: SimdLevel,
     seeds: [u32; K],
-    make: impl Fn(u32) -> SimdTrainer<E, F, N, A>,
+    make: impl Fn(u32) -> SimdTrainer<E, F, N, A, U>,
     episodes: usize,
     chunks: &[u64],
 ) where
     E: SimdEnv<M> + Env<Observation = [f32; M]>,
     F: BatchFeatures<M>,
     A: StepSize,
+    U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
     let mut runs = seeds.map(&make);
     let failed = chunks.iter().find_map(|&work| advance_all_at(level, &mut runs, Budget { episodes, work }).err());
@@ -119,10 +59,17 @@ fn check_at<E, F, A, const N: usize, const M: usize, const K: usize>(
         let mut alone = make(seed);
         // Compared as text, because NaN does not equal itself.
         assert_eq!(format!("{result:?}"), format!("{:?}", alone.advance(end)));
+        if alone.learner.diverged() {
+            // Both stop, but a run that diverged at the end of a chunk does so without finishing the episode.
+            let finished = run.episodes().returns.len();
+            assert!(run.learner.diverged() && run.last_episode() == alone.last_episode());
+            assert_eq!(run.episodes().returns, alone.episodes().returns[..finished]);
+            continue;
+        }
         assert_eq!(run.episodes(), alone.episodes());
         assert_eq!(run.rng, alone.rng);
         assert_eq!(run.task.rng(), alone.task.rng());
-        let bits = |run: &SimdTrainer<E, F, N, A>| {
+        let bits = |run: &SimdTrainer<E, F, N, A, U>| {
             run.learner.agent.table.values().iter().map(|value| value.to_bits()).collect::<Vec<_>>()
         };
         assert_eq!(bits(&run), bits(&alone));
@@ -134,23 +81,23 @@ fn a_batch_equals_single_runs() {
     for (episodes, chunks) in [(1000, &[u64::MAX][..]), (300, &[5000, 3, u64::MAX])] {
         let settings = Settings { episodes, ..DEFAULT };
         let seeds = std::array::from_fn::<_, LANES, _>(|seed| seed as u32);
-        check(seeds, |seed| mountain_car(MountainCar::default(), settings, seed), episodes, chunks);
-        check(seeds, |seed| cart_pole(CartPole::default(), settings, seed), episodes, chunks);
+        check(seeds, |seed| mountain_car(MountainCar::default(), QLearning, settings, seed), episodes, chunks);
+        check(seeds, |seed| cart_pole(CartPole::default(), QLearning, settings, seed), episodes, chunks);
     }
-    check([7], |seed| mountain_car(MountainCar::default(), DEFAULT, seed), 20, &[u64::MAX]);
+    check([7], |seed| mountain_car(MountainCar::default(), QLearning, DEFAULT, seed), 20, &[u64::MAX]);
 }
 
 #[test]
 fn runs_with_different_settings_keep_them() {
     let other = Settings { discount: 0.5, ..DEFAULT };
-    let make = |seed| mountain_car(MountainCar::default(), if seed == 1 { other } else { DEFAULT }, seed);
+    let make = |seed| mountain_car(MountainCar::default(), QLearning, if seed == 1 { other } else { DEFAULT }, seed);
     check([0, 1], make, 20, &[u64::MAX]);
 }
 
 #[test]
 fn each_run_keeps_its_learning_rate() {
     let other = Settings { learning_rate: 0.7, ..DEFAULT };
-    let make = |seed| cart_pole(CartPole::default(), if seed == 1 { other } else { DEFAULT }, seed);
+    let make = |seed| cart_pole(CartPole::default(), QLearning, if seed == 1 { other } else { DEFAULT }, seed);
     check([0, 1, 2, 3], make, 20, &[u64::MAX]);
 }
 
@@ -158,11 +105,11 @@ fn each_run_keeps_its_learning_rate() {
 fn an_observation_without_a_row_fails_as_in_a_single_run() {
     let fast = MountainCar { max_speed: 1.0, force: 0.1, ..MountainCar::default() };
     let settings = Settings { epsilon: 0.0, ..DEFAULT };
-    assert!(mountain_car(fast, settings, 0).advance(Budget { episodes: 20, work: u64::MAX }).is_err());
-    check([0, 1, 2, 3], |seed| mountain_car(fast, settings, seed), 20, &[9, u64::MAX]);
+    assert!(mountain_car(fast, QLearning, settings, 0).advance(Budget { episodes: 20, work: u64::MAX }).is_err());
+    check([0, 1, 2, 3], |seed| mountain_car(fast, QLearning, settings, seed), 20, &[9, u64::MAX]);
     let weightless = CartPole { total_mass: 0.0, ..CartPole::default() };
-    assert!(cart_pole(weightless, settings, 0).advance(Budget { episodes: 20, work: u64::MAX }).is_err());
-    check([0, 1, 2, 3], |seed| cart_pole(weightless, settings, seed), 20, &[9, u64::MAX]);
+    assert!(cart_pole(weightless, QLearning, settings, 0).advance(Budget { episodes: 20, work: u64::MAX }).is_err());
+    check([0, 1, 2, 3], |seed| cart_pole(weightless, QLearning, settings, seed), 20, &[9, u64::MAX]);
 }
 
 fn any_settings() -> impl Strategy<Value = Settings> {
@@ -191,7 +138,8 @@ proptest! {
         chunks in chunks(),
     ) {
         let env = MountainCar { max_speed, goal_position, goal_velocity, force, gravity, ..MountainCar::default() };
-        check([0, 1, 2, 3], |seed| mountain_car(env, settings, seed), settings.episodes, &chunks);
+        check([0, 1, 2, 3], |seed| mountain_car(env, QLearning, settings, seed), settings.episodes, &chunks);
+        check([0, 1, 2, 3], |seed| mountain_car(env, Sarsa, settings, seed), settings.episodes, &chunks);
     }
 
     #[test]
@@ -207,6 +155,22 @@ proptest! {
         let env = CartPole {
             gravity, force_mag, theta_threshold_radians, euler, sutton_barto_reward, ..CartPole::default()
         };
-        check([0, 1, 2, 3], |seed| cart_pole(env, settings, seed), settings.episodes, &chunks);
+        check([0, 1, 2, 3], |seed| cart_pole(env, QLearning, settings, seed), settings.episodes, &chunks);
+        check([0, 1, 2, 3], |seed| cart_pole(env, Sarsa, settings, seed), settings.episodes, &chunks);
+    }
+
+    #[test]
+    fn tilings_with_any_settings_and_chunks(
+        hashed in prop_oneof![Just(None), Just(Some(60))],
+        by_visits in prop_oneof![4 => Just(false), 1 => Just(true)],
+        // Diverges with the larger ones.
+        scale in prop_oneof![3 => Just(1.0), 1 => 3.0..100.0],
+        settings in any_settings(),
+        chunks in chunks(),
+    ) {
+        let settings = Settings { learning_rate: settings.learning_rate * scale, ..settings };
+        let (seeds, episodes) = ([0, 1, 2, 3], settings.episodes);
+        check(seeds, |seed| tiled_mountain_car(hashed, by_visits, QLearning, settings, seed), episodes, &chunks);
+        check(seeds, |seed| tiled_mountain_car(hashed, by_visits, Sarsa, settings, seed), episodes, &chunks);
     }
 }

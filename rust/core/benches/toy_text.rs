@@ -1,0 +1,80 @@
+//! The time per step of Q-learning on Gymnasium's tables.
+//!
+//! `cargo bench --bench toy_text`, or `cargo bench --bench toy_text -- FrozenLake` for one table only.
+
+mod benchmarks;
+
+use benchmarks::Benchmarks;
+use qtab_core::envs::tabular::TabularMdp;
+use qtab_core::envs::toy_text::{LakeRewards, TaxiMap, cliff_walking, frozen_lake, taxi_table};
+use qtab_core::features::Identity;
+use qtab_core::learners::{Agent, QLearning, TdLearner};
+use qtab_core::policies::EpsilonGreedy;
+use qtab_core::q_table::TerminalUpdate;
+use qtab_core::random::{Pcg64, SeedSequence};
+use qtab_core::tasks::NativeTask;
+use qtab_core::{Budget, QTable, Trainer};
+
+/// No state of a table is without a row.
+const IN_BOUNDS: &str = "each state has a row";
+const LAKE_MAP: [&[u8]; 4] = [b"SFFF", b"FHFH", b"FFFH", b"HFFG"];
+const TAXI_MAP: TaxiMap = [
+    *b"+---------+",
+    *b"|R: | : :G|",
+    *b"| : | : : |",
+    *b"| : : : : |",
+    *b"| | : | : |",
+    *b"|Y| : |B: |",
+    *b"+---------+",
+];
+
+type Run<const N: usize> =
+    Trainer<NativeTask<TabularMdp, Identity>, TdLearner<QLearning, Agent<N, EpsilonGreedy, f64>>, Pcg64>;
+
+/// A table of `N` actions, its time limit, and how long it is trained.
+struct Table<const N: usize> {
+    name: &'static str,
+    mdp: TabularMdp,
+    max_episode_steps: u64,
+    episodes: usize,
+}
+
+impl<const N: usize> Table<N> {
+    fn run(&self) -> Run<N> {
+        let seed = SeedSequence::new(&[0]);
+        let states = self.mdp.num_states();
+        let agent = Agent {
+            table: QTable::new(vec![0.0; states * N], N),
+            policy: EpsilonGreedy::linear(1.0, 0.05, self.episodes as u64),
+            learning_rate: 0.1,
+            discount: 0.95,
+            terminal_update: TerminalUpdate::Target,
+            masks: None,
+        };
+        let features = Identity(states as u32);
+        let task = NativeTask::new(self.mdp.clone(), features, Some(self.max_episode_steps), Pcg64::new(&seed));
+        Trainer::new(task, TdLearner { agent, rule: QLearning }, Pcg64::new(&seed.child(0)))
+    }
+
+    fn add(&self, benchmarks: &mut Benchmarks) {
+        let budget = Budget { episodes: self.episodes, work: u64::MAX };
+        benchmarks.add(self.name, "Q-learning", || {
+            let mut run = self.run();
+            run.advance(budget).expect(IN_BOUNDS);
+            run.episodes().lengths.iter().sum::<i64>() as u64
+        });
+    }
+}
+
+fn main() {
+    let mut benchmarks = Benchmarks::from_env();
+    let rewards = LakeRewards { goal: 1.0, hole: 0.0, frozen: 0.0 };
+    let map = LAKE_MAP.map(<[u8]>::to_vec);
+    let lake = frozen_lake(&map, Some(1.0 / 3.0), rewards).expect("a valid map");
+    let cliff = cliff_walking(false).expect("a valid table");
+    let taxi = taxi_table(&TAXI_MAP, None).expect("a valid map");
+    Table::<4> { name: "FrozenLake", mdp: lake, max_episode_steps: 100, episodes: 5000 }.add(&mut benchmarks);
+    Table::<4> { name: "CliffWalking", mdp: cliff, max_episode_steps: u64::MAX, episodes: 500 }.add(&mut benchmarks);
+    Table::<6> { name: "Taxi", mdp: taxi, max_episode_steps: 200, episodes: 2000 }.add(&mut benchmarks);
+    benchmarks.finish();
+}
