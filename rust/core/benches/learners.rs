@@ -117,6 +117,7 @@ fn tilings(benchmarks: &mut Benchmarks) {
     compiled_tilings(benchmarks, "Q-learning", &QLearning);
     compiled_tilings(benchmarks, "Sarsa", &Sarsa);
     boxed_tilings::<16>(benchmarks, "16 tilings, boxed");
+    boxed_tilings::<32>(benchmarks, "32 tilings, boxed");
 }
 
 /// A learner compiled for its policy and its learning rate: a run alone, and a batch of runs on one core.
@@ -150,13 +151,13 @@ where
 fn boxed_tilings<const N: usize>(benchmarks: &mut Benchmarks, group: &'static str) {
     type Boxed<const N: usize> = BoxedTask<<FixedTileCoding<f32, 2, N> as Features<[f32; 2]>>::Active, OutOfBounds>;
     let features = tile_coding::<N>();
-    let mut add = |name, with_traces| {
+    let mut add = |name, cutoff: Option<f64>| {
         let run = || {
             let agent = agent(Features::<[f32; 2]>::len(&features), N);
             let boxed: Boxed<N> = BoxedTask::new(task(features.clone()));
             let rng = mountain_car_task::agent_rng();
-            if with_traces {
-                let traces = Traces::new(agent.table.values().len(), 0.0, &StopFlag::new()).expect(FITS);
+            if let Some(cutoff) = cutoff {
+                let traces = Traces::new(agent.table.values().len(), cutoff, &StopFlag::new()).expect(FITS);
                 let rule = SarsaLambda { traces, kind: TraceKind::Replacing, trace_decay: TRACE_DECAY };
                 steps(Trainer::new(boxed, TdLearner { agent, rule }, rng))
             } else {
@@ -165,8 +166,9 @@ fn boxed_tilings<const N: usize>(benchmarks: &mut Benchmarks, group: &'static st
         };
         benchmarks.add(group, name, run);
     };
-    add("Q-learning", false);
-    add("Sarsa(0.9)", true);
+    add("Q-learning", None);
+    add("Sarsa(0.9)", Some(0.0));
+    add("Sarsa(0.9), cut off", Some(CUTOFF));
 }
 
 /// Trains, and returns the number of steps.
