@@ -16,7 +16,7 @@ type Vector = [f64; LANES];
 pub(super) fn apply(values: &mut [f64], traces: &[f64], step: f64) {
     for (values, traces) in values.as_chunks_mut::<BLOCK>().0.iter_mut().zip(traces.as_chunks::<BLOCK>().0) {
         for (values, traces) in values.as_chunks_mut().0.iter_mut().zip(traces.as_chunks().0) {
-            add(values, traces, step);
+            add(values, *traces, step);
         }
     }
 }
@@ -32,8 +32,9 @@ pub(super) fn decay(traces: &mut [f64], factor: f64) {
 pub(super) fn apply_and_decay(values: &mut [f64], traces: &mut [f64], step: f64, factor: f64) {
     for (values, traces) in values.as_chunks_mut::<BLOCK>().0.iter_mut().zip(traces.as_chunks_mut::<BLOCK>().0) {
         for (values, traces) in values.as_chunks_mut().0.iter_mut().zip(traces.as_chunks_mut().0) {
-            add(values, traces, step);
-            *traces = traces.map(|trace| trace * factor);
+            let before = *traces;
+            add(values, before, step);
+            *traces = before.map(|trace| trace * factor);
         }
     }
 }
@@ -41,7 +42,7 @@ pub(super) fn apply_and_decay(values: &mut [f64], traces: &mut [f64], step: f64,
 /// Reads all lanes before it writes one: the compiler does not know that the values and the traces are apart, and would
 /// compute lane by lane.
 #[inline(always)]
-fn add(values: &mut Vector, traces: &Vector, step: f64) {
+fn add(values: &mut Vector, traces: Vector, step: f64) {
     let old = *values;
     *values = std::array::from_fn(|lane| old[lane] + step * traces[lane]);
 }
@@ -53,7 +54,7 @@ pub(super) fn decay_and_find(traces: &mut [f64], factor: f64, cutoff: f64, falle
     for (traces, fallen) in traces.as_chunks_mut::<BLOCK>().0.iter_mut().zip(fallen) {
         let mut smallest = [f64::INFINITY; LANES];
         for traces in traces.as_chunks_mut().0 {
-            decay_vector(traces, factor, &mut smallest);
+            *traces = decay_vector(*traces, factor, &mut smallest);
         }
         *fallen = any_fallen(&smallest, cutoff);
         any |= *fallen;
@@ -76,8 +77,9 @@ pub(super) fn apply_decay_and_find(
     for ((values, traces), fallen) in blocks.zip(fallen) {
         let mut smallest = [f64::INFINITY; LANES];
         for (values, traces) in values.as_chunks_mut().0.iter_mut().zip(traces.as_chunks_mut().0) {
-            add(values, traces, step);
-            decay_vector(traces, factor, &mut smallest);
+            let before = *traces;
+            add(values, before, step);
+            *traces = decay_vector(before, factor, &mut smallest);
         }
         *fallen = any_fallen(&smallest, cutoff);
         any |= *fallen;
@@ -87,12 +89,13 @@ pub(super) fn apply_decay_and_find(
 
 /// Decays some traces, and keeps in `smallest` the smallest magnitude in each lane.
 #[inline(always)]
-fn decay_vector(traces: &mut Vector, factor: f64, smallest: &mut Vector) {
-    *traces = traces.map(|trace| trace * factor);
+fn decay_vector(traces: Vector, factor: f64, smallest: &mut Vector) -> Vector {
+    let traces = traces.map(|trace| trace * factor);
     for (trace, smallest) in traces.iter().zip(smallest) {
         // One instruction, unlike `f64::min`. NaN, the trace of a place in use by no weight, is never the smallest.
         *smallest = if trace.abs() < *smallest { trace.abs() } else { *smallest };
     }
+    traces
 }
 
 /// Whether one of some magnitudes has fallen to the cutoff.
