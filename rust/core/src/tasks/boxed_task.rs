@@ -31,7 +31,8 @@ trait DynTask<R, X> {
     /// Takes a step and writes the active rows, except after a terminal state. Returns the reward too: both are returned in
     /// registers, and the rows are written once. A [`Transition`] is copied from one layout to another instead, and read
     /// across the words in which it was written.
-    fn step(&mut self, action: usize, active: &mut R) -> (f64, StepOutcome);
+    fn step(&mut self, action: usize, prepares: bool, active: &mut R) -> (f64, StepOutcome);
+    fn prepare_step(&mut self);
     /// The error of the step that has failed.
     fn take_error(&mut self) -> X;
     fn action_mask(&self) -> Option<&[bool]>;
@@ -47,6 +48,7 @@ struct StepCode<'a, T: Task, X> {
     state: &'a mut T::State,
     error: &'a mut Option<X>,
     action: usize,
+    prepares: bool,
     active: &'a mut T::Active,
 }
 
@@ -55,7 +57,10 @@ impl<T: Task, X: From<T::Error>> SimdCode for StepCode<'_, T, X> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> (f64, StepOutcome) {
-        match self.task.step(self.state, self.action) {
+        if !self.prepares {
+            self.task.prepare_step(self.state);
+        }
+        let stepped = match self.task.step_prepared(self.state, self.action) {
             Ok(Transition { reward, next: Next::NonTerminal(active) }) => {
                 *self.active = active;
                 (reward, StepOutcome::NonTerminal)
@@ -69,7 +74,12 @@ impl<T: Task, X: From<T::Error>> SimdCode for StepCode<'_, T, X> {
                 *self.error = Some(error.into());
                 (0.0, StepOutcome::Failed)
             }
+        };
+        if self.prepares {
+            // The rows are written, so that the learner need not wait.
+            self.task.prepare_step(self.state);
         }
+        stepped
     }
 }
 
@@ -80,10 +90,16 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T, X> {
         Ok(active)
     }
 
-    fn step(&mut self, action: usize, active: &mut T::Active) -> (f64, StepOutcome) {
+    fn step(&mut self, action: usize, prepares: bool, active: &mut T::Active) -> (f64, StepOutcome) {
         let Some(state) = &mut self.state else { unreachable!("a trainer resets a task before it steps it") };
-        let step = StepCode { task: &mut self.task, state, error: &mut self.error, action, active };
+        let step = StepCode { task: &mut self.task, state, error: &mut self.error, action, prepares, active };
         if T::USES_VECTORS { self.level.run(step) } else { SimdLevel::PLAIN.run(step) }
+    }
+
+    fn prepare_step(&mut self) {
+        if let Some(state) = &self.state {
+            self.task.prepare_step(state);
+        }
     }
 
     fn take_error(&mut self) -> X {
@@ -119,6 +135,8 @@ pub struct BoxedTask<R, X> {
     /// What the last step wrote; `None` before the first reset.
     active: Option<R>,
     step_work: u64,
+    /// Whether the next step is prepared. Then each step prepares the one after it.
+    prepared: bool,
     /// Whether the task has action masks. Where it has none, no call is made to ask for them.
     has_masks: bool,
 }
@@ -135,6 +153,7 @@ impl<R: ActiveRows + 'static, X: Send + 'static> BoxedTask<R, X> {
             has_masks: task.action_mask().is_some(),
             task: Box::new(StatefulTask { task, state: None, error: None, level: SimdLevel::detect() }),
             active: None,
+            prepared: false,
         }
     }
 }
@@ -146,14 +165,29 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
 
     fn reset(&mut self) -> Result<((), R), X> {
         let active = self.task.reset()?;
+        self.prepared = false;
         self.active = Some(active);
         Ok(((), active))
     }
 
     #[inline(always)]
     fn step(&mut self, (): &mut (), action: usize) -> Result<Transition<R>, X> {
+        self.prepared = false;
+        self.step_prepared(&mut (), action)
+    }
+
+    #[inline(always)]
+    fn prepare_step(&mut self, (): &()) {
+        if !self.prepared {
+            self.task.prepare_step();
+            self.prepared = true;
+        }
+    }
+
+    #[inline(always)]
+    fn step_prepared(&mut self, (): &mut (), action: usize) -> Result<Transition<R>, X> {
         let Some(active) = &mut self.active else { unreachable!("a trainer resets a task before it steps it") };
-        let (reward, outcome) = self.task.step(action, active);
+        let (reward, outcome) = self.task.step(action, self.prepared, active);
         let next = match outcome {
             StepOutcome::NonTerminal => Next::NonTerminal(*active),
             StepOutcome::Truncated => Next::Truncated(*active),
@@ -186,6 +220,7 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
     }
 
     fn persist(&mut self, state: Option<&mut ()>, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.prepared = false;
         self.task.persist(state.is_some(), checkpoint)
     }
 }

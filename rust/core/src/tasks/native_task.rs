@@ -2,7 +2,7 @@
 
 use super::{Next, RngSnapshot, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::envs::Env;
+use crate::envs::{Env, Step};
 use crate::features::{Features, OutOfBounds};
 use crate::random::Pcg64;
 
@@ -13,12 +13,14 @@ pub struct NativeTask<E, F> {
     pub(crate) features: F,
     pub(crate) max_episode_steps: u64,
     rng: Pcg64,
+    /// What [`Env::prepare`] returned for the state of the next step.
+    prepared: f64,
 }
 
 impl<E, F> NativeTask<E, F> {
     /// `rng` is the environment's generator, seeded as `env.reset(seed=…)` seeds it. `None` means no time limit.
     pub fn new(env: E, features: F, max_episode_steps: Option<u64>, rng: Pcg64) -> Self {
-        Self { env, features, max_episode_steps: max_episode_steps.unwrap_or(u64::MAX), rng }
+        Self { env, features, max_episode_steps: max_episode_steps.unwrap_or(u64::MAX), rng, prepared: 0.0 }
     }
 
     /// The environment's random generator.
@@ -57,17 +59,20 @@ where
     #[inline(always)]
     fn step(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<F::Active>, OutOfBounds> {
         let step = self.env.step(state.state, action, &mut self.rng);
-        *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
-        // A terminal observation needs no row, but one outside the observation space is an error there too.
-        let active = self.features.active_rows(&self.env.observe(&step.state))?;
-        let next = if step.terminated {
-            Next::Terminal
-        } else if state.elapsed >= self.max_episode_steps {
-            Next::Truncated(active)
-        } else {
-            Next::NonTerminal(active)
-        };
-        Ok(Transition { reward: step.reward, next })
+        self.finish_step(state, step)
+    }
+
+    #[expect(clippy::inline_always, reason = "as for `step`")]
+    #[inline(always)]
+    fn prepare_step(&mut self, state: &Self::State) {
+        self.prepared = self.env.prepare(&state.state);
+    }
+
+    #[expect(clippy::inline_always, reason = "as for `step`")]
+    #[inline(always)]
+    fn step_prepared(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<F::Active>, OutOfBounds> {
+        let step = self.env.step_prepared(state.state, self.prepared, action, &mut self.rng);
+        self.finish_step(state, step)
     }
 
     fn active_rows(&self, state: &Self::State) -> Result<F::Active, OutOfBounds> {
@@ -84,6 +89,33 @@ where
             Some(TimedState { state, elapsed }) => (state, elapsed).persist(checkpoint),
             None => Ok(()),
         }
+    }
+}
+
+impl<E, F> NativeTask<E, F>
+where
+    E: Env<Action = usize>,
+    F: Features<E::Observation>,
+{
+    /// What a step of the environment is for a learner.
+    #[expect(clippy::inline_always, reason = "as for `step`")]
+    #[inline(always)]
+    fn finish_step(
+        &self,
+        state: &mut TimedState<E::State>,
+        step: Step<E::State>,
+    ) -> Result<Transition<F::Active>, OutOfBounds> {
+        *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
+        // A terminal observation needs no row, but one outside the observation space is an error there too.
+        let active = self.features.active_rows(&self.env.observe(&step.state))?;
+        let next = if step.terminated {
+            Next::Terminal
+        } else if state.elapsed >= self.max_episode_steps {
+            Next::Truncated(active)
+        } else {
+            Next::NonTerminal(active)
+        };
+        Ok(Transition { reward: step.reward, next })
     }
 }
 

@@ -48,6 +48,21 @@ pub trait Task {
     /// As for `reset`.
     fn step(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<Self::Active>, Self::Error>;
 
+    /// Computes in advance what [`step_prepared`](Self::step_prepared) needs of the state. Where a learner has much to do
+    /// between two steps, the processor does both at once.
+    #[inline]
+    fn prepare_step(&mut self, _state: &Self::State) {}
+
+    /// [`step`](Self::step), with the same result, after [`prepare_step`](Self::prepare_step).
+    ///
+    /// # Errors
+    /// As for `reset`.
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+    #[inline(always)]
+    fn step_prepared(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<Self::Active>, Self::Error> {
+        self.step(state, action)
+    }
+
     /// The work of a step, as [`Budget`](crate::Budget) counts it, beside the learner's: 0 for the environments of this
     /// crate.
     #[inline]

@@ -147,8 +147,18 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
                 None => self.begin_episode(rng)?,
             };
             let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length, .. } = episode;
+            if L::HAS_VECTOR_PASSES {
+                self.task.prepare_step(&state);
+            }
             loop {
-                let transition = self.task.step(&mut state, action)?;
+                let transition = if L::HAS_VECTOR_PASSES {
+                    let transition = self.task.step_prepared(&mut state, action)?;
+                    // The processor computes it while the learner learns.
+                    self.task.prepare_step(&state);
+                    transition
+                } else {
+                    self.task.step(&mut state, action)?
+                };
                 if let Some(mask) = self.task.action_mask()
                     && let Next::NonTerminal(next_state) | Next::Truncated(next_state) = transition.next
                 {
