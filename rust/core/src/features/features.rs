@@ -22,6 +22,17 @@ pub trait Features<O: ?Sized> {
     /// The observation has no row. A row index never wraps around, and is clamped only where the features say so.
     fn active_rows(&self, observation: &O) -> Result<Self::Active, OutOfBounds>;
 
+    /// [`active_rows`](Self::active_rows), which writes the rows to `active`. Many rows are then copied once.
+    ///
+    /// # Errors
+    /// As for `active_rows`.
+    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+    #[inline(always)]
+    fn write_active_rows(&self, observation: &O, active: &mut Self::Active) -> Result<(), OutOfBounds> {
+        *active = self.active_rows(observation)?;
+        Ok(())
+    }
+
     /// The number of rows of the table.
     fn len(&self) -> usize;
 

@@ -96,8 +96,13 @@ impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
     }
 
     #[inline(never)]
-    fn general_rows(tiles: &TileCoding<T, N>, observation: &[T; D]) -> Result<FixedTiles<N>, OutOfBounds> {
-        tiles.active_rows(observation).map(|active| FixedTiles(active.rows()))
+    fn write_general_rows(
+        tiles: &TileCoding<T, N>,
+        observation: &[T; D],
+        active: &mut FixedTiles<N>,
+    ) -> Result<(), OutOfBounds> {
+        *active = FixedTiles(tiles.active_rows(observation)?.rows());
+        Ok(())
     }
 
     /// The error of an observation of which a component is NaN.
@@ -115,8 +120,15 @@ impl<T: Float, const D: usize, const N: usize> Features<[T; D]> for FixedTileCod
 
     #[inline(always)]
     fn active_rows(&self, observation: &[T; D]) -> Result<FixedTiles<N>, OutOfBounds> {
+        let mut active = FixedTiles(self.first_rows);
+        self.write_active_rows(observation, &mut active)?;
+        Ok(active)
+    }
+
+    #[inline(always)]
+    fn write_active_rows(&self, observation: &[T; D], active: &mut FixedTiles<N>) -> Result<(), OutOfBounds> {
         if let Some(tiles) = &self.general {
-            return Self::general_rows(tiles, observation);
+            return Self::write_general_rows(tiles, observation, active);
         }
         let values: [f64; D] = std::array::from_fn(|index| observation[index].into());
         // Without a branch for each component.
@@ -133,7 +145,8 @@ impl<T: Float, const D: usize, const N: usize> Features<[T; D]> for FixedTileCod
                 *row += (parts + offset) / N as u32 * axis.stride;
             }
         }
-        Ok(FixedTiles(rows))
+        *active = FixedTiles(rows);
+        Ok(())
     }
 
     fn len(&self) -> usize {

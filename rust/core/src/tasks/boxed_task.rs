@@ -2,7 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use super::{Next, Task, Transition};
+use super::{Next, Outcome, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::features::ActiveRows;
 use crate::numeric::{SimdCode, SimdLevel};
@@ -28,10 +28,12 @@ struct StatefulTask<T: Task, X> {
 /// [`Task`] without the state, for trait objects. `R` holds the active rows, `X` is the error.
 trait DynTask<R, X> {
     fn reset(&mut self) -> Result<R, X>;
-    /// Takes a step and writes the active rows, except after a terminal state. Returns the reward too: both are returned in
-    /// registers, and the rows are written once. A [`Transition`] is copied from one layout to another instead, and read
-    /// across the words in which it was written.
+    /// Takes a step and writes the active rows, which are unspecified after a terminal state. Returns the reward too: both
+    /// are returned in registers, and the rows are written once. A [`Transition`] is copied from one layout to another
+    /// instead, and read across the words in which it was written. With `prepares`, the step must be prepared, and the one
+    /// after it will be.
     fn step(&mut self, action: usize, prepares: bool, active: &mut R) -> (f64, StepOutcome);
+    /// Prepares the next step.
     fn prepare_step(&mut self);
     /// The error of the step that has failed.
     fn take_error(&mut self) -> X;
@@ -60,16 +62,10 @@ impl<T: Task, X: From<T::Error>> SimdCode for StepCode<'_, T, X> {
         if !self.prepares {
             self.task.prepare_step(self.state);
         }
-        let stepped = match self.task.step_prepared(self.state, self.action) {
-            Ok(Transition { reward, next: Next::NonTerminal(active) }) => {
-                *self.active = active;
-                (reward, StepOutcome::NonTerminal)
-            }
-            Ok(Transition { reward, next: Next::Truncated(active) }) => {
-                *self.active = active;
-                (reward, StepOutcome::Truncated)
-            }
-            Ok(Transition { reward, next: Next::Terminal }) => (reward, StepOutcome::Terminal),
+        let stepped = match self.task.step_into(self.state, self.action, self.active) {
+            Ok((reward, Outcome::NonTerminal)) => (reward, StepOutcome::NonTerminal),
+            Ok((reward, Outcome::Truncated)) => (reward, StepOutcome::Truncated),
+            Ok((reward, Outcome::Terminal)) => (reward, StepOutcome::Terminal),
             Err(error) => {
                 *self.error = Some(error.into());
                 (0.0, StepOutcome::Failed)
@@ -195,6 +191,18 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
             StepOutcome::Failed => return Err(self.task.take_error()),
         };
         Ok(Transition { reward, next })
+    }
+
+    #[inline(always)]
+    fn step_into(&mut self, (): &mut (), action: usize, active: &mut R) -> Result<(f64, Outcome), X> {
+        let (reward, outcome) = self.task.step(action, self.prepared, active);
+        let outcome = match outcome {
+            StepOutcome::NonTerminal => Outcome::NonTerminal,
+            StepOutcome::Truncated => Outcome::Truncated,
+            StepOutcome::Terminal => Outcome::Terminal,
+            StepOutcome::Failed => return Err(self.task.take_error()),
+        };
+        Ok((reward, outcome))
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Tasks that run without Python.
 
-use super::{Next, RngSnapshot, Task, Transition};
+use super::{Next, Outcome, RngSnapshot, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Step};
 use crate::features::{Features, OutOfBounds};
@@ -13,7 +13,7 @@ pub struct NativeTask<E, F> {
     pub(crate) features: F,
     pub(crate) max_episode_steps: u64,
     rng: Pcg64,
-    /// What [`Env::prepare`] returned for the state of the next step.
+    /// What [`Env::prepare`] returned for the state before the next step.
     prepared: f64,
 }
 
@@ -73,6 +73,27 @@ where
     fn step_prepared(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<F::Active>, OutOfBounds> {
         let step = self.env.step_prepared(state.state, self.prepared, action, &mut self.rng);
         self.finish_step(state, step)
+    }
+
+    #[expect(clippy::inline_always, reason = "as for `step`")]
+    #[inline(always)]
+    fn step_into(
+        &mut self,
+        state: &mut Self::State,
+        action: usize,
+        active: &mut F::Active,
+    ) -> Result<(f64, Outcome), OutOfBounds> {
+        let step = self.env.step_prepared(state.state, self.prepared, action, &mut self.rng);
+        *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
+        self.features.write_active_rows(&self.env.observe(&step.state), active)?;
+        let outcome = if step.terminated {
+            Outcome::Terminal
+        } else if state.elapsed >= self.max_episode_steps {
+            Outcome::Truncated
+        } else {
+            Outcome::NonTerminal
+        };
+        Ok((step.reward, outcome))
     }
 
     fn active_rows(&self, state: &Self::State) -> Result<F::Active, OutOfBounds> {

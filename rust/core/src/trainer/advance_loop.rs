@@ -38,36 +38,50 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> SimdCode for AdvanceLoop<'_
 mod tests {
     use super::*;
     use crate::envs::classic_control::MountainCar;
-    use crate::features::{FixedTileCoding, TileCoding};
+    use crate::features::{Features, FixedTileCoding, OutOfBounds, TileCoding};
     use crate::learners::{Agent, SarsaLambda, TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule};
     use crate::policies::{AnyPolicy, TieBreaking};
     use crate::q_table::{QTable, TerminalUpdate};
     use crate::random::{Pcg64, SeedSequence};
     use crate::schedules::{LearningRate, Schedule};
     use crate::stop_flag::StopFlag;
-    use crate::tasks::NativeTask;
+    use crate::tasks::{BoxedTask, NativeTask, VisitCounter};
 
-    const WEIGHTS: usize = 8 * 9 * 9 * 3;
+    const ROWS: usize = 9 * 9;
+    const WEIGHTS: usize = 8 * ROWS * 3;
+
+    type Tiles<const N: usize> = FixedTileCoding<f32, 2, N>;
+    type ActiveTiles<const N: usize> = <Tiles<N> as Features<[f32; 2]>>::Active;
+
+    fn task<const N: usize>() -> NativeTask<MountainCar, Tiles<N>> {
+        let bounds = [[-1.2_f32, -0.07], [0.6, 0.07]].map(|bound| bound.map(f64::from));
+        let tiles = TileCoding::<f32, N>::new(&bounds[0], &bounds[1], &[8, 8], N as u32);
+        let features = FixedTileCoding::new(&tiles).expect("the numbers agree");
+        NativeTask::new(MountainCar::default(), features, Some(100), Pcg64::new(&SeedSequence::new(&[3])))
+    }
+
+    fn agent(tilings: usize) -> Agent {
+        Agent {
+            table: QTable::new(vec![0.0; tilings * ROWS * 3], 3),
+            policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.1), ties: TieBreaking::First },
+            learning_rate: LearningRate::scheduled(Schedule::constant(0.3), tilings),
+            discount: 0.99,
+            terminal_update: TerminalUpdate::Target,
+            masks: None,
+        }
+    }
+
+    fn bits(table: &QTable) -> Vec<u64> {
+        table.values().iter().map(|value| value.to_bits()).collect()
+    }
 
     /// Runs an update rule with the machine's instructions and with those that every machine has.
     fn check<U>(rule: U)
     where
-        U: UpdateRule<<FixedTileCoding<f32, 2, 8> as crate::Features<[f32; 2]>>::Active, Agent> + Clone,
+        U: UpdateRule<ActiveTiles<8>, Agent> + Clone,
     {
-        let seed = SeedSequence::new(&[3]);
-        let bounds = [[-1.2_f32, -0.07], [0.6, 0.07]].map(|bound| bound.map(f64::from));
-        let tiles = TileCoding::<f32, 8>::new(&bounds[0], &bounds[1], &[8, 8], 8);
-        let features = FixedTileCoding::<f32, 2, 8>::new(&tiles).expect("the numbers agree");
-        let task = NativeTask::new(MountainCar::default(), features, Some(100), Pcg64::new(&seed));
-        let agent = Agent {
-            table: QTable::new(vec![0.0; WEIGHTS], 3),
-            policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.1), ties: TieBreaking::First },
-            learning_rate: LearningRate::scheduled(Schedule::constant(0.3), 8),
-            discount: 0.99,
-            terminal_update: TerminalUpdate::Target,
-            masks: None,
-        };
-        let mut wide = Trainer::new(task, TdLearner { agent, rule }, Pcg64::new(&seed));
+        let learner = TdLearner { agent: agent(8), rule };
+        let mut wide = Trainer::new(task::<8>(), learner, Pcg64::new(&SeedSequence::new(&[3])));
         let mut narrow = wide.clone();
         let budget = Budget { episodes: 20, work: u64::MAX };
         wide.advance(budget).expect("no bounds are left");
@@ -75,7 +89,6 @@ mod tests {
         let mut rng = narrow.rng.clone();
         narrow.advance_with(&mut rng, budget).expect("no bounds are left");
         assert_eq!(wide.episodes(), narrow.episodes());
-        let bits = |table: &QTable| table.values().iter().map(|value| value.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&wide.learner().agent.table), bits(&narrow.learner().agent.table));
     }
 
@@ -88,5 +101,34 @@ mod tests {
             }
             check(TrueOnlineSarsaLambda::new(traces(), 0.9));
         }
+    }
+
+    /// Sarsa(λ) in parts of this much work, until nothing happens any more.
+    fn train<T: Task<Error = OutOfBounds>>(task: T, tilings: usize, work: u64) -> (Vec<u64>, Vec<i64>) {
+        let traces = Traces::new(tilings * ROWS * 3, 1e-3, &StopFlag::new()).expect("a few weights");
+        let rule = SarsaLambda { traces, kind: TraceKind::Replacing, trace_decay: 0.9 };
+        let learner = TdLearner { agent: agent(tilings), rule };
+        let mut trainer = Trainer::new(task, learner, Pcg64::new(&SeedSequence::new(&[3])));
+        while trainer.episodes().lengths.len() < 10 {
+            trainer.advance(Budget { episodes: 10, work }).expect("no bounds are left");
+        }
+        (bits(&trainer.learner().agent.table), trainer.take_episodes().lengths)
+    }
+
+    fn check_prepared<const N: usize>() {
+        // The wrapper does not prepare steps.
+        let unprepared = VisitCounter::new(task::<N>(), N * ROWS, 3, &StopFlag::new()).expect("a few counts");
+        let expected = train(unprepared, N, u64::MAX);
+        for work in [7, 500, u64::MAX] {
+            assert_eq!(train(task::<N>(), N, work), expected);
+            let boxed: BoxedTask<ActiveTiles<N>, OutOfBounds> = BoxedTask::new(task::<N>());
+            assert_eq!(train(boxed, N, work), expected);
+        }
+    }
+
+    #[test]
+    fn prepared_steps_are_the_same_steps() {
+        check_prepared::<8>();
+        check_prepared::<16>();
     }
 }

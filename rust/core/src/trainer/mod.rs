@@ -1,13 +1,16 @@
 //! A training run as a value, and the only training loop, with a shorter form for episodes of a single step.
 
 mod advance_loop;
+mod episode_log;
+mod prepared_step;
 mod single_step;
 
 use self::advance_loop::AdvanceLoop;
+pub use self::episode_log::EpisodeLog;
 use crate::learners::Learner;
-use crate::memory::{AllocationError, reserve};
+use crate::memory::AllocationError;
 use crate::random::Rng;
-use crate::tasks::{Next, Task};
+use crate::tasks::{Next, Task, Transition};
 use crate::training_error::TrainingError;
 
 /// How far `advance` goes: it stops at whichever limit it reaches first.
@@ -18,28 +21,6 @@ pub struct Budget {
     /// The work, counted from the call. A step of a one-step learner on a grid counts as 1, and other steps as much more
     /// as they cost; see [`Learner::work`]. A call ends after the step that uses up its work.
     pub work: u64,
-}
-
-/// The results of the finished episodes.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct EpisodeLog {
-    /// The return of each episode: the undiscounted sum of its rewards.
-    pub returns: Vec<f64>,
-    /// The number of steps of each episode.
-    pub lengths: Vec<i64>,
-    /// Whether each episode reached a terminal state, rather than only its time limit.
-    pub terminated: Vec<bool>,
-}
-
-impl EpisodeLog {
-    /// Makes room for all episodes that can finish within a budget, as each takes a step: the loop then cannot fail.
-    fn reserve(&mut self, budget: Budget) -> Result<(), AllocationError> {
-        let missing = budget.episodes.saturating_sub(self.returns.len()) as u64;
-        let count = missing.min(budget.work) as usize;
-        reserve(&mut self.returns, count)?;
-        reserve(&mut self.lengths, count)?;
-        reserve(&mut self.terminated, count)
-    }
 }
 
 /// An unfinished episode.
@@ -147,17 +128,14 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
                 None => self.begin_episode(rng)?,
             };
             let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length, .. } = episode;
-            if L::HAS_VECTOR_PASSES {
-                self.task.prepare_step(&state);
-            }
+            self.prepare_step(&state);
             loop {
-                let transition = if L::HAS_VECTOR_PASSES {
-                    let transition = self.task.step_prepared(&mut state, action)?;
-                    // The processor computes it while the learner learns.
-                    self.task.prepare_step(&state);
-                    transition
+                let transition = if Self::WRITES_ROWS {
+                    let mut next_active = active;
+                    let (reward, outcome) = self.step_into(&mut state, action, &mut next_active)?;
+                    Transition { reward, next: outcome.followed_by(next_active) }
                 } else {
-                    self.task.step(&mut state, action)?
+                    self.step(&mut state, action)?
                 };
                 if let Some(mask) = self.task.action_mask()
                     && let Next::NonTerminal(next_state) | Next::Truncated(next_state) = transition.next
