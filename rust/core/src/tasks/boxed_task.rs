@@ -2,7 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use super::{Next, Outcome, Task, Transition};
+use super::{Next, NextKind, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::features::ActiveRows;
 use crate::numeric::{SimdCode, SimdLevel};
@@ -63,9 +63,9 @@ impl<T: Task, X: From<T::Error>> SimdCode for StepCode<'_, T, X> {
             self.task.prepare_step(self.state);
         }
         let stepped = match self.task.step_into(self.state, self.action, self.active) {
-            Ok((reward, Outcome::NonTerminal)) => (reward, StepOutcome::NonTerminal),
-            Ok((reward, Outcome::Truncated)) => (reward, StepOutcome::Truncated),
-            Ok((reward, Outcome::Terminal)) => (reward, StepOutcome::Terminal),
+            Ok((reward, NextKind::NonTerminal)) => (reward, StepOutcome::NonTerminal),
+            Ok((reward, NextKind::Truncated)) => (reward, StepOutcome::Truncated),
+            Ok((reward, NextKind::Terminal)) => (reward, StepOutcome::Terminal),
             Err(error) => {
                 *self.error = Some(error.into());
                 (0.0, StepOutcome::Failed)
@@ -194,15 +194,15 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
     }
 
     #[inline(always)]
-    fn step_into(&mut self, (): &mut (), action: usize, active: &mut R) -> Result<(f64, Outcome), X> {
+    fn step_into(&mut self, (): &mut (), action: usize, active: &mut R) -> Result<(f64, NextKind), X> {
         let (reward, outcome) = self.task.step(action, self.prepared, active);
-        let outcome = match outcome {
-            StepOutcome::NonTerminal => Outcome::NonTerminal,
-            StepOutcome::Truncated => Outcome::Truncated,
-            StepOutcome::Terminal => Outcome::Terminal,
+        let next = match outcome {
+            StepOutcome::NonTerminal => NextKind::NonTerminal,
+            StepOutcome::Truncated => NextKind::Truncated,
+            StepOutcome::Terminal => NextKind::Terminal,
             StepOutcome::Failed => return Err(self.task.take_error()),
         };
-        Ok((reward, outcome))
+        Ok((reward, next))
     }
 
     #[inline(always)]

@@ -16,6 +16,6 @@ pub use episode_recorder::{EpisodeRecorder, Recording, Recordings};
 pub use k_armed_bandit::{KArmedBandit, Testbed};
 pub use native_task::{NativeTask, TimedState};
 pub use rng_snapshot::RngSnapshot;
-pub use task::{Next, Outcome, Task, Transition};
+pub use task::{Next, NextKind, Task, Transition};
 pub use time_aware::TimeAware;
 pub use visit_counter::{CountedState, VisitCounter};

@@ -1,6 +1,6 @@
 //! Tasks that run without Python.
 
-use super::{Next, Outcome, RngSnapshot, Task, Transition};
+use super::{Next, NextKind, RngSnapshot, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Step};
 use crate::features::{Features, OutOfBounds};
@@ -82,18 +82,18 @@ where
         state: &mut Self::State,
         action: usize,
         active: &mut F::Active,
-    ) -> Result<(f64, Outcome), OutOfBounds> {
+    ) -> Result<(f64, NextKind), OutOfBounds> {
         let step = self.env.step_prepared(state.state, self.prepared, action, &mut self.rng);
         *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
         self.features.write_active_rows(&self.env.observe(&step.state), active)?;
-        let outcome = if step.terminated {
-            Outcome::Terminal
+        let next = if step.terminated {
+            NextKind::Terminal
         } else if state.elapsed >= self.max_episode_steps {
-            Outcome::Truncated
+            NextKind::Truncated
         } else {
-            Outcome::NonTerminal
+            NextKind::NonTerminal
         };
-        Ok((step.reward, outcome))
+        Ok((step.reward, next))
     }
 
     fn active_rows(&self, state: &Self::State) -> Result<F::Active, OutOfBounds> {

@@ -16,7 +16,7 @@ pub enum Next<R> {
 
 /// [`Next`] without the active rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum NextKind {
     /// [`Next::NonTerminal`].
     NonTerminal,
     /// [`Next::Truncated`].
@@ -25,11 +25,11 @@ pub enum Outcome {
     Terminal,
 }
 
-impl Outcome {
+impl NextKind {
     /// What follows, where these are the active rows of the next state.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
-    pub fn followed_by<R>(self, active: R) -> Next<R> {
+    pub fn with_rows<R>(self, active: R) -> Next<R> {
         match self {
             Self::NonTerminal => Next::NonTerminal(active),
             Self::Truncated => Next::Truncated(active),
@@ -104,20 +104,20 @@ pub trait Task {
         state: &mut Self::State,
         action: usize,
         active: &mut Self::Active,
-    ) -> Result<(f64, Outcome), Self::Error> {
+    ) -> Result<(f64, NextKind), Self::Error> {
         let Transition { reward, next } = self.step_prepared(state, action)?;
-        let outcome = match next {
+        let kind = match next {
             Next::NonTerminal(next_active) => {
                 *active = next_active;
-                Outcome::NonTerminal
+                NextKind::NonTerminal
             }
             Next::Truncated(next_active) => {
                 *active = next_active;
-                Outcome::Truncated
+                NextKind::Truncated
             }
-            Next::Terminal => Outcome::Terminal,
+            Next::Terminal => NextKind::Terminal,
         };
-        Ok((reward, outcome))
+        Ok((reward, kind))
     }
 
     /// The work of a step, as [`Budget`](crate::Budget) counts it, beside the learner's: 0 for the environments of this

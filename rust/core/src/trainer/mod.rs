@@ -132,8 +132,8 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
             loop {
                 let transition = if Self::WRITES_ROWS {
                     let mut next_active = active;
-                    let (reward, outcome) = self.step_into(&mut state, action, &mut next_active)?;
-                    Transition { reward, next: outcome.followed_by(next_active) }
+                    let (reward, next) = self.step_into(&mut state, action, &mut next_active)?;
+                    Transition { reward, next: next.with_rows(next_active) }
                 } else {
                     self.step(&mut state, action)?
                 };

@@ -4,7 +4,7 @@
 
 use super::Trainer;
 use crate::learners::Learner;
-use crate::tasks::{Outcome, Task, Transition};
+use crate::tasks::{NextKind, Task, Transition};
 
 /// Active rows of at most this many bytes are copied in registers.
 const IN_REGISTERS: usize = 32;
@@ -41,9 +41,9 @@ impl<T: Task, L: Learner<T::Active>, R> Trainer<T, L, R> {
         state: &mut T::State,
         action: usize,
         active: &mut T::Active,
-    ) -> Result<(f64, Outcome), T::Error> {
-        let outcome = self.task.step_into(state, action, active)?;
+    ) -> Result<(f64, NextKind), T::Error> {
+        let next = self.task.step_into(state, action, active)?;
         self.task.prepare_step(state);
-        Ok(outcome)
+        Ok(next)
     }
 }
