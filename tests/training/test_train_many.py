@@ -1,5 +1,6 @@
 """Many runs: each equals the single run of its seed, for any number of threads."""
 
+import sys
 from typing import Any
 
 import gymnasium as gym
@@ -90,6 +91,7 @@ def test_runs_of_cart_pole_equal_gymnasiums():
             "learning_rate_schedule": st.sampled_from(["constant", "linear"]),
             "discount": st.floats(0, 1),
             "epsilon": st.floats(0, 1),
+            "epsilon_schedule": st.sampled_from(["constant", "linear"]),
             "tiles": st.integers(1, 6),
             "hashed_rows": st.sampled_from([None, 64]),
             "max_episode_steps": st.sampled_from([1, 37, 200]),
@@ -164,6 +166,18 @@ def test_each_run_equals_the_single_run_for_every_learner(config, backend):
     runs = qtab.train_many(CAR, 3, threads=2, tables=True, **config)
     assert_same_as_single_runs(runs, **config)
     assert runs[1].tables.shape == qtab.train(CAR, seed=1, **config).tables.shape
+
+
+def test_a_batch_overflows_as_its_single_run_does():
+    growing: dict[str, Any] = {**TILES, "tilings": 8, "learning_rate": 2.0, "discount": 1.0, "episodes": 60}
+    growing |= {"epsilon": 0.8, "epsilon_schedule": "constant", "initial_q": (-1, 1)}
+    with pytest.raises(OverflowError) as caught:
+        qtab.train_many(CAR, 8, threads=1, **growing)
+    seed = next(seed for seed in range(8) if f"seed {seed}" in str(getattr(caught.value, "__notes__", "seed 0")))
+    if sys.version_info >= (3, 11):
+        with pytest.raises(OverflowError) as single:
+            qtab.train(CAR, seed=seed, **growing)
+        assert str(caught.value) == str(single.value)
 
 
 STEEP: dict[str, Any] = {

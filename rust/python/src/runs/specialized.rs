@@ -116,15 +116,15 @@ pub(super) fn is_plain(env: &impl Env, spec: &RunSpec, num_actions: usize) -> bo
         && !spec.terminate_on_truncation
 }
 
-/// The policy of the article, if it is the one of a spec.
+/// The policy of a spec, if it is ε-greedy as in the article, or with a constant ε.
 pub(super) fn plain_epsilon_greedy(spec: &RunSpec) -> Option<EpsilonGreedy> {
-    match spec.policy {
-        PolicySpec::EpsilonGreedy {
-            epsilon: ScheduleSpec::Linear { value, minimum, warm_up: 0 },
-            ties: TieBreaking::First,
-        } if !spec.initial_q.has_masked_actions() => Some(EpsilonGreedy::linear(value, minimum, spec.episodes)),
-        _ => None,
-    }
+    let PolicySpec::EpsilonGreedy { epsilon, ties: TieBreaking::First } = spec.policy else { return None };
+    let (value, minimum) = match epsilon {
+        ScheduleSpec::Linear { value, minimum, warm_up: 0 } => (value, minimum),
+        ScheduleSpec::Constant { value } => (value, value),
+        _ => return None,
+    };
+    (!spec.initial_q.has_masked_actions()).then(|| EpsilonGreedy::linear(value, minimum, spec.episodes))
 }
 
 /// Builds the runs of a spec, once the types of the policy, the learning rate and the update rule are chosen.
