@@ -57,7 +57,7 @@ where
 fn advance<E, F, A, U, const N: usize, const M: usize, const K: usize, const FUSED: bool>(
     runs: &mut [SimdTrainer<E, F, N, A, U>; K],
     tables: &mut [Vec<f64>; K],
-    lanes: &mut EpisodeLanes<F::Rows, N, M, K>,
+    lanes: &mut EpisodeLanes<F::ActiveInLane, N, M, K>,
     rngs: &mut Pcg64Lanes<K>,
     budget: Budget,
 ) -> Result<u64, (usize, OutOfBounds)>

@@ -40,7 +40,7 @@ impl<R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<R
     pub(super) fn begin<E, F, A, U>(runs: &mut [SimdTrainer<E, F, N, A, U>; K]) -> Result<Self, (usize, OutOfBounds)>
     where
         E: SimdEnv<M> + Env<Observation = [f32; M]>,
-        F: BatchFeatures<M, Rows = R, Active = R::Active>,
+        F: BatchFeatures<M, ActiveInLane = R, Active = R::Active>,
         A: StepSize,
         U: UpdateRule<R::Active, Agent<N, EpsilonGreedy, A>>,
     {
@@ -81,7 +81,7 @@ impl<R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<R
     ) -> Result<(), OutOfBounds>
     where
         E: SimdEnv<M> + Env<Observation = [f32; M]>,
-        F: BatchFeatures<M, Rows = R, Active = R::Active>,
+        F: BatchFeatures<M, ActiveInLane = R, Active = R::Active>,
     {
         let (state, active) = run.task.reset()?;
         self.set(lane, state, active, run, table);
@@ -98,7 +98,7 @@ impl<R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<R
         table: &[f64],
     ) where
         E: SimdEnv<M>,
-        F: BatchFeatures<M, Rows = R, Active = R::Active>,
+        F: BatchFeatures<M, ActiveInLane = R, Active = R::Active>,
     {
         self.active[lane] = true;
         scatter(&mut self.fields, lane, state);

@@ -39,7 +39,7 @@ impl<E, F> Shared<E, F> {
         &self,
         runs: &[SimdTrainer<E, F, N, A, U>; K],
         tables: &mut [Vec<f64>; K],
-        lanes: &mut EpisodeLanes<F::Rows, N, M, K>,
+        lanes: &mut EpisodeLanes<F::ActiveInLane, N, M, K>,
         rngs: &mut Pcg64Lanes<K>,
         most: u64,
     ) -> Stop<K>
@@ -95,7 +95,7 @@ impl<E, F> Shared<E, F> {
                     errors[lane] = rewards[lane] - value[lane];
                 }
             }
-            if F::Rows::IS_SINGLE {
+            if F::ActiveInLane::IS_SINGLE {
                 let mut updated = [0.0; K];
                 for lane in 0..K {
                     updated[lane] = value[lane] + step_sizes[lane] * errors[lane];

@@ -5,8 +5,8 @@ use super::{Features, LaneRows};
 /// A grid over `M` components that finds the rows of several observations at once, in SIMD lanes.
 pub trait BatchFeatures<const M: usize>: Features<[f32; M]> + Clone + PartialEq {
     /// The active rows of a lane.
-    type Rows: LaneRows<Active = Self::Active>;
+    type ActiveInLane: LaneRows<Active = Self::Active>;
 
     /// The active rows of each of `K` observations, given component by component; `None` if any of them has no row.
-    fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[Self::Rows; K]>;
+    fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[Self::ActiveInLane; K]>;
 }

@@ -99,7 +99,7 @@ impl<T: Float, A: AsRef<[Edges]>, O: AsRef<[T]> + ?Sized> Features<O> for Bins<T
 }
 
 impl<const M: usize> BatchFeatures<M> for Bins<f32, [Edges; M]> {
-    type Rows = usize;
+    type ActiveInLane = usize;
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]

@@ -155,7 +155,7 @@ impl<T: Float, const D: usize, const N: usize> Features<[T; D]> for FixedTileCod
 }
 
 impl<const D: usize, const N: usize> BatchFeatures<D> for FixedTileCoding<f32, D, N> {
-    type Rows = FixedTiles<N>;
+    type ActiveInLane = FixedTiles<N>;
 
     #[inline(always)]
     fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; D]) -> Option<[FixedTiles<N>; K]> {

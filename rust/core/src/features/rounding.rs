@@ -91,7 +91,7 @@ impl<T: Float, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Roun
 }
 
 impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
-    type Rows = usize;
+    type ActiveInLane = usize;
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]

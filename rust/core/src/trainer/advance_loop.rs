@@ -50,10 +50,10 @@ mod tests {
     const ROWS: usize = 9 * 9;
     const WEIGHTS: usize = 8 * ROWS * 3;
 
-    type Tiles<const N: usize> = FixedTileCoding<f32, 2, N>;
-    type ActiveTiles<const N: usize> = <Tiles<N> as Features<[f32; 2]>>::Active;
+    type Tilings<const N: usize> = FixedTileCoding<f32, 2, N>;
+    type ActiveTiles<const N: usize> = <Tilings<N> as Features<[f32; 2]>>::Active;
 
-    fn task<const N: usize>() -> NativeTask<MountainCar, Tiles<N>> {
+    fn task<const N: usize>() -> NativeTask<MountainCar, Tilings<N>> {
         let bounds = [[-1.2_f32, -0.07], [0.6, 0.07]].map(|bound| bound.map(f64::from));
         let tiles = TileCoding::<f32, N>::new(&bounds[0], &bounds[1], &[8, 8], N as u32);
         let features = FixedTileCoding::new(&tiles).expect("the numbers agree");

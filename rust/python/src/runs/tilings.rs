@@ -23,10 +23,10 @@ use crate::spec::{DiscretizerSpec, LearningRateSpec, RunSpec};
 /// The usual number of tilings (Sutton & Barto, section 10.1).
 const TILINGS: usize = 8;
 
-type Tiles<const M: usize> = FixedTileCoding<f32, M, TILINGS>;
+type Tilings<const M: usize> = FixedTileCoding<f32, M, TILINGS>;
 type TiledAgent<const N: usize> = Agent<N, EpsilonGreedy, LearningRate>;
 type TiledRun<E, U, const M: usize, const N: usize> =
-    Trainer<NativeTask<E, Tiles<M>>, TdLearner<U, TiledAgent<N>>, Pcg64>;
+    Trainer<NativeTask<E, Tilings<M>>, TdLearner<U, TiledAgent<N>>, Pcg64>;
 
 /// Runs of `N` actions that train in batches where the spec asks for Q-learning or Sarsa on the usual number of tilings; the
 /// generic ones otherwise.
@@ -42,7 +42,7 @@ where
         && tiles.tilings as usize == TILINGS
         && let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate
         && let Some(policy) = plain_epsilon_greedy(spec)
-        && let Some(features) = Tiles::<M>::new(&tiles.tile_coding())
+        && let Some(features) = Tilings::<M>::new(&tiles.tile_coding())
         && (record == 0 && !spec.count_visits && is_plain(&env, spec, N))
     {
         let learning_rate = LearningRate::scheduled(learning_rate.build(spec.episodes), TILINGS);
@@ -59,7 +59,7 @@ where
 /// What the runs of a spec share.
 struct TiledRuns<E, const M: usize, const N: usize> {
     env: E,
-    features: Tiles<M>,
+    features: Tilings<M>,
     policy: EpsilonGreedy,
     learning_rate: LearningRate,
     spec: Arc<RunSpec>,

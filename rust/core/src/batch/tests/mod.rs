@@ -162,7 +162,7 @@ proptest! {
     #[test]
     fn tilings_with_any_settings_and_chunks(
         hashed in prop_oneof![Just(None), Just(Some(60))],
-        by_visits in prop_oneof![4 => Just(false), 1 => Just(true)],
+        by_visit_count in prop_oneof![4 => Just(false), 1 => Just(true)],
         // Diverges with the larger ones.
         scale in prop_oneof![3 => Just(1.0), 1 => 3.0..100.0],
         settings in any_settings(),
@@ -170,7 +170,7 @@ proptest! {
     ) {
         let settings = Settings { learning_rate: settings.learning_rate * scale, ..settings };
         let (seeds, episodes) = ([0, 1, 2, 3], settings.episodes);
-        check(seeds, |seed| tiled_mountain_car(hashed, by_visits, QLearning, settings, seed), episodes, &chunks);
-        check(seeds, |seed| tiled_mountain_car(hashed, by_visits, Sarsa, settings, seed), episodes, &chunks);
+        check(seeds, |seed| tiled_mountain_car(hashed, by_visit_count, QLearning, settings, seed), episodes, &chunks);
+        check(seeds, |seed| tiled_mountain_car(hashed, by_visit_count, Sarsa, settings, seed), episodes, &chunks);
     }
 }

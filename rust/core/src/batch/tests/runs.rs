@@ -89,7 +89,7 @@ pub(super) fn cart_pole<U: UpdateRule<[u32; 1], Agent<2, EpsilonGreedy, Schedule
 /// state is the usual one, because several rows cannot be assigned to.
 pub(super) fn tiled_mountain_car<U: UpdateRule<FixedTiles<8>, Agent<3, EpsilonGreedy, LearningRate>>>(
     hashed: Option<u32>,
-    by_visits: bool,
+    by_visit_count: bool,
     rule: U,
     settings: Settings,
     seed: u32,
@@ -98,7 +98,7 @@ pub(super) fn tiled_mountain_car<U: UpdateRule<FixedTiles<8>, Agent<3, EpsilonGr
     let tiles = hashed.map_or(tiles.clone(), |rows| tiles.hashed(rows));
     let features = FixedTileCoding::new(&tiles).expect("the numbers agree");
     let rows = Features::<[f32; 2]>::len(&features);
-    let learning_rate = if by_visits {
+    let learning_rate = if by_visit_count {
         LearningRate::by_visit_count(settings.learning_rate, 0.01, 3 * rows, 8, &StopFlag::new()).expect("it fits")
     } else {
         let schedule = Schedule::linear(settings.learning_rate, 0.0, settings.episodes as u64, 1);
