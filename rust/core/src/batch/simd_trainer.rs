@@ -7,7 +7,7 @@ use crate::tasks::NativeTask;
 use crate::trainer::Trainer;
 
 /// An ε-greedy one-step learner with `N` actions. It can be trained in a batch if its update rule `U` is a
-/// [`BatchRule`](super::BatchRule) and its environment `E`, observed through features `F`, a
-/// [`BatchEnv`](crate::envs::BatchEnv).
+/// [`BatchRule`](super::BatchRule), its environment `E` steps in SIMD lanes and its features `F` are
+/// [`BatchFeatures`](crate::features::BatchFeatures).
 pub type SimdTrainer<E, F, const N: usize, A, U> =
     Trainer<NativeTask<E, F>, TdLearner<U, Agent<N, EpsilonGreedy, A>>, Pcg64>;

@@ -1,8 +1,8 @@
-//! Grids that find the rows of several observations at once.
+//! Features that find the active rows of several observations at once.
 
 use super::{Features, LaneRows};
 
-/// A grid over `M` components that finds the rows of several observations at once, in SIMD lanes.
+/// Features of `M` components that find the active rows of several observations at once, in SIMD lanes.
 pub trait BatchFeatures<const M: usize>: Features<[f32; M]> + Clone + PartialEq {
     /// The active rows of a lane.
     type ActiveInLane: LaneRows<Active = Self::Active>;
