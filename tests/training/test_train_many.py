@@ -17,6 +17,15 @@ POLE = "CartPole-v1"
 LAKE = "FrozenLake-v1"
 CLIFF = "CliffWalking-v1"
 SHORT: dict[str, Any] = {"episodes": 30}
+ONE_STEP: dict[str, st.SearchStrategy[Any]] = {
+    "algorithm": st.sampled_from(["q_learning", "sarsa"]),
+    "learning_rate": st.floats(0, 1),
+    "learning_rate_schedule": st.sampled_from(["constant", "linear"]),
+    "discount": st.floats(0, 1),
+    "epsilon": st.floats(0, 1),
+    "epsilon_schedule": st.sampled_from(["constant", "linear"]),
+}
+"""The settings of learners that train in batches."""
 
 
 @pytest.mark.parametrize("threads", [1, 2, 7, 64])
@@ -86,12 +95,7 @@ def test_runs_of_cart_pole_equal_gymnasiums():
     episodes=st.integers(1, 12),
     config=st.fixed_dictionaries(
         {
-            "algorithm": st.sampled_from(["q_learning", "sarsa"]),
-            "learning_rate": st.floats(0, 1),
-            "learning_rate_schedule": st.sampled_from(["constant", "linear"]),
-            "discount": st.floats(0, 1),
-            "epsilon": st.floats(0, 1),
-            "epsilon_schedule": st.sampled_from(["constant", "linear"]),
+            **ONE_STEP,
             "tiles": st.integers(1, 6),
             "hashed_rows": st.sampled_from([None, 64]),
             "max_episode_steps": st.sampled_from([1, 37, 200]),
@@ -111,11 +115,7 @@ def test_each_run_with_eight_tilings_equals_the_single_run_for_any_config(env, s
     episodes=st.integers(1, 60),
     config=st.fixed_dictionaries(
         {
-            "algorithm": st.sampled_from(["q_learning", "sarsa"]),
-            "learning_rate": st.floats(0, 1),
-            "learning_rate_schedule": st.sampled_from(["constant", "linear"]),
-            "discount": st.floats(0, 1),
-            "epsilon": st.floats(0, 1),
+            **ONE_STEP,
             "terminal_update": st.sampled_from(["assign", "target"]),
             "max_episode_steps": st.sampled_from([1, 37, 200]),
             "env_kwargs": st.sampled_from([{"is_slippery": True}, {"is_slippery": False}]),
