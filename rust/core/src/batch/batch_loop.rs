@@ -7,7 +7,7 @@ use super::learning_steps::Shared;
 use super::{BatchRule, SimdTrainer};
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, OutOfBounds};
-use crate::learners::{Agent, Learner, UpdateRule};
+use crate::learners::{Agent, UpdateRule};
 use crate::numeric::SimdCode;
 use crate::policies::EpsilonGreedy;
 use crate::random::Pcg64Lanes;
@@ -93,8 +93,7 @@ where
             let run = &mut runs[lane];
             run.finish_episode(lanes.episode_return[lane], lanes.elapsed[lane].cast_signed(), terminal[lane]);
             lanes.active[lane] = false;
-            run.learner.agent.table.check_finite(lanes.divergence[lane]);
-            running &= run.episodes.returns.len() < budget.episodes && !run.learner.diverged();
+            running &= run.episodes.returns.len() < budget.episodes && !lanes.divergence[lane].is_nan();
             if running {
                 if let Err(error) = lanes.reset(lane, run, &tables[lane]) {
                     result = Err((lane, error));

@@ -21,8 +21,8 @@ pub trait BatchedRun: Sized {
     /// Afterwards each run is in the state that it would have after as many steps alone. It can be continued alone or in
     /// any batch.
     ///
-    /// Runs that differ in more than their seeds, tables and learning rates advance one after the other, and so do those
-    /// whose learning rates depend on visits. So do all runs once one of them reaches an observation without a row.
+    /// Runs that differ in more than their seeds, tables and learning rates advance one after the other. So do those whose
+    /// learning rates depend on visits, and all runs once one of them has diverged or reaches an observation without a row.
     ///
     /// # Errors
     /// As [`Trainer::advance`](crate::Trainer::advance), with the index of the run that failed. The others can be
@@ -75,7 +75,7 @@ where
     lanes.try_for_each(|(lane, run)| run.advance(Budget { work, ..budget }).map_err(|error| (lane, error)))
 }
 
-/// Whether two runs share all that a batch reads once, and the values of one are far from overflowing.
+/// Whether two runs share all that a batch reads once, and the first has neither diverged nor values near an overflow.
 fn compatible<E, F, A, U, const N: usize>(one: &SimdTrainer<E, F, N, A, U>, other: &SimdTrainer<E, F, N, A, U>) -> bool
 where
     E: Env<Action = usize> + PartialEq,
@@ -90,6 +90,7 @@ where
         && agent.discount == other_agent.discount
         && agent.terminal_update == other_agent.terminal_update
         && agent.learning_rate.uniform().is_some()
+        && !agent.table.diverged()
         && agent.table.values().len() == other_agent.table.values().len()
         && agent.table.values().iter().all(|value| value.abs() < FAR_FROM_OVERFLOW)
 }

@@ -3,12 +3,12 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::SimdTrainer;
-use super::row_values::row_values;
 use crate::envs::{Env, SimdEnv, gather, scatter};
 use crate::features::{BatchFeatures, LaneRows, OutOfBounds};
 use crate::learners::{Agent, UpdateRule};
 use crate::numeric::{argmax, argmax_without_branch, cold_path, select};
 use crate::policies::EpsilonGreedy;
+use crate::q_table::sum_rows;
 use crate::random::{Pcg64Lanes, explore_from};
 use crate::schedules::StepSize;
 use crate::tasks::{Task, TimedState};
@@ -104,7 +104,7 @@ impl<R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<R
         scatter(&mut self.fields, lane, state);
         self.elapsed[lane] = elapsed;
         self.rows[lane] = R::new(active);
-        let values = row_values(table.as_chunks::<N>().0, self.rows[lane]);
+        let values = sum_rows(self.rows[lane].indices().map(|row| table.as_chunks::<N>().0[row]));
         for (lanes, value) in self.values.iter_mut().zip(values) {
             lanes[lane] = value;
         }

@@ -3,13 +3,13 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::episode_lanes::EpisodeLanes;
-use super::row_values::{largest, row_values, values_of};
+use super::lane_values::{largest, values_of};
 use super::updates::{update_rows, update_single_rows};
 use super::{BatchRule, SimdTrainer};
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, LaneRows};
 use crate::numeric::cold_path;
-use crate::q_table::TerminalUpdate;
+use crate::q_table::{TerminalUpdate, sum_rows};
 use crate::random::Pcg64Lanes;
 use crate::schedules::StepSize;
 
@@ -72,7 +72,8 @@ impl<E, F> Shared<E, F> {
             lanes.actions_chosen = false;
             let mut next_values = [[0.0; K]; N];
             for lane in 0..K {
-                for (values, value) in next_values.iter_mut().zip(row_values(tables[lane], next_rows[lane])) {
+                let sums = sum_rows(next_rows[lane].indices().map(|row| tables[lane][row]));
+                for (values, value) in next_values.iter_mut().zip(sums) {
                     values[lane] = value;
                 }
             }

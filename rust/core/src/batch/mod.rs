@@ -8,8 +8,8 @@ mod batch_loop;
 mod batch_rule;
 mod batched_run;
 mod episode_lanes;
+mod lane_values;
 mod learning_steps;
-mod row_values;
 mod simd_trainer;
 #[cfg(test)]
 mod tests;

@@ -3,8 +3,8 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::episode_lanes::EpisodeLanes;
-use super::row_values::row_value;
 use crate::features::LaneRows;
+use crate::q_table::sum_values;
 
 /// Writes the value of an action in a row of each lane. `lanes` holds the rows that come next, and their values.
 #[inline(always)]
@@ -44,6 +44,6 @@ pub(super) fn update_rows<R: LaneRows, const N: usize, const M: usize, const K: 
             table[row][action] += changes[lane];
         }
         // Most rows stay active, so that the next value of the same action has nearly always changed.
-        lanes.values[action][lane] = row_value(table, lanes.rows[lane], action);
+        lanes.values[action][lane] = sum_values(lanes.rows[lane].indices().map(|row| table[row][action]));
     }
 }

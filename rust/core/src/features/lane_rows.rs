@@ -10,13 +10,13 @@ pub trait LaneRows: Copy + Default {
     /// Whether there is always one row.
     const IS_SINGLE: bool;
 
-    /// What [`Features`](super::Features) return.
+    /// [`Features::Active`](super::Features::Active).
     type Active: ActiveRows;
 
-    /// The same rows.
+    /// The rows that features returned.
     fn new(active: Self::Active) -> Self;
 
-    /// The same rows.
+    /// The rows as features return them.
     fn active(self) -> Self::Active;
 
     /// The first row.

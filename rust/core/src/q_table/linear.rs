@@ -1,7 +1,7 @@
 //! Linear function approximation with binary features: an action value is the sum over the active rows, from left to
 //! right (Sutton & Barto, equation 9.8). With one active row, as on a grid, it is the value of that row.
 
-use super::{QTable, TerminalUpdate};
+use super::{QTable, TerminalUpdate, sum_rows, sum_values};
 use crate::schedules::StepSize;
 
 impl<const N: usize> QTable<N> {
@@ -29,13 +29,7 @@ impl<const N: usize> QTable<N> {
     #[inline]
     fn sum_rows<const A: usize>(&mut self, rows: &[u32]) {
         let table = self.values.as_chunks::<A>().0;
-        let mut values = rows.iter().map(|&row| table[row as usize]);
-        let mut sums = values.next().unwrap_or([0.0; A]);
-        for values in values {
-            for (sum, value) in sums.iter_mut().zip(values) {
-                *sum += value;
-            }
-        }
+        let sums = sum_rows(rows.iter().map(|&row| table[row as usize]));
         self.sums.copy_from_slice(&sums);
     }
 
@@ -48,9 +42,7 @@ impl<const N: usize> QTable<N> {
         {
             return self.row(row)[action];
         }
-        let mut values = rows.as_ref().iter().map(|&row| self.values[self.weight_index(row, action)]);
-        let first = values.next().unwrap_or(0.0);
-        values.fold(first, |sum, value| sum + value)
+        sum_values(rows.as_ref().iter().map(|&row| self.values[self.weight_index(row, action)]))
     }
 
     /// The index of the weight of an action in a row, as step sizes and traces use it.

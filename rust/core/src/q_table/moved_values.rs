@@ -2,7 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use super::QTable;
+use super::{QTable, sum_rows, sum_values};
 
 impl<const N: usize> QTable<N> {
     /// The values of the rows, and those that a learner keeps behind them.
@@ -21,9 +21,7 @@ impl<const N: usize> QTable<N> {
             4 => self.sum_slots::<4>(slots, rows.as_ref()),
             num_actions => {
                 for action in 0..num_actions {
-                    let mut weights = rows.as_ref().iter().map(|&row| row as usize * num_actions + action);
-                    let first = weights.next().map_or(0.0, |weight| self.values[slots[weight] as usize]);
-                    self.sums[action] = weights.fold(first, |sum, weight| sum + self.values[slots[weight] as usize]);
+                    self.sums[action] = self.value_at(slots, rows.as_ref(), action);
                 }
             }
         }
@@ -33,22 +31,14 @@ impl<const N: usize> QTable<N> {
     /// [`value`](Self::value) with the same slots.
     #[inline(always)]
     pub(crate) fn value_at(&self, slots: &[u32], rows: &[u32], action: usize) -> f64 {
-        let mut values = rows.iter().map(|&row| self.values[slots[self.weight_index(row, action)] as usize]);
-        let first = values.next().unwrap_or(0.0);
-        values.fold(first, |sum, value| sum + value)
+        sum_values(rows.iter().map(|&row| self.values[slots[self.weight_index(row, action)] as usize]))
     }
 
     /// The sums of `A` values a row, all actions at once, in registers.
     #[inline(always)]
     fn sum_slots<const A: usize>(&mut self, slots: &[u32], rows: &[u32]) {
         let slots = slots.as_chunks::<A>().0;
-        let mut values = rows.iter().map(|&row| slots[row as usize].map(|slot| self.values[slot as usize]));
-        let mut sums = values.next().unwrap_or([0.0; A]);
-        for values in values {
-            for (sum, value) in sums.iter_mut().zip(values) {
-                *sum += value;
-            }
-        }
+        let sums = sum_rows(rows.iter().map(|&row| slots[row as usize].map(|slot| self.values[slot as usize])));
         self.sums.copy_from_slice(&sums);
     }
 }

@@ -2,19 +2,10 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use super::{Next, NextKind, Task, Transition};
+use super::{NextKind, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::features::ActiveRows;
 use crate::numeric::{SimdCode, SimdLevel};
-
-/// What follows a step. Where it fails, the task keeps the error.
-#[derive(Clone, Copy)]
-enum StepOutcome {
-    NonTerminal,
-    Truncated,
-    Terminal,
-    Failed,
-}
 
 /// A task together with the state of its episode, so that the type of the state is hidden.
 struct StatefulTask<T: Task, X> {
@@ -30,9 +21,9 @@ trait DynTask<R, X> {
     fn reset(&mut self) -> Result<R, X>;
     /// Takes a step and writes the active rows, which are unspecified after a terminal state. Returns the reward too: both
     /// are returned in registers, and the rows are written once. A [`Transition`] is copied from one layout to another
-    /// instead, and read across the words in which it was written. With `prepares`, the step must be prepared, and the one
-    /// after it will be.
-    fn step(&mut self, action: usize, prepares: bool, active: &mut R) -> (f64, StepOutcome);
+    /// instead, and read across the words in which it was written. `None` says that the step has failed, and that the task
+    /// keeps the error. With `prepares`, the step must be prepared, and the one after it will be.
+    fn step(&mut self, action: usize, prepares: bool, active: &mut R) -> (f64, Option<NextKind>);
     /// Prepares the next step.
     fn prepare_step(&mut self);
     /// The error of the step that has failed.
@@ -55,20 +46,18 @@ struct StepCode<'a, T: Task, X> {
 }
 
 impl<T: Task, X: From<T::Error>> SimdCode for StepCode<'_, T, X> {
-    type Output = (f64, StepOutcome);
+    type Output = (f64, Option<NextKind>);
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> (f64, StepOutcome) {
+    fn run<const FUSED: bool>(self) -> (f64, Option<NextKind>) {
         if !self.prepares {
             self.task.prepare_step(self.state);
         }
         let stepped = match self.task.step_into(self.state, self.action, self.active) {
-            Ok((reward, NextKind::NonTerminal)) => (reward, StepOutcome::NonTerminal),
-            Ok((reward, NextKind::Truncated)) => (reward, StepOutcome::Truncated),
-            Ok((reward, NextKind::Terminal)) => (reward, StepOutcome::Terminal),
+            Ok((reward, next)) => (reward, Some(next)),
             Err(error) => {
                 *self.error = Some(error.into());
-                (0.0, StepOutcome::Failed)
+                (0.0, None)
             }
         };
         if self.prepares {
@@ -86,7 +75,7 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T, X> {
         Ok(active)
     }
 
-    fn step(&mut self, action: usize, prepares: bool, active: &mut T::Active) -> (f64, StepOutcome) {
+    fn step(&mut self, action: usize, prepares: bool, active: &mut T::Active) -> (f64, Option<NextKind>) {
         let Some(state) = &mut self.state else { unreachable!("a trainer resets a task before it steps it") };
         let step = StepCode { task: &mut self.task, state, error: &mut self.error, action, prepares, active };
         if T::USES_VECTORS { self.level.run(step) } else { SimdLevel::PLAIN.run(step) }
@@ -183,26 +172,17 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
     #[inline(always)]
     fn step_prepared(&mut self, (): &mut (), action: usize) -> Result<Transition<R>, X> {
         let Some(active) = &mut self.active else { unreachable!("a trainer resets a task before it steps it") };
-        let (reward, outcome) = self.task.step(action, self.prepared, active);
-        let next = match outcome {
-            StepOutcome::NonTerminal => Next::NonTerminal(*active),
-            StepOutcome::Truncated => Next::Truncated(*active),
-            StepOutcome::Terminal => Next::Terminal,
-            StepOutcome::Failed => return Err(self.task.take_error()),
-        };
-        Ok(Transition { reward, next })
+        let (reward, next) = self.task.step(action, self.prepared, active);
+        match next {
+            Some(next) => Ok(Transition { reward, next: next.with_rows(*active) }),
+            None => Err(self.task.take_error()),
+        }
     }
 
     #[inline(always)]
     fn step_into(&mut self, (): &mut (), action: usize, active: &mut R) -> Result<(f64, NextKind), X> {
-        let (reward, outcome) = self.task.step(action, self.prepared, active);
-        let next = match outcome {
-            StepOutcome::NonTerminal => NextKind::NonTerminal,
-            StepOutcome::Truncated => NextKind::Truncated,
-            StepOutcome::Terminal => NextKind::Terminal,
-            StepOutcome::Failed => return Err(self.task.take_error()),
-        };
-        Ok((reward, next))
+        let (reward, next) = self.task.step(action, self.prepared, active);
+        next.map(|next| (reward, next)).ok_or_else(|| self.task.take_error())
     }
 
     #[inline(always)]

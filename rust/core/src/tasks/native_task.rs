@@ -1,6 +1,6 @@
 //! Tasks that run without Python.
 
-use super::{Next, NextKind, RngSnapshot, Task, Transition};
+use super::{NextKind, RngSnapshot, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Step};
 use crate::features::{Features, OutOfBounds};
@@ -59,7 +59,7 @@ where
     #[inline(always)]
     fn step(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<F::Active>, OutOfBounds> {
         let step = self.env.step(state.state, action, &mut self.rng);
-        self.finish_step(state, step)
+        self.transition(state, step)
     }
 
     #[expect(clippy::inline_always, reason = "as for `step`")]
@@ -72,7 +72,7 @@ where
     #[inline(always)]
     fn step_prepared(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<F::Active>, OutOfBounds> {
         let step = self.env.step_prepared(state.state, self.prepared, action, &mut self.rng);
-        self.finish_step(state, step)
+        self.transition(state, step)
     }
 
     #[expect(clippy::inline_always, reason = "as for `step`")]
@@ -84,15 +84,8 @@ where
         active: &mut F::Active,
     ) -> Result<(f64, NextKind), OutOfBounds> {
         let step = self.env.step_prepared(state.state, self.prepared, action, &mut self.rng);
-        *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
+        let next = self.move_on(state, &step);
         self.features.write_active_rows(&self.env.observe(&step.state), active)?;
-        let next = if step.terminated {
-            NextKind::Terminal
-        } else if state.elapsed >= self.max_episode_steps {
-            NextKind::Truncated
-        } else {
-            NextKind::NonTerminal
-        };
         Ok((step.reward, next))
     }
 
@@ -118,25 +111,32 @@ where
     E: Env<Action = usize>,
     F: Features<E::Observation>,
 {
-    /// What a step of the environment is for a learner.
+    /// Moves the state on to that after a step of the environment. Returns the kind of what follows.
     #[expect(clippy::inline_always, reason = "as for `step`")]
     #[inline(always)]
-    fn finish_step(
+    fn move_on(&self, state: &mut TimedState<E::State>, step: &Step<E::State>) -> NextKind {
+        *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
+        if step.terminated {
+            NextKind::Terminal
+        } else if state.elapsed >= self.max_episode_steps {
+            NextKind::Truncated
+        } else {
+            NextKind::NonTerminal
+        }
+    }
+
+    /// The transition by a step of the environment, which moves the state on.
+    #[expect(clippy::inline_always, reason = "as for `step`")]
+    #[inline(always)]
+    fn transition(
         &self,
         state: &mut TimedState<E::State>,
         step: Step<E::State>,
     ) -> Result<Transition<F::Active>, OutOfBounds> {
-        *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
+        let next = self.move_on(state, &step);
         // A terminal observation needs no row, but one outside the observation space is an error there too.
         let active = self.features.active_rows(&self.env.observe(&step.state))?;
-        let next = if step.terminated {
-            Next::Terminal
-        } else if state.elapsed >= self.max_episode_steps {
-            Next::Truncated(active)
-        } else {
-            Next::NonTerminal(active)
-        };
-        Ok(Transition { reward: step.reward, next })
+        Ok(Transition { reward: step.reward, next: next.with_rows(active) })
     }
 }
 

@@ -21,7 +21,8 @@ use crate::rng::{BitGenerator, agent_pcg64, environment_rng};
 use crate::spec::{LearningRateSpec, PolicySpec, RunSpec, ScheduleSpec};
 
 /// A run of an update rule `U` with a policy `P` and a learning rate `A`.
-type OneStepRun<E, F, U, P, A, const N: usize> = Trainer<NativeTask<E, F>, TdLearner<U, Agent<N, P, A>>, Pcg64>;
+pub(super) type OneStepRun<E, F, U, P, A, const N: usize> =
+    Trainer<NativeTask<E, F>, TdLearner<U, Agent<N, P, A>>, Pcg64>;
 
 /// How runs of one-step learners advance together, by the types of their update rule and their learning rate.
 pub(crate) struct OneStepBatching<E, F, P, const N: usize>
@@ -128,10 +129,10 @@ pub(super) fn plain_epsilon_greedy(spec: &RunSpec) -> Option<EpsilonGreedy> {
 }
 
 /// Builds the runs of a spec, once the types of the policy, the learning rate and the update rule are chosen.
-struct Builder<E, F, const N: usize> {
-    env: E,
-    features: F,
-    spec: Arc<RunSpec>,
+pub(super) struct Builder<E, F, const N: usize> {
+    pub(super) env: E,
+    pub(super) features: F,
+    pub(super) spec: Arc<RunSpec>,
 }
 
 impl<E, F, const N: usize> Builder<E, F, N>
@@ -156,8 +157,14 @@ where
             _ => self.with_rule(QLearning, policy, schedule, batching.scheduled_q_learning),
         }
     }
+}
 
-    fn with_rule<U, P, A>(
+impl<E, F, const N: usize> Builder<E, F, N>
+where
+    E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
+    F: Features<E::Observation, Active: Send> + Clone + Send + Sync + 'static,
+{
+    pub(super) fn with_rule<U, P, A>(
         self,
         rule: U,
         policy: P,
@@ -165,7 +172,7 @@ where
         batching: Batching<OneStepRun<E, F, U, P, A, N>>,
     ) -> Box<dyn RunFactory>
     where
-        U: UpdateRule<[u32; 1], Agent<N, P, A>> + Clone + Send + Sync + 'static,
+        U: UpdateRule<F::Active, Agent<N, P, A>> + Clone + Send + Sync + 'static,
         P: Policy + Clone + Send + Sync + 'static,
         A: StepSize + Clone + Send + Sync + 'static,
     {

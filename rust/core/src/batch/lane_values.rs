@@ -1,30 +1,8 @@
-//! The values of the active rows of a lane.
+//! What the lanes of a batch read from the values of their states.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use crate::features::LaneRows;
 use crate::numeric::{mask, select};
-
-/// The sums over the active rows, from left to right, as [`QTable::action_values`](crate::QTable::action_values).
-#[inline(always)]
-pub(super) fn row_values<const N: usize>(table: &[[f64; N]], rows: impl LaneRows) -> [f64; N] {
-    let mut rows = rows.indices().map(|row| table[row]);
-    let mut sums = rows.next().unwrap_or([0.0; N]);
-    for values in rows {
-        for (sum, value) in sums.iter_mut().zip(values) {
-            *sum += value;
-        }
-    }
-    sums
-}
-
-/// The sum for one action.
-#[inline(always)]
-pub(super) fn row_value<const N: usize>(table: &[[f64; N]], rows: impl LaneRows, action: usize) -> f64 {
-    let mut values = rows.indices().map(|row| table[row][action]);
-    let first = values.next().unwrap_or(0.0);
-    values.fold(first, |sum, value| sum + value)
-}
 
 /// The value of an action in each lane.
 #[inline(always)]
