@@ -5,6 +5,7 @@
 use std::hint::select_unpredictable;
 
 use super::aligned_vec::{AlignedVec, MAX_PADDING, padding};
+use super::recent_visits::RecentVisits;
 use super::trace_changes::select;
 use super::trace_passes::BLOCK;
 use crate::StopFlag;
@@ -28,6 +29,8 @@ pub(super) struct EligibleWeights {
     pub(super) cutoff: f64,
     /// The index of the weight at each place in use.
     pub(super) weights: Vec<u32>,
+    /// The visits that tell which traces can fall to it.
+    pub(super) visits: RecentVisits,
     /// For each block of places, whether a trace has fallen to the cutoff.
     pub(super) fallen: Vec<bool>,
     /// A buffer for the blocks where one has.
@@ -59,6 +62,7 @@ impl EligibleWeights {
             traces: AlignedVec::with_capacity(places)?,
             smallest: f64::INFINITY,
             cutoff,
+            visits: RecentVisits::new(cutoff)?,
             weights: with_capacity(places)?,
             fallen: with_capacity(places / BLOCK)?,
             fallen_blocks: with_capacity(places / BLOCK)?,
@@ -88,11 +92,6 @@ impl EligibleWeights {
     /// Where the value of each weight is, for [`QTable::values_at`].
     pub(super) fn slots(&self) -> &[u32] {
         &self.slots
-    }
-
-    /// The eligible weight at a place, and its trace.
-    pub(super) fn at(&self, place: usize) -> Option<(u32, f64)> {
-        (place < self.count).then(|| (self.weights[place], self.traces[place]))
     }
 
     /// The place of a weight; `None` if it is not eligible.
@@ -170,6 +169,7 @@ impl EligibleWeights {
 
     /// Gives a weight a trace, while the values are in the table. The weight must not be eligible.
     pub(super) fn insert(&mut self, weight: u32, trace: f64) {
+        self.visits.invalidate();
         let place = self.count;
         if place == self.traces.len() {
             self.traces.resize(place + BLOCK, UNUSED);
@@ -239,16 +239,18 @@ impl EligibleWeights {
         self.count = 0;
         self.moved = false;
         self.smallest = f64::INFINITY;
+        self.visits.clear();
     }
 }
 
-/// The bound and the buffers only say where to look for traces at the cutoff; the slots follow from the weights.
+/// The same traces, whatever their places. The slots follow from the weights; the rest only says where to look for traces at
+/// the cutoff.
 impl PartialEq for EligibleWeights {
     fn eq(&self, other: &Self) -> bool {
-        let parts = |weights: &Self| (weights.count, weights.cutoff, weights.moved);
+        let parts = |weights: &Self| (weights.count, weights.cutoff, weights.moved, weights.num_weights());
+        let mut traces = self.weights.iter().zip(&*self.traces).take(self.count);
         parts(self) == parts(other)
-            && self.slots.len() == other.slots.len()
-            && self.weights[..self.count] == other.weights[..self.count]
-            && self.traces[..self.count] == other.traces[..self.count]
+            && traces
+                .all(|(&weight, &trace)| other.place(weight as usize).is_some_and(|place| other.traces[place] == trace))
     }
 }

@@ -19,6 +19,7 @@ mod policy_gradient;
 mod policy_gradient_learner;
 mod predecessors;
 mod priority_queue;
+mod recent_visits;
 mod stochastic_model;
 mod target_policy;
 mod td_learner;

@@ -17,6 +17,7 @@ impl EligibleWeights {
         weights: impl ExactSizeIterator<Item = usize>,
         change: impl Fn(f64) -> f64,
     ) -> f64 {
+        self.visits.invalidate();
         self.grow(weights.len(), table.storage_mut());
         // Local variables: behind `self` and `table` each weight would load them again.
         let base = self.base;

@@ -2,6 +2,8 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
+use std::hint::select_unpredictable;
+
 use super::eligible_weights::EligibleWeights;
 use super::trace_passes::{self, BLOCK};
 use crate::q_table::QTable;
@@ -28,9 +30,11 @@ impl EligibleWeights {
     #[inline(always)]
     pub(super) fn decay<const N: usize>(&mut self, table: &mut QTable<N>, factor: f64) {
         let blocks = self.count.div_ceil(BLOCK);
+        let falling = self.falling(factor, table.num_actions());
         let traces = &mut self.traces[..blocks * BLOCK];
-        if none_falls(&mut self.smallest, factor, self.cutoff) {
+        if let Some(falling) = falling {
             trace_passes::decay(traces, factor);
+            self.remove_falling(table, falling);
         } else if trace_passes::decay_and_find(traces, factor, self.cutoff, &mut self.fallen[..blocks]) {
             self.remove_fallen(table.storage_mut());
         }
@@ -40,15 +44,55 @@ impl EligibleWeights {
     #[inline(always)]
     pub(super) fn apply_and_decay<const N: usize>(&mut self, table: &mut QTable<N>, step: f64, factor: f64) {
         let blocks = self.count.div_ceil(BLOCK);
+        let falling = self.falling(factor, table.num_actions());
         let values = &mut table.storage_mut()[self.base..][..blocks * BLOCK];
         let traces = &mut self.traces[..blocks * BLOCK];
-        if none_falls(&mut self.smallest, factor, self.cutoff) {
+        if let Some(falling) = falling {
             trace_passes::apply_and_decay(values, traces, step, factor);
+            self.remove_falling(table, falling);
         } else {
             let fallen = &mut self.fallen[..blocks];
             if trace_passes::apply_decay_and_find(values, traces, step, factor, self.cutoff, fallen) {
                 self.remove_fallen(table.storage_mut());
             }
+        }
+    }
+
+    /// Which traces the next decay takes to the cutoff, if the visits tell; `None` if all traces have to be looked at. Before
+    /// the pass, because a processor that waits for the pass to know what to remove cannot begin the next step.
+    #[inline(always)]
+    fn falling(&mut self, factor: f64, num_actions: usize) -> Option<Falling> {
+        let oldest = self.visits.end_step(factor);
+        if none_falls(&mut self.smallest, factor, self.cutoff) {
+            return Some(Falling { visit: 0, rows: 0 });
+        }
+        let Some(visit) = oldest else {
+            self.visits.remember(factor, self.cutoff, &self.traces[..self.count]);
+            return None;
+        };
+        let (rows, action) = self.visits.get(visit);
+        let traces = &*self.traces;
+        let mut falling_rows = 0;
+        for (index, &row) in rows.iter().enumerate() {
+            let slot = self.slots[(row * num_actions as u32 + action) as usize];
+            // No branch, because which weights have been visited since is hard to predict.
+            let place = (slot as usize).wrapping_sub(self.base);
+            let eligible = place < traces.len();
+            let trace = traces[select_unpredictable(eligible, place, 0)] * factor;
+            falling_rows |= u64::from(eligible & (trace.abs() <= self.cutoff)) << index;
+        }
+        Some(Falling { visit, rows: falling_rows })
+    }
+
+    /// Sets these traces to 0, after the decay.
+    #[inline(always)]
+    fn remove_falling<const N: usize>(&mut self, table: &mut QTable<N>, mut falling: Falling) {
+        while falling.rows != 0 {
+            let (rows, action) = self.visits.get(falling.visit);
+            let row = rows[falling.rows.trailing_zeros() as usize];
+            falling.rows &= falling.rows - 1;
+            // A row that hashing made active twice is removed once.
+            self.remove_weight(table, table.weight_index(row, action as usize));
         }
     }
 
@@ -73,6 +117,13 @@ impl EligibleWeights {
             }
         }
     }
+}
+
+/// The traces of a visit that fall to the cutoff.
+struct Falling {
+    visit: usize,
+    /// A bit for each of its rows.
+    rows: u64,
 }
 
 /// Whether a decay leaves all traces above the cutoff. The bound decays with them: the product with a smaller magnitude is

@@ -120,6 +120,7 @@ impl Traces {
     /// Sets the traces of a state-action pair to 1. Returns Q(S, A).
     #[inline(always)]
     fn replace<const N: usize>(&mut self, table: &mut QTable<N>, rows: impl AsRef<[u32]>, action: usize) -> f64 {
+        self.eligible.visits.visit(rows.as_ref(), action as u32);
         let weights = weight_indices(rows.as_ref(), table.num_actions(), action);
         self.eligible.replace(table, weights)
     }
@@ -215,26 +216,39 @@ fn weight_indices(rows: &[u32], num_actions: usize, action: usize) -> impl Exact
     rows.iter().map(move |&row| row * num_actions + action)
 }
 
-/// The active traces in their order.
+/// The active traces in the order of their weights, as their places depend on how they came to be.
 impl Persist for Traces {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         let weights = self.eligible.num_weights();
         let mut count = self.len();
         checkpoint.index(&mut count, weights + 1, "number of traces")?;
-        if checkpoint.is_restoring() {
-            self.eligible.discard();
-        }
-        for place in 0..count {
-            let (mut weight_index, mut trace) = self.eligible.at(place).unwrap_or_default();
-            checkpoint.index_u32(&mut weight_index, weights, "weight of a trace")?;
-            trace.persist(checkpoint)?;
-            if checkpoint.is_restoring() {
-                if self.eligible.place(weight_index as usize).is_some() {
-                    return Err(CheckpointError::Invalid("weight of two traces"));
+        if !checkpoint.is_restoring() {
+            for weight in 0..weights {
+                if self.eligible.place(weight).is_some() {
+                    persist_trace(checkpoint, weights, (weight as u32, self.get(weight)))?;
                 }
-                self.eligible.insert(weight_index, trace);
             }
+            return Ok(());
+        }
+        self.eligible.discard();
+        for _ in 0..count {
+            let (weight, trace) = persist_trace(checkpoint, weights, (0, 0.0))?;
+            if self.eligible.place(weight as usize).is_some() {
+                return Err(CheckpointError::Invalid("weight of two traces"));
+            }
+            self.eligible.insert(weight, trace);
         }
         Ok(())
     }
+}
+
+/// Saves or restores the index of a weight and its trace.
+fn persist_trace(
+    checkpoint: &mut Checkpoint<'_>,
+    weights: usize,
+    (mut weight, mut trace): (u32, f64),
+) -> Result<(u32, f64), CheckpointError> {
+    checkpoint.index_u32(&mut weight, weights, "weight of a trace")?;
+    trace.persist(checkpoint)?;
+    Ok((weight, trace))
 }

@@ -20,7 +20,8 @@ enum Operation {
     ApplyAndDecay(f64, f64),
     Clear,
     CompleteTable,
-    SaveAndRestore,
+    /// Into new traces, or into those in use.
+    SaveAndRestore(bool),
 }
 
 /// The definition: a trace and a value for every weight.
@@ -124,14 +125,18 @@ fn check(operations: Vec<Operation>, cutoff: f64, visits: bool) {
                 traces.complete_table(&mut table);
                 assert_eq!(bits(table.values()), bits(&dense.values));
             }
-            Operation::SaveAndRestore => {
+            Operation::SaveAndRestore(in_use) => {
                 traces.complete_table(&mut table);
                 let mut bytes = Vec::new();
                 traces.persist(&mut Checkpoint::save(&mut bytes)).expect("memory suffices");
-                let mut restored = new_traces();
+                let mut restored = if in_use { traces.clone() } else { new_traces() };
                 let mut checkpoint = Checkpoint::restore(&bytes);
                 restored.persist(&mut checkpoint).expect("the bytes are those of the traces");
                 checkpoint.finish().expect("all bytes are read");
+                assert_eq!(restored, traces);
+                let mut saved_again = Vec::new();
+                restored.persist(&mut Checkpoint::save(&mut saved_again)).expect("memory suffices");
+                assert_eq!(saved_again, bytes);
                 (table, traces) = (QTable::new(table.values().to_vec(), ACTIONS), restored);
             }
         }
@@ -149,12 +154,12 @@ fn check(operations: Vec<Operation>, cutoff: f64, visits: bool) {
     }
 }
 
-fn operations() -> impl Strategy<Value = Vec<Operation>> {
+fn operation() -> impl Strategy<Value = Operation> {
     // Rows can be active twice, as hashing has it.
     let rows = || prop::collection::vec(0..ROWS as u32, 1..20);
     let kind = prop_oneof![Just(TraceKind::Accumulating), Just(TraceKind::Replacing), Just(TraceKind::Clearing)];
     let factor = || prop_oneof![Just(0.9), Just(0.5), Just(0.0), Just(1.0)];
-    let operation = prop_oneof![
+    prop_oneof![
         4 => (kind, rows(), 0..ACTIONS).prop_map(|(kind, rows, action)| Operation::Visit(kind, rows, action)),
         2 => (rows(), 0..ACTIONS, -1.0..1.0).prop_map(|(rows, action, by)| Operation::Increase(rows, action, by)),
         1 => (-1.0..1.0).prop_map(Operation::Subtract),
@@ -163,19 +168,48 @@ fn operations() -> impl Strategy<Value = Vec<Operation>> {
         4 => (-9.0..9.0, factor()).prop_map(|(error, factor)| Operation::ApplyAndDecay(error, factor)),
         1 => Just(Operation::Clear),
         1 => Just(Operation::CompleteTable),
-        1 => Just(Operation::SaveAndRestore),
-    ];
-    prop::collection::vec(operation, 1..60)
+        1 => any::<bool>().prop_map(Operation::SaveAndRestore),
+    ]
+}
+
+/// What a learner with replacing traces does: in each step a visit of as many rows and a decay by the same factor. Seldom
+/// anything else.
+fn steps() -> impl Strategy<Value = Vec<Operation>> {
+    let kind = prop_oneof![Just(TraceKind::Replacing), Just(TraceKind::Clearing)];
+    let factor = prop_oneof![Just(0.9), Just(0.5), Just(-0.7), Just(0.0), Just(1.0), Just(1.1)];
+    (1..6_usize, kind, factor).prop_flat_map(|(num_rows, kind, factor)| {
+        let visit = (prop::collection::vec(0..ROWS as u32, num_rows), 0..ACTIONS)
+            .prop_map(move |(rows, action)| Operation::Visit(kind, rows, action));
+        let update = (-9.0..9.0, any::<bool>()).prop_map(move |(error, together)| {
+            if together {
+                vec![Operation::ApplyAndDecay(error, factor)]
+            } else {
+                vec![Operation::Apply(error), Operation::Decay(factor)]
+            }
+        });
+        let step = (visit, update).prop_map(|(visit, update)| [vec![visit], update].concat());
+        let others = prop::collection::vec(operation(), 1..3);
+        prop::collection::vec(prop_oneof![12 => step, 1 => others], 1..60).prop_map(|steps| steps.concat())
+    })
 }
 
 proptest! {
     #[test]
     fn sparse_traces_do_what_a_trace_for_every_weight_does(
-        operations in operations(),
+        operations in prop::collection::vec(operation(), 1..60),
         cutoff in prop_oneof![Just(0.0), Just(0.2)],
         visits in any::<bool>(),
     ) {
         check(operations, cutoff, visits);
+    }
+
+    #[test]
+    fn traces_that_fall_by_the_time_of_their_visits_do_what_a_trace_for_every_weight_does(
+        steps in steps(),
+        cutoff in prop_oneof![Just(0.2), Just(0.01), Just(0.5), Just(1.0)],
+        visits in any::<bool>(),
+    ) {
+        check(steps, cutoff, visits);
     }
 }
 
