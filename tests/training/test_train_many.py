@@ -96,14 +96,15 @@ def test_runs_of_cart_pole_equal_gymnasiums():
     config=st.fixed_dictionaries(
         {
             **ONE_STEP,
+            "tilings": st.sampled_from([8, 16, 32]),
             "tiles": st.integers(1, 6),
             "hashed_rows": st.sampled_from([None, 64]),
             "max_episode_steps": st.sampled_from([1, 37, 200]),
         }
     ),
 )
-def test_each_run_with_eight_tilings_equals_the_single_run_for_any_config(env, seeds, episodes, config):
-    config = {**config, "discretizer": "tiles", "tilings": 8}
+def test_each_run_with_tilings_equals_the_single_run_for_any_config(env, seeds, episodes, config):
+    config = {**config, "discretizer": "tiles"}
     runs = qtab.train_many(env, seeds, threads=1, tables=True, episodes=episodes, **config)
     assert_same_as_single_runs(runs, env=env, episodes=episodes, **config)
 
@@ -135,6 +136,8 @@ def test_each_run_on_a_table_equals_the_single_run_for_any_config(env, seeds, ep
         (CAR, {"episodes": 20}),
         (CAR, {"episodes": 6, "discretizer": "tiles", "tilings": 8}),
         (POLE, {"episodes": 20, "discretizer": "tiles", "tilings": 8}),
+        (POLE, {"episodes": 10, "discretizer": "tiles", "tilings": 16}),
+        (CAR, {"episodes": 3, "discretizer": "tiles", "tilings": 32}),
     ],
 )
 def test_runs_of_a_batch_equal_gymnasiums(algorithm, env, config):

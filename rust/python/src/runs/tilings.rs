@@ -1,4 +1,4 @@
-//! Runs with tile coding that are compiled for their types: the usual number of tilings, and learners that batches know.
+//! Runs with tile coding that are compiled for their types: the usual numbers of tilings, and learners that batches know.
 
 use std::sync::Arc;
 
@@ -12,13 +12,10 @@ use qtab_core::schedules::LearningRate;
 use super::factory::Batching;
 use super::specialized::{Builder, is_plain, plain_epsilon_greedy};
 use super::{RunFactory, generic_box};
-use crate::spec::{DiscretizerSpec, LearningRateSpec, RunSpec};
+use crate::spec::{DiscretizerSpec, LearningRateSpec, RunSpec, TilesSpec};
 
-/// The usual number of tilings (Sutton & Barto, section 10.1).
-const TILINGS: usize = 8;
-
-/// Runs of `N` actions that train in batches where the spec asks for Q-learning or Sarsa on the usual number of tilings; the
-/// generic ones otherwise.
+/// Runs of `N` actions that train in batches where the spec asks for Q-learning or Sarsa on a usual number of tilings (Sutton &
+/// Barto, section 9.5.4: a power of two that is at least four times the number of dimensions); the generic ones otherwise.
 pub(crate) fn tiled_box<E, const M: usize, const N: usize>(
     env: E,
     spec: &Arc<RunSpec>,
@@ -27,22 +24,38 @@ pub(crate) fn tiled_box<E, const M: usize, const N: usize>(
 where
     E: SimdEnv<M> + Env<Observation = [f32; M], State: Send> + Send + Sync + 'static,
 {
-    if let DiscretizerSpec::Tiles(tiles) = &spec.discretizer
-        && tiles.tilings as usize == TILINGS
-        && let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate
-        && let Some(policy) = plain_epsilon_greedy(spec)
-        && let Some(features) = FixedTileCoding::<f32, M, TILINGS>::new(&tiles.tile_coding())
-        && (record == 0 && !spec.count_visits && is_plain(&env, spec, N))
-    {
-        let learning_rate = LearningRate::scheduled(learning_rate.build(spec.episodes), TILINGS);
-        let builder = Builder::<E, _, N> { env, features, spec: Arc::clone(spec) };
-        match spec.algorithm {
-            AnyAlgorithm::QLearning => {
-                return Ok(builder.with_rule(QLearning, policy, learning_rate, Batching::in_lanes()));
-            }
-            AnyAlgorithm::Sarsa => return Ok(builder.with_rule(Sarsa, policy, learning_rate, Batching::in_lanes())),
-            _ => {}
-        }
+    let runs = match &spec.discretizer {
+        DiscretizerSpec::Tiles(tiles) if record == 0 => match tiles.tilings {
+            8 => of_tilings::<E, M, N, 8>(&env, tiles, spec),
+            16 => of_tilings::<E, M, N, 16>(&env, tiles, spec),
+            32 => of_tilings::<E, M, N, 32>(&env, tiles, spec),
+            _ => None,
+        },
+        _ => None,
+    };
+    runs.map_or_else(|| generic_box(env, spec, record), Ok)
+}
+
+/// Runs with so many tilings; `None` if the spec asks for what is not compiled.
+fn of_tilings<E, const M: usize, const N: usize, const TILINGS: usize>(
+    env: &E,
+    tiles: &TilesSpec,
+    spec: &Arc<RunSpec>,
+) -> Option<Box<dyn RunFactory>>
+where
+    E: SimdEnv<M> + Env<Observation = [f32; M], State: Send> + Send + Sync + 'static,
+{
+    if spec.count_visits || !is_plain(env, spec, N) {
+        return None;
     }
-    generic_box(env, spec, record)
+    let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else { return None };
+    let policy = plain_epsilon_greedy(spec)?;
+    let features = FixedTileCoding::<f32, M, TILINGS>::new(&tiles.tile_coding())?;
+    let learning_rate = LearningRate::scheduled(learning_rate.build(spec.episodes), TILINGS);
+    let builder = Builder::<E, _, N> { env: *env, features, spec: Arc::clone(spec) };
+    match spec.algorithm {
+        AnyAlgorithm::QLearning => Some(builder.with_rule(QLearning, policy, learning_rate, Batching::in_lanes())),
+        AnyAlgorithm::Sarsa => Some(builder.with_rule(Sarsa, policy, learning_rate, Batching::in_lanes())),
+        _ => None,
+    }
 }
