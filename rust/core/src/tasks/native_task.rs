@@ -84,9 +84,9 @@ where
         active: &mut F::Active,
     ) -> Result<(f64, NextKind), OutOfBounds> {
         let step = self.env.step_prepared(state.state, self.prepared, action, &mut self.rng);
-        let next = self.move_on(state, &step);
+        *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
         self.features.write_active_rows(&self.env.observe(&step.state), active)?;
-        Ok((step.reward, next))
+        Ok((step.reward, self.next_kind(&step, state.elapsed)))
     }
 
     fn active_rows(&self, state: &Self::State) -> Result<F::Active, OutOfBounds> {
@@ -111,14 +111,14 @@ where
     E: Env<Action = usize>,
     F: Features<E::Observation>,
 {
-    /// Moves the state on to that after a step of the environment. Returns the kind of what follows.
+    /// The kind of what follows a step of the environment, which was the `elapsed`th of the episode. To be asked after the
+    /// active rows: a branch before them takes a tenth of the time of learning with tile coding.
     #[expect(clippy::inline_always, reason = "as for `step`")]
     #[inline(always)]
-    fn move_on(&self, state: &mut TimedState<E::State>, step: &Step<E::State>) -> NextKind {
-        *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
+    fn next_kind(&self, step: &Step<E::State>, elapsed: u64) -> NextKind {
         if step.terminated {
             NextKind::Terminal
-        } else if state.elapsed >= self.max_episode_steps {
+        } else if elapsed >= self.max_episode_steps {
             NextKind::Truncated
         } else {
             NextKind::NonTerminal
@@ -133,10 +133,10 @@ where
         state: &mut TimedState<E::State>,
         step: Step<E::State>,
     ) -> Result<Transition<F::Active>, OutOfBounds> {
-        let next = self.move_on(state, &step);
+        *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
         // A terminal observation needs no row, but one outside the observation space is an error there too.
         let active = self.features.active_rows(&self.env.observe(&step.state))?;
-        Ok(Transition { reward: step.reward, next: next.with_rows(active) })
+        Ok(Transition { reward: step.reward, next: self.next_kind(&step, state.elapsed).with_rows(active) })
     }
 }
 

@@ -34,7 +34,9 @@ impl EligibleWeights {
         let traces = &mut self.traces[..blocks * BLOCK];
         if let Some(falling) = falling {
             trace_passes::decay(traces, factor);
-            self.remove_falling(table, falling);
+            if falling.rows != 0 {
+                self.remove_falling(table, falling);
+            }
         } else if trace_passes::decay_and_find(traces, factor, self.cutoff, &mut self.fallen[..blocks]) {
             self.remove_fallen(table.storage_mut());
         }
@@ -49,7 +51,9 @@ impl EligibleWeights {
         let traces = &mut self.traces[..blocks * BLOCK];
         if let Some(falling) = falling {
             trace_passes::apply_and_decay(values, traces, step, factor);
-            self.remove_falling(table, falling);
+            if falling.rows != 0 {
+                self.remove_falling(table, falling);
+            }
         } else {
             let fallen = &mut self.fallen[..blocks];
             if trace_passes::apply_decay_and_find(values, traces, step, factor, self.cutoff, fallen) {
@@ -70,22 +74,29 @@ impl EligibleWeights {
             self.visits.remember(factor, self.cutoff, &self.traces[..self.count]);
             return None;
         };
+        Some(Falling { visit, rows: self.falling_rows(visit, factor, num_actions) })
+    }
+
+    /// The active rows of a visit whose traces the next decay takes to the cutoff, a bit each.
+    // Not inlined, nor what removes them: learning without a cutoff, in the same loop, would be slower.
+    #[inline(never)]
+    fn falling_rows(&self, visit: usize, factor: f64, num_actions: usize) -> u64 {
         let (rows, action) = self.visits.get(visit);
         let traces = &*self.traces;
-        let mut falling_rows = 0;
+        let mut falling = 0;
         for (index, &row) in rows.iter().enumerate() {
             let slot = self.slots[(row * num_actions as u32 + action) as usize];
             // No branch, because which weights have been visited since is hard to predict.
             let place = (slot as usize).wrapping_sub(self.base);
             let eligible = place < traces.len();
             let trace = traces[select_unpredictable(eligible, place, 0)] * factor;
-            falling_rows |= u64::from(eligible & (trace.abs() <= self.cutoff)) << index;
+            falling |= u64::from(eligible & (trace.abs() <= self.cutoff)) << index;
         }
-        Some(Falling { visit, rows: falling_rows })
+        falling
     }
 
     /// Sets these traces to 0, after the decay.
-    #[inline(always)]
+    #[inline(never)]
     fn remove_falling<const N: usize>(&mut self, table: &mut QTable<N>, mut falling: Falling) {
         while falling.rows != 0 {
             let (rows, action) = self.visits.get(falling.visit);
