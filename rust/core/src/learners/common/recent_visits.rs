@@ -36,14 +36,14 @@ pub(super) struct RecentVisits {
 }
 
 impl RecentVisits {
-    /// No visits, before all traces become active that fall to this cutoff.
+    /// No visits. Without a cutoff none will be remembered.
     pub(super) fn new(cutoff: f64) -> Result<Self, AllocationError> {
         let visits = with_capacity(if cutoff > 0.0 { CAPACITY } else { 0 })?;
         Ok(Self { visits, num_rows: 0, next: 0, factor: f64::NAN, lifetime: 0, steps: ALWAYS, visited: false })
     }
 
     /// A visit, which sets the traces of a state-action pair to 1.
-    // Rows, as the weights would be computed for a vector register and taken out of it one by one.
+    // It keeps rows: with weights the compiler would compute them in a vector register and take them out of it one by one.
     #[inline(always)]
     pub(super) fn visit(&mut self, rows: &[u32], action: u32) {
         if rows.len() != self.num_rows || self.visited {
@@ -78,7 +78,7 @@ impl RecentVisits {
         self.visited = false;
     }
 
-    /// Ends a step by a decay. Returns the only visit whose traces can fall to the cutoff by it; `None` if others can, too.
+    /// Ends a step by a decay. Returns the only visit whose traces it can take to the cutoff; `None` if that is not known.
     #[inline(always)]
     pub(super) fn end_step(&mut self, factor: f64) -> Option<usize> {
         self.visited = false;
@@ -92,7 +92,7 @@ impl RecentVisits {
         if self.next == self.visits.len() {
             self.next = 0;
         }
-        // The traces from before that have all fallen by now.
+        // The traces from before those steps have all fallen.
         let complete = self.steps >= self.lifetime;
         self.steps += 1;
         complete.then_some(self.next)
@@ -105,8 +105,7 @@ impl RecentVisits {
         (&visit[..self.num_rows], visit[self.num_rows])
     }
 
-    /// Remembers the visits from the next one on, unless it has been found before that there is no room for them. `traces` are
-    /// the active ones.
+    /// Remembers the visits from the next one on, if there is room for them. `traces` are the active ones.
     #[inline(always)]
     pub(super) fn remember(&mut self, factor: f64, cutoff: f64, traces: &[f64]) {
         if self.num_rows > 0 && factor.to_bits() != self.factor.to_bits() {
