@@ -19,7 +19,7 @@ const ALWAYS: usize = usize::MAX / 2;
 #[derive(Clone, Debug)]
 pub(super) struct RecentVisits {
     /// For each of the last visits the active rows and the action; as many visits as a trace lasts steps. Empty if visits are
-    /// not remembered.
+    /// not remembered; without room if there is no cutoff.
     visits: Vec<u32>,
     /// The number of active rows of a visit; 0 if traces do not change by visits that set them to 1.
     num_rows: usize,
@@ -46,6 +46,9 @@ impl RecentVisits {
     // It keeps rows: with weights the compiler would compute them in a vector register and take them out of it one by one.
     #[inline(always)]
     pub(super) fn visit(&mut self, rows: &[u32], action: u32) {
+        if self.visits.capacity() == 0 {
+            return;
+        }
         if rows.len() != self.num_rows || self.visited {
             self.expect_rows(rows.len());
         }
@@ -81,6 +84,9 @@ impl RecentVisits {
     /// Ends a step by a decay. Returns the only visit whose traces it can take to the cutoff; `None` if that is not known.
     #[inline(always)]
     pub(super) fn end_step(&mut self, factor: f64) -> Option<usize> {
+        if self.visits.capacity() == 0 {
+            return None;
+        }
         self.visited = false;
         if factor.to_bits() != self.factor.to_bits() {
             self.visits.clear();
