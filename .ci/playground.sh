@@ -8,7 +8,7 @@ skipped() {
 }
 
 # Whether Rust compiles for WebAssembly here, after rustup was asked for it. (Debian's rustc-web 1.85 with rust-web-src
-# does not: the crates need 1.88.)
+# does not: the crates need 1.89.)
 wasm_target() {
     local folder
     folder=$(rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null) || return 1

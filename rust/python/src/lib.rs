@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 mod _core {
     use pyo3::exceptions::PyImportError;
     use pyo3::types::PyTuple;
-    use qtab_core::numeric::SimdLevel;
+    use qtab_core::simd::{SimdLevel, SimdLimit};
 
     use super::spec::{ALGORITHMS, DISCRETIZERS, SCHEDULES};
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
@@ -51,18 +51,18 @@ mod _core {
     #[pymodule_export]
     const BUILD_PROFILE: &str = if cfg!(debug_assertions) { "debug" } else { "release" };
 
-    /// Adds the words that a spec may use. `QTAB_SIMD=plain` turns wide vector instructions off.
+    /// Adds the words that a spec may use. `QTAB_SIMD=plain` or `=avx2` turns wider vector instructions off.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         let py = module.py();
-        match std::env::var_os("QTAB_SIMD") {
-            Some(level) if level == "plain" => SimdLevel::restrict_to_plain(),
-            Some(level) if !level.is_empty() => {
+        if let Some(name) = std::env::var_os("QTAB_SIMD").filter(|name| !name.is_empty()) {
+            let Some(limit) = name.to_str().and_then(SimdLimit::from_name) else {
+                let name = name.display();
                 let message =
-                    format!("the environment variable QTAB_SIMD must be 'plain' or unset, got '{}'", level.display());
+                    format!("the environment variable QTAB_SIMD must be 'plain', 'avx2' or unset, got '{name}'");
                 return Err(PyImportError::new_err(message));
-            }
-            _ => {}
+            };
+            SimdLevel::restrict(limit);
         }
         module.add("ALGORITHMS", PyTuple::new(py, ALGORITHMS.iter().map(|(name, _)| name))?)?;
         module.add("DISCRETIZERS", PyTuple::new(py, DISCRETIZERS.iter().map(|(name, _)| name))?)?;

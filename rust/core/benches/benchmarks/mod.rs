@@ -2,12 +2,14 @@
 //!
 //! With `QTAB_BENCH=list` a benchmark program prints the names of its benchmarks; with `QTAB_BENCH=NAME` it runs one of them
 //! `QTAB_RUNS` times and prints the number of steps. Otherwise Criterion reads the command line. `.ci/run instructions`
-//! counts the instructions of one run and of two under Valgrind, and so those of a step.
+//! counts the instructions of one run and of two under Valgrind, and so those of a step. `QTAB_SIMD=plain` or `=avx2` turns
+//! wider vector instructions off.
 #![expect(clippy::print_stdout, reason = "names and numbers of steps are the program's output")]
 
 use std::env;
 
 use criterion::{Criterion, Throughput};
+use qtab_core::simd::{SimdLevel, SimdLimit};
 
 pub(crate) enum Benchmarks {
     Timed(Box<Criterion>),
@@ -18,6 +20,9 @@ pub(crate) enum Benchmarks {
 impl Benchmarks {
     /// As the environment variables and the command line ask for.
     pub(crate) fn from_env() -> Self {
+        if let Ok(name) = env::var("QTAB_SIMD") {
+            SimdLevel::restrict(SimdLimit::from_name(&name).expect("QTAB_SIMD is 'plain' or 'avx2'"));
+        }
         match env::var("QTAB_BENCH") {
             Err(_) => Self::Timed(Box::new(Criterion::default().configure_from_args())),
             Ok(name) if name == "list" => Self::Listed,

@@ -6,15 +6,15 @@ use super::episode_lanes::EpisodeLanes;
 use super::learning_steps::Shared;
 use super::{BatchRule, SimdTrainer};
 use crate::envs::{Env, SimdEnv};
-use crate::features::{BatchFeatures, OutOfBounds};
+use crate::features::{BatchFeatures, LaneRows, OutOfBounds};
 use crate::learners::{Agent, UpdateRule};
-use crate::numeric::SimdCode;
 use crate::policies::EpsilonGreedy;
 use crate::random::Pcg64Lanes;
 use crate::schedules::StepSize;
+use crate::simd::{Simd, SimdCode};
 use crate::trainer::Budget;
 
-/// Compatible runs and their budget, compiled for each [`SimdLevel`](crate::numeric::SimdLevel).
+/// Compatible runs and their budget, compiled for each [`SimdLevel`](crate::simd::SimdLevel).
 pub(super) struct BatchLoop<'a, T, const K: usize> {
     pub(super) runs: &'a mut [T; K],
     pub(super) budget: Budget,
@@ -28,25 +28,29 @@ where
     A: StepSize,
     U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
+    /// With AVX-512, the compiler would find the tiles of more than two components by gathers, which take longer.
+    const USES_AVX512: bool = F::ActiveInLane::IS_SINGLE || M <= 2;
+
     /// How many steps the runs must take one by one, because the next step leads one of them to an observation without
     /// a row; usually 0. A step is one unit of work.
     type Output = Result<u64, (usize, OutOfBounds)>;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Self::Output {
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
         let Self { runs, budget } = self;
-        let mut lanes = EpisodeLanes::<_, N, M, K>::begin(runs)?;
-        let mut rngs = Pcg64Lanes::new(runs.each_ref().map(|run| &run.rng));
+        let mut lanes = EpisodeLanes::<S, _, N, M, K>::begin(simd, runs)?;
+        let mut rngs = Pcg64Lanes::new(simd, runs.each_ref().map(|run| &run.rng));
         let mut tables = [const { Vec::new() }; K];
         for (run, table) in runs.iter_mut().zip(&mut tables) {
             run.learner.agent.table.swap_storage(table);
         }
-        let result = advance::<_, _, _, _, N, M, K, FUSED>(runs, &mut tables, &mut lanes, &mut rngs, budget);
+        let result = advance(runs, &mut tables, &mut lanes, &mut rngs, budget);
         lanes.choose_if_missing(&mut rngs);
+        let divergence = lanes.divergence.to_array();
         for (lane, (run, table)) in runs.iter_mut().zip(&mut tables).enumerate() {
             run.learner.agent.table.swap_storage(table);
             run.rng = rngs.get(lane);
-            run.learner.agent.table.check_finite(lanes.divergence[lane]);
+            run.learner.agent.table.check_finite(divergence[lane]);
             run.episode = lanes.get(lane);
         }
         result
@@ -54,14 +58,15 @@ where
 }
 
 #[inline(always)]
-fn advance<E, F, A, U, const N: usize, const M: usize, const K: usize, const FUSED: bool>(
+fn advance<S, E, F, A, U, const N: usize, const M: usize, const K: usize>(
     runs: &mut [SimdTrainer<E, F, N, A, U>; K],
     tables: &mut [Vec<f64>; K],
-    lanes: &mut EpisodeLanes<F::ActiveInLane, N, M, K>,
-    rngs: &mut Pcg64Lanes<K>,
+    lanes: &mut EpisodeLanes<S, F::ActiveInLane, N, M, K>,
+    rngs: &mut Pcg64Lanes<S, K>,
     budget: Budget,
 ) -> Result<u64, (usize, OutOfBounds)>
 where
+    S: Simd,
     E: SimdEnv<M> + Env<Observation = [f32; M]>,
     F: BatchFeatures<M>,
     A: StepSize,
@@ -75,7 +80,7 @@ where
         // An episode takes a step even if its time limit is 0.
         let until_limit = lanes.elapsed.map(|elapsed| max_episode_steps.saturating_sub(elapsed).max(1));
         let most = until_limit.into_iter().fold(steps_left, u64::min);
-        let stop = shared.learning_steps::<A, U, N, M, K, FUSED>(runs, tables, lanes, rngs, most);
+        let stop = shared.learning_steps(runs, tables, lanes, rngs, most);
         steps_left -= stop.steps;
         for elapsed in &mut lanes.elapsed {
             *elapsed += stop.steps;
@@ -84,6 +89,7 @@ where
             return Ok(steps_left);
         }
         let terminal = stop.terminal.unwrap_or([false; K]);
+        let (episode_returns, divergence) = (lanes.episode_return.to_array(), lanes.divergence.to_array());
         let mut result = Ok(());
         let mut running = true;
         for lane in 0..K {
@@ -91,9 +97,9 @@ where
                 continue;
             }
             let run = &mut runs[lane];
-            run.finish_episode(lanes.episode_return[lane], lanes.elapsed[lane].cast_signed(), terminal[lane]);
+            run.finish_episode(episode_returns[lane], lanes.elapsed[lane].cast_signed(), terminal[lane]);
             lanes.active[lane] = false;
-            running &= run.episodes.returns.len() < budget.episodes && !lanes.divergence[lane].is_nan();
+            running &= run.episodes.returns.len() < budget.episodes && !divergence[lane].is_nan();
             if running {
                 if let Err(error) = lanes.reset(lane, run, &tables[lane]) {
                     result = Err((lane, error));

@@ -5,9 +5,9 @@ use super::{BatchRule, SimdTrainer};
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, Features, OutOfBounds};
 use crate::learners::{Agent, UpdateRule};
-use crate::numeric::SimdLevel;
 use crate::policies::EpsilonGreedy;
 use crate::schedules::StepSize;
+use crate::simd::SimdLevel;
 use crate::trainer::Budget;
 use crate::training_error::TrainingError;
 

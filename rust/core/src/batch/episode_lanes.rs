@@ -3,41 +3,47 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::SimdTrainer;
-use crate::envs::{Env, SimdEnv, gather, scatter};
+use super::lane_values::argmax_in_lanes;
+use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, LaneRows, OutOfBounds};
 use crate::learners::{Agent, UpdateRule};
-use crate::numeric::{argmax, argmax_without_branch, cold_path, select};
+use crate::numeric::{argmax, cold_path};
 use crate::policies::EpsilonGreedy;
 use crate::q_table::sum_rows;
 use crate::random::{Pcg64Lanes, explore_from};
 use crate::schedules::StepSize;
+use crate::simd::{F64s, Mask, Simd, U64s};
 use crate::tasks::{Task, TimedState};
 use crate::trainer::EpisodeState;
 
 /// One episode per lane, as a structure of arrays.
-pub(super) struct EpisodeLanes<R, const N: usize, const M: usize, const K: usize> {
+pub(super) struct EpisodeLanes<S: Simd, R, const N: usize, const M: usize, const K: usize> {
+    pub(super) simd: S,
     /// Whether the lane holds an episode.
     pub(super) active: [bool; K],
     /// The components of the states.
-    pub(super) fields: [[f64; K]; M],
+    pub(super) fields: [F64s<S, K>; M],
     pub(super) elapsed: [u64; K],
     /// The active rows of the current states.
     pub(super) rows: [R; K],
     /// Their values, action by action.
     pub(super) values: [[f64; K]; N],
-    pub(super) action: [usize; K],
+    pub(super) action: U64s<S, K>,
     /// Whether `action` is the action to take next, rather than the one taken last.
     pub(super) actions_chosen: bool,
-    pub(super) episode_return: [f64; K],
+    pub(super) episode_return: F64s<S, K>,
     /// What [`explore_from`] returns for `1 - epsilon`.
-    pub(super) explore_from: [u64; K],
+    pub(super) explore_from: U64s<S, K>,
     /// 0, or NaN after an error that was infinite or NaN.
-    pub(super) divergence: [f64; K],
+    pub(super) divergence: F64s<S, K>,
 }
 
-impl<R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<R, N, M, K> {
+impl<S: Simd, R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<S, R, N, M, K> {
     /// Takes over the unfinished episode of each run, or begins one.
-    pub(super) fn begin<E, F, A, U>(runs: &mut [SimdTrainer<E, F, N, A, U>; K]) -> Result<Self, (usize, OutOfBounds)>
+    pub(super) fn begin<E, F, A, U>(
+        simd: S,
+        runs: &mut [SimdTrainer<E, F, N, A, U>; K],
+    ) -> Result<Self, (usize, OutOfBounds)>
     where
         E: SimdEnv<M> + Env<Observation = [f32; M]>,
         F: BatchFeatures<M, ActiveInLane = R, Active = R::Active>,
@@ -51,22 +57,25 @@ impl<R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<R
                 run.rng = rng;
             }
         }
+        let (zero, none) = (F64s::splat(simd, 0.0), U64s::splat(simd, 0));
         let mut lanes = Self {
+            simd,
             active: [false; K],
-            fields: [[0.0; K]; M],
+            fields: [zero; M],
             elapsed: [0; K],
             rows: [R::default(); K],
             values: [[0.0; K]; N],
-            action: [0; K],
+            action: none,
             actions_chosen: true,
-            episode_return: [0.0; K],
-            explore_from: [0; K],
-            divergence: [0.0; K],
+            episode_return: zero,
+            explore_from: none,
+            divergence: zero,
         };
         for (lane, run) in runs.iter_mut().enumerate() {
             if let Some(EpisodeState { state, active, action, episode_return, .. }) = run.episode.take() {
                 lanes.set(lane, state, active, run, run.learner.agent.table.values());
-                (lanes.action[lane], lanes.episode_return[lane]) = (action, episode_return);
+                lanes.action.set(lane, action as u64);
+                lanes.episode_return.set(lane, episode_return);
             }
         }
         Ok(lanes)
@@ -85,7 +94,7 @@ impl<R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<R
     {
         let (state, active) = run.task.reset()?;
         self.set(lane, state, active, run, table);
-        self.episode_return[lane] = 0.0;
+        self.episode_return.set(lane, 0.0);
         Ok(())
     }
 
@@ -101,35 +110,40 @@ impl<R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<R
         F: BatchFeatures<M, ActiveInLane = R, Active = R::Active>,
     {
         self.active[lane] = true;
-        scatter(&mut self.fields, lane, state);
+        for (field, number) in self.fields.iter_mut().zip(state.into()) {
+            field.set(lane, number);
+        }
         self.elapsed[lane] = elapsed;
         self.rows[lane] = R::new(active);
         let values = sum_rows(self.rows[lane].indices().map(|row| table.as_chunks::<N>().0[row]));
         for (lanes, value) in self.values.iter_mut().zip(values) {
             lanes[lane] = value;
         }
-        self.explore_from[lane] = explore_from(1.0 - run.learner.agent.policy.epsilon());
+        self.explore_from.set(lane, explore_from(1.0 - run.learner.agent.policy.epsilon()));
+    }
+
+    /// The values of the active rows, action by action.
+    #[inline(always)]
+    pub(super) fn values(&self) -> [F64s<S, K>; N] {
+        self.values.map(|values| F64s::new(self.simd, values))
     }
 
     /// Chooses the next action of every lane.
     #[inline(always)]
-    pub(super) fn choose(&mut self, rngs: &mut Pcg64Lanes<K>) {
-        let decisions = rngs.explore(&self.explore_from, N as u32);
-        for lane in 0..K {
-            let greedy = argmax_without_branch(self.values.each_ref().map(|values| values[lane]));
-            self.action[lane] = select(decisions.explores[lane], decisions.random[lane] as u64, greedy as u64) as usize;
-        }
+    pub(super) fn choose(&mut self, rngs: &mut Pcg64Lanes<S, K>) {
+        let decisions = rngs.explore(self.simd, self.explore_from, N as u32);
+        self.action = decisions.explores.select(decisions.random, argmax_in_lanes(self.simd, &self.values()));
         self.actions_chosen = true;
     }
 
     /// Chooses the next action of every lane whose state is not terminal. The others draw nothing.
     #[inline(always)]
-    pub(super) fn choose_unless(&mut self, terminal: &[bool; K], rngs: &mut Pcg64Lanes<K>) {
-        let any_terminal = *terminal != [false; K];
-        let before = any_terminal.then(|| rngs.clone());
+    pub(super) fn choose_unless(&mut self, terminal: Mask<S, K>, rngs: &mut Pcg64Lanes<S, K>) {
+        let before = terminal.any().then(|| rngs.clone());
         self.choose(rngs);
         if let Some(before) = before {
             cold_path();
+            let terminal = terminal.to_array();
             for lane in (0..K).filter(|&lane| terminal[lane]) {
                 rngs.set(lane, &before.get(lane));
             }
@@ -137,13 +151,14 @@ impl<R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<R
     }
 
     /// Chooses the next action of a lane.
-    pub(super) fn choose_one(&mut self, lane: usize, rngs: &mut Pcg64Lanes<K>) {
-        let random = rngs.explore_one(lane, self.explore_from[lane], N as u32);
-        self.action[lane] = random.unwrap_or_else(|| argmax(&self.values.map(|values| values[lane])));
+    pub(super) fn choose_one(&mut self, lane: usize, rngs: &mut Pcg64Lanes<S, K>) {
+        let random = rngs.explore_one(lane, self.explore_from.to_array()[lane], N as u32);
+        let action = random.unwrap_or_else(|| argmax(&self.values.map(|values| values[lane])));
+        self.action.set(lane, action as u64);
     }
 
     /// Chooses the next actions of the active lanes, unless they are chosen.
-    pub(super) fn choose_if_missing(&mut self, rngs: &mut Pcg64Lanes<K>) {
+    pub(super) fn choose_if_missing(&mut self, rngs: &mut Pcg64Lanes<S, K>) {
         if self.actions_chosen {
             return;
         }
@@ -155,12 +170,13 @@ impl<R: LaneRows, const N: usize, const M: usize, const K: usize> EpisodeLanes<R
     }
 
     /// The episode of a lane.
-    pub(super) fn get<S: From<[f64; M]>>(&self, lane: usize) -> Option<EpisodeState<TimedState<S>, R::Active>> {
+    pub(super) fn get<T: From<[f64; M]>>(&self, lane: usize) -> Option<EpisodeState<TimedState<T>, R::Active>> {
+        let state = self.fields.map(|field| field.to_array()[lane]).into();
         self.active[lane].then(|| EpisodeState {
-            state: TimedState { state: gather(&self.fields, lane), elapsed: self.elapsed[lane] },
+            state: TimedState { state, elapsed: self.elapsed[lane] },
             active: self.rows[lane].active(),
-            action: self.action[lane],
-            episode_return: self.episode_return[lane],
+            action: self.action.to_array()[lane] as usize,
+            episode_return: self.episode_return.to_array()[lane],
             length: self.elapsed[lane].cast_signed(),
             unfinished: None,
         })

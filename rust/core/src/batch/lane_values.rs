@@ -2,30 +2,59 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use crate::numeric::{mask, select};
+use crate::features::LaneRows;
+use crate::q_table::sum_rows;
+use crate::simd::{F64s, Simd, U64s};
+
+/// The values of the active rows of each lane, action by action.
+#[inline(always)]
+pub(super) fn values_of_rows<S: Simd, R: LaneRows, const N: usize, const K: usize>(
+    simd: S,
+    tables: &[&mut [[f64; N]]; K],
+    rows: &[R; K],
+) -> [F64s<S, K>; N] {
+    if R::IS_SINGLE {
+        return F64s::columns(simd, std::array::from_fn(|lane| &tables[lane][rows[lane].first()]));
+    }
+    let mut values = [[0.0; K]; N];
+    for lane in 0..K {
+        let sums = sum_rows(rows[lane].indices().map(|row| tables[lane][row]));
+        for (values, sum) in values.iter_mut().zip(sums) {
+            values[lane] = sum;
+        }
+    }
+    values.map(|values| F64s::new(simd, values))
+}
 
 /// The value of an action in each lane.
 #[inline(always)]
-pub(super) fn values_of<const N: usize, const K: usize>(values: &[[f64; K]; N], actions: &[usize; K]) -> [f64; K] {
+pub(super) fn values_of<S: Simd, const N: usize, const K: usize>(
+    values: &[F64s<S, K>; N],
+    actions: U64s<S, K>,
+) -> F64s<S, K> {
     let mut chosen = values[0];
-    for (action, values) in values.iter().enumerate().skip(1) {
-        for lane in 0..K {
-            // A select between f64 would be an unpredictable branch where there are no vector registers.
-            let is_chosen = mask(actions[lane] == action);
-            chosen[lane] = f64::from_bits(select(is_chosen, values[lane].to_bits(), chosen[lane].to_bits()));
-        }
+    for (action, &values) in values.iter().enumerate().skip(1) {
+        chosen = actions.equal(action as u64).select(values, chosen);
     }
     chosen
 }
 
 /// The largest value in each lane.
 #[inline(always)]
-pub(super) fn largest<const N: usize, const K: usize>(values: &[[f64; K]; N]) -> [f64; K] {
-    let mut largest = values[0];
-    for values in &values[1..] {
-        for lane in 0..K {
-            largest[lane] = if values[lane] > largest[lane] { values[lane] } else { largest[lane] };
-        }
+pub(super) fn largest<S: Simd, const N: usize, const K: usize>(values: &[F64s<S, K>; N]) -> F64s<S, K> {
+    values[1..].iter().fold(values[0], |largest, values| values.larger(largest))
+}
+
+/// The index of the largest value in each lane, the first one of several: `np.argmax`.
+#[inline(always)]
+pub(super) fn argmax_in_lanes<S: Simd, const N: usize, const K: usize>(
+    simd: S,
+    values: &[F64s<S, K>; N],
+) -> U64s<S, K> {
+    let (mut best, mut largest) = (U64s::splat(simd, 0), values[0]);
+    for (index, &values) in values.iter().enumerate().skip(1) {
+        best = values.greater(largest).select(U64s::splat(simd, index as u64), best);
+        largest = values.larger(largest);
     }
-    largest
+    best
 }

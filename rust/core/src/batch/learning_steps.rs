@@ -3,15 +3,16 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::episode_lanes::EpisodeLanes;
-use super::lane_values::{largest, values_of};
+use super::lane_values::{largest, values_of, values_of_rows};
 use super::updates::{update_rows, update_single_rows};
 use super::{BatchRule, SimdTrainer};
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, LaneRows};
 use crate::numeric::cold_path;
-use crate::q_table::{TerminalUpdate, sum_rows};
+use crate::q_table::TerminalUpdate;
 use crate::random::Pcg64Lanes;
 use crate::schedules::StepSize;
+use crate::simd::{F64s, Simd};
 
 /// What all runs of a batch share.
 pub(super) struct Shared<E, F> {
@@ -35,94 +36,75 @@ impl<E, F> Shared<E, F> {
     /// Chooses an action, takes a step and learns from it, in every lane, up to `most` times. Stops early after a terminal
     /// state, or before an observation without a row. All is computed in lanes but for reading and writing the tables.
     #[inline(always)]
-    pub(super) fn learning_steps<A, U, const N: usize, const M: usize, const K: usize, const FUSED: bool>(
+    pub(super) fn learning_steps<S, A, U, const N: usize, const M: usize, const K: usize>(
         &self,
         runs: &[SimdTrainer<E, F, N, A, U>; K],
         tables: &mut [Vec<f64>; K],
-        lanes: &mut EpisodeLanes<F::ActiveInLane, N, M, K>,
-        rngs: &mut Pcg64Lanes<K>,
+        lanes: &mut EpisodeLanes<S, F::ActiveInLane, N, M, K>,
+        rngs: &mut Pcg64Lanes<S, K>,
         most: u64,
     ) -> Stop<K>
     where
+        S: Simd,
         E: SimdEnv<M> + Env<Observation = [f32; M]>,
         F: BatchFeatures<M>,
         A: StepSize,
         U: BatchRule,
     {
+        let simd = lanes.simd;
         let mut tables = tables.each_mut().map(|values| values.as_chunks_mut::<N>().0);
         let step_sizes = runs.each_ref().map(|run| run.learner.agent.learning_rate.uniform().unwrap_or_default());
+        let step_sizes = F64s::new(simd, step_sizes);
+        let [reward, terminal_reward] = [false, true].map(|terminal| F64s::splat(simd, self.env.reward(terminal)));
         for steps in 0..most {
             if !lanes.actions_chosen {
                 lanes.choose(rngs);
             }
             let before = lanes.fields;
-            let terminal = self.env.step_soa::<FUSED, K>(&mut lanes.fields, &lanes.action);
-            let observations = lanes.fields.map(|field| field.map(|number| number as f32));
-            let Some(next_rows) = self.features.active_rows_batch(&observations) else {
+            let terminal = self.env.step_batch(simd, &mut lanes.fields, lanes.action);
+            let observations = lanes.fields.map(F64s::to_f32s);
+            let Some(next_rows) = self.features.active_rows_batch(simd, observations) else {
                 cold_path();
                 lanes.fields = before;
                 return Stop { steps, terminal: None, out_of_bounds: true };
             };
-            let any_terminal = terminal != [false; K];
-            let mut rewards = [self.env.reward(false); K];
-            if any_terminal {
-                cold_path();
-                rewards = terminal.map(|terminal| self.env.reward(terminal));
-            }
-            lanes.actions_chosen = false;
-            let mut next_values = [[0.0; K]; N];
-            for lane in 0..K {
-                let sums = sum_rows(next_rows[lane].indices().map(|row| tables[lane][row]));
-                for (values, value) in next_values.iter_mut().zip(sums) {
-                    values[lane] = value;
-                }
-            }
-            let value = values_of(&lanes.values, &lanes.action);
+            let any_terminal = terminal.any();
+            let rewards = terminal.select(terminal_reward, reward);
+            let next_values = values_of_rows(simd, &tables, &next_rows);
             let (rows, actions) = (lanes.rows, lanes.action);
-            (lanes.rows, lanes.values) = (next_rows, next_values);
+            let value = values_of(&lanes.values(), actions);
+            lanes.rows = next_rows;
+            lanes.actions_chosen = false;
             let next_value = if U::ON_POLICY {
-                lanes.choose_unless(&terminal, rngs);
-                values_of(&next_values, &lanes.action)
+                lanes.values = next_values.map(F64s::to_array);
+                lanes.choose_unless(terminal, rngs);
+                values_of(&next_values, lanes.action)
             } else {
                 largest(&next_values)
             };
-            let mut errors = [0.0; K];
-            for lane in 0..K {
-                errors[lane] = rewards[lane] + self.discount * next_value[lane] - value[lane];
-            }
+            let mut errors = rewards + next_value * self.discount - value;
             if any_terminal {
                 cold_path();
-                for lane in (0..K).filter(|&lane| terminal[lane]) {
-                    errors[lane] = rewards[lane] - value[lane];
-                }
+                errors = terminal.select(rewards - value, errors);
             }
-            if F::ActiveInLane::IS_SINGLE {
-                let mut updated = [0.0; K];
-                for lane in 0..K {
-                    updated[lane] = value[lane] + step_sizes[lane] * errors[lane];
-                }
+            let changes = errors * step_sizes;
+            let both_rows = [&rows, &next_rows];
+            lanes.values = if F::ActiveInLane::IS_SINGLE {
+                let mut updated = value + changes;
                 if any_terminal && self.terminal_update == TerminalUpdate::Assign {
                     cold_path();
-                    for lane in (0..K).filter(|&lane| terminal[lane]) {
-                        updated[lane] = rewards[lane];
-                    }
+                    updated = terminal.select(rewards, updated);
                 }
-                update_single_rows(&mut tables, &rows, &actions, &updated, lanes);
+                update_single_rows(simd, &mut tables, both_rows, actions, updated, next_values)
             } else {
-                let mut changes = [0.0; K];
-                for lane in 0..K {
-                    changes[lane] = step_sizes[lane] * errors[lane];
-                    // As `QTable::check_finite`.
-                    lanes.divergence[lane] += errors[lane] * 0.0;
-                }
-                update_rows(&mut tables, &rows, &actions, &changes, lanes);
-            }
-            for (episode_return, reward) in lanes.episode_return.iter_mut().zip(rewards) {
-                *episode_return += reward;
-            }
+                // As `QTable::check_finite`.
+                lanes.divergence = lanes.divergence + errors * 0.0;
+                update_rows(&mut tables, both_rows, actions, changes, next_values)
+            };
+            lanes.episode_return = lanes.episode_return + rewards;
             if any_terminal {
                 cold_path();
-                return Stop { steps: steps + 1, terminal: Some(terminal), out_of_bounds: false };
+                return Stop { steps: steps + 1, terminal: Some(terminal.to_array()), out_of_bounds: false };
             }
         }
         Stop { steps: most, terminal: None, out_of_bounds: false }

@@ -19,4 +19,4 @@ pub use batch_rule::BatchRule;
 pub use batched_run::BatchedRun;
 pub use simd_trainer::SimdTrainer;
 
-pub use crate::numeric::LANES;
+pub use crate::simd::LANES;

@@ -1,49 +1,53 @@
-//! The updates of the tables of a batch, and of the values that its lanes hold.
+//! The updates of the tables of a batch, and of the values of the rows that come next.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use super::episode_lanes::EpisodeLanes;
 use crate::features::LaneRows;
 use crate::q_table::sum_values;
+use crate::simd::{F64s, Simd, U64s};
 
-/// Writes the value of an action in a row of each lane. `lanes` holds the rows that come next, and their values.
+/// Writes the value of an action in a row of each lane. Returns the values of the next rows after that.
 #[inline(always)]
-pub(super) fn update_single_rows<R: LaneRows, const N: usize, const M: usize, const K: usize>(
+pub(super) fn update_single_rows<S: Simd, R: LaneRows, const N: usize, const K: usize>(
+    simd: S,
     tables: &mut [&mut [[f64; N]]; K],
-    rows: &[R; K],
-    actions: &[usize; K],
-    updated: &[f64; K],
-    lanes: &mut EpisodeLanes<R, N, M, K>,
-) {
-    let weights: [usize; K] = std::array::from_fn(|lane| rows[lane].first() * N + actions[lane]);
+    [rows, next_rows]: [&[R; K]; 2],
+    actions: U64s<S, K>,
+    updated: F64s<S, K>,
+    mut next_values: [F64s<S, K>; N],
+) -> [[f64; K]; N] {
+    let weights = |rows: &[R; K]| U64s::new(simd, rows.map(|rows| rows.first() as u64)).mul_lower(N as u64);
+    let weight = weights(rows) + actions;
+    let (indices, numbers) = (weight.to_array(), updated.to_array());
     for lane in 0..K {
-        tables[lane].as_flattened_mut()[weights[lane]] = updated[lane];
+        tables[lane].as_flattened_mut()[indices[lane] as usize] = numbers[lane];
     }
-    for (action, values) in lanes.values.iter_mut().enumerate() {
-        for lane in 0..K {
-            // The update can have changed the next row.
-            let is_updated = lanes.rows[lane].first() * N + action == weights[lane];
-            values[lane] = if is_updated { updated[lane] } else { values[lane] };
-        }
+    let next_weights = weights(next_rows);
+    for (action, values) in next_values.iter_mut().enumerate() {
+        // The update can have changed the next row.
+        *values = (next_weights + action as u64).equal(weight).select(updated, *values);
     }
+    next_values.map(F64s::to_array)
 }
 
-/// Adds a number to the values of an action in the rows of each lane. `lanes` holds the rows that come next, and their
-/// values.
+/// Adds a number to the values of an action in the rows of each lane. Returns the values of the next rows after that.
 #[inline(always)]
-pub(super) fn update_rows<R: LaneRows, const N: usize, const M: usize, const K: usize>(
+pub(super) fn update_rows<S: Simd, R: LaneRows, const N: usize, const K: usize>(
     tables: &mut [&mut [[f64; N]]; K],
-    rows: &[R; K],
-    actions: &[usize; K],
-    changes: &[f64; K],
-    lanes: &mut EpisodeLanes<R, N, M, K>,
-) {
+    [rows, next_rows]: [&[R; K]; 2],
+    actions: U64s<S, K>,
+    changes: F64s<S, K>,
+    next_values: [F64s<S, K>; N],
+) -> [[f64; K]; N] {
+    let (actions, changes) = (actions.to_array(), changes.to_array());
+    let mut values = next_values.map(F64s::to_array);
     for lane in 0..K {
-        let (action, table) = (actions[lane], &mut *tables[lane]);
+        let (action, table) = (actions[lane] as usize, &mut *tables[lane]);
         for row in rows[lane].indices() {
             table[row][action] += changes[lane];
         }
         // Most rows stay active, so that the next value of the same action has nearly always changed.
-        lanes.values[action][lane] = sum_values(lanes.rows[lane].indices().map(|row| table[row][action]));
+        values[action][lane] = sum_values(next_rows[lane].indices().map(|row| table[row][action]));
     }
+    values
 }

@@ -3,23 +3,23 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::Env;
+use crate::simd::{F64s, Mask, Simd, U64s};
 
 /// An environment whose deterministic dynamics can be computed in SIMD lanes. The state is `M` numbers, and the
 /// observation is the state in float32.
 pub trait SimdEnv<const M: usize>:
     Copy + PartialEq + Env<Action = usize, State: From<[f64; M]> + Into<[f64; M]>, Observation = [f32; M]>
 {
-    /// Whether `step_soa` has the results of `step` with these parameters on this platform.
+    /// Whether `step_batch` has the results of `step` with these parameters on this platform.
     fn is_exact(&self) -> bool;
 
-    /// One step in `K` lanes, in place. `fields` holds the states as a structure of arrays: one array per component.
-    /// Returns whether each next state is terminal. `FUSED` is that of the [`SimdLevel`](crate::numeric::SimdLevel) which
-    /// the code is compiled for.
-    fn step_soa<const FUSED: bool, const K: usize>(
+    /// One step in `K` lanes, in place. Returns whether each next state is terminal.
+    fn step_batch<S: Simd, const K: usize>(
         &self,
-        fields: &mut [[f64; K]; M],
-        actions: &[usize; K],
-    ) -> [bool; K];
+        simd: S,
+        fields: &mut [F64s<S, K>; M],
+        actions: U64s<S, K>,
+    ) -> Mask<S, K>;
 
     /// The reward of a step, which depends only on whether the next state is terminal.
     fn reward(&self, terminated: bool) -> f64;

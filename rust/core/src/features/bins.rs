@@ -4,6 +4,7 @@ use std::marker::PhantomData;
 
 use super::{BatchFeatures, Features, OutOfBounds};
 use crate::numeric::Float;
+use crate::simd::{F32s, F64s, Mask, Simd, U64s};
 
 /// Up to this many edges are compared one by one, without a branch. More are binary searched.
 const LINEAR_SCAN_MAX: usize = 64;
@@ -44,19 +45,16 @@ impl Edges {
         self.0.partition_point(|&edge| edge <= value) as u32
     }
 
-    /// [`bin`](Self::bin) of `K` values. Edge by edge, because that loop compiles to SIMD code.
+    /// [`bin`](Self::bin) of the values in each lane.
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn bin_batch<const K: usize>(&self, values: &[f32; K]) -> [usize; K] {
-        let values = values.map(f64::from);
+    fn bin_in_lanes<S: Simd, const K: usize>(&self, simd: S, values: F64s<S, K>) -> U64s<S, K> {
         if self.0.len() > LINEAR_SCAN_MAX {
-            return values.map(|value| self.bin(value) as usize);
+            return U64s::new(simd, values.to_array().map(|value| self.bin(value).into()));
         }
-        let mut bins = [0; K];
+        let mut bins = U64s::splat(simd, 0);
         for &edge in &self.0 {
-            for (bin, &value) in bins.iter_mut().zip(&values) {
-                *bin += usize::from(edge <= value);
-            }
+            bins = bins.incremented_where(values.greater_or_equal(edge));
         }
         bins
     }
@@ -103,17 +101,17 @@ impl<const M: usize> BatchFeatures<M> for Bins<f32, [Edges; M]> {
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {
-        let mut rows = [0; K];
-        let mut nan = false;
+    fn active_rows_batch<S: Simd, const K: usize>(&self, simd: S, observations: [F32s<S, K>; M]) -> Option<[usize; K]> {
+        let mut rows = U64s::splat(simd, 0);
+        let mut numbers = Mask::new(simd, [true; K]);
         for (edges, values) in self.axes.iter().zip(observations) {
-            let bins = edges.bin_batch(values);
-            for lane in 0..K {
-                rows[lane] = rows[lane] * edges.bins() + bins[lane];
-                nan |= values[lane].is_nan();
-            }
+            let values = values.to_f64s();
+            // Rows are below 2³².
+            rows = rows.mul_lower(edges.bins() as u64) + edges.bin_in_lanes(simd, values);
+            // NaN does not equal itself.
+            numbers = numbers & values.equal(values);
         }
-        (!nan).then_some(rows)
+        (!(!numbers).any()).then(|| rows.to_array().map(|row| row as usize))
     }
 }
 

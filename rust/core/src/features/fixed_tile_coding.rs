@@ -7,6 +7,7 @@ use std::array::TryFromSliceError;
 use super::tile_coding::TiledAxis;
 use super::{BatchFeatures, Features, OutOfBounds, TileCoding};
 use crate::numeric::Float;
+use crate::simd::{F32s, Simd};
 
 /// The active tiles, one per tiling. Their alignment is that of the vector registers in which they are computed and copied:
 /// numbers that are read across the words in which they were written would stall the processor.
@@ -158,7 +159,12 @@ impl<const D: usize, const N: usize> BatchFeatures<D> for FixedTileCoding<f32, D
     type ActiveInLane = FixedTiles<N>;
 
     #[inline(always)]
-    fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; D]) -> Option<[FixedTiles<N>; K]> {
+    fn active_rows_batch<S: Simd, const K: usize>(
+        &self,
+        _simd: S,
+        observations: [F32s<S, K>; D],
+    ) -> Option<[FixedTiles<N>; K]> {
+        let observations = observations.map(F32s::to_array);
         let mut rows = [FixedTiles([0; N]); K];
         let mut nan = false;
         for (lane, rows) in rows.iter_mut().enumerate() {

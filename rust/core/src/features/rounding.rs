@@ -4,6 +4,7 @@ use std::marker::PhantomData;
 
 use super::{BatchFeatures, Features, OutOfBounds};
 use crate::numeric::Float;
+use crate::simd::{F32s, Mask, Simd, U64s};
 
 /// Adding this to a number below 2⁵¹ in magnitude rounds it, half to even, and leaves the integer in the low bits of the
 /// sum. That is faster than a call of `rint` and a conversion.
@@ -95,19 +96,18 @@ impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn active_rows_batch<const K: usize>(&self, observations: &[[f32; K]; M]) -> Option<[usize; K]> {
-        let mut rows = [0_u64; K];
-        let mut inside = true;
+    fn active_rows_batch<S: Simd, const K: usize>(&self, simd: S, observations: [F32s<S, K>; M]) -> Option<[usize; K]> {
+        let mut rows = U64s::splat(simd, 0);
+        let mut outside = Mask::new(simd, [false; K]);
         for (axis, values) in self.axes.iter().zip(observations) {
             let size = u64::from(axis.size);
-            for (row, &value) in rows.iter_mut().zip(values) {
-                let cell = axis.rounded(value);
-                inside &= cell < size;
-                // Rows are below 2³², whose product is one instruction. Out of bounds, the cell may be any integer.
-                *row = ((*row & 0xffff_ffff) * size).wrapping_add(cell);
-            }
+            let sums = (values - axis.low).to_f64s() * axis.scale + ROUND_TO_INTEGER;
+            let cells = sums.to_bits() - ROUND_TO_INTEGER.to_bits();
+            outside = outside | !cells.less(size);
+            // Rows are below 2³². Out of bounds, the cell may be any integer.
+            rows = rows.mul_lower(size) + cells;
         }
-        inside.then_some(rows.map(|row| row as usize))
+        (!outside.any()).then(|| rows.to_array().map(|row| row as usize))
     }
 }
 

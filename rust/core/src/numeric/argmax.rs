@@ -21,19 +21,6 @@ pub(crate) fn argmax(values: &[f64]) -> usize {
     best.0
 }
 
-/// The same for code in SIMD lanes, where branches would keep it out of vector registers.
-#[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-#[inline(always)]
-pub(crate) fn argmax_without_branch<const N: usize>(values: [f64; N]) -> usize {
-    let (mut best, mut largest) = (0, values[0]);
-    for (index, value) in values.into_iter().enumerate().skip(1) {
-        let larger = value > largest;
-        best = if larger { index } else { best };
-        largest = if larger { value } else { largest };
-    }
-    best
-}
-
 /// The maximum: `np.max`.
 #[inline]
 pub(crate) fn maximum(values: &[f64]) -> f64 {
@@ -48,8 +35,6 @@ mod tests {
     fn the_first_of_equal_maxima_wins() {
         assert_eq!(argmax(&[1.0, 3.0, 3.0]), 1);
         assert_eq!(argmax(&[0.0, -0.0]), 0);
-        assert_eq!(argmax_without_branch([1.0, 3.0, 3.0]), 1);
-        assert_eq!(argmax_without_branch([0.0, -0.0]), 0);
         assert_eq!(maximum(&[-2.0, -1.0, -3.0]), -1.0);
     }
 }

@@ -22,6 +22,8 @@
 
 use std::sync::OnceLock;
 
+use crate::simd::{F64s, Portable, Simd};
+
 /// Larger angles use the platform's functions.
 const MAX_ANGLE: f64 = 0.25;
 /// And so do smaller ones, whose terms may underflow, and whose zeros have a sign.
@@ -37,61 +39,51 @@ const TABLE_ANGLE: f64 = 0.125;
 /// 2⁻⁶⁰
 const TABLE_ERROR: f64 = TWO_POW_MINUS_53 / 128.0;
 
-/// The platform's cosine and sine of each angle, to the bit. `FUSED` is that of the [`SimdLevel`](super::SimdLevel) which
-/// the code is compiled for; without, the platform computes them all.
+/// The platform's cosine and sine of each angle, to the bit. Without fused multiply-adds, the platform computes them all.
 #[inline(always)]
-pub(crate) fn cos_sin<const FUSED: bool, const K: usize>(angles: &[f64; K]) -> [[f64; K]; 2] {
-    if !FUSED || !is_exact() {
-        return [angles.map(f64::cos), angles.map(f64::sin)];
+pub(crate) fn cos_sin<S: Simd, const K: usize>(simd: S, angles: F64s<S, K>) -> [F64s<S, K>; 2] {
+    if !S::HAS_FMA || !is_exact() {
+        let angles = angles.to_array();
+        return [angles.map(f64::cos), angles.map(f64::sin)].map(|numbers| F64s::new(simd, numbers));
     }
-    let ([mut cosines, mut sines], [largest_cosines, largest_sines]) = bounds(angles);
-    let mut uncertain = [0; K];
-    for lane in 0..K {
-        // Between the ends, give or take a rounding. NaN is not in the range.
-        let in_range = (angles[lane].abs() - 0.5 * MAX_ANGLE).abs() <= 0.5 * MAX_ANGLE - MIN_ANGLE;
-        uncertain[lane] = (cosines[lane].to_bits() ^ largest_cosines[lane].to_bits())
-            | (sines[lane].to_bits() ^ largest_sines[lane].to_bits())
-            | u64::from(!in_range);
+    let [lower, upper] = bounds(simd, angles);
+    // Between the ends, give or take a rounding. NaN is not in the range.
+    let in_range = (angles.abs() - 0.5 * MAX_ANGLE).abs().less_or_equal(0.5 * MAX_ANGLE - MIN_ANGLE);
+    let cosine_is_certain = lower[0].to_bits().equal(upper[0].to_bits());
+    let sine_is_certain = lower[1].to_bits().equal(upper[1].to_bits());
+    let uncertain = !(in_range & cosine_is_certain & sine_is_certain);
+    if uncertain.any() {
+        let exact = platform_where(&uncertain.to_array(), &angles.to_array());
+        let [cosines, sines] = [F64s::new(simd, exact[0]), F64s::new(simd, exact[1])];
+        return [uncertain.select(cosines, lower[0]), uncertain.select(sines, lower[1])];
     }
-    if uncertain.iter().fold(0, |all, bits| all | bits) != 0 {
-        for lane in 0..K {
-            if uncertain[lane] != 0 {
-                [cosines[lane], sines[lane]] = platform(angles[lane]);
-            }
-        }
-    }
-    [cosines, sines]
+    lower
 }
 
 /// The least cosine and sine that the platform can have, and the largest.
 #[inline(always)]
-fn bounds<const K: usize>(angles: &[f64; K]) -> ([[f64; K]; 2], [[f64; K]; 2]) {
-    let (mut lower, mut upper) = ([[0.0; K]; 2], [[0.0; K]; 2]);
-    for lane in 0..K {
-        let x = angles[lane];
-        let square = x * x;
-        let square_lo = x.mul_add(x, -square);
+fn bounds<S: Simd, const K: usize>(simd: S, x: F64s<S, K>) -> [[F64s<S, K>; 2]; 2] {
+    let square = x * x;
+    let square_lo = x.mul_add(x, square.negated());
 
-        let series = square.mul_add(1.0 / 479_001_600.0, -1.0 / 3_628_800.0);
-        let series = square.mul_add(square.mul_add(series, 1.0 / 40_320.0), -1.0 / 720.0);
-        let fourth = square * square * square.mul_add(series, 1.0 / 24.0);
-        let half = 0.5 * square;
-        let hi = 1.0 - half;
-        let lo = ((1.0 - hi) - half) + square_lo.mul_add(-0.5, fourth);
-        lower[0][lane] = hi + (lo - COSINE_ERROR);
-        upper[0][lane] = hi + (lo + COSINE_ERROR);
+    let series = square.mul_add(1.0 / 479_001_600.0, -1.0 / 3_628_800.0);
+    let series = square.mul_add(square.mul_add(series, 1.0 / 40_320.0), -1.0 / 720.0);
+    let fourth = square * square * square.mul_add(series, 1.0 / 24.0);
+    let half = square * 0.5;
+    let one = F64s::splat(simd, 1.0);
+    let hi = one - half;
+    let lo = ((one - hi) - half) + square_lo.mul_add(-0.5, fourth);
+    let cosines = [hi + (lo - COSINE_ERROR), hi + (lo + COSINE_ERROR)];
 
-        let series = square.mul_add(1.0 / 6_227_020_800.0, -1.0 / 39_916_800.0);
-        let series = square.mul_add(square.mul_add(series, 1.0 / 362_880.0), -1.0 / 5_040.0);
-        let t = x * square * square.mul_add(square.mul_add(series, 1.0 / 120.0), -1.0 / 6.0);
-        let hi = x + t;
-        let lo = (x - hi) + t;
-        let error = SINE_ERROR * t.abs();
-        let bound = error + if x.abs() < TABLE_ANGLE { error } else { TABLE_ERROR };
-        lower[1][lane] = hi + (lo - bound);
-        upper[1][lane] = hi + (lo + bound);
-    }
-    (lower, upper)
+    let series = square.mul_add(1.0 / 6_227_020_800.0, -1.0 / 39_916_800.0);
+    let series = square.mul_add(square.mul_add(series, 1.0 / 362_880.0), -1.0 / 5_040.0);
+    let t = x * square * square.mul_add(square.mul_add(series, 1.0 / 120.0), -1.0 / 6.0);
+    let hi = x + t;
+    let lo = (x - hi) + t;
+    let error = t.abs() * SINE_ERROR;
+    let bound = error + x.abs().less(TABLE_ANGLE).select(error, F64s::splat(simd, TABLE_ERROR));
+    let sines = [hi + (lo - bound), hi + (lo + bound)];
+    [[cosines[0], sines[0]], [cosines[1], sines[1]]]
 }
 
 /// Whether the platform's cosine and sine have the error bounds that [`cos_sin`] relies on: glibc's do. Another C library in
@@ -105,16 +97,24 @@ fn is_exact() -> bool {
 fn is_close(cos_sin: impl Fn(f64) -> [f64; 2]) -> bool {
     (-1999..=1999).filter(|&index| index != 0).all(|index| {
         let angle = f64::from(index) * (MAX_ANGLE / 1999.7);
-        let (lower, upper) = bounds(&[angle]);
+        let simd = Portable;
+        let [lower, upper] = bounds(simd, F64s::new(simd, [angle])).map(|functions| functions.map(F64s::to_array));
         (0..2).all(|function| (lower[function][0]..=upper[function][0]).contains(&cos_sin(angle)[function]))
     })
 }
 
-/// Kept out of line, so that the SIMD code stays compact.
-#[cold]
-#[inline(never)]
 fn platform(angle: f64) -> [f64; 2] {
     [angle.cos(), angle.sin()]
+}
+
+/// The platform's cosines and sines of some angles. Kept out of line, so that the SIMD code stays compact.
+#[inline(never)]
+fn platform_where<const K: usize>(chosen: &[bool; K], angles: &[f64; K]) -> [[f64; K]; 2] {
+    let mut numbers = [[0.0; K]; 2];
+    for lane in (0..K).filter(|&lane| chosen[lane]) {
+        [numbers[0][lane], numbers[1][lane]] = platform(angles[lane]);
+    }
+    numbers
 }
 
 #[cfg(test)]
@@ -122,23 +122,25 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::numeric::{SimdCode, SimdLevel};
+    use crate::simd::{SimdCode, SimdLevel};
 
     struct CosSin([f64; 4]);
 
     impl SimdCode for CosSin {
+        const USES_AVX512: bool = true;
+
         type Output = [[f64; 4]; 2];
 
         #[inline(always)]
-        fn run<const FUSED: bool>(self) -> [[f64; 4]; 2] {
-            cos_sin::<FUSED, 4>(&self.0)
+        fn run<S: Simd>(self, simd: S) -> [[f64; 4]; 2] {
+            cos_sin(simd, F64s::new(simd, self.0)).map(F64s::to_array)
         }
     }
 
     /// Compares both forms with the platform: the fused one where this processor has the instructions.
     fn check(angles: [f64; 4]) {
         let expected = [angles.map(f64::cos), angles.map(f64::sin)];
-        for level in [SimdLevel::PLAIN, SimdLevel::detect()] {
+        for level in SimdLevel::available() {
             let found = level.run(CosSin(angles));
             assert_eq!(found.map(|all| all.map(f64::to_bits)), expected.map(|all| all.map(f64::to_bits)), "{angles:?}");
         }

@@ -9,10 +9,9 @@ mod mask;
 mod numpy_f32_cos_sin;
 mod python_float;
 mod scalar;
-mod simd_level;
 mod sum;
 
-pub(crate) use argmax::{argmax, argmax_without_branch, maximum};
+pub(crate) use argmax::{argmax, maximum};
 pub(crate) use cold_path::cold_path;
 pub(crate) use cos_sin::cos_sin;
 pub use float::Float;
@@ -20,9 +19,4 @@ pub(crate) use mask::{mask, select};
 pub use numpy_f32_cos_sin::numpy_f32_cos_sin;
 pub(crate) use python_float::{clip, modulo, squared};
 pub use scalar::Scalar;
-pub(crate) use simd_level::SimdCode;
-pub use simd_level::SimdLevel;
 pub(crate) use sum::sum;
-
-/// The number of SIMD lanes that are computed together: eight f64 numbers fill two AVX2 registers.
-pub const LANES: usize = 8;

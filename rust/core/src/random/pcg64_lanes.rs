@@ -2,33 +2,32 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use super::pcg64::upper_53_bits;
-use super::pcg64_engine::{MULTIPLIER, Pcg64Engine, word};
+use super::pcg64_engine::{MULTIPLIER, Pcg64Engine};
 use super::{Pcg64, Rng, TWO_POW_53};
-use crate::numeric::{cold_path, mask, select};
+use crate::numeric::cold_path;
+use crate::simd::{Mask, Simd, U64s};
 
 /// The lower 32 bits of a word.
 const LOWER_HALF: u64 = 0xffff_ffff;
 
 /// One [`Pcg64`] per lane, as a structure of arrays.
 #[derive(Clone)]
-pub(crate) struct Pcg64Lanes<const K: usize> {
+pub(crate) struct Pcg64Lanes<S: Simd, const K: usize> {
     /// The lower and the upper 64 bits of the states.
-    state: [[u64; K]; 2],
+    state: [U64s<S, K>; 2],
     /// Those of the increments.
-    increment: [[u64; K]; 2],
-    buffered_u32: [u64; K],
-    /// A mask per lane: all bits, or none.
-    has_buffered_u32: [u64; K],
-    words_drawn: [u64; K],
+    increment: [U64s<S, K>; 2],
+    buffered_u32: U64s<S, K>,
+    has_buffered_u32: Mask<S, K>,
+    words_drawn: U64s<S, K>,
 }
 
 /// ε-greedy decisions, one per lane.
-pub(crate) struct Decisions<const K: usize> {
-    /// Whether to explore, as a mask of all bits.
-    pub(crate) explores: [u64; K],
+pub(crate) struct Decisions<S: Simd, const K: usize> {
+    /// Whether to explore.
+    pub(crate) explores: Mask<S, K>,
     /// The random action, which is arbitrary if the lane does not explore.
-    pub(crate) random: [usize; K],
+    pub(crate) random: U64s<S, K>,
 }
 
 /// The least draw of `random_u53` that explores if `random()` is to be at least `greedy_below`, which must not be negative.
@@ -38,15 +37,16 @@ pub(crate) fn explore_from(greedy_below: f64) -> u64 {
     (greedy_below * TWO_POW_53).ceil() as u64
 }
 
-impl<const K: usize> Pcg64Lanes<K> {
+impl<S: Simd, const K: usize> Pcg64Lanes<S, K> {
     /// Continues the draws of these generators.
-    pub(crate) fn new(rngs: [&Pcg64; K]) -> Self {
+    pub(crate) fn new(simd: S, rngs: [&Pcg64; K]) -> Self {
+        let zeros = U64s::splat(simd, 0);
         let mut lanes = Self {
-            state: [[0; K]; 2],
-            increment: [[0; K]; 2],
-            buffered_u32: [0; K],
-            has_buffered_u32: [0; K],
-            words_drawn: [0; K],
+            state: [zeros; 2],
+            increment: [zeros; 2],
+            buffered_u32: zeros,
+            has_buffered_u32: Mask::new(simd, [false; K]),
+            words_drawn: zeros,
         };
         for (lane, rng) in rngs.into_iter().enumerate() {
             lanes.set(lane, rng);
@@ -56,24 +56,28 @@ impl<const K: usize> Pcg64Lanes<K> {
 
     /// The generator of a lane.
     pub(crate) fn get(&self, lane: usize) -> Pcg64 {
-        let number = |[low, high]: &[[u64; K]; 2]| u128::from(low[lane]) | u128::from(high[lane]) << 64;
+        let number = |halves: [U64s<S, K>; 2]| {
+            let [low, high] = halves.map(|half| u128::from(half.to_array()[lane]));
+            low | high << 64
+        };
+        let buffered_u32 = self.buffered_u32.to_array()[lane] as u32;
         Pcg64 {
-            engine: Pcg64Engine { state: number(&self.state), increment: number(&self.increment) },
-            buffered_u32: (self.has_buffered_u32[lane] != 0).then_some(self.buffered_u32[lane] as u32),
-            words_drawn: self.words_drawn[lane],
+            engine: Pcg64Engine { state: number(self.state), increment: number(self.increment) },
+            buffered_u32: self.has_buffered_u32.to_array()[lane].then_some(buffered_u32),
+            words_drawn: self.words_drawn.to_array()[lane],
         }
     }
 
     /// Continues the draws of a generator in a lane.
     pub(crate) fn set(&mut self, lane: usize, rng: &Pcg64) {
         let Pcg64 { engine: Pcg64Engine { state, increment }, buffered_u32, words_drawn } = rng;
-        for (lanes, number) in [(&mut self.state, state), (&mut self.increment, increment)] {
-            lanes[0][lane] = *number as u64;
-            lanes[1][lane] = (number >> 64) as u64;
+        for (halves, number) in [(&mut self.state, state), (&mut self.increment, increment)] {
+            halves[0].set(lane, *number as u64);
+            halves[1].set(lane, (number >> 64) as u64);
         }
-        self.buffered_u32[lane] = buffered_u32.unwrap_or_default().into();
-        self.has_buffered_u32[lane] = mask(buffered_u32.is_some());
-        self.words_drawn[lane] = *words_drawn;
+        self.buffered_u32.set(lane, buffered_u32.unwrap_or_default().into());
+        self.has_buffered_u32.set(lane, buffered_u32.is_some());
+        self.words_drawn.set(lane, *words_drawn);
     }
 
     /// An ε-greedy decision of one lane: `integers(below)` if `random_u53()` is at least [`explore_from`].
@@ -88,76 +92,57 @@ impl<const K: usize> Pcg64Lanes<K> {
     /// does draws another unless it has a buffered half. Both words are computed, and the state after the last one used is
     /// kept.
     #[inline(always)]
-    pub(crate) fn explore(&mut self, explore_from: &[u64; K], below: u32) -> Decisions<K> {
-        let first = self.next_states(&self.state);
-        let second = self.next_states(&first);
-        let (first_word, next_word) = (words(&first), words(&second));
-        let mut decisions = Decisions { explores: [0; K], random: [0; K] };
-        let mut rejected = 0;
-        for lane in 0..K {
-            let explores = mask(upper_53_bits(first_word[lane]) >= explore_from[lane]);
-            let half = select(self.has_buffered_u32[lane], self.buffered_u32[lane], next_word[lane]) & LOWER_HALF;
-            let product = half * u64::from(below);
-            rejected |= explores & mask((product & LOWER_HALF) < u64::from(below));
-            decisions.explores[lane] = explores;
-            decisions.random[lane] = (product >> 32) as usize;
-        }
-        if rejected != 0 {
+    pub(crate) fn explore(&mut self, simd: S, explore_from: U64s<S, K>, below: u32) -> Decisions<S, K> {
+        let first = self.next_states(self.state);
+        let second = self.next_states(first);
+        let (first_word, next_word) = (words(first), words(second));
+        let explores = !first_word.shift_right::<11>().less(explore_from);
+        let product = self.has_buffered_u32.select(self.buffered_u32, next_word).mul_lower(u64::from(below));
+        if (explores & (product & LOWER_HALF).less(u64::from(below))).any() {
             // An integer may have to be rejected. This is so rare that a branch costs nothing.
             cold_path();
-            return self.explore_one_by_one(explore_from, below);
+            return self.explore_one_by_one(simd, explore_from, below);
         }
-        for lane in 0..K {
-            let explores = decisions.explores[lane];
-            let uses_next = explores & !self.has_buffered_u32[lane];
-            self.state[0][lane] = select(uses_next, second[0][lane], first[0][lane]);
-            self.state[1][lane] = select(uses_next, second[1][lane], first[1][lane]);
-            self.buffered_u32[lane] = select(uses_next, next_word[lane] >> 32, self.buffered_u32[lane]);
-            // A mask is -1 as a number.
-            self.words_drawn[lane] = (self.words_drawn[lane] + 1).wrapping_sub(uses_next);
-            self.has_buffered_u32[lane] ^= explores;
-        }
-        decisions
+        let uses_next = explores & !self.has_buffered_u32;
+        self.state = [uses_next.select(second[0], first[0]), uses_next.select(second[1], first[1])];
+        self.buffered_u32 = uses_next.select(next_word.shift_right::<32>(), self.buffered_u32);
+        self.words_drawn = (self.words_drawn + 1).incremented_where(uses_next);
+        self.has_buffered_u32 = self.has_buffered_u32 ^ explores;
+        Decisions { explores, random: product.shift_right::<32>() }
     }
 
+    #[cold]
     #[inline(never)]
-    fn explore_one_by_one(&mut self, explore_from: &[u64; K], below: u32) -> Decisions<K> {
+    fn explore_one_by_one(&mut self, simd: S, explore_from: U64s<S, K>, below: u32) -> Decisions<S, K> {
+        let explore_from = explore_from.to_array();
         let actions: [_; K] = std::array::from_fn(|lane| self.explore_one(lane, explore_from[lane], below));
         Decisions {
-            explores: actions.map(|action| mask(action.is_some())),
-            random: actions.map(Option::unwrap_or_default),
+            explores: Mask::new(simd, actions.map(|action| action.is_some())),
+            random: U64s::new(simd, actions.map(|action| action.unwrap_or_default() as u64)),
         }
     }
 
     /// The states after these. 64-bit products are sums of products of 32-bit halves, which vector instructions have.
     #[inline(always)]
-    fn next_states(&self, [low, high]: &[[u64; K]; 2]) -> [[u64; K]; 2] {
+    fn next_states(&self, [low, high]: [U64s<S, K>; 2]) -> [U64s<S, K>; 2] {
         const LOW: u64 = MULTIPLIER as u64;
         const HIGH: u64 = (MULTIPLIER >> 64) as u64;
-        const HALVES: [u64; 2] = [LOW & LOWER_HALF, LOW >> 32];
-        let mut next = [[0; K]; 2];
-        for lane in 0..K {
-            let halves = [low[lane] & LOWER_HALF, low[lane] >> 32];
-            let lowest = halves[0] * HALVES[0];
-            let middle = halves[1] * HALVES[0] + (lowest >> 32);
-            let other_middle = halves[0] * HALVES[1] + (middle & LOWER_HALF);
-            let highest = halves[1] * HALVES[1] + (middle >> 32) + (other_middle >> 32);
-            let product_low = (other_middle << 32) | (lowest & LOWER_HALF);
-            let product_high =
-                highest.wrapping_add(low[lane].wrapping_mul(HIGH)).wrapping_add(high[lane].wrapping_mul(LOW));
-            let sum = product_low.wrapping_add(self.increment[0][lane]);
-            let carry = u64::from(sum < product_low);
-            next[0][lane] = sum;
-            next[1][lane] = product_high.wrapping_add(self.increment[1][lane]).wrapping_add(carry);
-        }
-        next
+        let upper_half = low.shift_right::<32>();
+        let lowest = low.mul_lower(LOW);
+        let middle = upper_half.mul_lower(LOW) + lowest.shift_right::<32>();
+        let other_middle = low.mul_lower(LOW >> 32) + (middle & LOWER_HALF);
+        let highest = upper_half.mul_lower(LOW >> 32) + middle.shift_right::<32>() + other_middle.shift_right::<32>();
+        let product_low = other_middle.shift_left::<32>() | (lowest & LOWER_HALF);
+        let product_high = highest + low * HIGH + high * LOW;
+        let sum = product_low + self.increment[0];
+        [sum, (product_high + self.increment[1]).incremented_where(sum.less(product_low))]
     }
 }
 
 /// The words of these states.
 #[inline(always)]
-fn words<const K: usize>([low, high]: &[[u64; K]; 2]) -> [u64; K] {
-    std::array::from_fn(|lane| word(low[lane], high[lane]))
+fn words<S: Simd, const K: usize>([low, high]: [U64s<S, K>; 2]) -> U64s<S, K> {
+    (low ^ high).rotate_right(high.shift_right::<58>())
 }
 
 #[cfg(test)]
@@ -167,8 +152,33 @@ mod tests {
     use super::*;
     use crate::random::pcg64::u64_to_f64;
     use crate::random::{Rng as _, SeedSequence};
+    use crate::simd::{SimdCode, SimdLevel};
 
     const LANES: usize = 5;
+
+    /// The thresholds and the numbers of actions of some draws, and the generators that they begin with.
+    #[derive(Clone, Copy)]
+    struct Draws<'a>(&'a [([f64; LANES], u32)], [&'a Pcg64; LANES]);
+
+    impl SimdCode for Draws<'_> {
+        const USES_AVX512: bool = true;
+
+        /// The random action of each lane that explores, draw by draw, and the final generators.
+        type Output = (Vec<[Option<u64>; LANES]>, [Pcg64; LANES]);
+
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let Self(draws, rngs) = self;
+            let mut lanes = Pcg64Lanes::new(simd, rngs);
+            let mut actions = Vec::new();
+            for &(greedy_below, below) in draws {
+                let decisions = lanes.explore(simd, U64s::new(simd, greedy_below.map(explore_from)), below);
+                let (explores, random) = (decisions.explores.to_array(), decisions.random.to_array());
+                actions.push(std::array::from_fn(|lane| explores[lane].then_some(random[lane])));
+            }
+            (actions, std::array::from_fn(|lane| lanes.get(lane)))
+        }
+    }
 
     proptest! {
         #[test]
@@ -190,17 +200,17 @@ mod tests {
                 });
                 rng
             });
-            let mut lanes = Pcg64Lanes::new(rngs.each_ref());
-            for (greedy_below, below) in draws {
-                let explore_from = greedy_below.map(explore_from);
-                let decisions = lanes.explore(&explore_from, below);
-                for (lane, rng) in rngs.iter_mut().enumerate() {
-                    let expected = (rng.random() >= greedy_below[lane]).then(|| rng.integers(below) as usize);
-                    prop_assert_eq!((decisions.explores[lane] != 0).then_some(decisions.random[lane]), expected);
-                }
+            let begun = rngs.clone();
+            let mut actions = Vec::new();
+            for (greedy_below, below) in &draws {
+                actions.push(std::array::from_fn(|lane| {
+                    let rng = &mut rngs[lane];
+                    (rng.random() >= greedy_below[lane]).then(|| u64::from(rng.integers(*below)))
+                }));
             }
-            for (lane, rng) in rngs.iter().enumerate() {
-                prop_assert_eq!(&lanes.get(lane), rng);
+            for level in SimdLevel::available() {
+                let found = level.run(Draws(&draws, begun.each_ref()));
+                prop_assert_eq!(&found, &(actions.clone(), rngs.clone()), "{:?}", level);
             }
         }
 

@@ -5,7 +5,7 @@
 use super::{NextKind, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::features::ActiveRows;
-use crate::numeric::{SimdCode, SimdLevel};
+use crate::simd::{Simd, SimdCode, SimdLevel};
 
 /// A task together with the state of its episode, so that the type of the state is hidden.
 struct StatefulTask<T: Task, X> {
@@ -49,7 +49,7 @@ impl<T: Task, X: From<T::Error>> SimdCode for StepCode<'_, T, X> {
     type Output = (f64, Option<NextKind>);
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> (f64, Option<NextKind>) {
+    fn run<S: Simd>(self, _simd: S) -> (f64, Option<NextKind>) {
         if !self.prepares {
             self.task.prepare_step(self.state);
         }

@@ -4,8 +4,8 @@
 
 use super::{Budget, Trainer};
 use crate::learners::Learner;
-use crate::numeric::{SimdCode, SimdLevel};
 use crate::random::Rng;
+use crate::simd::{Simd, SimdCode, SimdLevel};
 use crate::tasks::Task;
 
 /// A run and its budget, compiled for each [`SimdLevel`].
@@ -29,7 +29,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> SimdCode for AdvanceLoop<'_
     type Output = Result<(), T::Error>;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Self::Output {
+    fn run<S: Simd>(self, _simd: S) -> Self::Output {
         self.trainer.advance_with(self.rng, self.budget)
     }
 }

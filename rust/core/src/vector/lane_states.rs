@@ -6,8 +6,8 @@ use super::states::{States, StepOutputs};
 use crate::StopFlag;
 use crate::envs::{Env, SimdEnv, gather, scatter};
 use crate::memory::{AllocationError, filled};
-use crate::numeric::{LANES, SimdCode, SimdLevel};
 use crate::random::{NoRng, Rng};
+use crate::simd::{F64s, LANES, Simd, SimdCode, SimdLevel, U64s};
 
 /// States of `M` numbers in blocks of [`LANES`], each of which is a structure of arrays. The last block may have lanes
 /// that are not used.
@@ -73,19 +73,23 @@ impl<E: SimdEnv<M>, const M: usize> SimdCode for Blocks<'_, E, M>
 where
     E: Env<Observation = [f32; M]>,
 {
+    const USES_AVX512: bool = true;
+
     type Output = ();
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
+    fn run<S: Simd>(self, simd: S) {
         let inputs = self.states.iter_mut().zip(self.actions);
         let outputs = self.observations.iter_mut().zip(self.rewards).zip(self.terminated);
         for ((state, actions), ((observations, rewards), terminated)) in inputs.zip(outputs) {
-            let mut fields = *state;
-            *terminated = self.env.step_soa::<FUSED, _>(&mut fields, actions);
-            *state = fields;
+            let mut fields = state.map(|field| F64s::new(simd, field));
+            let actions = U64s::new(simd, actions.map(|action| action as u64));
+            *terminated = self.env.step_batch(simd, &mut fields, actions).to_array();
+            *state = fields.map(F64s::to_array);
             *rewards = terminated.map(|terminated| self.env.reward(terminated));
+            let numbers = fields.map(|field| field.to_f32s().to_array());
             for (lane, observation) in observations.iter_mut().enumerate() {
-                *observation = std::array::from_fn(|field| fields[field][lane] as f32);
+                *observation = numbers.map(|field| field[lane]);
             }
         }
     }
@@ -103,7 +107,7 @@ mod tests {
     where
         E: SimdEnv<M> + Env<Observation = [f32; M], State: std::fmt::Debug + PartialEq>,
     {
-        for level in [SimdLevel::PLAIN, SimdLevel::detect()] {
+        for level in SimdLevel::available() {
             let mut stepped = LaneStates::<M>(vec![[[0.0; LANES]; M]]);
             (0..LANES).for_each(|lane| States::<E>::set(&mut stepped, lane, states[lane].into()));
             let (mut observations, mut rewards, mut terminated) =

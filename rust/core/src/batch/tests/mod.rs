@@ -11,10 +11,10 @@ use crate::envs::classic_control::{CartPole, MountainCar};
 use crate::envs::{Env, SimdEnv};
 use crate::features::BatchFeatures;
 use crate::learners::{Agent, Learner, QLearning, Sarsa, UpdateRule};
-use crate::numeric::SimdLevel;
 use crate::policies::EpsilonGreedy;
 use crate::q_table::TerminalUpdate;
 use crate::schedules::StepSize;
+use crate::simd::SimdLevel;
 use crate::trainer::Budget;
 
 /// Trains a batch in chunks of steps, then each run alone to its end or its error, and compares with runs that were
@@ -30,7 +30,7 @@ fn check<E, F, A, U, const N: usize, const M: usize, const K: usize>(
     A: StepSize,
     U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
-    for level in [SimdLevel::PLAIN, SimdLevel::detect()] {
+    for level in SimdLevel::available() {
         check_at(level, seeds, &make, episodes, chunks);
     }
 }

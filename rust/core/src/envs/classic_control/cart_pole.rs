@@ -5,6 +5,7 @@ use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Flag, Parameters, SimdEnv, Step};
 use crate::numeric::cos_sin;
 use crate::random::Rng;
+use crate::simd::{F64s, Mask, Portable, Simd, U64s};
 
 /// The bounds of each component of the initial state, which is uniform.
 const RESET_BOUNDS: [(&str, f64); 2] = [("low", -0.05), ("high", 0.05)];
@@ -132,33 +133,35 @@ impl CartPole {
     /// terminal.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-    #[expect(clippy::needless_bitwise_bool, reason = "a lazy operator would be an unpredictable branch")]
-    fn transition<const K: usize>(
+    fn transition<S: Simd, const K: usize>(
         &self,
-        [x, x_dot, theta, theta_dot]: &mut [[f64; K]; 4],
-        force: [f64; K],
-        [costheta, sintheta]: [[f64; K]; 2],
-    ) -> [bool; K] {
-        let mut terminated = [false; K];
-        for lane in 0..K {
-            let (costheta, sintheta) = (costheta[lane], sintheta[lane]);
-            let (old_x_dot, old_theta_dot) = (x_dot[lane], theta_dot[lane]);
-            let temp =
-                (force[lane] + self.polemass_length * (old_theta_dot * old_theta_dot) * sintheta) / self.total_mass;
-            let thetaacc = (self.gravity * sintheta - costheta * temp)
-                / (self.length * (4.0 / 3.0 - self.masspole * (costheta * costheta) / self.total_mass));
-            let xacc = temp - self.polemass_length * thetaacc * costheta / self.total_mass;
-
-            x_dot[lane] = old_x_dot + self.tau * xacc;
-            theta_dot[lane] = old_theta_dot + self.tau * thetaacc;
-            x[lane] += self.tau * if self.euler { old_x_dot } else { x_dot[lane] };
-            theta[lane] += self.tau * if self.euler { old_theta_dot } else { theta_dot[lane] };
-            terminated[lane] = (x[lane] < -self.x_threshold)
-                | (x[lane] > self.x_threshold)
-                | (theta[lane] < -self.theta_threshold_radians)
-                | (theta[lane] > self.theta_threshold_radians);
+        simd: S,
+        [x, x_dot, theta, theta_dot]: &mut [F64s<S, K>; 4],
+        force: F64s<S, K>,
+        [costheta, sintheta]: [F64s<S, K>; 2],
+    ) -> Mask<S, K> {
+        let (old_x_dot, old_theta_dot) = (*x_dot, *theta_dot);
+        // Apart from the velocities, so that the next angle need not wait for three divisions.
+        if self.euler {
+            *x = *x + self.tau * old_x_dot;
+            *theta = *theta + self.tau * old_theta_dot;
         }
-        terminated
+        let temp = (force + self.polemass_length * (old_theta_dot * old_theta_dot) * sintheta) / self.total_mass;
+        let four_thirds = F64s::splat(simd, 4.0 / 3.0);
+        let thetaacc = (self.gravity * sintheta - costheta * temp)
+            / (self.length * (four_thirds - self.masspole * (costheta * costheta) / self.total_mass));
+        let xacc = temp - self.polemass_length * thetaacc * costheta / self.total_mass;
+
+        *x_dot = old_x_dot + self.tau * xacc;
+        *theta_dot = old_theta_dot + self.tau * thetaacc;
+        if !self.euler {
+            *x = *x + self.tau * *x_dot;
+            *theta = *theta + self.tau * *theta_dot;
+        }
+        x.less(-self.x_threshold)
+            | x.greater(self.x_threshold)
+            | theta.less(-self.theta_threshold_radians)
+            | theta.greater(self.theta_threshold_radians)
     }
 }
 
@@ -189,10 +192,12 @@ impl Env for CartPole {
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     fn step(&self, state: CartPoleState, action: usize, _rng: &mut impl Rng) -> Step<CartPoleState> {
-        let mut fields = <[f64; 4]>::from(state).map(|number| [number]);
-        let trigonometry = [[state.theta.cos()], [state.theta.sin()]];
-        let [terminated] = self.transition(&mut fields, [self.force(action)], trigonometry);
-        Step { state: fields.map(|[number]| number).into(), reward: self.reward(terminated), terminated }
+        let simd = Portable;
+        let mut fields = <[f64; 4]>::from(state).map(|number| F64s::new(simd, [number]));
+        let trigonometry = [state.theta.cos(), state.theta.sin()].map(|number| F64s::new(simd, [number]));
+        let force = F64s::new(simd, [self.force(action)]);
+        let [terminated] = self.transition(simd, &mut fields, force, trigonometry).to_array();
+        Step { state: fields.map(|field| field.to_array()[0]).into(), reward: self.reward(terminated), terminated }
     }
 
     #[inline]
@@ -208,13 +213,15 @@ impl SimdEnv<4> for CartPole {
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn step_soa<const FUSED: bool, const K: usize>(
+    fn step_batch<S: Simd, const K: usize>(
         &self,
-        fields: &mut [[f64; K]; 4],
-        actions: &[usize; K],
-    ) -> [bool; K] {
-        let trigonometry = cos_sin::<FUSED, K>(&fields[2]);
-        self.transition(fields, actions.map(|action| self.force(action)), trigonometry)
+        simd: S,
+        fields: &mut [F64s<S, K>; 4],
+        actions: U64s<S, K>,
+    ) -> Mask<S, K> {
+        let trigonometry = cos_sin(simd, fields[2]);
+        let [left, right] = [0, 1].map(|action| F64s::splat(simd, self.force(action)));
+        self.transition(simd, fields, actions.equal(1).select(right, left), trigonometry)
     }
 
     #[inline]

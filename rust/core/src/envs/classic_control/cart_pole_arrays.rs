@@ -2,7 +2,7 @@
 
 use super::CartPole;
 use crate::envs::SimdEnv;
-use crate::numeric::{LANES, SimdCode, SimdLevel};
+use crate::simd::{F64s, LANES, Mask, Portable, Simd, SimdCode, SimdLevel, U64s};
 
 impl CartPole {
     /// One step of many cart-poles, in place. `state` holds an array for each component. An action is 0 or 1. The results
@@ -25,30 +25,30 @@ impl CartPole {
             largest,
         });
         for (index, (&action, terminated)) in actions.1.iter().zip(terminated.1).enumerate() {
-            let mut fields = [[x.1[index]], [x_dot.1[index]], [theta.1[index]], [theta_dot.1[index]]];
-            supported &= larger(&fields, largest) == [0];
-            [*terminated] = self.step_soa::<false, _>(&mut fields, &[action as usize]);
-            supported &= larger(&fields, f64::MAX) == [0];
-            [[x.1[index]], [x_dot.1[index]], [theta.1[index]], [theta_dot.1[index]]] = fields;
+            let simd = Portable;
+            let state = [&mut x.1[index], &mut x_dot.1[index], &mut theta.1[index], &mut theta_dot.1[index]];
+            let mut fields = state.each_ref().map(|number| F64s::new(simd, [**number]));
+            supported &= !larger(&fields, largest).any();
+            [*terminated] = self.step_batch(simd, &mut fields, U64s::new(simd, [action as u64])).to_array();
+            supported &= !larger(&fields, f64::MAX).any();
+            for (number, field) in state.into_iter().zip(fields) {
+                [*number] = field.to_array();
+            }
         }
         supported
     }
 }
 
-/// Not 0 where the magnitude of a component is not at most the limit. An integer, as a `bool` is a byte and takes SIMD code
-/// another register.
+/// Where the magnitude of a component is not at most the limit.
 #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 #[inline(always)]
-fn larger<const K: usize>(fields: &[[f64; K]; 4], limit: f64) -> [u64; K] {
-    let mut any = [0; K];
-    for field in fields {
-        for lane in 0..K {
-            // NaN is not in the range.
-            let in_range = field[lane].abs() <= limit;
-            any[lane] |= u64::from(!in_range);
-        }
+fn larger<S: Simd, const K: usize>(fields: &[F64s<S, K>; 4], limit: f64) -> Mask<S, K> {
+    // NaN is not in the range.
+    let mut in_range = fields[0].abs().less_or_equal(limit);
+    for field in &fields[1..] {
+        in_range = in_range & field.abs().less_or_equal(limit);
     }
-    any
+    !in_range
 }
 
 /// Cart-poles in chunks of [`LANES`], compiled for each [`SimdLevel`].
@@ -61,25 +61,28 @@ struct ArrayChunks<'a> {
 }
 
 impl SimdCode for ArrayChunks<'_> {
+    const USES_AVX512: bool = true;
+
     type Output = bool;
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> bool {
+    fn run<S: Simd>(self, simd: S) -> bool {
         let [x, x_dot, theta, theta_dot] = self.state.map(|field| field.as_chunks_mut::<LANES>().0);
         let (actions, terminated) = (self.actions.as_chunks::<LANES>().0, self.terminated.as_chunks_mut::<LANES>().0);
-        let mut any_larger = [0; LANES];
+        let mut any_larger = Mask::new(simd, [false; LANES]);
         for (index, (actions, terminated)) in actions.iter().zip(terminated).enumerate() {
-            let mut fields = [x[index], x_dot[index], theta[index], theta_dot[index]];
-            let before = larger(&fields, self.largest);
-            *terminated = self.env.step_soa::<FUSED, _>(&mut fields, &actions.map(|action| action as usize));
-            let after = larger(&fields, f64::MAX);
-            for lane in 0..LANES {
-                any_larger[lane] |= before[lane] | after[lane];
+            let state = [&mut x[index], &mut x_dot[index], &mut theta[index], &mut theta_dot[index]];
+            let mut fields = state.each_ref().map(|field| F64s::new(simd, **field));
+            any_larger = any_larger | larger(&fields, self.largest);
+            let actions = U64s::new(simd, actions.map(|action| action as u64));
+            *terminated = self.env.step_batch(simd, &mut fields, actions).to_array();
+            any_larger = any_larger | larger(&fields, f64::MAX);
+            for (numbers, field) in state.into_iter().zip(fields) {
+                *numbers = field.to_array();
             }
-            [x[index], x_dot[index], theta[index], theta_dot[index]] = fields;
         }
-        any_larger == [0; LANES]
+        !any_larger.any()
     }
 }
 

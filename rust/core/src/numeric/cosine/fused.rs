@@ -10,7 +10,7 @@
 //! |---|---|
 //! | 0 | `r`: the subtractions are exact (Sterbenz) |
 //! | 0.04 | the roundings of `small`, of it plus `product_lo`, of `lo`, and of `lo` plus or minus the bound, each at most 2⁻⁶⁸ |
-//! | 0.04 | three roundings of `one_minus_cos`, which is at most 2⁻¹⁵, and those of `sin_rest`, which is below 2⁻²³; their series, cut off at r⁸/8! and r⁹/9! |
+//! | 0.04 | three roundings of `cos_minus_one`, which is at most 2⁻¹⁵, and those of `sin_rest`, which is below 2⁻²³; their series, cut off at r⁸/8! and r⁹/9! |
 //!
 //! Together they are below 1/8.
 
@@ -18,6 +18,7 @@
 
 use super::PLATFORM_ERROR;
 use super::table::{CELLS, ONE, ROUND_TO_CELL, cos_sin};
+use crate::simd::{F64s, Simd};
 
 /// `[cos, cos_lo, -sin, -sin_lo]` in the middle of each cell, first of those from 0 on, then of the negative ones.
 static TABLE: [[f64; 4]; 2 * CELLS] = {
@@ -40,39 +41,24 @@ static TABLE: [[f64; 4]; 2 * CELLS] = {
 /// The error bound of `hi + lo` and of the platform's cosine: 2⁻⁶⁴ of the first.
 const BOUND: f64 = 1.0 / 18_446_744_073_709_551_616.0 + PLATFORM_ERROR;
 
-/// `f` of the least and of the largest value that the platform's cosine can have.
+/// The least and the largest value that the platform's cosine can have.
 #[inline(always)]
-pub(super) fn bounds<const K: usize>(angles: &[f64; K], f: impl Fn(usize, f64) -> f64) -> ([f64; K], [f64; K]) {
-    let (mut rests, mut cells) = ([0.0; K], [0; K]);
-    for lane in 0..K {
-        let shifted = angles[lane] + ROUND_TO_CELL;
-        rests[lane] = angles[lane] - (shifted - ROUND_TO_CELL);
-        cells[lane] = shifted.to_bits();
-    }
-    let mut entries = [[0.0; K]; 4];
-    for lane in 0..K {
-        let entry = &TABLE[cells[lane] as usize % (2 * CELLS)];
-        for (column, number) in entries.iter_mut().zip(entry) {
-            column[lane] = *number;
-        }
-    }
-    let (mut lower, mut upper) = ([0.0; K], [0.0; K]);
-    for lane in 0..K {
-        let [cos, cos_lo, minus_sin, minus_sin_lo] = entries.each_ref().map(|column| column[lane]);
-        let rest = rests[lane];
-        let square = rest * rest;
-        let sin_rest = rest * square * square.mul_add(square.mul_add(-1.0 / 5040.0, 1.0 / 120.0), -1.0 / 6.0);
-        let one_minus_cos = square * square.mul_add(square.mul_add(1.0 / 720.0, -1.0 / 24.0), 0.5);
-        let lows = minus_sin_lo.mul_add(rest, cos_lo);
-        let small = (-cos).mul_add(one_minus_cos, minus_sin.mul_add(sin_rest, lows));
-        let product = minus_sin * rest;
-        let product_lo = minus_sin.mul_add(rest, -product);
-        let hi = cos + product;
-        let lo = ((cos - hi) + product) + (product_lo + small);
-        lower[lane] = f(lane, hi + (lo - BOUND));
-        upper[lane] = f(lane, hi + (lo + BOUND));
-    }
-    (lower, upper)
+pub(super) fn bounds<S: Simd, const K: usize>(simd: S, angles: F64s<S, K>) -> [F64s<S, K>; 2] {
+    let shifted = angles + ROUND_TO_CELL;
+    let rest = angles - (shifted - ROUND_TO_CELL);
+    let cells = shifted.to_bits().to_array();
+    let [cos, cos_lo, minus_sin, minus_sin_lo] =
+        F64s::columns(simd, cells.map(|cell| &TABLE[cell as usize % (2 * CELLS)]));
+    let square = rest * rest;
+    let sin_rest = rest * square * square.mul_add(square.mul_add(-1.0 / 5040.0, 1.0 / 120.0), -1.0 / 6.0);
+    let cos_minus_one = square * square.mul_add(square.mul_add(-1.0 / 720.0, 1.0 / 24.0), -0.5);
+    let lows = minus_sin_lo.mul_add(rest, cos_lo);
+    let small = cos.mul_add(cos_minus_one, minus_sin.mul_add(sin_rest, lows));
+    let product = minus_sin * rest;
+    let product_lo = minus_sin.mul_add(rest, product.negated());
+    let hi = cos + product;
+    let lo = ((cos - hi) + product) + (product_lo + small);
+    [hi + (lo - BOUND), hi + (lo + BOUND)]
 }
 
 #[cfg(test)]

@@ -22,6 +22,8 @@ mod table;
 
 use std::sync::OnceLock;
 
+use crate::simd::{F64s, Portable, Simd};
+
 /// Larger angles use the platform's cosine.
 const MAX_ANGLE: f64 = 3.99;
 
@@ -32,48 +34,42 @@ const PLATFORM_ERROR: f64 = 1.0 / 1_152_921_504_606_846_976.0;
 /// place would show itself at a few thousand angles.
 pub(crate) fn is_exact() -> bool {
     static IS_EXACT: OnceLock<bool> = OnceLock::new();
-    cfg!(all(target_os = "linux", target_env = "gnu")) && *IS_EXACT.get_or_init(|| is_close(platform))
+    cfg!(all(target_os = "linux", target_env = "gnu")) && *IS_EXACT.get_or_init(|| is_close(f64::cos))
 }
 
 /// Whether a cosine lies between the bounds at angles spread over all cells.
 fn is_close(cosine: impl Fn(f64) -> f64) -> bool {
     (-1999..=1999).all(|index| {
         let angle = f64::from(index) * (MAX_ANGLE / 1999.7);
-        let ([lower], [upper]) = plain::bounds(&[angle], |_, cosine| cosine);
+        let simd = Portable;
+        let [[lower], [upper]] = plain::bounds(simd, F64s::new(simd, [angle])).map(F64s::to_array);
         (lower..=upper).contains(&cosine(angle))
     })
 }
 
-/// Writes `f(lane, angles[lane].cos())` to `values`, with the bits of the platform's cosine. `f` must be monotone in the
-/// cosine. `FUSED` is that of the [`SimdLevel`](super::SimdLevel) which the code is compiled for.
+/// `f` of the cosine of each angle, with the bits of the platform's cosine. `f` must be monotone in the cosine.
 #[inline(always)]
-pub(crate) fn map_cos<const FUSED: bool, const K: usize>(
-    angles: &[f64; K],
-    f: impl Fn(usize, f64) -> f64,
-    values: &mut [f64; K],
-) {
-    let (lower, upper) = if FUSED { fused::bounds(angles, &f) } else { plain::bounds(angles, &f) };
-    let mut uncertain = [0; K];
-    for lane in 0..K {
-        values[lane] = lower[lane];
-        // NaN is not in the range.
-        let in_range = angles[lane].abs() <= MAX_ANGLE;
-        uncertain[lane] = (lower[lane].to_bits() ^ upper[lane].to_bits()) | u64::from(!in_range);
+pub(crate) fn map_cos<S: Simd, const K: usize>(
+    simd: S,
+    angles: F64s<S, K>,
+    f: impl Fn(F64s<S, K>) -> F64s<S, K>,
+) -> F64s<S, K> {
+    let [lower, upper] = if S::HAS_FMA { fused::bounds(simd, angles) } else { plain::bounds(simd, angles) };
+    let [lower, upper] = [f(lower), f(upper)];
+    // NaN is not in the range.
+    let certain = lower.to_bits().equal(upper.to_bits()) & angles.abs().less_or_equal(MAX_ANGLE);
+    let uncertain = !certain;
+    if uncertain.any() {
+        let cosines = platform_where(&uncertain.to_array(), &angles.to_array());
+        return uncertain.select(f(F64s::new(simd, cosines)), lower);
     }
-    if uncertain.iter().fold(0, |all, bits| all | bits) != 0 {
-        for lane in 0..K {
-            if uncertain[lane] != 0 {
-                values[lane] = f(lane, platform(angles[lane]));
-            }
-        }
-    }
+    lower
 }
 
-/// Kept out of line, so that the SIMD code stays compact.
-#[cold]
+/// The platform's cosines of some angles. Kept out of line, so that the SIMD code stays compact.
 #[inline(never)]
-fn platform(angle: f64) -> f64 {
-    angle.cos()
+fn platform_where<const K: usize>(chosen: &[bool; K], angles: &[f64; K]) -> [f64; K] {
+    std::array::from_fn(|lane| if chosen[lane] { angles[lane].cos() } else { 0.0 })
 }
 
 #[cfg(test)]
@@ -81,7 +77,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::numeric::{SimdCode, SimdLevel};
+    use crate::simd::{SimdCode, SimdLevel};
 
     /// Velocities after a step; with a large `gravity` they depend on more of the cosine's last bits.
     struct Velocities {
@@ -97,13 +93,14 @@ mod tests {
     }
 
     impl SimdCode for &Velocities {
+        const USES_AVX512: bool = true;
+
         type Output = [f64; 2];
 
         #[inline(always)]
-        fn run<const FUSED: bool>(self) -> [f64; 2] {
-            let mut values = [0.0; 2];
-            map_cos::<FUSED, 2>(&self.angles, |_, cosine| self.after(cosine), &mut values);
-            values
+        fn run<S: Simd>(self, simd: S) -> [f64; 2] {
+            let after = |cosine| F64s::splat(simd, self.velocity) + cosine * -self.gravity;
+            map_cos(simd, F64s::new(simd, self.angles), after).to_array()
         }
     }
 
@@ -111,7 +108,7 @@ mod tests {
     fn check(angle: f64, velocity: f64, gravity: f64) {
         let velocities = Velocities { angles: [angle, -angle], velocity, gravity };
         let expected = velocities.angles.map(|angle| velocities.after(angle.cos()).to_bits());
-        for level in [SimdLevel::PLAIN, SimdLevel::detect()] {
+        for level in SimdLevel::available() {
             let values = level.run(&velocities).map(f64::to_bits);
             assert_eq!(values, expected, "cos({angle:?}) with gravity {gravity:?}, {level:?}");
         }

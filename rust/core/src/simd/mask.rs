@@ -1,0 +1,88 @@
+//! Truth values in lanes.
+
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
+use std::ops::{BitAnd, BitOr, BitXor, Not};
+
+use super::{F64s, Simd, U64s};
+
+/// A truth value for each lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Mask<S: Simd, const K: usize>(pub(super) S, pub(super) S::Mask<K>);
+
+impl<S: Simd, const K: usize> Mask<S, K> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S, array: [bool; K]) -> Self {
+        Self(simd, simd.mask(array))
+    }
+
+    #[inline(always)]
+    pub(crate) fn to_array(self) -> [bool; K] {
+        self.0.bool_array(self.1)
+    }
+
+    /// Replaces the value of one lane.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, lane: usize, value: bool) {
+        let mut array = self.to_array();
+        array[lane] = value;
+        *self = Self::new(self.0, array);
+    }
+
+    /// Whether it is true in any lane.
+    #[inline(always)]
+    pub(crate) fn any(self) -> bool {
+        self.0.mask_any(self.1)
+    }
+
+    /// `yes` in the lanes where it is true, `no` in the others.
+    #[inline(always)]
+    pub(crate) fn select<L: Select<S, K>>(self, yes: L, no: L) -> L {
+        L::select(self, yes, no)
+    }
+}
+
+/// Numbers in lanes between which a mask can choose.
+pub(crate) trait Select<S: Simd, const K: usize> {
+    fn select(mask: Mask<S, K>, yes: Self, no: Self) -> Self;
+}
+
+impl<S: Simd, const K: usize> Select<S, K> for F64s<S, K> {
+    #[inline(always)]
+    fn select(mask: Mask<S, K>, yes: Self, no: Self) -> Self {
+        Self(mask.0, mask.0.f64s_select(mask.1, yes.1, no.1))
+    }
+}
+
+impl<S: Simd, const K: usize> Select<S, K> for U64s<S, K> {
+    #[inline(always)]
+    fn select(mask: Mask<S, K>, yes: Self, no: Self) -> Self {
+        Self(mask.0, mask.0.u64s_select(mask.1, yes.1, no.1))
+    }
+}
+
+impl<S: Simd, const K: usize> Not for Mask<S, K> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(self.0, self.0.mask_not(self.1))
+    }
+}
+
+macro_rules! operator {
+    ($trait:ident, $method:ident, $operation:ident) => {
+        impl<S: Simd, const K: usize> $trait for Mask<S, K> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0, self.0.$operation(self.1, other.1))
+            }
+        }
+    };
+}
+
+operator!(BitAnd, bitand, mask_and);
+operator!(BitOr, bitor, mask_or);
+operator!(BitXor, bitxor, mask_xor);

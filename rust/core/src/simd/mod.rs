@@ -1,0 +1,32 @@
+//! Numbers in SIMD lanes, and the instructions that compute with them.
+//!
+//! Code for lanes is written once, for any [`Simd`]: with [`F64s`], [`F32s`], [`U64s`] and [`Mask`], which hold a number or a
+//! truth value for each of `K` lanes. It is compiled for the instruction sets of [`SimdLevel`], of which the processor's
+//! best is chosen at run time. Every operation rounds as its scalar counterpart, so that the results do not depend on it.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod code;
+mod floats;
+mod instructions;
+mod integers;
+mod level;
+mod mask;
+mod portable;
+#[cfg(target_arch = "x86_64")]
+mod registers;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use code::SimdCode;
+pub use floats::{F32s, F64s};
+pub use instructions::Simd;
+pub use integers::U64s;
+pub use level::{SimdLevel, SimdLimit};
+pub use mask::Mask;
+pub use portable::Portable;
+
+/// The number of SIMD lanes that are computed together: eight f64 numbers fill two AVX2 registers, or one of AVX-512.
+pub const LANES: usize = 8;
