@@ -44,7 +44,7 @@ def test_the_numba_loop_equals_the_articles_loop_to_the_bit() -> None:
 
 
 def test_the_loop_in_c_equals_the_articles_loop_to_the_bit() -> None:
-    q_learning = article_c.library()
+    q_learning = article_c.build()
     if q_learning is None:
         pytest.skip("there is no compiler of C")
     run = package.train("MountainCar-v0", episodes=300, seed=4)

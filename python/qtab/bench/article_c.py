@@ -19,12 +19,12 @@ FLAGS = ("-O3", "-march=native", "-ffp-contract=off", "-shared", "-fPIC")
 
 def compiled() -> Callable[[int], int] | None:
     """Returns a function from the seed of a run to its number of steps; None without a compiler of C."""
-    q_learning = library()
+    q_learning = build()
     return None if q_learning is None else lambda seed: train(q_learning, seed, EPISODES)[1]
 
 
-def library() -> Any:
-    """Returns the compiled function; None without a compiler that accepts the flags."""
+def build() -> Any:
+    """Compiles the loop and returns it as a function; None without a compiler that accepts the flags."""
     compiler = next(filter(None, map(shutil.which, COMPILERS)), None)
     if compiler is None:
         return None
