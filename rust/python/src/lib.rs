@@ -57,9 +57,9 @@ mod _core {
         let py = module.py();
         if let Some(name) = std::env::var_os("QTAB_SIMD").filter(|name| !name.is_empty()) {
             let Some(limit) = name.to_str().and_then(SimdLimit::from_name) else {
+                let known = SimdLimit::NAMES.map(|(known, _)| format!("'{known}'")).join(", ");
                 let name = name.display();
-                let message =
-                    format!("the environment variable QTAB_SIMD must be 'plain', 'avx2' or unset, got '{name}'");
+                let message = format!("the environment variable QTAB_SIMD must be {known} or unset, got '{name}'");
                 return Err(PyImportError::new_err(message));
             };
             SimdLevel::restrict(limit);

@@ -21,7 +21,7 @@ impl Benchmarks {
     /// As the environment variables and the command line ask for.
     pub(crate) fn from_env() -> Self {
         if let Ok(name) = env::var("QTAB_SIMD") {
-            SimdLevel::restrict(SimdLimit::from_name(&name).expect("QTAB_SIMD is 'plain' or 'avx2'"));
+            SimdLevel::restrict(SimdLimit::from_name(&name).expect("QTAB_SIMD names a limit"));
         }
         match env::var("QTAB_BENCH") {
             Err(_) => Self::Timed(Box::new(Criterion::default().configure_from_args())),

@@ -20,13 +20,12 @@ pub enum SimdLimit {
 }
 
 impl SimdLimit {
-    /// The limit that the environment variable `QTAB_SIMD` names, if it is one.
+    /// The limits that the environment variable `QTAB_SIMD` can name.
+    pub const NAMES: [(&str, Self); 2] = [("plain", Self::Plain), ("avx2", Self::Avx2)];
+
+    /// The limit with this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        match name {
-            "plain" => Some(Self::Plain),
-            "avx2" => Some(Self::Avx2),
-            _ => None,
-        }
+        Self::NAMES.into_iter().find_map(|(known, limit)| (known == name).then_some(limit))
     }
 }
 
