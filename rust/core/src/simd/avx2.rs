@@ -8,16 +8,16 @@ use std::array::from_fn;
 use pulp::cast;
 use pulp::x86::V3;
 
+use super::portable::all_bits;
 use super::registers::{bools, narrowed, widened};
 use super::{LANES, Simd};
 
 /// The number of lanes of a register.
 const WIDTH: usize = LANES / 2;
 
-/// `f` of the register that holds the first four lanes, and of the other one, if it is in use.
+/// `f` of both registers. If one is enough, it is computed twice, which the compiler sees.
 #[inline(always)]
 fn both<T, const K: usize>(f: impl Fn(usize) -> T) -> [T; 2] {
-    // The compiler sees that the same register is computed twice.
     [f(0), f(usize::from(K > WIDTH))]
 }
 
@@ -262,7 +262,7 @@ impl Simd for V3 {
 
     #[inline(always)]
     fn mask<const K: usize>(self, array: [bool; K]) -> [__m256i; 2] {
-        self.u64s(array.map(crate::numeric::mask))
+        self.u64s(array.map(all_bits))
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
+use super::lane_type::{InLanes, lane_type};
 use super::{Mask, Simd, U64s};
 
 /// An f64 for each lane. `lanes * number` and the like use the number in each.
@@ -14,12 +15,9 @@ pub struct F64s<S: Simd, const K: usize>(pub(super) S, pub(super) S::F64s<K>);
 #[derive(Clone, Copy, Debug)]
 pub struct F32s<S: Simd, const K: usize>(pub(super) S, pub(super) S::F32s<K>);
 
-impl<S: Simd, const K: usize> F64s<S, K> {
-    #[inline(always)]
-    pub(crate) fn new(simd: S, array: [f64; K]) -> Self {
-        Self(simd, simd.f64s(array))
-    }
+lane_type!(F64s, f64, f64s, f64_array, Add add f64s_add, Sub sub f64s_sub, Mul mul f64s_mul, Div div f64s_div);
 
+impl<S: Simd, const K: usize> F64s<S, K> {
     #[inline(always)]
     pub(crate) fn splat(simd: S, number: f64) -> Self {
         Self(simd, simd.f64s_splat(number))
@@ -44,19 +42,6 @@ impl<S: Simd, const K: usize> F64s<S, K> {
     #[inline(always)]
     pub(crate) fn to_f32s(self) -> F32s<S, K> {
         F32s(self.0, self.0.f64s_to_f32s(self.1))
-    }
-
-    #[inline(always)]
-    pub(crate) fn to_array(self) -> [f64; K] {
-        self.0.f64_array(self.1)
-    }
-
-    /// Replaces the number of one lane.
-    #[inline(always)]
-    pub(crate) fn set(&mut self, lane: usize, number: f64) {
-        let mut array = self.to_array();
-        array[lane] = number;
-        *self = Self::new(self.0, array);
     }
 
     /// `self * factor + summand`, rounded once.
@@ -127,42 +112,12 @@ impl<S: Simd, const K: usize> F32s<S, K> {
     }
 }
 
-/// What an operation in lanes takes: numbers in lanes, or one number for all of them.
-pub(crate) trait InLanes<S, L> {
-    fn in_lanes(self, simd: S) -> L;
-}
-
-impl<S: Simd, const K: usize> InLanes<S, Self> for F64s<S, K> {
-    #[inline(always)]
-    fn in_lanes(self, _simd: S) -> Self {
-        self
-    }
-}
-
 impl<S: Simd, const K: usize> InLanes<S, F64s<S, K>> for f64 {
     #[inline(always)]
     fn in_lanes(self, simd: S) -> F64s<S, K> {
         F64s::splat(simd, self)
     }
 }
-
-macro_rules! operator {
-    ($trait:ident, $method:ident, $operation:ident) => {
-        impl<S: Simd, T: InLanes<S, Self>, const K: usize> $trait<T> for F64s<S, K> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $method(self, other: T) -> Self {
-                Self(self.0, self.0.$operation(self.1, other.in_lanes(self.0).1))
-            }
-        }
-    };
-}
-
-operator!(Add, add, f64s_add);
-operator!(Sub, sub, f64s_sub);
-operator!(Mul, mul, f64s_mul);
-operator!(Div, div, f64s_div);
 
 impl<S: Simd, const K: usize> Mul<F64s<S, K>> for f64 {
     type Output = F64s<S, K>;

@@ -4,35 +4,22 @@
 
 use std::ops::{Add, BitAnd, BitOr, BitXor, Mul, Sub};
 
-use super::floats::InLanes;
+use super::lane_type::{InLanes, lane_type};
 use super::{Mask, Simd};
 
 /// A u64 for each lane. Sums, differences and products wrap around.
 #[derive(Clone, Copy, Debug)]
 pub struct U64s<S: Simd, const K: usize>(pub(super) S, pub(super) S::U64s<K>);
 
-impl<S: Simd, const K: usize> U64s<S, K> {
-    #[inline(always)]
-    pub(crate) fn new(simd: S, array: [u64; K]) -> Self {
-        Self(simd, simd.u64s(array))
-    }
+lane_type!(
+    U64s, u64, u64s, u64_array,
+    Add add u64s_add, Sub sub u64s_sub, Mul mul u64s_mul, BitAnd bitand u64s_and, BitOr bitor u64s_or, BitXor bitxor u64s_xor
+);
 
+impl<S: Simd, const K: usize> U64s<S, K> {
     #[inline(always)]
     pub(crate) fn splat(simd: S, number: u64) -> Self {
         Self(simd, simd.u64s_splat(number))
-    }
-
-    #[inline(always)]
-    pub(crate) fn to_array(self) -> [u64; K] {
-        self.0.u64_array(self.1)
-    }
-
-    /// Replaces the number of one lane.
-    #[inline(always)]
-    pub(crate) fn set(&mut self, lane: usize, number: u64) {
-        let mut array = self.to_array();
-        array[lane] = number;
-        *self = Self::new(self.0, array);
     }
 
     /// One more in the lanes where the mask is true.
@@ -74,36 +61,9 @@ impl<S: Simd, const K: usize> U64s<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> InLanes<S, Self> for U64s<S, K> {
-    #[inline(always)]
-    fn in_lanes(self, _simd: S) -> Self {
-        self
-    }
-}
-
 impl<S: Simd, const K: usize> InLanes<S, U64s<S, K>> for u64 {
     #[inline(always)]
     fn in_lanes(self, simd: S) -> U64s<S, K> {
         U64s::splat(simd, self)
     }
 }
-
-macro_rules! operator {
-    ($trait:ident, $method:ident, $operation:ident) => {
-        impl<S: Simd, T: InLanes<S, Self>, const K: usize> $trait<T> for U64s<S, K> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $method(self, other: T) -> Self {
-                Self(self.0, self.0.$operation(self.1, other.in_lanes(self.0).1))
-            }
-        }
-    };
-}
-
-operator!(Add, add, u64s_add);
-operator!(Sub, sub, u64s_sub);
-operator!(Mul, mul, u64s_mul);
-operator!(BitAnd, bitand, u64s_and);
-operator!(BitOr, bitor, u64s_or);
-operator!(BitXor, bitxor, u64s_xor);

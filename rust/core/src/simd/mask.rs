@@ -4,31 +4,16 @@
 
 use std::ops::{BitAnd, BitOr, BitXor, Not};
 
+use super::lane_type::{InLanes, lane_type};
 use super::{F64s, Simd, U64s};
 
 /// A truth value for each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Mask<S: Simd, const K: usize>(pub(super) S, pub(super) S::Mask<K>);
 
+lane_type!(Mask, bool, mask, bool_array, BitAnd bitand mask_and, BitOr bitor mask_or, BitXor bitxor mask_xor);
+
 impl<S: Simd, const K: usize> Mask<S, K> {
-    #[inline(always)]
-    pub(crate) fn new(simd: S, array: [bool; K]) -> Self {
-        Self(simd, simd.mask(array))
-    }
-
-    #[inline(always)]
-    pub(crate) fn to_array(self) -> [bool; K] {
-        self.0.bool_array(self.1)
-    }
-
-    /// Replaces the value of one lane.
-    #[inline(always)]
-    pub(crate) fn set(&mut self, lane: usize, value: bool) {
-        let mut array = self.to_array();
-        array[lane] = value;
-        *self = Self::new(self.0, array);
-    }
-
     /// Whether it is true in any lane.
     #[inline(always)]
     pub(crate) fn any(self) -> bool {
@@ -69,20 +54,3 @@ impl<S: Simd, const K: usize> Not for Mask<S, K> {
         Self(self.0, self.0.mask_not(self.1))
     }
 }
-
-macro_rules! operator {
-    ($trait:ident, $method:ident, $operation:ident) => {
-        impl<S: Simd, const K: usize> $trait for Mask<S, K> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(self.0, self.0.$operation(self.1, other.1))
-            }
-        }
-    };
-}
-
-operator!(BitAnd, bitand, mask_and);
-operator!(BitOr, bitor, mask_or);
-operator!(BitXor, bitxor, mask_xor);

@@ -12,6 +12,7 @@ mod code;
 mod floats;
 mod instructions;
 mod integers;
+mod lane_type;
 mod level;
 mod mask;
 mod portable;

@@ -3,11 +3,22 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::Simd;
-use crate::numeric::{mask, select};
 
 /// The instructions that every processor of the target has.
 #[derive(Clone, Copy, Debug)]
 pub struct Portable;
+
+/// All bits if `condition` holds, otherwise none.
+#[inline(always)]
+pub(super) fn all_bits(condition: bool) -> u64 {
+    if condition { u64::MAX } else { 0 }
+}
+
+/// `yes` where a mask has all bits, `no` where it has none.
+#[inline(always)]
+fn select(mask: u64, yes: u64, no: u64) -> u64 {
+    (yes & mask) | (no & !mask)
+}
 
 /// `f` of each lane. `std::array::from_fn` is not always inlined.
 #[inline(always)]
@@ -80,17 +91,17 @@ impl Simd for Portable {
 
     #[inline(always)]
     fn f64s_less<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [u64; K] {
-        lanes(|lane| mask(a[lane] < b[lane]))
+        lanes(|lane| all_bits(a[lane] < b[lane]))
     }
 
     #[inline(always)]
     fn f64s_less_or_equal<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [u64; K] {
-        lanes(|lane| mask(a[lane] <= b[lane]))
+        lanes(|lane| all_bits(a[lane] <= b[lane]))
     }
 
     #[inline(always)]
     fn f64s_equal<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [u64; K] {
-        lanes(|lane| mask(a[lane] == b[lane]))
+        lanes(|lane| all_bits(a[lane] == b[lane]))
     }
 
     /// By bits: a select between f64 would be an unpredictable branch where there are no vector registers.
@@ -213,7 +224,7 @@ impl Simd for Portable {
 
     #[inline(always)]
     fn u64s_less<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        lanes(|lane| mask(a[lane] < b[lane]))
+        lanes(|lane| all_bits(a[lane] < b[lane]))
     }
 
     #[inline(always)]
@@ -224,7 +235,7 @@ impl Simd for Portable {
 
     #[inline(always)]
     fn u64s_equal<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        lanes(|lane| mask(a[lane] == b[lane]))
+        lanes(|lane| all_bits(a[lane] == b[lane]))
     }
 
     #[inline(always)]
@@ -234,7 +245,7 @@ impl Simd for Portable {
 
     #[inline(always)]
     fn mask<const K: usize>(self, array: [bool; K]) -> [u64; K] {
-        lanes(|lane| mask(array[lane]))
+        lanes(|lane| all_bits(array[lane]))
     }
 
     #[inline(always)]

@@ -1,0 +1,52 @@
+//! What the types of lanes have in common.
+
+/// What an operation in lanes takes: `L`, or a number that is the same in all lanes.
+pub(crate) trait InLanes<S, L> {
+    fn in_lanes(self, simd: S) -> L;
+}
+
+/// Defines how a type of lanes is made of an array and read, and its operators. It takes the type, that of a lane, the
+/// operations from and to an array, and the operations of the operators.
+macro_rules! lane_type {
+    ($lanes:ident, $lane:ty, $from_array:ident, $to_array:ident, $($trait:ident $method:ident $operation:ident),+) => {
+        impl<S: Simd, const K: usize> $lanes<S, K> {
+            #[inline(always)]
+            pub(crate) fn new(simd: S, array: [$lane; K]) -> Self {
+                Self(simd, simd.$from_array(array))
+            }
+
+            #[inline(always)]
+            pub(crate) fn to_array(self) -> [$lane; K] {
+                self.0.$to_array(self.1)
+            }
+
+            /// Replaces what one lane holds.
+            #[inline(always)]
+            pub(crate) fn set(&mut self, lane: usize, new: $lane) {
+                let mut array = self.to_array();
+                array[lane] = new;
+                *self = Self::new(self.0, array);
+            }
+        }
+
+        impl<S: Simd, const K: usize> InLanes<S, Self> for $lanes<S, K> {
+            #[inline(always)]
+            fn in_lanes(self, _simd: S) -> Self {
+                self
+            }
+        }
+
+        $(
+            impl<S: Simd, T: InLanes<S, Self>, const K: usize> $trait<T> for $lanes<S, K> {
+                type Output = Self;
+
+                #[inline(always)]
+                fn $method(self, other: T) -> Self {
+                    Self(self.0, self.0.$operation(self.1, other.in_lanes(self.0).1))
+                }
+            }
+        )+
+    };
+}
+
+pub(super) use lane_type;
