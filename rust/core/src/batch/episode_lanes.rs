@@ -57,7 +57,7 @@ impl<S: Simd, R: LaneRows, const N: usize, const M: usize, const K: usize> Episo
                 run.rng = rng;
             }
         }
-        let (zero, none) = (F64s::splat(simd, 0.0), U64s::splat(simd, 0));
+        let (zero, zero_u64) = (F64s::splat(simd, 0.0), U64s::splat(simd, 0));
         let mut lanes = Self {
             simd,
             active: [false; K],
@@ -65,10 +65,10 @@ impl<S: Simd, R: LaneRows, const N: usize, const M: usize, const K: usize> Episo
             elapsed: [0; K],
             rows: [R::default(); K],
             values: [[0.0; K]; N],
-            action: none,
+            action: zero_u64,
             actions_chosen: true,
             episode_return: zero,
-            explore_from: none,
+            explore_from: zero_u64,
             divergence: zero,
         };
         for (lane, run) in runs.iter_mut().enumerate() {

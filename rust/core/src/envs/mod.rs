@@ -12,5 +12,4 @@ pub mod wrappers;
 pub use env::{Env, Step};
 pub use parameters::{Flag, Parameters};
 pub use simd_env::SimdEnv;
-pub(crate) use simd_env::{gather, scatter};
 pub use transition_probability::TransitionProbability;

@@ -1,7 +1,5 @@
 //! The trait of environments that step in SIMD lanes.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::Env;
 use crate::simd::{F64s, Mask, Simd, U64s};
 
@@ -23,22 +21,4 @@ pub trait SimdEnv<const M: usize>:
 
     /// The reward of a step, which depends only on whether the next state is terminal.
     fn reward(&self, terminated: bool) -> f64;
-}
-
-/// Writes a state to a lane.
-#[inline(always)]
-pub(crate) fn scatter<S: Into<[f64; M]>, const K: usize, const M: usize>(
-    fields: &mut [[f64; K]; M],
-    lane: usize,
-    state: S,
-) {
-    for (field, number) in fields.iter_mut().zip(state.into()) {
-        field[lane] = number;
-    }
-}
-
-/// Reads the state of a lane.
-#[inline(always)]
-pub(crate) fn gather<S: From<[f64; M]>, const K: usize, const M: usize>(fields: &[[f64; K]; M], lane: usize) -> S {
-    std::array::from_fn(|field| fields[field][lane]).into()
 }

@@ -73,7 +73,7 @@ pub(crate) fn u64_to_f64(word: u64) -> f64 {
 
 /// The upper 53 bits of a word.
 #[inline]
-pub(super) fn upper_53_bits(word: u64) -> u64 {
+fn upper_53_bits(word: u64) -> u64 {
     word >> 11
 }
 

@@ -30,7 +30,8 @@ impl Pcg64Engine {
     #[inline]
     pub(super) fn next_u64(&mut self) -> u64 {
         self.step();
-        word(self.state as u64, (self.state >> 64) as u64)
+        let (low, high) = (self.state as u64, (self.state >> 64) as u64);
+        (low ^ high).rotate_right((high >> 58) as u32)
     }
 
     /// Skips so many words, modulo 2¹²⁸, in at most 128 squarings (F. B. Brown, "Random number generation with arbitrary
@@ -47,13 +48,6 @@ impl Pcg64Engine {
             left /= 2;
         }
     }
-}
-
-/// The word of a state, given as its lower and its upper 64 bits.
-#[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-#[inline(always)]
-pub(super) fn word(low: u64, high: u64) -> u64 {
-    (low ^ high).rotate_right((high >> 58) as u32)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 
 use super::states::{States, StepOutputs};
 use crate::StopFlag;
-use crate::envs::{Env, SimdEnv, gather, scatter};
+use crate::envs::{Env, SimdEnv};
 use crate::memory::{AllocationError, filled};
 use crate::random::{NoRng, Rng};
 use crate::simd::{F64s, LANES, Simd, SimdCode, SimdLevel, U64s};
@@ -93,6 +93,20 @@ where
             }
         }
     }
+}
+
+/// Writes a state to a lane.
+#[inline(always)]
+fn scatter<S: Into<[f64; M]>, const K: usize, const M: usize>(fields: &mut [[f64; K]; M], lane: usize, state: S) {
+    for (field, number) in fields.iter_mut().zip(state.into()) {
+        field[lane] = number;
+    }
+}
+
+/// Reads the state of a lane.
+#[inline(always)]
+fn gather<S: From<[f64; M]>, const K: usize, const M: usize>(fields: &[[f64; K]; M], lane: usize) -> S {
+    std::array::from_fn(|field| fields[field][lane]).into()
 }
 
 #[cfg(test)]
