@@ -1,4 +1,4 @@
-"""Batches, tile coding and vector environments give the same numbers with all vector instructions."""
+"""Batches, tile coding and vector environments give the same numbers, whatever the vector instructions."""
 
 import hashlib
 import os

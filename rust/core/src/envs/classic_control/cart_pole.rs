@@ -141,7 +141,7 @@ impl CartPole {
         [costheta, sintheta]: [F64s<S, K>; 2],
     ) -> Mask<S, K> {
         let (old_x_dot, old_theta_dot) = (*x_dot, *theta_dot);
-        // Apart from the velocities, so that the next angle need not wait for three divisions.
+        // Before the divisions, for which the next angle then need not wait.
         if self.euler {
             *x = *x + self.tau * old_x_dot;
             *theta = *theta + self.tau * old_theta_dot;
