@@ -66,7 +66,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
 
     #[inline]
     fn work(&self, agent: &Agent) -> u64 {
-        agent.work() + self.traces.len() as u64 / VALUES_PER_WORK
+        agent.work() + self.traces.pass_len() as u64 / VALUES_PER_WORK
     }
 
     fn end_episode(&mut self, agent: &mut Agent) {

@@ -267,8 +267,7 @@ impl Simd for V3 {
 
     #[inline(always)]
     fn bool_array<const K: usize>(self, a: [__m256i; 2]) -> [bool; K] {
-        let [lower, upper] = both::<_, K>(|half| self.avx._mm256_movemask_pd(cast(a[half])) as u8);
-        bools(lower | (upper << WIDTH))
+        bools(self.mask_bits::<K>(a))
     }
 
     #[inline(always)]
@@ -292,9 +291,8 @@ impl Simd for V3 {
     }
 
     #[inline(always)]
-    fn mask_any<const K: usize>(self, a: [__m256i; 2]) -> bool {
-        let in_use = self.mask_and::<K>(a, self.mask([true; K]));
-        let any = self.avx2._mm256_or_si256(in_use[0], in_use[1]);
-        self.avx._mm256_testz_si256(any, any) == 0
+    fn mask_bits<const K: usize>(self, a: [__m256i; 2]) -> u8 {
+        let [lower, upper] = both::<_, K>(|half| self.avx._mm256_movemask_pd(cast(a[half])) as u8);
+        lower | (upper << WIDTH)
     }
 }

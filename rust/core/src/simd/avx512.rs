@@ -11,12 +11,6 @@ use pulp::x86::V4;
 use super::registers::{bools, narrowed, widened};
 use super::{LANES, Simd};
 
-/// The bits of the lanes in use.
-const fn lanes_in_use<const K: usize>() -> u8 {
-    assert!(K <= LANES, "a register of AVX-512 has eight lanes");
-    u8::MAX >> (LANES - K)
-}
-
 impl Simd for V4 {
     const HAS_FMA: bool = true;
 
@@ -273,7 +267,7 @@ impl Simd for V4 {
     }
 
     #[inline(always)]
-    fn mask_any<const K: usize>(self, a: u8) -> bool {
-        a & const { lanes_in_use::<K>() } != 0
+    fn mask_bits<const K: usize>(self, a: u8) -> u8 {
+        a
     }
 }

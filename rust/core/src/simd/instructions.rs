@@ -1,8 +1,11 @@
 //! The trait of instruction sets.
 
 #![expect(missing_docs, reason = "the methods are named after their operations")]
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use std::fmt::Debug;
+
+use super::LANES;
 
 /// The operations of an instruction set on numbers in `K` lanes. A value is the proof that this processor has the set.
 ///
@@ -71,5 +74,10 @@ pub trait Simd: Copy + Debug {
     fn mask_or<const K: usize>(self, a: Self::Mask<K>, b: Self::Mask<K>) -> Self::Mask<K>;
     fn mask_xor<const K: usize>(self, a: Self::Mask<K>, b: Self::Mask<K>) -> Self::Mask<K>;
     fn mask_not<const K: usize>(self, a: Self::Mask<K>) -> Self::Mask<K>;
-    fn mask_any<const K: usize>(self, a: Self::Mask<K>) -> bool;
+    /// A bit for each lane. Those beyond are arbitrary.
+    fn mask_bits<const K: usize>(self, a: Self::Mask<K>) -> u8;
+    #[inline(always)]
+    fn mask_any<const K: usize>(self, a: Self::Mask<K>) -> bool {
+        self.mask_bits::<K>(a) << (LANES - K) != 0
+    }
 }

@@ -14,6 +14,12 @@ pub struct Mask<S: Simd, const K: usize>(pub(super) S, pub(super) S::Mask<K>);
 lane_type!(Mask, bool, mask, bool_array, BitAnd bitand mask_and, BitOr bitor mask_or, BitXor bitxor mask_xor);
 
 impl<S: Simd, const K: usize> Mask<S, K> {
+    /// A bit for each lane. Those beyond are arbitrary.
+    #[inline(always)]
+    pub(crate) fn bits(self) -> u8 {
+        self.0.mask_bits(self.1)
+    }
+
     /// Whether it is true in any lane.
     #[inline(always)]
     pub(crate) fn any(self) -> bool {

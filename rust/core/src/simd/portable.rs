@@ -274,6 +274,11 @@ impl Simd for Portable {
     }
 
     #[inline(always)]
+    fn mask_bits<const K: usize>(self, a: [u64; K]) -> u8 {
+        a.iter().enumerate().fold(0, |bits, (lane, mask)| bits | ((mask & 1) as u8) << lane)
+    }
+
+    #[inline(always)]
     fn mask_any<const K: usize>(self, a: [u64; K]) -> bool {
         a.iter().fold(0, |any, bits| any | bits) != 0
     }

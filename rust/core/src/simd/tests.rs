@@ -54,8 +54,8 @@ impl<const K: usize> SimdCode for Operands<K> {
     const USES_AVX512: bool = true;
 
     /// The results of each lane, in the order of `expected`; those of `mul_add`, if it is one instruction; and whether any
-    /// a is less than its b.
-    type Output = ([Vec<u64>; K], Option<[f64; K]>, bool);
+    /// a is less than its b, and which.
+    type Output = ([Vec<u64>; K], Option<[f64; K]>, bool, u8);
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
@@ -110,13 +110,13 @@ impl<const K: usize> SimdCode for Operands<K> {
             let truths = truths.iter().map(|mask| mask.to_array()[lane].into());
             floats.chain(integers).chain(truths).collect()
         });
-        (results, S::HAS_FMA.then(|| a.mul_add(b, 0.3).to_array()), less.any())
+        (results, S::HAS_FMA.then(|| a.mul_add(b, 0.3).to_array()), less.any(), less.bits())
     }
 }
 
 fn check<const K: usize>(operands: Operands<K>) {
     for level in SimdLevel::available() {
-        let (results, fused, any) = level.run(operands);
+        let (results, fused, any, bits_of_less) = level.run(operands);
         for (lane, results) in results.into_iter().enumerate() {
             assert_eq!(results, operands.expected(lane), "lane {lane} of {K}, {level:?}");
         }
@@ -124,7 +124,11 @@ fn check<const K: usize>(operands: Operands<K>) {
             let expected = std::array::from_fn(|lane| operands.a[lane].mul_add(operands.b[lane], 0.3));
             assert_eq!(fused.map(bits), <[f64; K]>::map(expected, bits), "{level:?}");
         }
-        assert_eq!(any, operands.a.iter().zip(&operands.b).any(|(a, b)| a < b), "{level:?}");
+        let less = operands.a.iter().zip(&operands.b).map(|(a, b)| a < b);
+        assert_eq!(any, less.clone().any(|less| less), "{level:?}");
+        for (lane, less) in less.enumerate() {
+            assert_eq!(bits_of_less >> lane & 1 != 0, less, "lane {lane} of {K}, {level:?}");
+        }
     }
 }
 

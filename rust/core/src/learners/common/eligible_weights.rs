@@ -5,36 +5,31 @@
 use std::hint::select_unpredictable;
 
 use super::aligned_vec::{AlignedVec, MAX_PADDING, padding};
-use super::recent_visits::RecentVisits;
 use super::trace_changes::select;
-use super::trace_passes::BLOCK;
+use super::trace_pass::BLOCK;
 use crate::StopFlag;
 use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
 use crate::q_table::QTable;
+use crate::simd::SimdLevel;
 
-/// The trace of a place in use by no weight. No comparison finds it below a cutoff.
-const UNUSED: f64 = f64::NAN;
-
-/// The eligible weights, those whose traces are not zero. Each has a place. While the run learns, their values have moved
-/// out of the table, to the same places behind it; see [`QTable::values_at`].
+/// The eligible weights, those whose traces are not zero, and some whose traces have become zero. Each has a place. While the
+/// run learns, their values have moved out of the table, to the same places behind it; see [`QTable::values_at`].
 #[derive(Clone, Debug)]
 pub(super) struct EligibleWeights {
     /// The number of places in use. They are the first ones.
     pub(super) count: usize,
-    /// The trace at each place.
+    /// The trace at each place, 0 at those that are not in use.
     pub(super) traces: AlignedVec,
-    /// No magnitude of a trace is smaller than this.
+    /// No magnitude of a trace is smaller than this. 0 if one may be 0.
     pub(super) smallest: f64,
     /// Traces whose magnitudes fall to this become 0.
     pub(super) cutoff: f64,
     /// The index of the weight at each place in use.
     pub(super) weights: Vec<u32>,
-    /// The visits that tell which traces can fall to it.
-    pub(super) visits: RecentVisits,
-    /// For each block of places, whether a trace has fallen to the cutoff.
-    pub(super) fallen: Vec<bool>,
-    /// A buffer for the blocks where one has.
-    pub(super) fallen_blocks: Vec<u32>,
+    /// With so many places in use, the weights whose traces are 0 lose theirs.
+    pub(super) remove_zeros_at: usize,
+    /// The instructions of the passes over traces.
+    pub(super) level: SimdLevel,
     /// For each weight the index of its value in the storage of the table: its own index, or that of its place, which is
     /// `base` more.
     pub(super) slots: Vec<u32>,
@@ -62,10 +57,9 @@ impl EligibleWeights {
             traces: AlignedVec::with_capacity(places)?,
             smallest: f64::INFINITY,
             cutoff,
-            visits: RecentVisits::new(cutoff)?,
+            remove_zeros_at: 0,
+            level: SimdLevel::detect(),
             weights: with_capacity(places)?,
-            fallen: with_capacity(places / BLOCK)?,
-            fallen_blocks: with_capacity(places / BLOCK)?,
             base: slots.len(),
             slots,
             moved: false,
@@ -79,9 +73,9 @@ impl EligibleWeights {
         reserve(storage, (self.slots.len() + MAX_PADDING + places).saturating_sub(storage.len()))
     }
 
-    /// The number of eligible weights.
-    pub(super) fn len(&self) -> usize {
-        self.count
+    /// The number of weights whose traces are not zero.
+    pub(super) fn num_eligible(&self) -> usize {
+        self.traces[..self.count].iter().filter(|&&trace| trace != 0.0).count()
     }
 
     /// The number of weights, eligible or not.
@@ -123,10 +117,8 @@ impl EligibleWeights {
     #[cold]
     fn grow_to(&mut self, places: usize, storage: &mut Vec<f64>) {
         let places = places.max(self.traces.len());
-        self.traces.resize(places, UNUSED);
+        self.traces.resize(places, 0.0);
         self.weights.resize(places, 0);
-        self.fallen.resize(places / BLOCK, false);
-        self.fallen_blocks.resize(places / BLOCK, 0);
         storage.resize(self.base + places, 0.0);
     }
 
@@ -169,13 +161,10 @@ impl EligibleWeights {
 
     /// Gives a weight a trace, while the values are in the table. The weight must not be eligible.
     pub(super) fn insert(&mut self, weight: u32, trace: f64) {
-        self.visits.invalidate();
         let place = self.count;
         if place == self.traces.len() {
-            self.traces.resize(place + BLOCK, UNUSED);
+            self.traces.resize(place + BLOCK, 0.0);
             self.weights.resize(place + BLOCK, 0);
-            self.fallen.push(false);
-            self.fallen_blocks.push(0);
         }
         self.traces[place] = trace;
         self.weights[place] = weight;
@@ -200,7 +189,7 @@ impl EligibleWeights {
         storage[weight as usize] = storage[len + place];
         storage[len + place] = storage[len + last];
         self.traces[place] = self.traces[last];
-        self.traces[last] = UNUSED;
+        self.traces[last] = 0.0;
         self.weights[place] = moving;
         self.slots[moving as usize] = (len + place) as u32;
         // In this order, because the two can be the same.
@@ -235,11 +224,11 @@ impl EligibleWeights {
 
     /// No place is in use any more.
     fn empty(&mut self) {
-        self.traces[..self.count].fill(UNUSED);
+        self.traces[..self.count].fill(0.0);
         self.count = 0;
         self.moved = false;
         self.smallest = f64::INFINITY;
-        self.visits.clear();
+        self.remove_zeros_at = 0;
     }
 }
 
@@ -247,10 +236,9 @@ impl EligibleWeights {
 /// the cutoff.
 impl PartialEq for EligibleWeights {
     fn eq(&self, other: &Self) -> bool {
-        let parts = |weights: &Self| (weights.count, weights.cutoff, weights.moved, weights.num_weights());
+        let parts = |weights: &Self| (weights.num_eligible(), weights.cutoff, weights.moved, weights.num_weights());
         let mut traces = self.weights.iter().zip(&*self.traces).take(self.count);
         parts(self) == parts(other)
-            && traces
-                .all(|(&weight, &trace)| other.place(weight as usize).is_some_and(|place| other.traces[place] == trace))
+            && traces.all(|(&weight, &trace)| trace == 0.0 || other.trace(weight as usize) == trace)
     }
 }

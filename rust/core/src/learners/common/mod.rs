@@ -19,7 +19,6 @@ mod policy_gradient;
 mod policy_gradient_learner;
 mod predecessors;
 mod priority_queue;
-mod recent_visits;
 mod stochastic_model;
 mod target_policy;
 mod td_learner;
@@ -27,7 +26,8 @@ mod td_learner;
 pub(super) mod test_support;
 mod trace_changes;
 mod trace_decay;
-mod trace_passes;
+mod trace_pass;
+mod trace_removal;
 mod traces;
 #[cfg(test)]
 mod traces_tests;

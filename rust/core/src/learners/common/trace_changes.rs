@@ -17,7 +17,6 @@ impl EligibleWeights {
         weights: impl ExactSizeIterator<Item = usize>,
         change: impl Fn(f64) -> f64,
     ) -> f64 {
-        self.visits.invalidate();
         self.grow(weights.len(), table.storage_mut());
         // Local variables: behind `self` and `table` each weight would load them again.
         let base = self.base;
@@ -32,7 +31,7 @@ impl EligibleWeights {
             // No branch, because whether a weight is eligible is hard to predict.
             let new = slot < base;
             let place = select_unpredictable(new, count, slot.wrapping_sub(base));
-            let trace = change(select(new, 0.0, traces[place]));
+            let trace = change(traces[place]);
             smallest = if trace.abs() < smallest { trace.abs() } else { smallest };
             traces[place] = trace;
             places[place] = weight as u32;

@@ -12,6 +12,8 @@ use crate::policies::Policy;
 use crate::q_table::QTable;
 use crate::random::Rng;
 use crate::schedules::{LearningRate, StepSize};
+#[cfg(test)]
+use crate::simd::SimdLevel;
 use crate::tasks::Next;
 
 /// How a visit of a state-action pair changes traces.
@@ -27,8 +29,8 @@ pub enum TraceKind {
 
 /// The trace vector z, with one trace per weight. A trace whose magnitude falls to the cutoff becomes 0.
 ///
-/// From [`begin_step`](Self::begin_step) until [`complete_table`](Self::complete_table), the values of the weights whose traces are active
-/// are not in the rows of the table, and are read with [`action_values`](Self::action_values).
+/// From [`begin_step`](Self::begin_step) until [`complete_table`](Self::complete_table), the values of the weights whose
+/// traces are active are not in the rows of the table, and are read with [`action_values`](Self::action_values).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traces {
     eligible: EligibleWeights,
@@ -43,6 +45,12 @@ impl Traces {
         Ok(Self { eligible: EligibleWeights::new(weights, cutoff, stop)? })
     }
 
+    /// Passes over these traces with other instructions than the machine's best.
+    #[cfg(test)]
+    pub(super) fn set_level(&mut self, level: SimdLevel) {
+        self.eligible.level = level;
+    }
+
     /// Makes room for what the traces keep in the table.
     ///
     /// # Errors
@@ -51,14 +59,14 @@ impl Traces {
         self.eligible.reserve(table)
     }
 
-    /// The number of active traces.
-    pub fn len(&self) -> usize {
-        self.eligible.len()
+    /// The number of traces that a pass goes over: the active ones, and some that have become 0.
+    pub fn pass_len(&self) -> usize {
+        self.eligible.count
     }
 
     /// Whether no trace is active.
     pub fn is_empty(&self) -> bool {
-        self.len() == 0
+        self.eligible.num_eligible() == 0
     }
 
     /// The trace of a weight.
@@ -120,7 +128,6 @@ impl Traces {
     /// Sets the traces of a state-action pair to 1. Returns Q(S, A).
     #[inline(always)]
     fn replace<const N: usize>(&mut self, table: &mut QTable<N>, rows: impl AsRef<[u32]>, action: usize) -> f64 {
-        self.eligible.visits.visit(rows.as_ref(), action as u32);
         let weights = weight_indices(rows.as_ref(), table.num_actions(), action);
         self.eligible.replace(table, weights)
     }
@@ -220,12 +227,13 @@ fn weight_indices(rows: &[u32], num_actions: usize, action: usize) -> impl Exact
 impl Persist for Traces {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         let weights = self.eligible.num_weights();
-        let mut count = self.len();
+        let mut count = self.eligible.num_eligible();
         checkpoint.index(&mut count, weights + 1, "number of traces")?;
         if !checkpoint.is_restoring() {
             for weight in 0..weights {
-                if self.eligible.place(weight).is_some() {
-                    persist_trace(checkpoint, weights, (weight as u32, self.get(weight)))?;
+                let trace = self.get(weight);
+                if trace != 0.0 {
+                    persist_trace(checkpoint, weights, (weight as u32, trace))?;
                 }
             }
             return Ok(());

@@ -1,0 +1,62 @@
+//! The pass over eligible weights and their traces.
+
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
+use crate::simd::{F64s, LANES, Simd, SimdCode};
+
+/// The number of traces that a pass goes over at once: how many traces there are is hard for the processor to predict, and
+/// how many blocks of them is not.
+pub(super) const BLOCK: usize = 2 * LANES;
+
+/// Adds to each weight a step times its trace if `APPLIES`, then multiplies the trace by a factor if `DECAYS`.
+pub(super) struct TracePass<'a, const APPLIES: bool, const DECAYS: bool> {
+    pub(super) values: &'a mut [f64],
+    pub(super) traces: &'a mut [f64],
+    /// α δ
+    pub(super) step: f64,
+    /// γλ
+    pub(super) factor: f64,
+    /// Where a trace is 0 its weight stays as it is, and a magnitude that the factor takes to the cutoff becomes 0. `None` if
+    /// no trace is 0 and none falls to the cutoff.
+    pub(super) cutoff: Option<f64>,
+}
+
+impl<const APPLIES: bool, const DECAYS: bool> SimdCode for &mut TracePass<'_, APPLIES, DECAYS> {
+    const USES_AVX512: bool = true;
+
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        if let Some(cutoff) = self.cutoff {
+            self.blocks::<S, true>(simd, cutoff);
+        } else {
+            self.blocks::<S, false>(simd, 0.0);
+        }
+    }
+}
+
+impl<const APPLIES: bool, const DECAYS: bool> TracePass<'_, APPLIES, DECAYS> {
+    #[inline(always)]
+    fn blocks<S: Simd, const CUTS: bool>(&mut self, simd: S, cutoff: f64) {
+        let splat = |number| F64s::<S, LANES>::splat(simd, number);
+        let (step, factor, cutoff, zero) = (splat(self.step), splat(self.factor), splat(cutoff), splat(0.0));
+        let blocks = self.values.as_chunks_mut::<BLOCK>().0.iter_mut().zip(self.traces.as_chunks_mut::<BLOCK>().0);
+        for (values, traces) in blocks {
+            for (values, traces) in values.as_chunks_mut().0.iter_mut().zip(traces.as_chunks_mut().0) {
+                let before = F64s::new(simd, *traces);
+                if APPLIES {
+                    let change = step * before;
+                    // -0 changes no number, not even -0, unlike 0 and the product of 0 and an infinite step.
+                    let change = if CUTS { before.equal(zero).select(splat(-0.0), change) } else { change };
+                    *values = (F64s::new(simd, *values) + change).to_array();
+                }
+                if DECAYS {
+                    let after = before * factor;
+                    let falls = after.abs().less_or_equal(cutoff);
+                    *traces = if CUTS { falls.select(zero, after) } else { after }.to_array();
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! How the weights whose traces have become 0 lose their places.
+
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
+use super::eligible_weights::EligibleWeights;
+use super::trace_pass::BLOCK;
+use crate::simd::{F64s, LANES, Simd, SimdCode};
+
+/// The number of places that are looked at together, a bit for each.
+const GROUP: usize = u64::BITS as usize;
+
+impl EligibleWeights {
+    /// Removes the weights whose traces are 0, if enough places have come into use since the last time. Together, because
+    /// in which steps traces fall is hard for the processor to predict.
+    #[inline(always)]
+    pub(super) fn remove_zeros(&mut self, storage: &mut [f64]) {
+        if self.smallest == 0.0 && self.count >= self.remove_zeros_at {
+            self.remove_all_zeros(storage);
+        }
+    }
+
+    #[inline(never)]
+    fn remove_all_zeros(&mut self, storage: &mut [f64]) {
+        self.level.run(ZeroRemoval { weights: self, storage });
+        self.remove_zeros_at = self.count + self.count / 4 + BLOCK;
+    }
+}
+
+/// Removes all weights whose traces are 0.
+struct ZeroRemoval<'a> {
+    weights: &'a mut EligibleWeights,
+    storage: &'a mut [f64],
+}
+
+impl SimdCode for ZeroRemoval<'_> {
+    const USES_AVX512: bool = true;
+
+    type Output = ();
+
+    /// From the last place on, so that the weight that takes the place of another one has been looked at.
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { weights, storage } = self;
+        for first in (0..weights.count).step_by(GROUP).rev() {
+            let in_use = (weights.count - first).min(GROUP);
+            let mut places = zeros(simd, &weights.traces[first..]) & (u64::MAX >> (GROUP - in_use));
+            while places != 0 {
+                let place = places.ilog2();
+                places ^= 1 << place;
+                weights.remove(storage, first + place as usize);
+            }
+        }
+    }
+}
+
+/// Which of the first traces are 0, a bit for each.
+#[inline(always)]
+fn zeros<S: Simd>(simd: S, traces: &[f64]) -> u64 {
+    let lanes = traces.as_chunks::<LANES>().0.iter().take(GROUP / LANES);
+    lanes.enumerate().fold(0, |zeros, (index, traces)| {
+        zeros | u64::from(F64s::new(simd, *traces).equal(0.0).bits()) << (LANES * index)
+    })
+}
