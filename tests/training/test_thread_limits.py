@@ -14,7 +14,8 @@ def digest(*arrays):
     return hashlib.sha256(b"".join(np.ascontiguousarray(array).tobytes() for array in arrays)).hexdigest()
 
 def work():
-    run = qtab.train("MountainCar-v0", episodes=50, seed=0)
+    # Long enough for a thread of its own.
+    run = qtab.train("MountainCar-v0", episodes=30_000, seed=0)
     runs = qtab.train_many("MountainCar-v0", 10, threads=4, episodes=20)
     best = qtab.optimum("CliffWalking-v1")
     env = gym.make_vec("qtab/Acrobot-v1", 64, threads=4)

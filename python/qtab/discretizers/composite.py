@@ -64,7 +64,7 @@ class Composite(Discretizer):
                     *composite.counts,
                     *(group.discretizer.n_rows for group in groups if not group.discretizer.has_cells),
                 ]
-                values = float(np.prod([float(count or 1) for count in counts])) * n_actions
+                values = math.prod(float(count or 1) for count in counts) * n_actions
             names = composite.component_names
             given = f"{len(names)} components ({', '.join(names[:4])}{', ...' if len(names) > 4 else ''})"
             check_table_size("the observation space", given, values, too_large(layout.parts))

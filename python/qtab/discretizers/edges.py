@@ -1,5 +1,6 @@
 """Bins between the user's own edges: ``numpy.digitize`` along each component."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -34,7 +35,7 @@ class Edges(BoxDiscretizer):
             raise ValueError(
                 f"edges must hold {len(box.low)} rows of numbers for this observation space, got {shown(edges)}"
             )
-        check_table_size("edges", edges, float(np.prod([len(row) + 1.0 for row in edges])) * n_actions)
+        check_table_size("edges", edges, math.prod(len(row) + 1.0 for row in edges) * n_actions)
         return cls(box.low, box.high, _arrays(edges))
 
     @classmethod

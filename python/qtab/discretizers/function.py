@@ -42,7 +42,7 @@ class Function(Discretizer):
                 "in, such as (19, 15); or max_rows="
             )
         if config.shape is not None and n_actions:
-            check_table_size("shape", config.shape, float(np.prod(np.array(config.shape, np.float64))) * n_actions)
+            check_table_size("shape", config.shape, math.prod(map(float, config.shape)) * n_actions)
         return cls._of(config, space.shape)
 
     @classmethod

@@ -64,7 +64,7 @@ class TileCoding(BoxDiscretizer):
         if hashed_rows is not None:
             check_table_size("hashed_rows", hashed_rows, float(hashed_rows) * n_actions)
         else:
-            values = tilings * float(np.prod([count + 1.0 for count in tiles])) * n_actions
+            values = tilings * math.prod(count + 1.0 for count in tiles) * n_actions
             check_table_size("tiles", tiles, values, ", or hashed_rows= of your choice")
         return cls(box.low, box.high, limits, tiles, tilings, hashed_rows)
 

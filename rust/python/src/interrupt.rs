@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use qtab_core::StopFlag;
 
 /// How often signals are checked. Ctrl-C takes effect within this time plus the time between two looks at the flag.
-const POLL: Duration = Duration::from_millis(10);
+pub(crate) const POLL: Duration = Duration::from_millis(10);
 
 /// Runs `work` on a thread of its own, while this thread handles signals and other Python threads run. `work` must look
 /// at the flag at least every few milliseconds and return early when it is set; the signal's exception is then raised.

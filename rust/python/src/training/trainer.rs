@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::{Duration, Instant};
 
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyRuntimeError;
@@ -17,9 +18,13 @@ use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
 use crate::convert::{Seed, array_of};
 use crate::error::{RunError, allocation, invalid, unusable_checkpoint};
-use crate::interrupt::{run_interruptible, run_polling};
-use crate::runs::{AnyRecordings, BuiltRun, python_run};
+use crate::interrupt::{POLL, run_interruptible, run_polling};
+use crate::runs::{AnyRecordings, BuiltRun, Run, python_run};
 use crate::spec::{Fields, RunSpec};
+
+/// How long a call trains on the calling thread before it starts another one. While other Python threads are busy, each
+/// return to the interpreter takes milliseconds, so a long run does not stay there.
+const ON_THIS_THREAD: Duration = Duration::from_millis(100);
 
 /// Returns, lengths, and whether each episode ended in a terminal state.
 type FinishedEpisodes<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<bool>>);
@@ -69,28 +74,26 @@ impl PyTrainer {
             return Err(PyRuntimeError::new_err("this trainer's results were taken: it cannot train further"));
         }
         let BuiltRun { run, steps_python, .. } = &mut *guard;
-        let budget = Budget { episodes, work: WORK_BETWEEN_CHECKS };
         if *steps_python {
-            while run.episodes().returns.len() < episodes {
-                run.advance(budget)?;
-                py.check_signals()?;
-            }
-            return Ok(());
+            let mut signal = Ok(());
+            advance_until(run.as_mut(), episodes, || {
+                signal = py.check_signals();
+                signal.is_err()
+            })?;
+            return signal;
         }
-        // A short run, or the episodes until the next callback, are over before a thread would have started.
-        if run.episodes().returns.len() < episodes {
-            py.detach(|| run.advance(budget))?;
+        // A short run, or the episodes until the next callback, are over before another thread had started and its core's
+        // caches held the table.
+        let started = Instant::now();
+        while !is_finished(run.as_ref(), episodes) && started.elapsed() < ON_THIS_THREAD {
+            let detached = Instant::now();
+            py.detach(|| advance_until(run.as_mut(), episodes, || detached.elapsed() >= POLL))?;
             py.check_signals()?;
         }
-        if run.episodes().returns.len() >= episodes {
+        if is_finished(run.as_ref(), episodes) {
             return Ok(());
         }
-        let advanced: Result<(), RunError> = run_interruptible(py, |stop| {
-            while run.episodes().returns.len() < episodes && !stop.is_set() {
-                run.advance(budget)?;
-            }
-            Ok(())
-        })?;
+        let advanced = run_interruptible(py, |stop| advance_until(run.as_mut(), episodes, || stop.is_set()))?;
         advanced.map_err(PyErr::from)
     }
 
@@ -207,6 +210,18 @@ impl PyTrainer {
             )),
         }
     }
+}
+
+/// Trains until `episodes` episodes are finished, or until `is_over`, which is asked every fraction of a millisecond.
+fn advance_until(run: &mut dyn Run, episodes: usize, mut is_over: impl FnMut() -> bool) -> Result<(), RunError> {
+    while !is_finished(run, episodes) && !is_over() {
+        run.advance(Budget { episodes, work: WORK_BETWEEN_CHECKS })?;
+    }
+    Ok(())
+}
+
+fn is_finished(run: &dyn Run, episodes: usize) -> bool {
+    run.episodes().returns.len() >= episodes
 }
 
 fn unusable(error: CheckpointError) -> PyErr {
