@@ -57,7 +57,8 @@ def settings() -> Iterator[tuple[str, Any]]:
     yield from (("baseline", value) for value in ["yes", 1, 0, 0.5, [True]])
     yield from (("preset", value) for value in [3, b"solved", "slved", ["solved"]])
     yield from (("env_kwargs", value) for value in [3, "goal_velocity", [("a", 1)], {1: 2}])
-    yield from [("actions", RAGGED), ("edges", [[2, 1]]), ("tiles", HUGE), ("bins", HUGE), ("hashed_rows", -HUGE)]
+    yield from [("actions", RAGGED), ("edges", [[2, 1]]), ("hashed_rows", -HUGE)]
+    yield from [("shape", HUGE), ("tiles", HUGE), ("bins", HUGE)]
     yield from (("time_aware", value) for value in [1, 0.5, "yes", None, [True]])
     yield from (("action_mask", value) for value in ["info", 1, 0.5, [True], np.ones(3, np.int8), {}])
     yield from [("initial_q", RAGGED), ("initial_q", np.array([1j])), ("initial_q", np.array(["a"]))]

@@ -128,7 +128,7 @@ def _scale(name: str, value: Any) -> tuple[float, ...]:
     return scale
 
 
-def _counts(least: int, most: int | None) -> Callable[[str, Any], tuple[int, ...]]:
+def _counts(least: int, most: int) -> Callable[[str, Any], tuple[int, ...]]:
     def checked(name: str, value: Any) -> tuple[int, ...]:
         counts = _each(_integer(least, most))(name, value if hasattr(value, "__iter__") else (value,))
         if not counts:
@@ -207,7 +207,7 @@ def _holds_numbers(array: NDArray[Any]) -> bool:
 _CHECKS: Mapping[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(CHOICES, _choice),
     "discretizer": lambda name, value: checked_discretizer(name, value, _CHECKS),
-    "shape": _counts(1, None),
+    "shape": _counts(1, checks.LARGEST_COUNT),
     "max_rows": _integer(1, MAX_ROWS),
     "env": _text,
     "env_kwargs": _keywords,
