@@ -18,7 +18,7 @@ LAKE = "FrozenLake-v1"
 CLIFF = "CliffWalking-v1"
 SHORT: dict[str, Any] = {"episodes": 30}
 ONE_STEP: dict[str, st.SearchStrategy[Any]] = {
-    "algorithm": st.sampled_from(["q_learning", "sarsa"]),
+    "algorithm": st.sampled_from(["q_learning", "sarsa", "expected_sarsa"]),
     "learning_rate": st.floats(0, 1),
     "learning_rate_schedule": st.sampled_from(["constant", "linear"]),
     "discount": st.floats(0, 1),
@@ -128,7 +128,7 @@ def test_each_run_on_a_table_equals_the_single_run_for_any_config(env, seeds, ep
     assert_same_as_single_runs(runs, env=env, episodes=episodes, **config)
 
 
-@pytest.mark.parametrize("algorithm", ["q_learning", "sarsa"])
+@pytest.mark.parametrize("algorithm", ["q_learning", "sarsa", "expected_sarsa"])
 @pytest.mark.parametrize(
     ("env", "config"),
     [

@@ -4,7 +4,7 @@
 
 use super::episode_lanes::EpisodeLanes;
 use super::learning_steps::Shared;
-use super::{BatchRule, SimdTrainer};
+use super::{BatchRule, NextValue, SimdTrainer};
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, LaneRows, OutOfBounds};
 use crate::learners::{Agent, UpdateRule};
@@ -104,7 +104,7 @@ where
                 if let Err(error) = lanes.reset(lane, run, &tables[lane]) {
                     result = Err((lane, error));
                     running = false;
-                } else if U::ON_POLICY {
+                } else if U::NEXT_VALUE == NextValue::OfNextAction {
                     lanes.choose_one(lane, rngs);
                 }
             }

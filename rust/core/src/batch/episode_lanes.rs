@@ -12,7 +12,7 @@ use crate::policies::EpsilonGreedy;
 use crate::q_table::sum_rows;
 use crate::random::{Pcg64Lanes, explore_from};
 use crate::schedules::StepSize;
-use crate::simd::{F64s, Mask, Simd, U64s};
+use crate::simd::{F64s, Mask, Simd, U64s, map};
 use crate::tasks::{Task, TimedState};
 use crate::trainer::EpisodeState;
 
@@ -125,7 +125,7 @@ impl<S: Simd, R: LaneRows, const N: usize, const M: usize, const K: usize> Episo
     /// The values of the active rows, action by action.
     #[inline(always)]
     pub(super) fn values(&self) -> [F64s<S, K>; N] {
-        self.values.map(|values| F64s::new(self.simd, values))
+        map(self.values, |values| F64s::new(self.simd, values))
     }
 
     /// Chooses the next action of every lane.

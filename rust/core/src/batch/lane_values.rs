@@ -4,7 +4,7 @@
 
 use crate::features::LaneRows;
 use crate::q_table::sum_rows;
-use crate::simd::{F64s, Simd, U64s};
+use crate::simd::{F64s, Simd, U64s, map};
 
 /// The values of the active rows of each lane, action by action.
 #[inline(always)]
@@ -23,7 +23,7 @@ pub(super) fn values_of_rows<S: Simd, R: LaneRows, const N: usize, const K: usiz
             values[lane] = sum;
         }
     }
-    values.map(|values| F64s::new(simd, values))
+    map(values, |values| F64s::new(simd, values))
 }
 
 /// The value of an action in each lane.
@@ -42,7 +42,11 @@ pub(super) fn values_of<S: Simd, const N: usize, const K: usize>(
 /// The largest value in each lane.
 #[inline(always)]
 pub(super) fn largest<S: Simd, const N: usize, const K: usize>(values: &[F64s<S, K>; N]) -> F64s<S, K> {
-    values[1..].iter().fold(values[0], |largest, values| values.larger(largest))
+    let mut largest = values[0];
+    for values in &values[1..] {
+        largest = values.larger(largest);
+    }
+    largest
 }
 
 /// The index of the largest value in each lane, the first one of several: `np.argmax`.
@@ -57,4 +61,22 @@ pub(super) fn argmax_in_lanes<S: Simd, const N: usize, const K: usize>(
         largest = values.larger(largest);
     }
     best
+}
+
+/// The expected value in each lane, under a policy with these probabilities of the greedy action and of each other one:
+/// [`EpsilonGreedy::expected_value`](crate::policies::Policy::expected_value).
+#[inline(always)]
+pub(super) fn expected_values<S: Simd, const N: usize, const K: usize>(
+    simd: S,
+    values: &[F64s<S, K>; N],
+    greedy_probability: F64s<S, K>,
+    other_probability: F64s<S, K>,
+) -> F64s<S, K> {
+    let best = argmax_in_lanes(simd, values);
+    let mut sum = values[0];
+    for (action, &values) in values.iter().enumerate() {
+        let probability = best.equal(action as u64).select(greedy_probability, other_probability);
+        sum = if action == 0 { probability * values } else { sum + probability * values };
+    }
+    sum
 }

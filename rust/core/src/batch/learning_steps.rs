@@ -3,16 +3,16 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::episode_lanes::EpisodeLanes;
-use super::lane_values::{largest, values_of, values_of_rows};
+use super::lane_values::{expected_values, largest, values_of, values_of_rows};
 use super::updates::{update_rows, update_single_rows};
-use super::{BatchRule, SimdTrainer};
+use super::{BatchRule, NextValue, SimdTrainer};
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, LaneRows};
 use crate::numeric::cold_path;
 use crate::q_table::TerminalUpdate;
 use crate::random::Pcg64Lanes;
 use crate::schedules::StepSize;
-use crate::simd::{F64s, Simd};
+use crate::simd::{F64s, Simd, map};
 
 /// What all runs of a batch share.
 pub(super) struct Shared<E, F> {
@@ -55,6 +55,9 @@ impl<E, F> Shared<E, F> {
         let mut tables = tables.each_mut().map(|values| values.as_chunks_mut::<N>().0);
         let step_sizes = runs.each_ref().map(|run| run.learner.agent.learning_rate.uniform().unwrap_or_default());
         let step_sizes = F64s::new(simd, step_sizes);
+        let probabilities = runs.each_ref().map(|run| run.learner.agent.policy.probabilities(N));
+        let greedy_probability = F64s::new(simd, probabilities.map(|(greedy, _)| greedy));
+        let other_probability = F64s::new(simd, probabilities.map(|(_, other)| other));
         let [reward, terminal_reward] = [false, true].map(|terminal| F64s::splat(simd, self.env.reward(terminal)));
         for steps in 0..most {
             if !lanes.actions_chosen {
@@ -62,7 +65,7 @@ impl<E, F> Shared<E, F> {
             }
             let before = lanes.fields;
             let terminal = self.env.step_batch(simd, &mut lanes.fields, lanes.action);
-            let observations = lanes.fields.map(F64s::to_f32s);
+            let observations = map(lanes.fields, F64s::to_f32s);
             let Some(next_rows) = self.features.active_rows_batch(simd, observations) else {
                 cold_path();
                 lanes.fields = before;
@@ -75,12 +78,14 @@ impl<E, F> Shared<E, F> {
             let value = values_of(&lanes.values(), actions);
             lanes.rows = next_rows;
             lanes.actions_chosen = false;
-            let next_value = if U::ON_POLICY {
-                lanes.values = next_values.map(F64s::to_array);
-                lanes.choose_unless(terminal, rngs);
-                values_of(&next_values, lanes.action)
-            } else {
-                largest(&next_values)
+            let next_value = match U::NEXT_VALUE {
+                NextValue::OfNextAction => {
+                    lanes.values = map(next_values, F64s::to_array);
+                    lanes.choose_unless(terminal, rngs);
+                    values_of(&next_values, lanes.action)
+                }
+                NextValue::Largest => largest(&next_values),
+                NextValue::Expected => expected_values(simd, &next_values, greedy_probability, other_probability),
             };
             let mut errors = rewards + next_value * self.discount - value;
             if any_terminal {

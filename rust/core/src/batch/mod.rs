@@ -15,7 +15,7 @@ mod simd_trainer;
 mod tests;
 mod updates;
 
-pub use batch_rule::BatchRule;
+pub use batch_rule::{BatchRule, NextValue};
 pub use batched_run::BatchedRun;
 pub use simd_trainer::SimdTrainer;
 

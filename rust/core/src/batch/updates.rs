@@ -4,7 +4,7 @@
 
 use crate::features::LaneRows;
 use crate::q_table::sum_values;
-use crate::simd::{F64s, Simd, U64s};
+use crate::simd::{F64s, Simd, U64s, map};
 
 /// Writes the value of an action in a row of each lane. Returns the values of the next rows after that.
 #[inline(always)]
@@ -27,7 +27,7 @@ pub(super) fn update_single_rows<S: Simd, R: LaneRows, const N: usize, const K: 
         // The update can have changed the next row.
         *values = (next_weights + action as u64).equal(weight).select(updated, *values);
     }
-    next_values.map(F64s::to_array)
+    map(next_values, F64s::to_array)
 }
 
 /// Adds a number to the values of an action in the rows of each lane. Returns the values of the next rows after that.
@@ -40,7 +40,7 @@ pub(super) fn update_rows<S: Simd, R: LaneRows, const N: usize, const K: usize>(
     next_values: [F64s<S, K>; N],
 ) -> [[f64; K]; N] {
     let (actions, changes) = (actions.to_array(), changes.to_array());
-    let mut values = next_values.map(F64s::to_array);
+    let mut values = map(next_values, F64s::to_array);
     for lane in 0..K {
         let (action, table) = (actions[lane] as usize, &mut *tables[lane]);
         for row in rows[lane].indices() {

@@ -21,6 +21,13 @@ impl EpsilonGreedy {
         Self { epsilon, min_epsilon, reduction: (epsilon - min_epsilon) / episodes as f64 }
     }
 
+    /// The probability of the greedy action and that of each other one, among so many.
+    #[inline]
+    pub(crate) fn probabilities(&self, num_actions: usize) -> (f64, f64) {
+        let other = self.epsilon / num_actions as f64;
+        (other + (1.0 - self.epsilon), other)
+    }
+
     /// The current exploration rate.
     pub fn epsilon(&self) -> f64 {
         self.epsilon
@@ -36,8 +43,7 @@ impl Policy for EpsilonGreedy {
 
     #[inline]
     fn expected_value(&mut self, values: &[f64]) -> f64 {
-        let other_probability = self.epsilon / values.len() as f64;
-        let greedy_probability = other_probability + (1.0 - self.epsilon);
+        let (greedy_probability, other_probability) = self.probabilities(values.len());
         let expected_if_greedy = |greedy| {
             sum(values.iter().enumerate().map(|(action, &value)| {
                 if action == greedy { greedy_probability * value } else { other_probability * value }

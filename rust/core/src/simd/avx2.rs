@@ -2,24 +2,17 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use std::arch::x86_64::{__m128, __m128d, __m256d, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ};
-use std::array::from_fn;
+use std::arch::x86_64::{__m128, __m256d, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ};
 
 use pulp::cast;
 use pulp::x86::V3;
 
 use super::portable::all_bits;
-use super::registers::{bools, narrowed, widened};
+use super::registers::{bools, both, narrowed, pairs_of, widened, widened_rows};
 use super::{LANES, Simd};
 
 /// The number of lanes of a register.
 const WIDTH: usize = LANES / 2;
-
-/// `f` of both registers. If one is enough, it is computed twice, which the compiler sees.
-#[inline(always)]
-fn both<T, const K: usize>(f: impl Fn(usize) -> T) -> [T; 2] {
-    [f(0), f(usize::from(K > WIDTH))]
-}
 
 impl Simd for V3 {
     const HAS_FMA: bool = true;
@@ -47,57 +40,57 @@ impl Simd for V3 {
 
     #[inline(always)]
     fn f64s_add<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both::<_, K>(|half| self.avx._mm256_add_pd(a[half], b[half]))
+        both!(K, |half| self.avx._mm256_add_pd(a[half], b[half]))
     }
 
     #[inline(always)]
     fn f64s_sub<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both::<_, K>(|half| self.avx._mm256_sub_pd(a[half], b[half]))
+        both!(K, |half| self.avx._mm256_sub_pd(a[half], b[half]))
     }
 
     #[inline(always)]
     fn f64s_mul<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both::<_, K>(|half| self.avx._mm256_mul_pd(a[half], b[half]))
+        both!(K, |half| self.avx._mm256_mul_pd(a[half], b[half]))
     }
 
     #[inline(always)]
     fn f64s_div<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both::<_, K>(|half| self.avx._mm256_div_pd(a[half], b[half]))
+        both!(K, |half| self.avx._mm256_div_pd(a[half], b[half]))
     }
 
     #[inline(always)]
     fn f64s_mul_add<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2], c: [__m256d; 2]) -> [__m256d; 2] {
-        both::<_, K>(|half| self.fma._mm256_fmadd_pd(a[half], b[half], c[half]))
+        both!(K, |half| self.fma._mm256_fmadd_pd(a[half], b[half], c[half]))
     }
 
     #[inline(always)]
     fn f64s_larger<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both::<_, K>(|half| self.avx._mm256_max_pd(a[half], b[half]))
+        both!(K, |half| self.avx._mm256_max_pd(a[half], b[half]))
     }
 
     #[inline(always)]
     fn f64s_smaller<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both::<_, K>(|half| self.avx._mm256_min_pd(a[half], b[half]))
+        both!(K, |half| self.avx._mm256_min_pd(a[half], b[half]))
     }
 
     #[inline(always)]
     fn f64s_less<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| cast(self.avx._mm256_cmp_pd::<_CMP_LT_OQ>(a[half], b[half])))
+        both!(K, |half| cast(self.avx._mm256_cmp_pd::<_CMP_LT_OQ>(a[half], b[half])))
     }
 
     #[inline(always)]
     fn f64s_less_or_equal<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| cast(self.avx._mm256_cmp_pd::<_CMP_LE_OQ>(a[half], b[half])))
+        both!(K, |half| cast(self.avx._mm256_cmp_pd::<_CMP_LE_OQ>(a[half], b[half])))
     }
 
     #[inline(always)]
     fn f64s_equal<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| cast(self.avx._mm256_cmp_pd::<_CMP_EQ_OQ>(a[half], b[half])))
+        both!(K, |half| cast(self.avx._mm256_cmp_pd::<_CMP_EQ_OQ>(a[half], b[half])))
     }
 
     #[inline(always)]
     fn f64s_select<const K: usize>(self, m: [__m256i; 2], yes: [__m256d; 2], no: [__m256d; 2]) -> [__m256d; 2] {
-        both::<_, K>(|half| self.avx._mm256_blendv_pd(no[half], yes[half], cast(m[half])))
+        both!(K, |half| self.avx._mm256_blendv_pd(no[half], yes[half], cast(m[half])))
     }
 
     #[inline(always)]
@@ -112,26 +105,21 @@ impl Simd for V3 {
 
     #[inline(always)]
     fn f64s_to_f32s<const K: usize>(self, a: [__m256d; 2]) -> [__m128; 2] {
-        both::<_, K>(|half| self.avx._mm256_cvtpd_ps(a[half]))
+        both!(K, |half| self.avx._mm256_cvtpd_ps(a[half]))
     }
 
     /// Pairs of columns together: a row's pair of numbers is half a register.
     #[inline(always)]
     fn f64s_columns<const N: usize, const K: usize>(self, rows: [&[f64; N]; K]) -> [[__m256d; 2]; N] {
         // Lanes that are not in use have the numbers of the first one.
-        let rows: [&[f64; N]; LANES] = from_fn(|lane| rows[if lane < K { lane } else { 0 }]);
+        let rows = widened_rows(rows);
         let mut columns = [[self.avx._mm256_setzero_pd(); 2]; N];
         let (pairs, last) = columns.as_chunks_mut::<2>();
         for (pair, [first, second]) in pairs.iter_mut().enumerate() {
-            let numbers = |lane: usize| -> __m128d { cast([rows[lane][2 * pair], rows[lane][2 * pair + 1]]) };
-            let every_other = |first: usize| {
-                let lower = self.avx._mm256_castpd128_pd256(numbers(first));
-                self.avx._mm256_insertf128_pd::<1>(lower, numbers(first + 2))
-            };
-            let even = both::<_, K>(|half| every_other(WIDTH * half));
-            let odd = both::<_, K>(|half| every_other(WIDTH * half + 1));
-            *first = both::<_, K>(|half| self.avx._mm256_unpacklo_pd(even[half], odd[half]));
-            *second = both::<_, K>(|half| self.avx._mm256_unpackhi_pd(even[half], odd[half]));
+            let even = both!(K, |half| pairs_of(self, pair, rows[WIDTH * half], rows[WIDTH * half + 2]));
+            let odd = both!(K, |half| pairs_of(self, pair, rows[WIDTH * half + 1], rows[WIDTH * half + 3]));
+            *first = both!(K, |half| self.avx._mm256_unpacklo_pd(even[half], odd[half]));
+            *second = both!(K, |half| self.avx._mm256_unpackhi_pd(even[half], odd[half]));
         }
         if let [column] = last {
             *column = cast(rows.map(|row| row[N - 1]));
@@ -151,12 +139,12 @@ impl Simd for V3 {
 
     #[inline(always)]
     fn f32s_sub<const K: usize>(self, a: [__m128; 2], b: [__m128; 2]) -> [__m128; 2] {
-        both::<_, K>(|half| self.sse._mm_sub_ps(a[half], b[half]))
+        both!(K, |half| self.sse._mm_sub_ps(a[half], b[half]))
     }
 
     #[inline(always)]
     fn f32s_to_f64s<const K: usize>(self, a: [__m128; 2]) -> [__m256d; 2] {
-        both::<_, K>(|half| self.avx._mm256_cvtps_pd(a[half]))
+        both!(K, |half| self.avx._mm256_cvtps_pd(a[half]))
     }
 
     #[inline(always)]
@@ -176,60 +164,59 @@ impl Simd for V3 {
 
     #[inline(always)]
     fn u64s_add<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| self.avx2._mm256_add_epi64(a[half], b[half]))
+        both!(K, |half| self.avx2._mm256_add_epi64(a[half], b[half]))
     }
 
     #[inline(always)]
     fn u64s_sub<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| self.avx2._mm256_sub_epi64(a[half], b[half]))
+        both!(K, |half| self.avx2._mm256_sub_epi64(a[half], b[half]))
     }
 
     /// By halves of numbers: the upper half of the product is the sum of two products' lower halves and one's upper half.
     #[inline(always)]
     fn u64s_mul<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| {
-            let [a, b] = [a[half], b[half]];
-            let upper = |number| self.avx2._mm256_srli_epi64::<32>(number);
-            let product = |a, b| self.avx2._mm256_mul_epu32(a, b);
-            let crossed = self.avx2._mm256_add_epi64(product(upper(a), b), product(a, upper(b)));
-            self.avx2._mm256_add_epi64(product(a, b), self.avx2._mm256_slli_epi64::<32>(crossed))
+        both!(K, |half| {
+            let first = self.avx2._mm256_mul_epu32(self.avx2._mm256_srli_epi64::<32>(a[half]), b[half]);
+            let second = self.avx2._mm256_mul_epu32(a[half], self.avx2._mm256_srli_epi64::<32>(b[half]));
+            let crossed = self.avx2._mm256_slli_epi64::<32>(self.avx2._mm256_add_epi64(first, second));
+            self.avx2._mm256_add_epi64(self.avx2._mm256_mul_epu32(a[half], b[half]), crossed)
         })
     }
 
     #[inline(always)]
     fn u64s_mul_lower<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| self.avx2._mm256_mul_epu32(a[half], b[half]))
+        both!(K, |half| self.avx2._mm256_mul_epu32(a[half], b[half]))
     }
 
     #[inline(always)]
     fn u64s_and<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| self.avx2._mm256_and_si256(a[half], b[half]))
+        both!(K, |half| self.avx2._mm256_and_si256(a[half], b[half]))
     }
 
     #[inline(always)]
     fn u64s_or<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| self.avx2._mm256_or_si256(a[half], b[half]))
+        both!(K, |half| self.avx2._mm256_or_si256(a[half], b[half]))
     }
 
     #[inline(always)]
     fn u64s_xor<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| self.avx2._mm256_xor_si256(a[half], b[half]))
+        both!(K, |half| self.avx2._mm256_xor_si256(a[half], b[half]))
     }
 
     #[inline(always)]
     fn u64s_shift_left<const BITS: i32, const K: usize>(self, a: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| self.avx2._mm256_slli_epi64::<BITS>(a[half]))
+        both!(K, |half| self.avx2._mm256_slli_epi64::<BITS>(a[half]))
     }
 
     #[inline(always)]
     fn u64s_shift_right<const BITS: i32, const K: usize>(self, a: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| self.avx2._mm256_srli_epi64::<BITS>(a[half]))
+        both!(K, |half| self.avx2._mm256_srli_epi64::<BITS>(a[half]))
     }
 
     /// A shift by 64 bits gives 0.
     #[inline(always)]
     fn u64s_rotate_right<const K: usize>(self, a: [__m256i; 2], bits: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| {
+        both!(K, |half| {
             let others = self.avx2._mm256_sub_epi64(self.avx._mm256_set1_epi64x(64), bits[half]);
             let right = self.avx2._mm256_srlv_epi64(a[half], bits[half]);
             let left = self.avx2._mm256_sllv_epi64(a[half], others);
@@ -240,8 +227,9 @@ impl Simd for V3 {
     #[inline(always)]
     fn u64s_less<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
         // Signed integers of the same order can be compared.
-        let signed = |number| self.avx2._mm256_xor_si256(number, self.avx._mm256_set1_epi64x(i64::MIN));
-        both::<_, K>(|half| self.avx2._mm256_cmpgt_epi64(signed(b[half]), signed(a[half])))
+        let least = [self.avx._mm256_set1_epi64x(i64::MIN); 2];
+        let [a, b] = [self.u64s_xor::<K>(a, least), self.u64s_xor::<K>(b, least)];
+        both!(K, |half| self.avx2._mm256_cmpgt_epi64(b[half], a[half]))
     }
 
     #[inline(always)]
@@ -252,12 +240,12 @@ impl Simd for V3 {
 
     #[inline(always)]
     fn u64s_equal<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| self.avx2._mm256_cmpeq_epi64(a[half], b[half]))
+        both!(K, |half| self.avx2._mm256_cmpeq_epi64(a[half], b[half]))
     }
 
     #[inline(always)]
     fn u64s_select<const K: usize>(self, m: [__m256i; 2], yes: [__m256i; 2], no: [__m256i; 2]) -> [__m256i; 2] {
-        both::<_, K>(|half| self.avx2._mm256_blendv_epi8(no[half], yes[half], m[half]))
+        both!(K, |half| self.avx2._mm256_blendv_epi8(no[half], yes[half], m[half]))
     }
 
     #[inline(always)]
@@ -292,7 +280,7 @@ impl Simd for V3 {
 
     #[inline(always)]
     fn mask_bits<const K: usize>(self, a: [__m256i; 2]) -> u8 {
-        let [lower, upper] = both::<_, K>(|half| self.avx._mm256_movemask_pd(cast(a[half])) as u8);
+        let [lower, upper] = both!(K, |half| self.avx._mm256_movemask_pd(cast(a[half])) as u8);
         lower | (upper << WIDTH)
     }
 }

@@ -2,14 +2,19 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use std::arch::x86_64::{__m128d, __m256, __m512d, __m512i};
-use std::array::from_fn;
+use std::arch::x86_64::{__m256, __m256d, __m512d, __m512i};
 
 use pulp::cast;
 use pulp::x86::V4;
 
-use super::registers::{bools, narrowed, widened};
-use super::{LANES, Simd};
+use super::Simd;
+use super::registers::{bools, narrowed, pairs_of, widened, widened_rows};
+
+/// The numbers of two registers of AVX2.
+#[inline(always)]
+fn joined(simd: V4, [lower, upper]: [__m256d; 2]) -> __m512d {
+    simd.avx512f._mm512_insertf64x4::<1>(simd.avx512f._mm512_castpd256_pd512(lower), upper)
+}
 
 impl Simd for V4 {
     const HAS_FMA: bool = true;
@@ -109,20 +114,13 @@ impl Simd for V4 {
     #[inline(always)]
     fn f64s_columns<const N: usize, const K: usize>(self, rows: [&[f64; N]; K]) -> [__m512d; N] {
         // Lanes that are not in use have the numbers of the first one.
-        let rows: [&[f64; N]; LANES] = from_fn(|lane| rows[if lane < K { lane } else { 0 }]);
+        let rows = widened_rows(rows);
         let mut columns = [self.avx512f._mm512_setzero_pd(); N];
         let (pairs, last) = columns.as_chunks_mut::<2>();
         for (pair, columns) in pairs.iter_mut().enumerate() {
-            let numbers = |lane: usize| -> __m128d { cast([rows[lane][2 * pair], rows[lane][2 * pair + 1]]) };
-            let every_other = |first: usize| {
-                let half = |first: usize| {
-                    let lower = self.avx._mm256_castpd128_pd256(numbers(first));
-                    self.avx._mm256_insertf128_pd::<1>(lower, numbers(first + 2))
-                };
-                let lower = self.avx512f._mm512_castpd256_pd512(half(first));
-                self.avx512f._mm512_insertf64x4::<1>(lower, half(first + 4))
-            };
-            let (even, odd) = (every_other(0), every_other(1));
+            let even = [pairs_of(*self, pair, rows[0], rows[2]), pairs_of(*self, pair, rows[4], rows[6])];
+            let odd = [pairs_of(*self, pair, rows[1], rows[3]), pairs_of(*self, pair, rows[5], rows[7])];
+            let (even, odd) = (joined(self, even), joined(self, odd));
             *columns = [self.avx512f._mm512_unpacklo_pd(even, odd), self.avx512f._mm512_unpackhi_pd(even, odd)];
         }
         if let [column] = last {

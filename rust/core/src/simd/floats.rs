@@ -5,7 +5,7 @@
 use std::ops::{Add, Div, Mul, Sub};
 
 use super::lane_type::{InLanes, lane_type};
-use super::{Mask, Simd, U64s};
+use super::{Mask, Simd, U64s, map};
 
 /// An f64 for each lane. `lanes * number` and the like use the number in each.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ impl<S: Simd, const K: usize> F64s<S, K> {
     /// The numbers at `[0]` of each row, at `[1]`, and so on.
     #[inline(always)]
     pub(crate) fn columns<const N: usize>(simd: S, rows: [&[f64; N]; K]) -> [Self; N] {
-        simd.f64s_columns(rows).map(|column| Self(simd, column))
+        map(simd.f64s_columns(rows), |column| Self(simd, column))
     }
 
     #[inline(always)]

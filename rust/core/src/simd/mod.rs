@@ -14,6 +14,7 @@ mod instructions;
 mod integers;
 mod lane_type;
 mod level;
+mod map;
 mod mask;
 mod portable;
 #[cfg(target_arch = "x86_64")]
@@ -26,6 +27,7 @@ pub use floats::{F32s, F64s};
 pub use instructions::Simd;
 pub use integers::U64s;
 pub use level::{SimdLevel, SimdLimit};
+pub(crate) use map::map;
 pub use mask::Mask;
 pub use portable::Portable;
 

@@ -2,7 +2,31 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
+use std::arch::x86_64::{__m128d, __m256d};
+
+use pulp::cast;
+use pulp::x86::V3;
+
 use super::LANES;
+
+/// A result for each of two registers. If one is enough, it is computed twice, which the compiler sees. A macro, because the
+/// compiler may call a closure, which is not compiled for AVX2, instead of inlining it.
+macro_rules! both {
+    ($lanes:ident, |$half:ident| $result:expr) => {
+        [
+            {
+                let $half = 0;
+                $result
+            },
+            {
+                let $half = usize::from($lanes > $crate::simd::LANES / 2);
+                $result
+            },
+        ]
+    };
+}
+
+pub(super) use both;
 
 /// An array for all lanes of the registers, zeros where a lane is not in use.
 #[inline(always)]
@@ -11,6 +35,22 @@ pub(super) fn widened<T: Copy + Default, const K: usize>(array: [T; K]) -> [T; L
     let mut all = [T::default(); LANES];
     all[..K].copy_from_slice(&array);
     all
+}
+
+/// A row for all lanes of the registers, the first one where a lane is not in use.
+#[inline(always)]
+pub(super) fn widened_rows<T, const K: usize>(rows: [&T; K]) -> [&T; LANES] {
+    const { assert!(K <= LANES, "there are no more lanes") };
+    let mut all = [rows[0]; LANES];
+    all[..K].copy_from_slice(&rows);
+    all
+}
+
+/// A pair of numbers of each of two rows.
+#[inline(always)]
+pub(super) fn pairs_of<const N: usize>(simd: V3, pair: usize, first: &[f64; N], second: &[f64; N]) -> __m256d {
+    let [first, second]: [__m128d; 2] = [cast(first.as_chunks::<2>().0[pair]), cast(second.as_chunks::<2>().0[pair])];
+    simd.avx._mm256_insertf128_pd::<1>(simd.avx._mm256_castpd128_pd256(first), second)
 }
 
 /// The lanes in use.

@@ -33,6 +33,7 @@ where
     q_learning: Batching<OneStepRun<E, F, QLearning, P, f64, N>>,
     scheduled_q_learning: Batching<OneStepRun<E, F, QLearning, P, Schedule, N>>,
     sarsa: Batching<OneStepRun<E, F, Sarsa, P, Schedule, N>>,
+    expected_sarsa: Batching<OneStepRun<E, F, ExpectedSarsa, P, Schedule, N>>,
 }
 
 impl<E, F, P, const N: usize> OneStepBatching<E, F, P, N>
@@ -42,6 +43,7 @@ where
     OneStepRun<E, F, QLearning, P, f64, N>: Run,
     OneStepRun<E, F, QLearning, P, Schedule, N>: Run,
     OneStepRun<E, F, Sarsa, P, Schedule, N>: Run,
+    OneStepRun<E, F, ExpectedSarsa, P, Schedule, N>: Run,
 {
     /// Each run by itself.
     pub(crate) fn one_by_one() -> Self {
@@ -49,6 +51,7 @@ where
             q_learning: Batching::one_by_one(),
             scheduled_q_learning: Batching::one_by_one(),
             sarsa: Batching::one_by_one(),
+            expected_sarsa: Batching::one_by_one(),
         }
     }
 }
@@ -60,6 +63,7 @@ where
     OneStepRun<E, F, QLearning, P, f64, N>: Run + BatchedRun,
     OneStepRun<E, F, QLearning, P, Schedule, N>: Run + BatchedRun,
     OneStepRun<E, F, Sarsa, P, Schedule, N>: Run + BatchedRun,
+    OneStepRun<E, F, ExpectedSarsa, P, Schedule, N>: Run + BatchedRun,
 {
     /// Several runs in the processor's vector registers.
     pub(crate) fn in_lanes() -> Self {
@@ -67,6 +71,7 @@ where
             q_learning: Batching::in_lanes(),
             scheduled_q_learning: Batching::in_lanes(),
             sarsa: Batching::in_lanes(),
+            expected_sarsa: Batching::in_lanes(),
         }
     }
 }
@@ -152,7 +157,9 @@ where
         let schedule = learning_rate.build(self.spec.episodes);
         match (self.spec.algorithm, learning_rate) {
             (AnyAlgorithm::Sarsa, _) => self.with_rule(Sarsa, policy, schedule, batching.sarsa),
-            (AnyAlgorithm::ExpectedSarsa, _) => self.with_rule(ExpectedSarsa, policy, schedule, Batching::one_by_one()),
+            (AnyAlgorithm::ExpectedSarsa, _) => {
+                self.with_rule(ExpectedSarsa, policy, schedule, batching.expected_sarsa)
+            }
             (_, ScheduleSpec::Constant { value }) => self.with_rule(QLearning, policy, value, batching.q_learning),
             _ => self.with_rule(QLearning, policy, schedule, batching.scheduled_q_learning),
         }

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use qtab_core::Env;
 use qtab_core::envs::SimdEnv;
 use qtab_core::features::FixedTileCoding;
-use qtab_core::learners::{AnyAlgorithm, QLearning, Sarsa};
+use qtab_core::learners::{AnyAlgorithm, ExpectedSarsa, QLearning, Sarsa};
 use qtab_core::schedules::LearningRate;
 
 use super::factory::Batching;
@@ -14,8 +14,9 @@ use super::specialized::{Builder, is_plain, plain_epsilon_greedy};
 use super::{RunFactory, generic_box};
 use crate::spec::{DiscretizerSpec, LearningRateSpec, RunSpec, TilesSpec};
 
-/// Runs of `N` actions that train in batches where the spec asks for Q-learning or Sarsa on a usual number of tilings (Sutton &
-/// Barto, section 9.5.4: a power of two that is at least four times the number of dimensions); the generic ones otherwise.
+/// Runs of `N` actions that train in batches where the spec asks for Q-learning, Sarsa or Expected Sarsa on a usual number of
+/// tilings (Sutton & Barto, section 9.5.4: a power of two that is at least four times the number of dimensions); the generic
+/// ones otherwise.
 pub(crate) fn tiled_box<E, const M: usize, const N: usize>(
     env: E,
     spec: &Arc<RunSpec>,
@@ -56,6 +57,9 @@ where
     match spec.algorithm {
         AnyAlgorithm::QLearning => Some(builder.with_rule(QLearning, policy, learning_rate, Batching::in_lanes())),
         AnyAlgorithm::Sarsa => Some(builder.with_rule(Sarsa, policy, learning_rate, Batching::in_lanes())),
+        AnyAlgorithm::ExpectedSarsa => {
+            Some(builder.with_rule(ExpectedSarsa, policy, learning_rate, Batching::in_lanes()))
+        }
         _ => None,
     }
 }

@@ -10,7 +10,7 @@ use super::{BatchRule, LANES, SimdTrainer};
 use crate::envs::classic_control::{CartPole, MountainCar};
 use crate::envs::{Env, SimdEnv};
 use crate::features::BatchFeatures;
-use crate::learners::{Agent, Learner, QLearning, Sarsa, UpdateRule};
+use crate::learners::{Agent, ExpectedSarsa, Learner, QLearning, Sarsa, UpdateRule};
 use crate::policies::EpsilonGreedy;
 use crate::q_table::TerminalUpdate;
 use crate::schedules::StepSize;
@@ -140,6 +140,7 @@ proptest! {
         let env = MountainCar { max_speed, goal_position, goal_velocity, force, gravity, ..MountainCar::default() };
         check([0, 1, 2, 3], |seed| mountain_car(env, QLearning, settings, seed), settings.episodes, &chunks);
         check([0, 1, 2, 3], |seed| mountain_car(env, Sarsa, settings, seed), settings.episodes, &chunks);
+        check([0, 1, 2, 3], |seed| mountain_car(env, ExpectedSarsa, settings, seed), settings.episodes, &chunks);
     }
 
     #[test]
@@ -157,6 +158,7 @@ proptest! {
         };
         check([0, 1, 2, 3], |seed| cart_pole(env, QLearning, settings, seed), settings.episodes, &chunks);
         check([0, 1, 2, 3], |seed| cart_pole(env, Sarsa, settings, seed), settings.episodes, &chunks);
+        check([0, 1, 2, 3], |seed| cart_pole(env, ExpectedSarsa, settings, seed), settings.episodes, &chunks);
     }
 
     #[test]
@@ -172,5 +174,6 @@ proptest! {
         let (seeds, episodes) = ([0, 1, 2, 3], settings.episodes);
         check(seeds, |seed| tiled_mountain_car(hashed, by_visit_count, QLearning, settings, seed), episodes, &chunks);
         check(seeds, |seed| tiled_mountain_car(hashed, by_visit_count, Sarsa, settings, seed), episodes, &chunks);
+        check(seeds, |seed| tiled_mountain_car(hashed, by_visit_count, ExpectedSarsa, settings, seed), episodes, &chunks);
     }
 }
