@@ -30,8 +30,8 @@ def digest() -> str:
                 hashed.update(observations.tobytes())
             envs.close()
         tiles: dict[str, Any] = {"discretizer": "tiles", "tilings": 8, "episodes": 5}
-        for algorithm in ("sarsa", "expected_sarsa"):
-            tiled_runs = qtab.train_many(env_id, seeds=range(8), algorithm=algorithm, tables=True, threads=1, **tiles)
+        for rule in ("sarsa", "expected_sarsa"):
+            tiled_runs = qtab.train_many(env_id, seeds=range(8), algorithm=rule, tables=True, threads=1, **tiles)
             assert tiled_runs.tables is not None
             hashed.update(tiled_runs.tables.tobytes())
         for algorithm in ("q_learning", "sarsa_lambda"):

@@ -11,11 +11,11 @@ pub trait BatchRule {
 /// The value of the next state in a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NextValue {
-    /// That of A′, which is chosen before the update. With the others it is chosen after the update.
+    /// Q(S′, A′). A′ is chosen before the update; with the other values after it.
     OfNextAction,
-    /// The largest one.
+    /// maxₐ Q(S′, a).
     Largest,
-    /// The expected value under the policy.
+    /// Σₐ π(a | S′) Q(S′, a).
     Expected,
 }
 

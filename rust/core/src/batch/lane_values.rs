@@ -73,10 +73,13 @@ pub(super) fn expected_values<S: Simd, const N: usize, const K: usize>(
     other_probability: F64s<S, K>,
 ) -> F64s<S, K> {
     let best = argmax_in_lanes(simd, values);
-    let mut sum = values[0];
-    for (action, &values) in values.iter().enumerate() {
-        let probability = best.equal(action as u64).select(greedy_probability, other_probability);
-        sum = if action == 0 { probability * values } else { sum + probability * values };
+    let mut terms = *values;
+    for (action, term) in terms.iter_mut().enumerate() {
+        *term = best.equal(action as u64).select(greedy_probability, other_probability) * *term;
+    }
+    let mut sum = terms[0];
+    for &term in &terms[1..] {
+        sum = sum + term;
     }
     sum
 }
