@@ -4,13 +4,36 @@ use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 use qtab_core::StopFlag;
 
 /// How often signals are checked. Ctrl-C takes effect within this time plus the time between two looks at the flag.
-pub(crate) const POLL: Duration = Duration::from_millis(10);
+const POLL: Duration = Duration::from_millis(10);
+
+/// How long [`run_resumable`] works on the calling thread. While other Python threads are busy, each return to the
+/// interpreter takes milliseconds, so long work does not stay there.
+const ON_THIS_THREAD: Duration = Duration::from_millis(100);
+
+/// Calls `work` until it is finished, as it says by its result. It must go on where it stopped, ask often whether to pause,
+/// and return soon when it is told so.
+///
+/// Short work is done on this thread: it is over before another one has started, whose core's caches are empty, too.
+pub(crate) fn run_resumable<E: Send>(
+    py: Python<'_>,
+    mut work: impl FnMut(&dyn Fn() -> bool) -> Result<bool, E> + Send,
+) -> PyResult<Result<(), E>> {
+    let started = Instant::now();
+    while started.elapsed() < ON_THIS_THREAD {
+        let detached = Instant::now();
+        match py.detach(|| work(&|| detached.elapsed() >= POLL)) {
+            Ok(false) => py.check_signals()?,
+            finished => return Ok(finished.map(drop)),
+        }
+    }
+    run_interruptible(py, |stop| work(&|| stop.is_set()).map(drop))
+}
 
 /// Runs `work` on a thread of its own, while this thread handles signals and other Python threads run. `work` must look
 /// at the flag at least every few milliseconds and return early when it is set; the signal's exception is then raised.

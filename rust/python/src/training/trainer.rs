@@ -3,7 +3,6 @@
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
-use std::time::{Duration, Instant};
 
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyRuntimeError;
@@ -18,13 +17,9 @@ use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
 use crate::convert::{Seed, array_of};
 use crate::error::{RunError, allocation, invalid, unusable_checkpoint};
-use crate::interrupt::{POLL, run_interruptible, run_polling};
+use crate::interrupt::{run_polling, run_resumable};
 use crate::runs::{AnyRecordings, BuiltRun, Run, python_run};
 use crate::spec::{Fields, RunSpec};
-
-/// How long a call trains on the calling thread before it starts another one. While other Python threads are busy, each
-/// return to the interpreter takes milliseconds, so a long run does not stay there.
-const ON_THIS_THREAD: Duration = Duration::from_millis(100);
 
 /// Returns, lengths, and whether each episode ended in a terminal state.
 type FinishedEpisodes<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<bool>>);
@@ -74,26 +69,11 @@ impl PyTrainer {
             return Err(PyRuntimeError::new_err("this trainer's results were taken: it cannot train further"));
         }
         let BuiltRun { run, steps_python, .. } = &mut *guard;
-        if *steps_python {
-            let mut signal = Ok(());
-            advance_until(run.as_mut(), episodes, || {
-                signal = py.check_signals();
-                signal.is_err()
-            })?;
-            return signal;
-        }
-        // A short run, or the episodes until the next callback, are over before another thread had started and its core's
-        // caches held the table.
-        let started = Instant::now();
-        while !is_finished(run.as_ref(), episodes) && started.elapsed() < ON_THIS_THREAD {
-            let detached = Instant::now();
-            py.detach(|| advance_until(run.as_mut(), episodes, || detached.elapsed() >= POLL))?;
-            py.check_signals()?;
-        }
-        if is_finished(run.as_ref(), episodes) {
-            return Ok(());
-        }
-        let advanced = run_interruptible(py, |stop| advance_until(run.as_mut(), episodes, || stop.is_set()))?;
+        let advanced = if *steps_python {
+            run_polling(|stop| advance_until(run.as_mut(), episodes, &|| stop.is_set()))?.map(drop)
+        } else {
+            run_resumable(py, |pauses| advance_until(run.as_mut(), episodes, pauses))?
+        };
         advanced.map_err(PyErr::from)
     }
 
@@ -212,16 +192,14 @@ impl PyTrainer {
     }
 }
 
-/// Trains until `episodes` episodes are finished, or until `is_over`, which is asked every fraction of a millisecond.
-fn advance_until(run: &mut dyn Run, episodes: usize, mut is_over: impl FnMut() -> bool) -> Result<(), RunError> {
-    while !is_finished(run, episodes) && !is_over() {
+/// Trains until `episodes` episodes are finished, or until `pauses`, which is asked every fraction of a millisecond. Returns
+/// whether they are finished.
+fn advance_until(run: &mut dyn Run, episodes: usize, pauses: &dyn Fn() -> bool) -> Result<bool, RunError> {
+    let is_finished = |run: &dyn Run| run.episodes().returns.len() >= episodes;
+    while !is_finished(run) && !pauses() {
         run.advance(Budget { episodes, work: WORK_BETWEEN_CHECKS })?;
     }
-    Ok(())
-}
-
-fn is_finished(run: &dyn Run, episodes: usize) -> bool {
-    run.episodes().returns.len() >= episodes
+    Ok(is_finished(run))
 }
 
 fn unusable(error: CheckpointError) -> PyErr {
