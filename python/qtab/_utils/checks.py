@@ -52,7 +52,7 @@ def finite(name: str, value: Any) -> float:
 
 def _number(value: Any) -> float | None:
     """Returns a real number as a float, or infinity if it is too large for one; None for anything else."""
-    if type(value) is float:  # most are, and the questions below take a microsecond
+    if type(value) is float:  # as most are: the checks below take a microsecond
         return value
     if isinstance(value, (bool, np.bool_, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
         return None

@@ -7,12 +7,9 @@ use std::arch::x86_64::{__m128, __m256d, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_L
 use pulp::cast;
 use pulp::x86::V3;
 
+use super::Simd;
 use super::portable::all_bits;
-use super::registers::{bools, both, narrowed, pairs_of, widened, widened_rows};
-use super::{LANES, Simd};
-
-/// The number of lanes of a register.
-const WIDTH: usize = LANES / 2;
+use super::registers::{WIDTH, bools, both, narrowed, pairs_of, widened};
 
 impl Simd for V3 {
     const HAS_FMA: bool = true;
@@ -25,7 +22,7 @@ impl Simd for V3 {
 
     #[inline(always)]
     fn f64s<const K: usize>(self, array: [f64; K]) -> [__m256d; 2] {
-        cast(widened(array))
+        cast(widened(array, 0.0))
     }
 
     #[inline(always)]
@@ -112,7 +109,7 @@ impl Simd for V3 {
     #[inline(always)]
     fn f64s_columns<const N: usize, const K: usize>(self, rows: [&[f64; N]; K]) -> [[__m256d; 2]; N] {
         // Lanes that are not in use have the numbers of the first one.
-        let rows = widened_rows(rows);
+        let rows = widened(rows, rows[0]);
         let mut columns = [[self.avx._mm256_setzero_pd(); 2]; N];
         let (pairs, last) = columns.as_chunks_mut::<2>();
         for (pair, [first, second]) in pairs.iter_mut().enumerate() {
@@ -149,7 +146,7 @@ impl Simd for V3 {
 
     #[inline(always)]
     fn u64s<const K: usize>(self, array: [u64; K]) -> [__m256i; 2] {
-        cast(widened(array))
+        cast(widened(array, 0))
     }
 
     #[inline(always)]

@@ -8,7 +8,7 @@ use pulp::cast;
 use pulp::x86::V4;
 
 use super::Simd;
-use super::registers::{bools, narrowed, pairs_of, widened, widened_rows};
+use super::registers::{bools, narrowed, pairs_of, widened};
 
 /// The numbers of two registers of AVX2.
 #[inline(always)]
@@ -27,7 +27,7 @@ impl Simd for V4 {
 
     #[inline(always)]
     fn f64s<const K: usize>(self, array: [f64; K]) -> __m512d {
-        cast(widened(array))
+        cast(widened(array, 0.0))
     }
 
     #[inline(always)]
@@ -114,7 +114,7 @@ impl Simd for V4 {
     #[inline(always)]
     fn f64s_columns<const N: usize, const K: usize>(self, rows: [&[f64; N]; K]) -> [__m512d; N] {
         // Lanes that are not in use have the numbers of the first one.
-        let rows = widened_rows(rows);
+        let rows = widened(rows, rows[0]);
         let mut columns = [self.avx512f._mm512_setzero_pd(); N];
         let (pairs, last) = columns.as_chunks_mut::<2>();
         for (pair, columns) in pairs.iter_mut().enumerate() {
@@ -151,7 +151,7 @@ impl Simd for V4 {
 
     #[inline(always)]
     fn u64s<const K: usize>(self, array: [u64; K]) -> __m512i {
-        cast(widened(array))
+        cast(widened(array, 0))
     }
 
     #[inline(always)]

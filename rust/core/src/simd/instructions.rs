@@ -78,6 +78,7 @@ pub trait Simd: Copy + Debug {
     fn mask_bits<const K: usize>(self, a: Self::Mask<K>) -> u8;
     #[inline(always)]
     fn mask_any<const K: usize>(self, a: Self::Mask<K>) -> bool {
+        // The shift drops the bits beyond.
         self.mask_bits::<K>(a) << (LANES - K) != 0
     }
 }

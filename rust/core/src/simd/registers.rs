@@ -9,6 +9,9 @@ use pulp::x86::V3;
 
 use super::LANES;
 
+/// The number of lanes of a register of AVX2.
+pub(super) const WIDTH: usize = LANES / 2;
+
 /// A result for each of two registers. If one is enough, it is computed twice, which the compiler sees. A macro, because the
 /// compiler may call a closure, which is not compiled for AVX2, instead of inlining it.
 macro_rules! both {
@@ -19,7 +22,7 @@ macro_rules! both {
                 $result
             },
             {
-                let $half = usize::from($lanes > $crate::simd::LANES / 2);
+                let $half = usize::from($lanes > $crate::simd::registers::WIDTH);
                 $result
             },
         ]
@@ -28,21 +31,12 @@ macro_rules! both {
 
 pub(super) use both;
 
-/// An array for all lanes of the registers, zeros where a lane is not in use.
+/// An array for all lanes of the registers, with `unused` where a lane is not in use.
 #[inline(always)]
-pub(super) fn widened<T: Copy + Default, const K: usize>(array: [T; K]) -> [T; LANES] {
+pub(super) fn widened<T: Copy, const K: usize>(array: [T; K], unused: T) -> [T; LANES] {
     const { assert!(K <= LANES, "there are no more lanes") };
-    let mut all = [T::default(); LANES];
+    let mut all = [unused; LANES];
     all[..K].copy_from_slice(&array);
-    all
-}
-
-/// A row for all lanes of the registers, the first one where a lane is not in use.
-#[inline(always)]
-pub(super) fn widened_rows<T, const K: usize>(rows: [&T; K]) -> [&T; LANES] {
-    const { assert!(K <= LANES, "there are no more lanes") };
-    let mut all = [rows[0]; LANES];
-    all[..K].copy_from_slice(&rows);
     all
 }
 

@@ -116,7 +116,7 @@ impl<const K: usize> SimdCode for Operands<K> {
 
 fn check<const K: usize>(operands: Operands<K>) {
     for level in SimdLevel::available() {
-        let (results, fused, any, bits_of_less) = level.run(operands);
+        let (results, fused, any, less_bits) = level.run(operands);
         for (lane, results) in results.into_iter().enumerate() {
             assert_eq!(results, operands.expected(lane), "lane {lane} of {K}, {level:?}");
         }
@@ -127,7 +127,7 @@ fn check<const K: usize>(operands: Operands<K>) {
         let less = operands.a.iter().zip(&operands.b).map(|(a, b)| a < b);
         assert_eq!(any, less.clone().any(|less| less), "{level:?}");
         for (lane, less) in less.enumerate() {
-            assert_eq!(bits_of_less >> lane & 1 != 0, less, "lane {lane} of {K}, {level:?}");
+            assert_eq!(less_bits >> lane & 1 != 0, less, "lane {lane} of {K}, {level:?}");
         }
     }
 }

@@ -21,6 +21,7 @@ pub(super) struct TracePass<'a, const APPLIES: bool, const DECAYS: bool> {
     pub(super) cutoff: Option<f64>,
 }
 
+/// By reference: the struct itself would be copied through memory at each step.
 impl<const APPLIES: bool, const DECAYS: bool> SimdCode for &mut TracePass<'_, APPLIES, DECAYS> {
     const USES_AVX512: bool = true;
 
