@@ -2,6 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -97,8 +98,14 @@ def _taxi(
     module: Any, *, is_rainy: bool, fickle_passenger: bool, rainy_probability: float, fickle_probability: float
 ) -> KnownTable:
     rain = rainy_probability if is_rainy else None
-    table = _core.TransitionTable.taxi([line.encode("ascii") for line in module.MAP], rain)
+    table = _taxi_table(tuple(line.encode("ascii") for line in module.MAP), rain)
     return KnownTable(table, fickle_passenger=fickle_passenger, fickle_probability=fickle_probability)
+
+
+@lru_cache(maxsize=4)
+def _taxi_table(lines: tuple[bytes, ...], rain: float | None) -> _core.TransitionTable:
+    # Making it takes as long as everything else before the first step; nothing can change it.
+    return _core.TransitionTable.taxi(lines, rain)
 
 
 _Maker = Callable[..., KnownTable | None]

@@ -31,11 +31,14 @@ const TAXI_MAP: TaxiMap = [
 type Run<const N: usize> =
     Trainer<NativeTask<TabularMdp, Identity>, TdLearner<QLearning, Agent<N, EpsilonGreedy, f64>>, Pcg64>;
 
-/// A table of `N` actions, its time limit, and how long it is trained.
+/// A table of `N` actions, its time limit, and the settings of the environment's default preset in the Python package.
 struct Table<const N: usize> {
     name: &'static str,
     mdp: TabularMdp,
     max_episode_steps: u64,
+    learning_rate: f64,
+    discount: f64,
+    epsilon: f64,
     episodes: usize,
 }
 
@@ -45,9 +48,9 @@ impl<const N: usize> Table<N> {
         let states = self.mdp.num_states();
         let agent = Agent {
             table: QTable::new(vec![0.0; states * N], N),
-            policy: EpsilonGreedy::linear(1.0, 0.05, self.episodes as u64),
-            learning_rate: 0.1,
-            discount: 0.95,
+            policy: EpsilonGreedy::linear(self.epsilon, 0.0, self.episodes as u64),
+            learning_rate: self.learning_rate,
+            discount: self.discount,
             terminal_update: TerminalUpdate::Target,
             masks: None,
         };
@@ -73,8 +76,35 @@ fn main() {
     let lake = frozen_lake(&map, Some(1.0 / 3.0), rewards).expect("a valid map");
     let cliff = cliff_walking(false).expect("a valid table");
     let taxi = taxi_table(&TAXI_MAP, None).expect("a valid map");
-    Table::<4> { name: "FrozenLake", mdp: lake, max_episode_steps: 100, episodes: 5000 }.add(&mut benchmarks);
-    Table::<4> { name: "CliffWalking", mdp: cliff, max_episode_steps: u64::MAX, episodes: 500 }.add(&mut benchmarks);
-    Table::<6> { name: "Taxi", mdp: taxi, max_episode_steps: 200, episodes: 2000 }.add(&mut benchmarks);
+    let lake = Table::<4> {
+        name: "FrozenLake",
+        mdp: lake,
+        max_episode_steps: 100,
+        learning_rate: 0.05,
+        discount: 0.99,
+        epsilon: 1.0,
+        episodes: 20_000,
+    };
+    let cliff = Table::<4> {
+        name: "CliffWalking",
+        mdp: cliff,
+        max_episode_steps: u64::MAX,
+        learning_rate: 0.5,
+        discount: 1.0,
+        epsilon: 0.1,
+        episodes: 500,
+    };
+    let taxi = Table::<6> {
+        name: "Taxi",
+        mdp: taxi,
+        max_episode_steps: 200,
+        learning_rate: 0.5,
+        discount: 0.99,
+        epsilon: 0.1,
+        episodes: 10_000,
+    };
+    lake.add(&mut benchmarks);
+    cliff.add(&mut benchmarks);
+    taxi.add(&mut benchmarks);
     benchmarks.finish();
 }

@@ -1,5 +1,7 @@
 //! Finite Markov decision processes: transition tables, and examples of the book.
 
+mod initial_states;
+mod interval_steps;
 mod invalid_mdp;
 mod maximization_bias;
 mod outcome;

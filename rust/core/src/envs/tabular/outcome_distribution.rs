@@ -7,7 +7,7 @@ use crate::random::TWO_POW_53;
 /// Up to this many thresholds are stored inline. Gymnasium's tables need no more.
 const LINEAR_SCAN_MAX: usize = 3;
 /// A threshold above every draw.
-const ABOVE_ALL: u64 = TWO_POW_53 as u64;
+pub(super) const ABOVE_ALL: u64 = TWO_POW_53 as u64;
 
 /// The distribution over the outcomes of a state and an action.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,16 +43,10 @@ impl OutcomeDistribution {
             // Counting avoids a branch, which would often be mispredicted.
             self.inline_thresholds.iter().map(|&threshold| usize::from(threshold <= u53)).sum()
         } else {
-            rank(&thresholds[first..][..len], u53)
+            thresholds[first..][..len].partition_point(|&threshold| threshold <= u53)
         };
         if rank < len { first + rank } else { first }
     }
-}
-
-/// The number of thresholds that a draw reaches. Thresholds are ascending.
-#[inline]
-pub(super) fn rank(thresholds: &[u64], u53: u64) -> usize {
-    thresholds.partition_point(|&threshold| threshold <= u53)
 }
 
 /// The threshold of each outcome, in units of 2⁻⁵³ like `Rng::random_u53`: a draw below it selects this outcome or an

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use super::initial_states::InitialStates;
+use super::interval_steps::IntervalSteps;
 use super::outcome::check_distribution;
-use super::outcome_distribution::{OutcomeDistribution, rank, thresholds};
+use super::outcome_distribution::{OutcomeDistribution, thresholds};
 use super::{InvalidMdp, Outcome};
 use crate::envs::{Env, Step, TransitionProbability};
 use crate::random::Rng;
@@ -16,9 +18,7 @@ use crate::random::Rng;
 #[derive(Clone, Debug, PartialEq)]
 pub struct TabularMdp {
     num_actions: usize,
-    /// The distribution of the initial state, and its thresholds.
-    initial_distribution: Arc<[f64]>,
-    initial_thresholds: Arc<[u64]>,
+    initial_states: InitialStates,
     /// The distribution of each state-action pair. Empty if every pair has a single outcome, which then has the index of
     /// the pair.
     distributions: Arc<[OutcomeDistribution]>,
@@ -26,6 +26,8 @@ pub struct TabularMdp {
     thresholds: Arc<[u64]>,
     steps: Arc<[Step<u32>]>,
     probabilities: Arc<[f64]>,
+    /// The steps again, where there are several outcomes but few different thresholds.
+    interval_steps: Option<IntervalSteps>,
 }
 
 impl TabularMdp {
@@ -77,10 +79,13 @@ impl TabularMdp {
                 steps.push(Step { state, reward, terminated });
             }
         }
+        let sample = |pair: usize, u53| steps[OutcomeDistribution::sample(&distributions[pair], &all_thresholds, u53)];
+        let interval_steps =
+            if deterministic { None } else { IntervalSteps::new(pairs.len(), &all_thresholds, sample) };
         Ok(Self {
             num_actions,
-            initial_distribution: initial_distribution.into(),
-            initial_thresholds: thresholds(initial_distribution).into(),
+            initial_states: InitialStates::new(initial_distribution),
+            interval_steps,
             distributions: distributions.into(),
             thresholds: all_thresholds.into(),
             steps: steps.into(),
@@ -90,7 +95,7 @@ impl TabularMdp {
 
     /// The number of states.
     pub fn num_states(&self) -> usize {
-        self.initial_distribution.len()
+        self.initial_distribution().len()
     }
 
     /// The number of outcomes of all state-action pairs.
@@ -100,7 +105,7 @@ impl TabularMdp {
 
     /// The probability of each initial state.
     pub fn initial_distribution(&self) -> &[f64] {
-        &self.initial_distribution
+        self.initial_states.probabilities()
     }
 
     /// The outcomes of a state-action pair in the order of `P`: their probabilities and steps.
@@ -109,22 +114,29 @@ impl TabularMdp {
     /// If the state or the action is out of range.
     #[inline]
     pub fn outcomes(&self, state: usize, action: usize) -> impl Iterator<Item = (f64, Step<u32>)> + '_ {
-        assert!(action < self.num_actions, "action must be less than {}, got {action}", self.num_actions);
-        let pair = state * self.num_actions + action;
-        let range = if self.distributions.is_empty() { pair..pair + 1 } else { self.distributions[pair].range() };
+        let pair = self.pair(state, action);
+        let range = if self.is_deterministic() { pair..pair + 1 } else { self.distributions[pair].range() };
         self.probabilities[range.clone()].iter().copied().zip(self.steps[range].iter().copied())
     }
 
-    /// Samples an outcome and returns its index.
+    /// Whether every state-action pair has a single outcome.
+    #[inline]
+    fn is_deterministic(&self) -> bool {
+        self.distributions.is_empty()
+    }
+
+    /// The index of a state-action pair.
+    #[inline]
+    fn pair(&self, state: usize, action: usize) -> usize {
+        assert!(action < self.num_actions, "action must be less than {}, got {action}", self.num_actions);
+        state * self.num_actions + action
+    }
+
+    /// The index of the outcome of a state-action pair that a draw of 53 bits selects.
     #[expect(clippy::inline_always, reason = "a call per step would take a fifth of its time")]
     #[inline(always)]
-    fn sample_outcome(&self, state: u32, action: usize, rng: &mut impl Rng) -> usize {
-        assert!(action < self.num_actions, "action must be less than {}, got {action}", self.num_actions);
-        let (pair, u53) = (state as usize * self.num_actions + action, rng.random_u53());
-        if self.distributions.is_empty() {
-            return pair;
-        }
-        self.distributions[pair].sample(&self.thresholds, u53)
+    fn sample_outcome(&self, pair: usize, u53: u64) -> usize {
+        if self.is_deterministic() { pair } else { self.distributions[pair].sample(&self.thresholds, u53) }
     }
 }
 
@@ -140,14 +152,18 @@ impl Env for TabularMdp {
 
     #[inline]
     fn reset(&self, rng: &mut impl Rng) -> u32 {
-        let state = rank(&self.initial_thresholds, rng.random_u53());
-        if state < self.initial_thresholds.len() { state as u32 } else { 0 }
+        self.initial_states.sample(rng.random_u53())
     }
 
     #[expect(clippy::inline_always, reason = "a call per step would take a fifth of its time")]
     #[inline(always)]
     fn step(&self, state: u32, action: usize, rng: &mut impl Rng) -> Step<u32> {
-        self.steps[self.sample_outcome(state, action, rng)]
+        let (pair, u53) = (self.pair(state as usize, action), rng.random_u53());
+        match &self.interval_steps {
+            _ if self.is_deterministic() => self.steps[pair],
+            Some(interval_steps) => interval_steps.step(pair, u53),
+            None => self.steps[self.sample_outcome(pair, u53)],
+        }
     }
 
     #[inline]
@@ -159,7 +175,7 @@ impl Env for TabularMdp {
 impl TransitionProbability for TabularMdp {
     #[inline]
     fn step_with_probability(&self, state: u32, action: usize, rng: &mut impl Rng) -> (Step<u32>, f64) {
-        let index = self.sample_outcome(state, action, rng);
+        let index = self.sample_outcome(self.pair(state as usize, action), rng.random_u53());
         (self.steps[index], self.probabilities[index])
     }
 }
