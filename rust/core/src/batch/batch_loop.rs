@@ -28,8 +28,9 @@ where
     A: StepSize,
     U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
-    /// With AVX-512, the compiler would find the tiles of more than two components by gathers, which take longer.
-    const USES_AVX512: bool = F::ActiveInLane::IS_SINGLE || M <= 2;
+    /// Several rows are read and written one by one, and it depends on the processor whether the rest gains from AVX-512 or
+    /// loses.
+    const USES_AVX512: bool = F::ActiveInLane::IS_SINGLE;
 
     /// How many steps the runs must take one by one, because the next step leads one of them to an observation without
     /// a row; usually 0. A step is one unit of work.

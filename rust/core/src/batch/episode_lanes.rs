@@ -4,6 +4,7 @@
 
 use super::SimdTrainer;
 use super::lane_values::argmax_in_lanes;
+use super::row_buffers::RowBuffers;
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, LaneRows, OutOfBounds};
 use crate::learners::{Agent, UpdateRule};
@@ -24,9 +25,8 @@ pub(super) struct EpisodeLanes<S: Simd, R, const N: usize, const M: usize, const
     /// The components of the states.
     pub(super) fields: [F64s<S, K>; M],
     pub(super) elapsed: [u64; K],
-    /// The active rows of the current states.
-    pub(super) rows: [R; K],
-    /// Their values, action by action.
+    pub(super) rows: RowBuffers<R, K>,
+    /// The values of the current rows, action by action.
     pub(super) values: [[f64; K]; N],
     pub(super) action: U64s<S, K>,
     /// Whether `action` is the action to take next, rather than the one taken last.
@@ -63,7 +63,7 @@ impl<S: Simd, R: LaneRows, const N: usize, const M: usize, const K: usize> Episo
             active: [false; K],
             fields: [zero; M],
             elapsed: [0; K],
-            rows: [R::default(); K],
+            rows: RowBuffers::new(),
             values: [[0.0; K]; N],
             action: zero_u64,
             actions_chosen: true,
@@ -114,8 +114,9 @@ impl<S: Simd, R: LaneRows, const N: usize, const M: usize, const K: usize> Episo
             field.set(lane, number);
         }
         self.elapsed[lane] = elapsed;
-        self.rows[lane] = R::new(active);
-        let values = sum_rows(self.rows[lane].indices().map(|row| table.as_chunks::<N>().0[row]));
+        let rows = R::new(active);
+        self.rows.current_mut()[lane] = rows;
+        let values = sum_rows(rows.indices().map(|row| table.as_chunks::<N>().0[row]));
         for (lanes, value) in self.values.iter_mut().zip(values) {
             lanes[lane] = value;
         }
@@ -174,7 +175,7 @@ impl<S: Simd, R: LaneRows, const N: usize, const M: usize, const K: usize> Episo
         let state = self.fields.map(|field| field.to_array()[lane]).into();
         self.active[lane].then(|| EpisodeState {
             state: TimedState { state, elapsed: self.elapsed[lane] },
-            active: self.rows[lane].active(),
+            active: self.rows.current()[lane].active(),
             action: self.action.to_array()[lane] as usize,
             episode_return: self.episode_return.to_array()[lane],
             length: self.elapsed[lane].cast_signed(),

@@ -66,17 +66,16 @@ impl<E, F> Shared<E, F> {
             let before = lanes.fields;
             let terminal = self.env.step_batch(simd, &mut lanes.fields, lanes.action);
             let observations = map(lanes.fields, F64s::to_f32s);
-            let Some(next_rows) = self.features.active_rows_batch(simd, observations) else {
+            if !self.features.write_active_rows_batch(simd, observations, lanes.rows.next_mut()) {
                 cold_path();
                 lanes.fields = before;
                 return Stop { steps, terminal: None, out_of_bounds: true };
-            };
+            }
             let any_terminal = terminal.any();
             let rewards = terminal.select(terminal_reward, reward);
-            let next_values = values_of_rows(simd, &tables, &next_rows);
-            let (rows, actions) = (lanes.rows, lanes.action);
+            let next_values = values_of_rows(simd, &tables, lanes.rows.next());
+            let actions = lanes.action;
             let value = values_of(&lanes.values(), actions);
-            lanes.rows = next_rows;
             lanes.actions_chosen = false;
             let next_value = match U::NEXT_VALUE {
                 NextValue::OfNextAction => {
@@ -93,7 +92,7 @@ impl<E, F> Shared<E, F> {
                 errors = terminal.select(rewards - value, errors);
             }
             let changes = errors * step_sizes;
-            let both_rows = [&rows, &next_rows];
+            let both_rows = [lanes.rows.current(), lanes.rows.next()];
             lanes.values = if F::ActiveInLane::IS_SINGLE {
                 let mut updated = value + changes;
                 if any_terminal && self.terminal_update == TerminalUpdate::Assign {
@@ -106,6 +105,7 @@ impl<E, F> Shared<E, F> {
                 lanes.divergence = lanes.divergence + errors * 0.0;
                 update_rows(&mut tables, both_rows, actions, changes, next_values)
             };
+            lanes.rows.advance();
             lanes.episode_return = lanes.episode_return + rewards;
             if any_terminal {
                 cold_path();

@@ -10,6 +10,7 @@ mod batched_run;
 mod episode_lanes;
 mod lane_values;
 mod learning_steps;
+mod row_buffers;
 mod simd_trainer;
 #[cfg(test)]
 mod tests;

@@ -8,10 +8,13 @@ pub trait BatchFeatures<const M: usize>: Features<[f32; M]> + Clone + PartialEq 
     /// The active rows as a lane holds them.
     type ActiveInLane: LaneRows<Active = Self::Active>;
 
-    /// The active rows of the observation in each lane, given component by component; `None` if any of them has no row.
-    fn active_rows_batch<S: Simd, const K: usize>(
+    /// Writes the active rows of the observation in each lane, given component by component. Returns `false` if one of them
+    /// has no row; the rows are then of no use.
+    #[must_use]
+    fn write_active_rows_batch<S: Simd, const K: usize>(
         &self,
         simd: S,
         observations: [F32s<S, K>; M],
-    ) -> Option<[Self::ActiveInLane; K]>;
+        active: &mut [Self::ActiveInLane; K],
+    ) -> bool;
 }

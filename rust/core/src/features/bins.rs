@@ -101,7 +101,12 @@ impl<const M: usize> BatchFeatures<M> for Bins<f32, [Edges; M]> {
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn active_rows_batch<S: Simd, const K: usize>(&self, simd: S, observations: [F32s<S, K>; M]) -> Option<[usize; K]> {
+    fn write_active_rows_batch<S: Simd, const K: usize>(
+        &self,
+        simd: S,
+        observations: [F32s<S, K>; M],
+        active: &mut [usize; K],
+    ) -> bool {
         let mut rows = U64s::splat(simd, 0);
         let mut numbers = Mask::new(simd, [true; K]);
         for (edges, values) in self.axes.iter().zip(observations) {
@@ -111,7 +116,8 @@ impl<const M: usize> BatchFeatures<M> for Bins<f32, [Edges; M]> {
             // NaN does not equal itself.
             numbers = numbers & values.equal(values);
         }
-        (!(!numbers).any()).then(|| rows.to_array().map(|row| row as usize))
+        *active = rows.to_array().map(|row| row as usize);
+        !(!numbers).any()
     }
 }
 

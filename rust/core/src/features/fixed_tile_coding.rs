@@ -159,22 +159,19 @@ impl<const D: usize, const N: usize> BatchFeatures<D> for FixedTileCoding<f32, D
     type ActiveInLane = FixedTiles<N>;
 
     #[inline(always)]
-    fn active_rows_batch<S: Simd, const K: usize>(
+    fn write_active_rows_batch<S: Simd, const K: usize>(
         &self,
         _simd: S,
         observations: [F32s<S, K>; D],
-    ) -> Option<[FixedTiles<N>; K]> {
+        active: &mut [FixedTiles<N>; K],
+    ) -> bool {
         let observations = observations.map(F32s::to_array);
-        let mut rows = [FixedTiles([0; N]); K];
         let mut nan = false;
-        for (lane, rows) in rows.iter_mut().enumerate() {
+        for (lane, active) in active.iter_mut().enumerate() {
             let observation = observations.map(|values| values[lane]);
-            match self.active_rows(&observation) {
-                Ok(active) => *rows = active,
-                Err(_) => nan = true,
-            }
+            nan |= self.write_active_rows(&observation, active).is_err();
         }
-        (!nan).then_some(rows)
+        !nan
     }
 }
 

@@ -96,7 +96,12 @@ impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
-    fn active_rows_batch<S: Simd, const K: usize>(&self, simd: S, observations: [F32s<S, K>; M]) -> Option<[usize; K]> {
+    fn write_active_rows_batch<S: Simd, const K: usize>(
+        &self,
+        simd: S,
+        observations: [F32s<S, K>; M],
+        active: &mut [usize; K],
+    ) -> bool {
         let mut rows = U64s::splat(simd, 0);
         let mut outside = Mask::new(simd, [false; K]);
         for (axis, values) in self.axes.iter().zip(observations) {
@@ -107,7 +112,8 @@ impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
             // Rows are below 2³². Out of bounds, the cell may be any integer.
             rows = rows.mul_lower(size) + cells;
         }
-        (!outside.any()).then(|| rows.to_array().map(|row| row as usize))
+        *active = rows.to_array().map(|row| row as usize);
+        !outside.any()
     }
 }
 

@@ -1,0 +1,47 @@
+//! The active rows of the lanes before and after a step.
+
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
+/// The active rows of the current states, and those of the next ones, which take their place without being copied: numbers
+/// that are copied in vector registers right after they were written in smaller parts stall the processor.
+pub(super) struct RowBuffers<R, const K: usize> {
+    buffers: [[R; K]; 2],
+    /// Whether the current rows are in the second buffer.
+    second: bool,
+}
+
+impl<R: Copy + Default, const K: usize> RowBuffers<R, K> {
+    pub(super) fn new() -> Self {
+        Self { buffers: [[R::default(); K]; 2], second: false }
+    }
+
+    /// The rows of the current states.
+    #[inline(always)]
+    pub(super) fn current(&self) -> &[R; K] {
+        &self.buffers[usize::from(self.second)]
+    }
+
+    /// The same, to be changed.
+    #[inline(always)]
+    pub(super) fn current_mut(&mut self) -> &mut [R; K] {
+        &mut self.buffers[usize::from(self.second)]
+    }
+
+    /// The rows of the next states.
+    #[inline(always)]
+    pub(super) fn next(&self) -> &[R; K] {
+        &self.buffers[usize::from(!self.second)]
+    }
+
+    /// The same, to be changed.
+    #[inline(always)]
+    pub(super) fn next_mut(&mut self) -> &mut [R; K] {
+        &mut self.buffers[usize::from(!self.second)]
+    }
+
+    /// Makes the next states the current ones.
+    #[inline(always)]
+    pub(super) fn advance(&mut self) {
+        self.second = !self.second;
+    }
+}
