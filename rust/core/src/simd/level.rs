@@ -69,6 +69,16 @@ impl SimdLevel {
         Self::PLAIN
     }
 
+    /// These instructions, without those of AVX-512.
+    #[inline]
+    pub(crate) fn without_avx512(self) -> Self {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512(avx512) => Self(Level::Avx2(*avx512)),
+            _ => self,
+        }
+    }
+
     /// All that this processor has, the widest one last.
     #[cfg(test)]
     pub(crate) fn available() -> Vec<Self> {

@@ -28,8 +28,10 @@ pub(super) struct EligibleWeights {
     pub(super) weights: Vec<u32>,
     /// With so many places in use, the weights whose traces are 0 lose theirs.
     pub(super) remove_zeros_at: usize,
-    /// The instructions of the passes over traces.
+    /// The instructions of short passes over traces.
     pub(super) level: SimdLevel,
+    /// The instructions of long ones.
+    pub(super) long_pass_level: SimdLevel,
     /// For each weight the index of its value in the storage of the table: its own index, or that of its place, which is
     /// `base` more.
     pub(super) slots: Vec<u32>,
@@ -58,7 +60,8 @@ impl EligibleWeights {
             smallest: f64::INFINITY,
             cutoff,
             remove_zeros_at: 0,
-            level: SimdLevel::detect(),
+            level: SimdLevel::detect().without_avx512(),
+            long_pass_level: SimdLevel::detect(),
             weights: with_capacity(places)?,
             base: slots.len(),
             slots,

@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::eligible_weights::EligibleWeights;
-use super::trace_pass::{BLOCK, TracePass};
+use super::trace_pass::{BLOCK, LONG_PASS, TracePass};
 use crate::q_table::QTable;
 
 impl EligibleWeights {
@@ -51,7 +51,8 @@ impl EligibleWeights {
         let values = &mut table.storage_mut()[self.base..][..len];
         let cutoff = (self.smallest == 0.0).then_some(self.cutoff);
         let traces = &mut self.traces[..len];
-        self.level.run(&mut TracePass::<APPLIES, DECAYS> { values, traces, step, factor, cutoff });
+        let level = if len < LONG_PASS { self.level } else { self.long_pass_level };
+        level.run(&mut TracePass::<APPLIES, DECAYS> { values, traces, step, factor, cutoff });
     }
 
     /// Bounds the magnitudes of the traces after a decay.

@@ -8,6 +8,10 @@ use crate::simd::{F64s, LANES, Simd, SimdCode};
 /// how many blocks of them is not.
 pub(super) const BLOCK: usize = 2 * LANES;
 
+/// From so many traces on a pass gains from AVX-512. A shorter one gains less than it costs on processors that lower their
+/// clock for such instructions, and with it the speed of all else in a step.
+pub(super) const LONG_PASS: usize = 256;
+
 /// Adds to each weight a step times its trace if `APPLIES`, then multiplies the trace by a factor if `DECAYS`.
 pub(super) struct TracePass<'a, const APPLIES: bool, const DECAYS: bool> {
     pub(super) values: &'a mut [f64],

@@ -33,8 +33,6 @@ struct ZeroRemoval<'a> {
 }
 
 impl SimdCode for ZeroRemoval<'_> {
-    const USES_AVX512: bool = true;
-
     type Output = ();
 
     /// From the last place on, so that the weight that takes the place of another one has been looked at.

@@ -48,7 +48,7 @@ impl Traces {
     /// Passes over these traces with other instructions than the machine's best.
     #[cfg(test)]
     pub(super) fn set_level(&mut self, level: SimdLevel) {
-        self.eligible.level = level;
+        (self.eligible.level, self.eligible.long_pass_level) = (level, level);
     }
 
     /// Makes room for what the traces keep in the table.
