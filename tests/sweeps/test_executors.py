@@ -5,7 +5,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from contextlib import contextmanager, nullcontext
 from multiprocessing import get_context
 from typing import Any
@@ -24,12 +24,14 @@ class Faulty(ThreadPoolExecutor):
     def __init__(self, spoil: Callable[[int, "Future[Any]"], Any]) -> None:
         super().__init__(1)
         self._spoil, self.submitted = spoil, 0
+        self.passed: list[Future[Any]] = []
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> "Future[Any]":
         future: Future[Any] = Future()
         self.submitted += 1
         if self._spoil(self.submitted, future) is None:
             future = super().submit(fn, *args, **kwargs)
+            self.passed.append(future)
         return future
 
 
@@ -57,6 +59,7 @@ def test_a_task_that_fails_every_time_ends_the_sweep(small_chunks, tmp_path):
     def fail(number: int, future: "Future[Any]") -> Any:
         if number < 4:
             return None
+        wait(executor.passed)  # so that there are runs to keep
         future.set_exception(ModuleNotFoundError("No module named 'lake'"))
         return True
 
