@@ -89,13 +89,17 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
     ///
     /// # Errors
     /// The task's error; `Allocation` if the results do not fit into memory. What was learned before is kept; the episode
-    /// in which it happened is not counted.
+    /// in which it happened is abandoned and not counted.
     pub fn advance(&mut self, budget: Budget) -> Result<(), TrainingError<T::Error>> {
         self.reserve(budget)?;
         // The generator and the episode are local variables: behind `self` each step would load and store them.
         let mut rng = self.rng.clone();
         let result = AdvanceLoop { trainer: self, rng: &mut rng, budget }.dispatch();
         self.rng = rng;
+        if result.is_err() {
+            // Its steps must not be learned from again with the next episode's.
+            self.learner.abandon_episode();
+        }
         self.learner.complete_tables();
         result.map_err(TrainingError::Task)
     }
