@@ -140,6 +140,13 @@ def test_an_environment_whose_actions_are_missing_from_the_start_gives_the_same_
     assert masked.episode_returns.tobytes() == missing.episode_returns.tobytes()
 
 
+@pytest.mark.parametrize("algorithm", ["n_step_tree_backup", "n_step_q_sigma"])
+def test_learners_that_back_up_earlier_states_refuse_masks_with_tile_coding(algorithm: Any) -> None:
+    with pytest.raises(ValueError, match=r"^action_mask must be False for algorithm .* discretizer 'tiles', got True"):
+        qtab.Config(algorithm=algorithm, discretizer="tiles", action_mask=True)
+    assert qtab.Config(algorithm=algorithm, discretizer="bins", action_mask=True).action_mask is True
+
+
 def test_masks_are_off_unless_they_are_asked_for() -> None:
     run = qtab.train("Taxi-v4", seed=0, episodes=3)
     assert (run.config.action_mask, run.action_masks) == (False, None)

@@ -146,7 +146,8 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
         return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"
     if name == "exploration" and algorithm in PREFERENCES and value != "softmax":
         return f"exploration must be 'softmax' for algorithm {algorithm!r}, got {shown(value)}"
-    if name == "action_mask" and value is not False and algorithm in PREFERENCES and with_tiles:
+    late = (*PREFERENCES, *_WITH_TARGET_POLICY)
+    if name == "action_mask" and value is not False and algorithm in late and with_tiles:
         # They update states after the next one is seen, and only the mask of the last one is known.
         return f"action_mask must be False for algorithm {algorithm!r} with discretizer 'tiles', got {shown(value)}"
     if (name, value) == ("on_truncation", "bootstrap") and fields["time_aware"]:
