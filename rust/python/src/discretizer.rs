@@ -5,9 +5,11 @@ use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use qtab_core::features::{Features, MAX_TILINGS, OutOfBounds};
+use qtab_core::memory::with_capacity;
 use qtab_core::numeric::Float;
 
 use crate::convert::{DiscreteReader, FromNumber, floats, integers};
+use crate::error::allocation;
 use crate::spec::{DiscretizerSpec, Fields, FloatType};
 
 /// Maps observations to the active rows of a table, as a `DiscretizerSpec` describes.
@@ -134,7 +136,7 @@ impl PyDiscretizer {
     ) -> PyResult<Vec<i64>> {
         let dimensions = self.dimensions.unwrap_or(1);
         let count = batch.unwrap_or(1);
-        let mut rows = Vec::with_capacity(count * self.n_active);
+        let mut rows = with_capacity(count.saturating_mul(self.n_active)).map_err(allocation)?;
         for index in 0..count {
             append(&values[index * dimensions..][..dimensions], &mut rows).map_err(|error| {
                 PyValueError::new_err(match batch {

@@ -153,7 +153,7 @@ impl AnyAlgorithm {
         matches!(self, Self::OffPolicyMonteCarlo { .. } | Self::NStepTreeBackup { .. } | Self::NStepQSigma { .. })
     }
 
-    /// Whether each state must have a row of the table: for a model, for average rewards, or for visits to be counted.
+    /// Whether each state must have a row of the table: for a model, for a baseline of each state, or for visits to be counted.
     pub fn needs_single_rows(&self) -> bool {
         matches!(
             self,

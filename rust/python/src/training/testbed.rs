@@ -45,9 +45,10 @@ pub(crate) fn run_testbeds(
     let rows = seeds.iter().zip(rows).map(|(seed, (rewards, optimal))| (seed, rewards, optimal));
     let (rows, failure) = (Mutex::new(rows), Mutex::new(None));
     let next = || -> Option<Row<'_>> { rows.lock().unwrap_or_else(PoisonError::into_inner).next() };
+    let has_failed = || failure.lock().unwrap_or_else(PoisonError::into_inner).is_some();
     let work = |stop: &StopFlag<'_>| {
         while let Some((seed, rewards, optimal)) = next() {
-            if stop.is_set() {
+            if stop.is_set() || has_failed() {
                 return;
             }
             if let Err(error) = run_testbed(testbed, &spec, seed, (rewards, optimal), stop) {
