@@ -56,3 +56,36 @@ def test_a_callback_may_evaluate_in_the_same_environment():
         callback=lambda progress: evaluations.append(qtab.evaluate(first, 1, env=env)),
     )
     assert len(evaluations) == 2
+
+
+def test_a_run_that_another_thread_resumes_there_is_refused_before_it_touches_the_environment():
+    error = KeyboardInterrupt()
+
+    def interrupt(count):
+        if count == 12:
+            raise error
+
+    with pytest.raises(KeyboardInterrupt):
+        train(Calls(ScriptedEnv([ONE]), interrupt))
+    errors: list[RuntimeError] = []
+
+    def meddle(count):
+        if count != 5:
+            return
+
+        def resume():
+            try:
+                qtab.resume(run_of(error), env=env)
+            except RuntimeError as refusal:
+                errors.append(refusal)
+
+        thread = threading.Thread(target=resume)
+        thread.start()
+        thread.join()
+
+    scripted = ScriptedEnv([ONE])
+    env = Calls(scripted, meddle)
+    run = train(env)
+    assert "is being trained in by another thread" in str(errors[0])
+    assert scripted.seeds == [0, None, None]
+    assert_same_run(run, train(ScriptedEnv([ONE])))

@@ -10,6 +10,7 @@ from gymnasium.envs.registration import EnvSpec
 from typing_extensions import Unpack
 
 from qtab._utils import checks, memory
+from qtab._utils.attach import attach
 from qtab.config import Config
 from qtab.config.layers import collect
 from qtab.config.settings import SharedSettings
@@ -95,7 +96,7 @@ def sweep(
         return run_study(study, build, store, executor, threads, memory_limit, callback, progress)
     except KeyboardInterrupt as error:
         if not hasattr(error, "run"):  # it was interrupted before it trained
-            error.run = _stored(store, env, block)  # type: ignore[attr-defined]
+            attach(error, run=_stored(store, env, block))
         raise
 
 

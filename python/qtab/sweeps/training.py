@@ -9,6 +9,7 @@ from functools import partial
 from typing import TypeVar
 
 from qtab._utils import memory
+from qtab._utils.attach import attach
 from qtab._utils.progress import ProgressBar, check_progress
 from qtab.sweeps.database import Contents
 from qtab.sweeps.executors import ExecutorTraining
@@ -76,7 +77,7 @@ def run_study(
             return build(opened.contents())
         except BaseException as error:
             with suppress(Exception):
-                error.run = build(opened.contents())  # type: ignore[attr-defined]
+                attach(error, run=build(opened.contents()))
             raise
 
 

@@ -83,6 +83,7 @@ def train_unless_stopped(trainer: _core.Trainer, episodes: int) -> None:
 
     Raises:
         InterruptedError: if it does.
+        OverflowError: if the values of the tables have overflowed.
     """
     _Worker.training = True
     try:
@@ -90,6 +91,7 @@ def train_unless_stopped(trainer: _core.Trainer, episodes: int) -> None:
             if _Worker.stop is not None and _Worker.stop.is_set():
                 raise InterruptedError(STOPPED)
             trainer.advance(episode + 1)
+        trainer.check_tables()
     finally:
         _Worker.training = False
 

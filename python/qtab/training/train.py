@@ -8,12 +8,12 @@ from dataclasses import replace
 from typing import Any
 
 import gymnasium as gym
-import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from typing_extensions import Unpack
 
 from qtab import _core
 from qtab._utils import checks
+from qtab._utils.attach import attach
 from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
@@ -137,7 +137,8 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
     callbacks = options.callbacks()
     done = 0
     if earlier is not None:
-        restore(trainer, resolved, earlier)
+        with resolved.environment.exclusively():
+            restore(trainer, resolved, earlier)
         done, began = len(earlier.episode_returns), began - earlier.seconds
     reader = EpisodeReader(trainer, resolved, began, lambda: _run(resolved, trainer, began, collector, over=False))
     try:
@@ -157,36 +158,14 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
                     done = stop
                 if callbacks and not callbacks(reader.read()):
                     break
+        trainer.check_tables()
     except BaseException as error:
         if isinstance(error, ValueError) and error.args:
             error.args = (resolved.discretizer.in_terms_of_space(str(error)), *error.args[1:])
         with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
-            _attach(error, _run(resolved, trainer, began, collector))
+            attach(error, run=_run(resolved, trainer, began, collector))
         raise
-    run = _run(resolved, trainer, began, collector)
-    overflow = _overflow(run)
-    if overflow is not None:
-        _attach(overflow, run)
-        raise overflow
-    return run
-
-
-def _attach(error: BaseException, run: Run) -> None:
-    with suppress(AttributeError):  # some exceptions take no attributes
-        error.run = run  # type: ignore[attr-defined]
-
-
-def _overflow(run: Run) -> OverflowError | None:
-    """The learners notice an overflow in the values that they read; here it is in values that were not read again."""
-    initial_q = run.config.initial_q
-    missing = np.isneginf(initial_q.ravel()) if isinstance(initial_q, np.ndarray) else np.False_
-    if (np.isfinite(run.tables.ravel()) | missing).all():
-        return None
-    episode = len(run.episode_returns) - 1
-    return OverflowError(
-        f"the action values overflowed by episode {episode} (counted from 0); most likely the rewards or initial_q "
-        "are too large"
-    )
+    return _run(resolved, trainer, began, collector)
 
 
 def _run(

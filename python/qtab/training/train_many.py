@@ -4,7 +4,7 @@ import math
 import os
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from typing import Any, TypeAlias
 
 import gymnasium as gym
@@ -16,6 +16,7 @@ from typing_extensions import Unpack
 from qtab import _core
 from qtab._spec import Results
 from qtab._utils import checks
+from qtab._utils.attach import attach
 from qtab._utils.memory import BYTES_PER_EPISODE, BYTES_PER_RUN, check_memory
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import shown
@@ -79,6 +80,7 @@ def train_many(
         MemoryError: before the first run, if they would take more than ``memory_limit``.
         TypeError: for an argument of the wrong type, an unknown one, or an environment instead of a function.
         ValueError: for an argument out of range, or a repeated seed.
+        OverflowError: if the values of a run diverge.
         KeyboardInterrupt: on Ctrl-C. Like any exception that a run raises, it carries the finished runs as ``.run``.
     """
     reporter = RunsReporter(callback, callback_every, progress)
@@ -116,7 +118,9 @@ def train_many(
                 error.add_note(f"in the run with seed {numbers[index]}")
             raise error
     except BaseException as error:
-        error.run = error.runs = make_runs(results["finished"])  # type: ignore[attr-defined]
+        with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
+            finished = make_runs(results["finished"])
+            attach(error, run=finished, runs=finished)
         raise
     return make_runs(results["finished"])
 
@@ -236,7 +240,7 @@ def train_in_threads(
 ) -> list[tuple[int, Exception]]:
     """Trains a native environment with many seeds; returns the index of each run that failed, and its error.
 
-    Unless ``keep_going`` is set, no run is started after the first failure.
+    Unless ``keep_going`` is set, the first failure ends all runs.
     """
     return _core.train_many(resolved.spec(), seeds, results, threads, keep_going)
 

@@ -19,6 +19,8 @@ pub(crate) enum RunError {
     Allocation(AllocationError),
     /// The action values overflowed in this episode, counted from 0.
     Diverged { episode: usize },
+    /// The action values have overflowed at the end of the run, whose last episode this was, counted from 0.
+    Overflowed { episode: usize },
 }
 
 impl From<OutOfBounds> for RunError {
@@ -61,6 +63,10 @@ impl From<RunError> for PyErr {
             RunError::Diverged { episode } => PyOverflowError::new_err(format!(
                 "the action values overflowed in episode {episode} (counted from 0): the updates grow instead of \
                  settling; most likely learning_rate is too large, or trace_decay or discount with these traces"
+            )),
+            RunError::Overflowed { episode } => PyOverflowError::new_err(format!(
+                "the action values overflowed by episode {episode} (counted from 0); most likely the rewards, initial_q \
+                 or learning_rate are too large"
             )),
         }
     }

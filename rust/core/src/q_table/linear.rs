@@ -108,8 +108,8 @@ impl<const N: usize> QTable<N> {
         }
     }
 
-    /// Records an error that is infinite or NaN. With one active row this is unnecessary: a value never leaves the range
-    /// of its targets.
+    /// Records an error that is infinite or NaN. With one active row it is not looked at: at a step size of at most 1 a
+    /// value never leaves the range of its targets.
     #[inline]
     pub fn check_finite(&mut self, error: f64) {
         // 0 for a finite error, NaN otherwise.

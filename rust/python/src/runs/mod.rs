@@ -21,7 +21,7 @@ pub(crate) use factory::{RunBatch, RunFactory};
 pub(crate) use generic::{boxed_factory, generic, generic_box};
 pub(crate) use python_env::PythonEnv;
 pub(crate) use python_task::python_run;
-pub(crate) use run::{AnyRecordings, BuiltRun, Run};
+pub(crate) use run::{AnyRecordings, BuiltRun, Run, check_tables};
 pub(crate) use specialized::{OneStepBatching, specialized};
 pub(crate) use testbed::run_testbed;
 pub(crate) use tilings::tiled_box;

@@ -7,6 +7,7 @@ use qtab_core::tasks::Recordings;
 use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer, TrainingError};
 
 use crate::error::RunError;
+use crate::spec::InitialQSpec;
 
 pub(crate) trait Run: Send {
     fn advance(&mut self, budget: Budget) -> Result<(), RunError>;
@@ -39,6 +40,15 @@ pub(crate) trait Run: Send {
 
     /// Takes over the tables and the finished episodes of a run that is resumed.
     fn restore(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError>;
+}
+
+/// An error where the tables of a finished run have overflowed. Learners notice an overflow in the values that they read;
+/// this finds it in values that were not read again, too.
+pub(crate) fn check_tables(run: &dyn Run, initial_q: &InitialQSpec) -> Result<(), RunError> {
+    if initial_q.has_overflowed(&run.tables()) {
+        return Err(RunError::Overflowed { episode: run.episodes().returns.len().saturating_sub(1) });
+    }
+    Ok(())
 }
 
 impl<W, L, D> Run for Trainer<W, L, D>

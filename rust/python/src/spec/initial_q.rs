@@ -1,5 +1,6 @@
 //! The action values before the first episode.
 
+use std::iter::repeat;
 use std::sync::Arc;
 
 use numpy::PyReadonlyArrayDyn;
@@ -44,6 +45,14 @@ impl InitialQSpec {
     /// Whether some states lack actions, which a first value of -∞ says.
     pub(crate) fn has_masked_actions(&self) -> bool {
         matches!(self, Self::Given(values) if values.contains(&f64::NEG_INFINITY))
+    }
+
+    /// Whether values of these tables are not finite, other than those that were -∞ before the first episode.
+    pub(crate) fn has_overflowed(&self, tables: &[&[f64]]) -> bool {
+        let initial = if let Self::Given(values) = self { &values[..] } else { &[] };
+        let pairs = tables.iter().copied().flatten().zip(initial.iter().chain(repeat(&0.0)));
+        let missing = |value: f64, initial: f64| value == f64::NEG_INFINITY && initial == f64::NEG_INFINITY;
+        !pairs.into_iter().all(|(&value, &initial)| value.is_finite() || missing(value, initial))
     }
 
     /// The same as masks, for learners that must know them beside the values; None where no state lacks an action.

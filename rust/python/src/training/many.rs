@@ -13,14 +13,14 @@ use super::results::{Results, Row, Rows};
 use crate::convert::{Seed, Seeds};
 use crate::error::invalid;
 use crate::interrupt::run_interruptible;
-use crate::runs::{RunBatch, RunFactory};
-use crate::spec::{Fields, RunSpec};
+use crate::runs::{RunBatch, RunFactory, check_tables};
+use crate::spec::{Fields, InitialQSpec, RunSpec};
 
 /// The index of a run that failed, and why.
 type FailedRun = (usize, PyErr);
 
 /// Trains one run for each seed, in an environment that Rust steps, on `threads` threads, and writes the runs into
-/// `results`. Returns the runs that failed; unless `keep_going` is set, no run starts after the first failure.
+/// `results`. Returns the runs that failed; unless `keep_going` is set, the first failure ends all runs.
 ///
 /// A run starts when a thread is free for it, so that few more tables are alive than threads are at work.
 #[pyfunction]
@@ -36,7 +36,8 @@ pub(crate) fn train_many(
     let EnvironmentSpec::Native(env) = EnvironmentSpec::parse(&fields.nested("env")?)? else {
         return Err(invalid("env", "an environment that Rust steps", "one that is stepped in Python"));
     };
-    let factory = env.runs(&Arc::new(RunSpec::parse(&fields)?), 0)?;
+    let run_spec = Arc::new(RunSpec::parse(&fields)?);
+    let factory = env.runs(&run_spec, 0)?;
     let Seeds(seeds) = seeds;
     let rows = results.rows(seeds.len())?;
     let threads = threads.min(seeds.len());
@@ -44,6 +45,7 @@ pub(crate) fn train_many(
     let share = seeds.len().div_ceil(threads.max(1));
     let queue = WorkQueue {
         factory: &*factory,
+        initial_q: &run_spec.initial_q,
         seeds: &seeds,
         rows: Mutex::new(rows),
         failed: Mutex::default(),
@@ -70,6 +72,7 @@ pub(crate) fn train_many(
 /// What the threads of one call share.
 struct WorkQueue<'a> {
     factory: &'a dyn RunFactory,
+    initial_q: &'a InitialQSpec,
     seeds: &'a [Seed],
     rows: Mutex<Rows<'a>>,
     failed: Mutex<Vec<FailedRun>>,
@@ -97,10 +100,12 @@ impl<'a> WorkQueue<'a> {
             }
             for index in (0..rows.len()).rev() {
                 if batch.run(index).episodes().returns.len() >= episodes {
-                    let row = rows.swap_remove(index);
-                    let run = row.index;
-                    if let Err(error) = row.write(batch.run(index)) {
-                        self.fail(run, error);
+                    let mut row = rows.swap_remove(index);
+                    let (number, run) = (row.index, batch.run(index));
+                    row.write_episodes(run);
+                    let checked = check_tables(run, self.initial_q).map_err(PyErr::from);
+                    if let Err(error) = checked.and_then(|()| row.write_tables(run)) {
+                        self.fail(number, error);
                     }
                     batch.swap_remove(index);
                 }
@@ -114,7 +119,7 @@ impl<'a> WorkQueue<'a> {
             let Some(row) = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
             match batch.push(&self.seeds[row.index], stop) {
                 Ok(()) => rows.push(row),
-                // What a stopped construction says is nobody's failure.
+                // An error from an interrupted construction is not a failed run.
                 Err(_) if stop.is_set() => return,
                 Err(error) => self.fail(row.index, error),
             }

@@ -47,9 +47,8 @@ impl Row<'_> {
         self.terminated[..count].copy_from_slice(&episodes.terminated[..count]);
     }
 
-    /// Writes a finished run.
-    pub(super) fn write(mut self, run: &dyn Run) -> PyResult<()> {
-        self.write_episodes(run);
+    /// Writes the tables of a run whose episodes are all written, which completes the row.
+    pub(super) fn write_tables(self, run: &dyn Run) -> PyResult<()> {
         if !self.tables.is_empty() {
             let tables = run.tables();
             let size: usize = tables.iter().map(|table| table.len()).sum();

@@ -18,8 +18,8 @@ use super::env_spec::EnvironmentSpec;
 use crate::convert::{Seed, array_of};
 use crate::error::{RunError, allocation, invalid, unusable_checkpoint};
 use crate::interrupt::{run_polling, run_resumable};
-use crate::runs::{AnyRecordings, BuiltRun, Run, python_run};
-use crate::spec::{Fields, RunSpec};
+use crate::runs::{AnyRecordings, BuiltRun, Run, check_tables, python_run};
+use crate::spec::{Fields, InitialQSpec, RunSpec};
 
 /// Returns, lengths, and whether each episode ended in a terminal state.
 type FinishedEpisodes<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<bool>>);
@@ -35,6 +35,7 @@ type PyRecording<'py> = (Py<PyAny>, Bound<'py, PyArray1<u32>>);
 #[pyclass(frozen, name = "Trainer", module = "qtab._core")]
 pub(crate) struct PyTrainer {
     run: Mutex<BuiltRun>,
+    initial_q: InitialQSpec,
     /// Whether the results were taken out.
     over: AtomicBool,
 }
@@ -53,12 +54,13 @@ impl PyTrainer {
         let fields = Fields::new(spec)?;
         let run_spec = RunSpec { max_recorded_actions, count_visits: visits, ..RunSpec::parse(&fields)? };
         let environment = EnvironmentSpec::parse(&fields.nested("env")?)?;
+        let initial_q = run_spec.initial_q.clone();
         // A large table takes seconds to fill.
         let built = run_polling(|stop| match environment {
             EnvironmentSpec::Native(env) => env.runs(&Arc::new(run_spec), record)?.build(&seed, stop),
             EnvironmentSpec::Python(env) => python_run(spec.py(), env, &run_spec, &seed, (record, stop)),
         })?;
-        Ok(Self { run: Mutex::new(built?), over: AtomicBool::new(false) })
+        Ok(Self { run: Mutex::new(built?), initial_q, over: AtomicBool::new(false) })
     }
 
     /// Trains until `episodes` episodes are finished, counted from the start of the run. If it is interrupted, what was
@@ -75,6 +77,11 @@ impl PyTrainer {
             run_resumable(py, |pauses| advance_until(run.as_mut(), episodes, pauses))?
         };
         advanced.map_err(PyErr::from)
+    }
+
+    /// Raises `OverflowError` if the values of the tables have overflowed.
+    fn check_tables(&self) -> PyResult<()> {
+        Ok(check_tables(&*self.lock()?.run, &self.initial_q)?)
     }
 
     /// The finished episodes from number `since` on: returns, lengths, whether each ended in a terminal state.
@@ -141,13 +148,13 @@ impl PyTrainer {
 
     /// How often each action was taken in each row, rows first; None where visits are not counted.
     fn visits<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<i64>>>> {
-        Ok(self.lock()?.run.visits().map(|visits| PyArray1::from_slice(py, visits)))
+        self.lock()?.run.visits().map(|visits| array_of(py, visits.iter().copied())).transpose()
     }
 
     /// Which actions the states have, as each was last seen, rows first; with tile coding those of the last state. None
     /// without action masks.
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<bool>>>> {
-        Ok(self.lock()?.run.action_masks().map(|masks| PyArray1::from_slice(py, masks)))
+        self.lock()?.run.action_masks().map(|masks| array_of(py, masks.iter().copied())).transpose()
     }
 
     /// How many updates were made from a model; None where that is not counted.
