@@ -8,6 +8,7 @@ import pytest
 
 import qtab
 from qtab.config.schedules import epsilon
+from qtab.reference import agent_stream
 from qtab.reference.schedules import epsilon_schedule
 from qtab.results.behaviour import action_probabilities, sample
 
@@ -85,6 +86,15 @@ def test_the_draws_are_those_of_the_runs_seed_also_after_loading(tmp_path):
     drawn = [[each.predict(0, deterministic=False)[0] for _ in range(20)] for each in (run, one, other)]
     assert drawn[0] == drawn[1] == drawn[2]
     assert len(set(drawn[0])) > 1
+
+
+@pytest.mark.parametrize("bit_generator", ["PCG64", "MT19937"])
+def test_the_draws_are_not_the_numbers_that_the_agent_trained_with(bit_generator):
+    run = constant(1.0, bit_generator=bit_generator)
+    drawn, _ = run.predict(np.zeros(100, np.int64), deterministic=False)
+    agent, environment = agent_stream(0, bit_generator), np.random.default_rng(0)
+    for stream in (agent, environment):
+        assert drawn.tolist() != [int(len(run.actions) * stream.random()) for _ in drawn]
 
 
 @pytest.mark.parametrize("count", [0, 1, 7])

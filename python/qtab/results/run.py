@@ -215,7 +215,7 @@ class Run(WithPage):
             deterministic: True takes the greedy action, which is the most likely one of preferences. False draws an
                 action from the behaviour policy, with the ε or the temperature that the last episode of the training
                 left: an ε that fell to 0 leaves the greedy action, as does exploration "ucb". The draws come from a
-                generator of this run, which is seeded by its seed.
+                generator of this run, seeded by the run's seed, with other numbers than those of the training.
             action_masks: (actions,) or (n, actions): which actions there are. None: by the run's ``action_mask``.
 
         Raises:
@@ -238,8 +238,8 @@ class Run(WithPage):
 
     @cached_property
     def _generator(self) -> np.random.Generator:
-        """Draws for :meth:`predict`. Training draws from the seed itself; this is independent of it."""
-        return np.random.default_rng(np.random.SeedSequence(self.config.seed).spawn(1)[0])
+        """Draws for :meth:`predict`, from the seed's second child: the agent trains with the first one under PCG64."""
+        return np.random.default_rng(np.random.SeedSequence(self.config.seed).spawn(2)[1])
 
     def mean_returns(self, block: int = 100) -> NDArray[np.float64]:
         """Returns the average return of each whole block of episodes, as the article plots it; none of a shorter run.
