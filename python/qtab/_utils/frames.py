@@ -1,4 +1,4 @@
-"""Tables of results as pandas data frames."""
+"""Tables of results as pandas data frames and Arrow tables."""
 
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
@@ -10,6 +10,7 @@ from qtab._utils.extras import missing
 
 if TYPE_CHECKING:
     import pandas as pd
+    import pyarrow as pa
 
 
 def data_frame(columns: Mapping[str, NDArray[Any]], integers: Collection[str] = ()) -> "pd.DataFrame":
@@ -32,6 +33,49 @@ def data_frame(columns: Mapping[str, NDArray[Any]], integers: Collection[str] = 
         has_missing = np.isnan(columns[name]).any()
         frame[name] = frame[name].astype("Int64" if has_missing else np.int64)
     return frame
+
+
+def arrow_table(
+    columns: Mapping[str, NDArray[Any]], integers: Collection[str] = (), texts: Collection[str] = ()
+) -> "pa.Table":
+    """Returns an Arrow table of columns of the same length.
+
+    A column of which Arrow has no type becomes text: integers beyond 64 bits, or values of different types.
+
+    Args:
+        columns: The columns by name.
+        integers: The columns of floats that hold integers. They become int64, with nulls for NaN.
+        texts: The columns of strings and None. They become strings, with nulls for None.
+
+    Raises:
+        ModuleNotFoundError: without pyarrow.
+    """
+    try:
+        import pyarrow as pa
+    except ModuleNotFoundError as error:
+        raise missing(error) from None
+    types = {**dict.fromkeys(integers, pa.int64()), **dict.fromkeys(texts, pa.string())}
+    arrays = {}
+    for name, column in columns.items():
+        if _has_different_types(column):
+            arrays[name] = _text(column)
+            continue
+        try:
+            arrays[name] = pa.array(column, types.get(name), from_pandas=True)
+        except (pa.ArrowInvalid, OverflowError):  # integers that are too large
+            arrays[name] = _text(column)
+    return pa.table(arrays)
+
+
+def _has_different_types(column: NDArray[Any]) -> bool:
+    types = {type(value) for value in column if value is not None} if column.dtype == np.object_ else set()
+    return len(types) > 1 and types != {int, float}
+
+
+def _text(column: NDArray[Any]) -> "pa.Array":
+    import pyarrow as pa
+
+    return pa.array([None if value is None else str(value) for value in column], pa.string())
 
 
 def episode_frame(

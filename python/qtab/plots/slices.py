@@ -46,7 +46,7 @@ def slice_of(
     checks.choice("parameter", parameter, names)
     if by is not None and checks.choice("by", by, names) == parameter:
         raise ValueError(f"by must be another parameter than {parameter!r}")
-    columns = [name for name, cells in sweep.columns.items() if cells.dtype.kind in "if" and name != "setting"]
+    columns = [name for name, cells in sweep.columns.items() if cells.dtype.kind in "iuf" and name != "setting"]
     checks.choice("column", column, columns)
     checks.choice("statistic", statistic, _STATISTICS)
     fixed = _fixed(sweep, fixed, {parameter, by})

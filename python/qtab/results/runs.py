@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.columns import integer_column
 from qtab._utils.fields import with_fields
 from qtab._utils.frames import data_frame
 from qtab.config import Config
@@ -180,8 +181,11 @@ class Runs:
         return means
 
     def summaries(self) -> dict[str, NDArray[Any]]:
-        """Returns columns with one number per run: its seed, and those of :func:`qtab.results.summary.summarize`."""
-        seeds = np.array(self.seeds)
+        """Returns columns with one number per run: its seed, and those of :func:`qtab.results.summary.summarize`.
+
+        Seeds are int64, uint64 if one needs it, or Python integers in an object array if one is at least 2**64.
+        """
+        seeds = integer_column(self.seeds)
         return {"seed": seeds, **summarize(self.episode_returns, self.episode_lengths, self.terminated)}
 
     def save(self, path: "str | os.PathLike[str]") -> None:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
-from qtab._utils.extras import missing
-from qtab._utils.frames import data_frame
+from qtab._utils.columns import cell_column, integer_column
+from qtab._utils.frames import arrow_table, data_frame
 from qtab._utils.suggestions import did_you_mean
 from qtab.sweeps.database import Contents
 from qtab.sweeps.description import SUMMARY_COLUMNS
@@ -43,7 +43,10 @@ class Sweep:
     seeds: tuple[int, ...]
     """The seeds of every setting."""
     columns: Mapping[str, NDArray[Any]]
-    """(runs,) each: ``setting`` (its index), the names in the grid, ``seed``, the summary of the run, and ``error``."""
+    """(runs,) each: ``setting`` (its index), the names in the grid, ``seed``, the summary of the run, and ``error``.
+
+    Seeds are int64, uint64 if one needs it, or Python integers in an object array if one is at least 2**64. Values of a
+    setting that have different types are in an object array."""
     block: int
     """The number of episodes that each point of a learning curve averages."""
     _curves: Sequence[bytes]
@@ -205,7 +208,8 @@ class Sweep:
     def to_pandas(self) -> "pd.DataFrame":
         """Returns the table as a pandas data frame.
 
-        Columns of integers are int64; where runs failed, pandas' Int64, which has missing values.
+        Columns of integers are int64; where runs failed, pandas' Int64, which has missing values. Seeds have the dtype
+        that they have in :attr:`columns`.
 
         Raises:
             ModuleNotFoundError: without pandas; the message names the ``pip install``.
@@ -215,17 +219,12 @@ class Sweep:
     def to_arrow(self) -> "pa.Table":
         """Returns the table as an Arrow table, which polars (``polars.from_arrow``) and Parquet files take.
 
+        Seeds from 2**64 on, and settings with values of different types, become text.
+
         Raises:
             ModuleNotFoundError: without pyarrow.
         """
-        try:
-            import pyarrow as pa
-        except ModuleNotFoundError as error:
-            raise missing(error) from None
-        types = {"error": pa.string(), **dict.fromkeys(INTEGER_COLUMNS, pa.int64())}
-        return pa.table(
-            {name: pa.array(column, types.get(name), from_pandas=True) for name, column in self.columns.items()}
-        )
+        return arrow_table(self.columns, INTEGER_COLUMNS, ("error",))
 
 
 def load_sweep(path: "str | os.PathLike[str]") -> Sweep:
@@ -252,8 +251,8 @@ def build_sweep(contents: Contents, settings: Sequence[Mapping[str, Any]], sourc
     setting, position = np.divmod(indices, len(description.seeds))
     columns: dict[str, Any] = {"setting": setting}
     for name in settings[0]:
-        columns[name] = np.array([to_cell(values[name]) for values in settings])[setting]
-    columns["seed"] = np.array(description.seeds)[position]
+        columns[name] = cell_column([to_cell(values[name]) for values in settings])[setting]
+    columns["seed"] = integer_column(description.seeds)[position]
     for place, name in enumerate(SUMMARY_COLUMNS, start=2):
         values = [np.nan if run[place] is None else run[place] for run in runs]
         columns[name] = np.array(values, dtype=np.float64)
