@@ -81,7 +81,7 @@ def test_the_numba_loop_of_sarsa_lambda_equals_ours_to_the_bit(cutoff: float) ->
 @pytest.mark.parametrize("name", environments.TABLES)
 def test_the_numba_loop_over_a_table_equals_ours_to_the_bit(name: str) -> None:
     run = package.train(name, episodes=30, seed=4)
-    arguments = table_numba.arguments(name, 30, 4)
+    arguments = table_numba.arguments(name, 30)(4)
     assert table_numba.q_learning(*arguments) == run.episode_lengths.sum()
     assert arguments[5].tobytes() == run.q_table.tobytes()
 
@@ -96,7 +96,7 @@ def test_numba_compiles_the_loops(monkeypatch: pytest.MonkeyPatch) -> None:
     assert q_learning is not None
     assert sarsa_lambda is not None
     expected = package.train("FrozenLake-v1", episodes=30, seed=4).q_table.tobytes()
-    table = table_numba.arguments("FrozenLake-v1", 30, 4)
+    table = table_numba.arguments("FrozenLake-v1", 30)(4)
     numba.njit(table_numba.q_learning)(*table)
     assert table[5].tobytes() == expected
     many = article_numba.compiled_many(2)

@@ -88,21 +88,28 @@ def q_learning(
     return steps
 
 
-def arguments(name: str, episodes: int, seed: int) -> tuple[Any, ...]:
-    """Returns the arguments of :func:`q_learning` for an environment with its default preset."""
+def arguments(name: str, episodes: int) -> Callable[[int], tuple[Any, ...]]:
+    """Returns a function from a seed to the arguments of :func:`q_learning`, with the environment's default preset.
+
+    The arrays of the environment are made once; each call makes a new Q table and new random generators.
+    """
     env: Any = gym.make(name)
-    env.reset(seed=seed)
-    env_rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
     table, settings = transition_arrays(env.unwrapped), dict[str, Any](preset(name, None)[1])
-    q = np.full(table.states.shape[:2], float(settings["initial_q"]))
+    arrays = (table.cumulative, table.states, table.rewards, table.terminal, table.initial)
     learning_rate, epsilon = settings["learning_rate"], settings["epsilon"]
     falls = settings.get("learning_rate_schedule") == "linear"
-    return (
-        *(table.cumulative, table.states, table.rewards, table.terminal, table.initial, q),
-        *(env_rng, agent_stream(seed, "PCG64"), episodes, env.spec.max_episode_steps),
+    numbers = (
+        *(episodes, env.spec.max_episode_steps),
         *(learning_rate, learning_rate / episodes if falls else 0.0, settings["discount"]),
         *(epsilon, epsilon / episodes),
     )
+
+    def with_seed(seed: int) -> tuple[Any, ...]:
+        q = np.full(table.states.shape[:2], float(settings["initial_q"]))
+        env_rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
+        return *arrays, q, env_rng, agent_stream(seed, "PCG64"), *numbers
+
+    return with_seed
 
 
 def compiled(name: str) -> Callable[[int], int] | None:
@@ -112,5 +119,5 @@ def compiled(name: str) -> Callable[[int], int] | None:
     except ModuleNotFoundError:
         return None
     fast: Any = njit(q_learning)
-    episodes = preset(name, None)[1]["episodes"]
-    return lambda seed: int(fast(*arguments(name, episodes, seed)))
+    with_seed = arguments(name, preset(name, None)[1]["episodes"])
+    return lambda seed: int(fast(*with_seed(seed)))
