@@ -34,9 +34,9 @@ class Progress:
     total: int
     """How many episodes the run has."""
     returns: NDArray[np.float64]
-    """(episodes,): the return of each finished episode."""
+    """(episodes,): the return of each finished episode, read-only."""
     lengths: NDArray[np.int64]
-    """(episodes,): the steps of each finished episode."""
+    """(episodes,): the steps of each finished episode, read-only."""
     _source: "ProgressSource | None" = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
@@ -183,9 +183,8 @@ class EpisodeReader:
         self._returns[now], self._lengths[now] = returns, lengths
         self._steps += int(lengths.sum())
         self._source = ProgressSource(self, self._steps, time.perf_counter() - self._began)
-        return Progress(
-            self._episodes, total, self._returns[: self._episodes], self._lengths[: self._episodes], self._source
-        )
+        columns = _read_only(self._returns, self._episodes), _read_only(self._lengths, self._episodes)
+        return Progress(self._episodes, total, *columns, self._source)
 
     def move_on(self) -> None:
         """Called before the trainer advances: the last Progress can no longer read its tables."""
@@ -202,3 +201,10 @@ def _enlarge(column: NDArray[Any], used: int, capacity: int) -> NDArray[Any]:
     enlarged = np.empty(capacity, column.dtype)
     enlarged[:used] = column[:used]
     return enlarged
+
+
+def _read_only(column: NDArray[Any], used: int) -> NDArray[Any]:
+    """Returns a view of the used part: what one callback wrote to it, all later ones would read."""
+    view = column[:used]
+    view.flags.writeable = False
+    return view
