@@ -1,5 +1,6 @@
 """``train_many`` reports the finished runs, can be stopped by a callback, and trains the same runs meanwhile."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,9 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.callbacks import EvaluateEvery
+from qtab.training import runs_progress
 from support.parity import run_of
+from support.repository import ROOT
 
 CAR = "MountainCar-v0"
 SHORT: dict[str, Any] = {"episodes": 6, "max_episode_steps": 30}
@@ -131,3 +134,8 @@ def test_a_bar_counts_the_runs(capsys):
     shown = capsys.readouterr().err
     assert "40/40" in shown or "| 0/40" in shown
     assert "runs" in shown
+
+
+def test_a_thread_trains_as_many_runs_at_once_as_rust_has_lanes() -> None:
+    text = (ROOT / "rust" / "core" / "src" / "simd" / "mod.rs").read_text(encoding="utf-8")
+    assert re.findall(r"^pub const LANES: usize = (\d+);$", text, re.MULTILINE) == [str(runs_progress.LANES)]

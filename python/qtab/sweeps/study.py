@@ -23,8 +23,8 @@ from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_memory import bytes_in_progress
 from qtab.training.train_many import resolve_template, seed_numbers
 
-BYTES_PER_RUN = 1000
-"""The approximate size of a run's results and seed in memory."""
+BYTES_PER_STORED_RUN = 1000
+"""The approximate size of the results and the seed of a run that is stored, in memory."""
 BYTES_PER_SETTING = 4000
 """The approximate size of a setting and its config in memory."""
 
@@ -129,7 +129,7 @@ def _check_runs(settings: int, seeds: Any, limit: int) -> None:
     else:
         count = len(seeds) if hasattr(seeds, "__len__") else 1
     runs = settings * count
-    check_memory(f"the results of {runs:,} runs", runs * BYTES_PER_RUN, limit)
+    check_memory(f"the results of {runs:,} runs", runs * BYTES_PER_STORED_RUN, limit)
 
 
 def _settings_of(grid: Any, limit: int) -> list[dict[str, Any]]:

@@ -21,7 +21,8 @@ from qtab.training.resolved_run import ResolvedRun
 SECONDS_PER_PART = 1.0
 """The approximate time between two calls where ``callback_every`` does not set their distance."""
 LANES = 8
-"""A thread trains up to this many runs at once; a part that divides evenly leaves none of them idle."""
+"""A thread trains up to this many runs at once, as in ``rust/core/src/simd/mod.rs``; a part that divides evenly leaves
+none of them idle."""
 
 
 @dataclass(frozen=True, eq=False)
