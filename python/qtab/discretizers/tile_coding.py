@@ -14,7 +14,7 @@ from qtab.config import Config
 from qtab.discretizers.base import check_table_size
 from qtab.discretizers.box import BoxDiscretizer, Span, box_of, check_stored_bounds, per_dimension, span
 
-MAX_OFFSETS = 2**32
+MAX_OFFSETS = 2**32 - 1
 """Each tile is divided into as many parts as there are tilings, and positions are counted in such parts."""
 
 
@@ -36,11 +36,12 @@ class TileCoding(BoxDiscretizer):
         """Checks that tiles can be told apart, and numbered.
 
         Raises:
-            ValueError: if a tile is too narrow or too wide for floats, or the parts of tiles outnumber 32 bits.
+            ValueError: if a tile is too narrow or too wide for floats, or 32 bits cannot count the parts of the tiles.
         """
         if max(self.tiles) * self.tilings >= MAX_OFFSETS:
             raise ValueError(
-                f"tiles must come to fewer than 2**32 along a component, times {self.tilings} tilings, got {self.tiles}"
+                "tiles times tilings must be less than 2**32 - 1 along each component, got "
+                f"tiles={self.tiles} and tilings={self.tilings}"
             )
         low, high = self.span
         with np.errstate(over="ignore", divide="ignore"):
