@@ -35,7 +35,7 @@ def test_a_callback_is_called_every_so_many_episodes_and_after_the_last(backend,
 
 
 def test_a_callback_cannot_change_what_later_ones_receive():
-    seen = []
+    seen: list[qtab.Progress] = []
 
     def overwrite(progress: qtab.Progress) -> None:
         for column in (progress.returns, progress.lengths):
