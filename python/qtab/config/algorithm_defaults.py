@@ -1,4 +1,4 @@
-"""The settings that an algorithm brings along, where nobody asks for others: the book's."""
+"""The defaults that an algorithm has instead of the common ones: the book's settings."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -31,7 +31,7 @@ def optional_arrays(run: "Run") -> dict[str, NDArray[Any]]:
 def restore_optional(
     stored: Mapping[str, NDArray[Any]], tables: NDArray[np.float64], cells: tuple[int, ...], finished: int
 ) -> dict[str, Any]:
-    """Returns the fields of a run that these arrays of a file give, of which nothing is believed before it is checked.
+    """Returns the fields of a run that these arrays of a file give, after checking them.
 
     Args:
         stored: The arrays in the file.

@@ -1,4 +1,4 @@
-"""``qtab.load_runs``: many saved runs, of whose file nothing is believed before it is checked."""
+"""``qtab.load_runs``: many saved runs, whose file is checked before use."""
 
 import os
 from collections.abc import Callable

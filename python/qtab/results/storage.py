@@ -1,4 +1,4 @@
-"""``qtab.load``: a saved run, of whose file nothing is believed before it is checked."""
+"""``qtab.load``: a saved run, whose file is checked before use."""
 
 import logging
 import os

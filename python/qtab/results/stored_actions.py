@@ -25,7 +25,7 @@ def describe_parts(actions: Actions) -> Any:
 
 
 def restore_actions(count: int, first: int, values: NDArray[Any] | None, description: Any) -> Actions:
-    """Returns the actions in a file, of which nothing is believed before it is checked.
+    """Returns the actions in a file, which are checked first.
 
     Raises:
         KeyError: if something is missing.

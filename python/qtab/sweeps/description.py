@@ -86,7 +86,7 @@ def read_description(text: str) -> Description:
         raise ValueError("its study has no configs, settings, seeds and block")
     configs, settings, seeds, block = (content[name] for name in _TYPES)
     if not settings or len(configs) != len(settings) or block < 1:
-        raise ValueError("its study has not one config for each setting, or a bad block")
+        raise ValueError("its study must have one config for each setting and a positive block")
     if not seeds or not all(type(seed) is int and seed >= 0 for seed in seeds) or len(set(seeds)) < len(seeds):
         raise ValueError("its study has bad seeds")
     for config, setting in zip(configs, settings, strict=True):

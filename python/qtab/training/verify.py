@@ -94,7 +94,7 @@ class Verification:
             lines.append("the environment repeats itself: the same seed and actions gave the same results twice")
         if self.wrapper is not None:
             lines.append(f"its wrapper {self.wrapper} keeps statistics, which start where the last call left them:")
-            lines.append("train and verify need a new environment each, and verify no episodes=")
+            lines.append("give train and verify a new environment each, and call verify without episodes=")
         return lines
 
     def _about_the_machine(self) -> list[str]:
