@@ -1,4 +1,4 @@
-"""What every test relies on: no window opens, Ctrl-C arrives, and CI draws the same examples every time."""
+"""What every test relies on: no window opens, Ctrl-C arrives, and every run draws the same examples."""
 
 import gc
 import os
@@ -26,11 +26,10 @@ with warnings.catch_warnings(), suppress(ModuleNotFoundError):
     warnings.simplefilter("ignore")
     import_module("Box2D")
 
-# CI draws the same examples every time: more of them would find nothing new. The profile "fuzz" does, every night.
-settings.register_profile("local", deadline=None, max_examples=30)
-settings.register_profile("ci", deadline=None, max_examples=30, derandomize=True, print_blob=True)
+# Everyone's tests draw the same examples every time. The profile "fuzz" draws new ones, every night.
+settings.register_profile("same", deadline=None, max_examples=30, derandomize=True, print_blob=True)
 settings.register_profile("fuzz", deadline=None, max_examples=1000, print_blob=True)  # --hypothesis-profile fuzz
-settings.load_profile("ci" if os.environ.get("CI") else "local")
+settings.load_profile("same")
 
 
 # A shell starts its background jobs with Ctrl-C ignored; some tests send it.
