@@ -71,6 +71,7 @@ def test_all_three_implementations_agree_at_the_goal_and_at_the_time_limit(bit_g
         episodes=12,
         initial_q=LEARNED,
         epsilon=0.05,
+        min_epsilon=0.0,
         bit_generator=bit_generator,
         terminal_update=terminal_update,
     )

@@ -49,6 +49,7 @@ def test_each_run_equals_the_single_run_for_any_number_of_threads(threads):
             "learning_rate": st.floats(0, 1),
             "discount": st.floats(0, 1),
             "epsilon": st.floats(0.1, 1),
+            "epsilon_schedule": st.sampled_from(["constant", "linear"]),
             "bit_generator": st.sampled_from(["PCG64", "MT19937"]),
             "terminal_update": st.sampled_from(["assign", "target"]),
             "max_episode_steps": st.sampled_from([1, 37, 200, 500]),
@@ -67,8 +68,10 @@ def test_each_run_equals_the_single_run_for_any_config(seeds, threads, episodes,
     config=st.fixed_dictionaries(
         {
             "learning_rate": st.floats(0.1, 1),
+            "learning_rate_schedule": st.sampled_from(["constant", "linear"]),
             "discount": st.floats(0, 1),
             "epsilon": st.floats(0.1, 1),
+            "epsilon_schedule": st.sampled_from(["constant", "linear"]),
             "terminal_update": st.sampled_from(["assign", "target"]),
             "max_episode_steps": st.sampled_from([1, 37, 500]),
             "bins": st.sampled_from([(3, 3, 6, 6), (1, 1, 9, 70)]),
@@ -78,7 +81,6 @@ def test_each_run_equals_the_single_run_for_any_config(seeds, threads, episodes,
 )
 def test_each_run_of_cart_pole_equals_the_single_run_for_any_config(seeds, episodes, config):
     runs = qtab.train_many(POLE, seeds, threads=1, tables=True, episodes=episodes, **config)
-    assert runs.config.learning_rate_schedule == "linear"
     assert_same_as_single_runs(runs, env=POLE, episodes=episodes, **config)
 
 

@@ -30,7 +30,7 @@ from qtab.config.choices import (
     Ties,
     Traces,
 )
-from qtab.config.options import PREFERENCES
+from qtab.config.options import PREFERENCES, implied_schedules
 from qtab.config.unknown import check_names
 from qtab.config.validation import validated
 
@@ -90,8 +90,9 @@ class Config:
     """γ: the discount factor, in [0, 1]. Algorithms that learn the average reward have none: it is 1."""
     learning_rate_schedule: LearningRateSchedule = "constant"
     """How the learning rate falls: linearly or exponentially over the episodes, or (visits) as learning_rate / n at the
-    n-th visit of a state and action. The default of Monte Carlo methods is visits, with a learning rate of 1: averages.
-    Off-policy Monte Carlo, which needs it, weights the visits."""
+    n-th visit of a state and action. A learning rate that is given alone is constant; with min_learning_rate or
+    learning_rate_warm_up it falls linearly. The default of Monte Carlo methods is visits, with a learning rate of 1:
+    averages. Off-policy Monte Carlo, which needs it, weights the visits."""
     min_learning_rate: float | None = None
     """The lowest learning rate of a schedule, in [0, learning_rate]."""
     learning_rate_decay: float | None = None
@@ -145,7 +146,8 @@ class Config:
     epsilon: float | None = None
     """ε: the probability of a random action in the first episode, in [0, 1]."""
     epsilon_schedule: EpsilonSchedule | None = None
-    """How ε falls over the episodes."""
+    """How ε changes over the episodes. An ε that is given alone is constant; with min_epsilon or epsilon_warm_up it
+    falls linearly. The default ε falls linearly, as in the article."""
     min_epsilon: float | None = None
     """The lowest ε, in [0, epsilon]. A linear schedule reaches it at the end of the run."""
     epsilon_decay: float | None = None
@@ -276,6 +278,7 @@ def _suggesting(init: Callable[..., None]) -> Callable[..., None]:
             settings.setdefault("exploration", "softmax")
         if settings.get("time_aware"):
             settings.setdefault("on_truncation", "terminate")
+        settings.update(implied_schedules(settings, {**DEFAULTS, **settings}))
         init(self, *args, **settings)
 
     return checked

@@ -7,7 +7,7 @@ from typing import Any
 from qtab._utils.shown import shown
 from qtab.config.algorithm_defaults import algorithm_defaults
 from qtab.config.config import DEFAULTS, Config
-from qtab.config.options import applicable, is_set
+from qtab.config.options import applicable, implied_schedules, is_set, without_rates
 from qtab.config.presets import preset
 from qtab.config.unknown import check_names
 
@@ -40,6 +40,8 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
         raise TypeError(f"preset must be a name, got {shown(name)}")
     name, start = preset(env, name)
     own = algorithm_defaults(start, asked)
+    start = without_rates(start, asked)
+    own = {**implied_schedules(asked, {**DEFAULTS, **start, **own, **asked}), **own}
     start = applicable(start, {**DEFAULTS, **start, **own, **asked})
     own = applicable(own, {**DEFAULTS, **start, **own, **asked})
     with naming_preset(name, {setting: value for setting, value in start.items() if setting not in own}, asked):

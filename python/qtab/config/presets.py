@@ -23,6 +23,7 @@ _LAKE: SharedSettings = {
     "learning_rate": 0.05,
     "discount": 0.99,
     "epsilon": 1.0,
+    "epsilon_schedule": "linear",
     "initial_q": 0.0,
     "episodes": 20_000,
 }
@@ -31,6 +32,7 @@ _LARGE_LAKE: SharedSettings = {
     "learning_rate_schedule": "linear",
     "discount": 0.999,
     "epsilon": 1.0,
+    "epsilon_schedule": "linear",
     "initial_q": 1.0,
     "episodes": 20_000,
 }
@@ -38,6 +40,7 @@ _CLIFF: SharedSettings = {
     "learning_rate": 0.5,
     "discount": 1.0,
     "epsilon": 0.1,
+    "epsilon_schedule": "linear",
     "initial_q": 0.0,
     "episodes": 500,
 }
@@ -51,6 +54,7 @@ _TAXI: SharedSettings = {
     "learning_rate": 0.5,
     "discount": 0.99,
     "epsilon": 0.1,
+    "epsilon_schedule": "linear",
     "initial_q": 0.0,
     "episodes": 10_000,
 }
@@ -59,6 +63,7 @@ _BLACKJACK: SharedSettings = {
     "learning_rate_schedule": "linear",
     "discount": 1.0,
     "epsilon": 1.0,
+    "epsilon_schedule": "linear",
     "initial_q": 0.0,
     "episodes": 500_000,
 }
@@ -73,6 +78,7 @@ _CART_POLE: SharedSettings = {
     "learning_rate_schedule": "linear",
     "discount": 0.999,
     "epsilon": 0.2,
+    "epsilon_schedule": "linear",
     "initial_q": 50.0,
     "episodes": 5000,
 }

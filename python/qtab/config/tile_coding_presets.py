@@ -34,12 +34,19 @@ CONTINUOUS_MOUNTAIN_CAR: SharedSettings = {
     "actions": (-0.3, 0.3),
     "learning_rate": 0.2,
     "epsilon": 0.1,
+    "epsilon_schedule": "linear",
     "initial_q": 12.5,
     "episodes": 500,
 }
 
 # Chosen on a part of the seeds 20,000 to 20,199; docs/reference/environments.md reports others.
-_TRACES: SharedSettings = {**_TILES, "algorithm": "true_online_sarsa_lambda", "trace_decay": 0.8, "epsilon": 0.1}
+_TRACES: SharedSettings = {
+    **_TILES,
+    "algorithm": "true_online_sarsa_lambda",
+    "trace_decay": 0.8,
+    "epsilon": 0.1,
+    "epsilon_schedule": "linear",
+}
 # While the learning rate is high, the policy now and then loses a rare state near the edge for some episodes. An
 # exponential schedule ends with hundreds of episodes in which it hardly changes any more. Chosen on the seeds 20,100 to
 # 20,499.
