@@ -28,7 +28,14 @@ def search(batches: int = 10, size: int = 4, episodes: int = 300) -> optuna.Stud
             }
             for trial in trials
         ]
-        results = qtab.sweep("MountainCar-v0", settings, seeds=SEEDS, preset="solved", episodes=episodes)
+        results = qtab.sweep(
+            "MountainCar-v0",
+            settings,
+            seeds=SEEDS,
+            preset="solved",
+            learning_rate_schedule="linear",
+            episodes=episodes,
+        )
         for index, trial in enumerate(trials):
             study.tell(trial, float(results.values("final_return", index).mean()))
     return study
