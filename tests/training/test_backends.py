@@ -75,7 +75,7 @@ def test_auto_uses_rust_for_keyword_arguments_with_default_values():
 def test_auto_uses_gymnasium_for_unknown_ids(walk_id):
     run = qtab.train(walk_id, scale=(2, 2), **SHORT)
     assert run.config.backend == "gymnasium"
-    with pytest.raises(ValueError, match=r"got 'rust': Rust does not implement QtabTests/Walk-v0"):
+    with pytest.raises(ValueError, match=r"got 'rust': Rust does not implement Walk"):
         qtab.train(walk_id, scale=(2, 2), backend="rust", **SHORT)
 
 

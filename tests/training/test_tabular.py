@@ -52,10 +52,74 @@ def test_a_subclass_or_a_wrapper_is_stepped_in_python():
 
     env = lake()
     assert qtab.train(Mine(env.P, env.initial_state_distrib), **SETTINGS).config.backend == "gymnasium"
-    with pytest.raises(ValueError, match=r"Rust does not implement .*Mine"):
+    with pytest.raises(ValueError, match=r"got 'rust': its class Mine overrides step$"):
         qtab.train(Mine(env.P, env.initial_state_distrib), backend="rust", **SETTINGS)
     with pytest.raises(ValueError, match="Rust does not implement its wrapper RecordEpisodeStatistics"):
         qtab.train(RecordEpisodeStatistics(lake()), backend="rust", **SETTINGS)
+
+
+class Painted(qtab.TabularEnv):
+    """A subclass with attributes and pictures of its own, and TabularEnv's steps."""
+
+    metadata = {"render_modes": ["ansi"]}  # noqa: RUF012 - Gymnasium's way
+
+    def __init__(self, color: str = "red", render_mode: str | None = None) -> None:
+        table: Any = gym.make("FrozenLake-v1").unwrapped
+        self.color, self.render_mode = color, render_mode
+        super().__init__(table.P, table.initial_state_distrib)
+
+    def render(self) -> Any:
+        return self.color
+
+
+@pytest.fixture
+def painted_id():
+    name = "QtabTests/Painted-v0"
+    gym.register(name, entry_point=lambda **kwargs: Painted(**kwargs), max_episode_steps=50)
+    yield name
+    del gym.registry[name]
+
+
+@pytest.mark.parametrize("given", ["id", "spec", "object"])
+def test_a_table_that_is_registered_by_an_id_is_stepped_in_rust(painted_id, given, caplog):
+    env: Any = {"id": painted_id, "spec": gym.spec(painted_id), "object": gym.make(painted_id)}[given]
+    run = qtab.train(env, **SETTINGS)
+    assert (run.config.backend, run.config.max_episode_steps) == ("rust", 50)
+    assert not caplog.records
+    assert_same_run(run, qtab.train(env, backend="gymnasium", **SETTINGS))
+    assert qtab.verify(run).equal
+    assert (
+        qtab.evaluate(run, episodes=3, seed=0).returns.tolist()
+        == qtab.evaluate(run, episodes=3, seed=0, env=gym.make(painted_id, render_mode="ansi")).returns.tolist()
+    )
+
+
+def test_many_seeds_of_a_table_by_its_id_train_in_rust(painted_id):
+    runs = qtab.train_many(
+        painted_id, 3, tables=True, **{name: value for name, value in SETTINGS.items() if name != "seed"}
+    )
+    alone = qtab.train(painted_id, **{**SETTINGS, "seed": 1})
+    assert runs.config.backend == "rust"
+    assert runs[1].tables.tobytes() == alone.tables.tobytes()
+
+
+def test_what_a_subclass_overrides_is_named(painted_id, caplog):
+    gym.register("QtabTests/Mine-v0", entry_point=lambda **kwargs: Doubled(**kwargs))
+    try:
+        run = qtab.train("QtabTests/Mine-v0", **SETTINGS)
+    finally:
+        del gym.registry["QtabTests/Mine-v0"]
+    assert run.config.backend == "gymnasium"
+    assert "its class Doubled overrides reset; a subclass of qtab.TabularEnv that leaves reset" in caplog.text
+    env = lake()
+    env.observation_space = gym.spaces.Discrete(99)
+    with pytest.raises(ValueError, match=r"got 'rust': its observation_space is Discrete\(99\), its table has 16$"):
+        qtab.train(env, backend="rust", **SETTINGS)
+
+
+class Doubled(Painted):
+    def reset(self, *, seed=None, options=None):
+        return super().reset(seed=seed, options=options)
 
 
 @pytest.mark.parametrize("actions", [1, 2, 6, 7])

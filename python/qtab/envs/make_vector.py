@@ -10,6 +10,7 @@ from gymnasium.vector import SyncVectorEnv, VectorEnv
 from qtab._utils import checks
 from qtab.envs.registry import PREFIX
 from qtab.envs.vector import RustVectorEnv
+from qtab.envs.vector_arguments import spec_to_step
 
 _SYNC_OPTIONS = {"copy", "autoreset_mode"}
 """The arguments of ``SyncVectorEnv`` that Rust has as well."""
@@ -26,7 +27,7 @@ def make_vector_env(
     """Returns what ``gymnasium.make_vec("qtab/…")`` does: with wrappers a ``SyncVectorEnv``, else a RustVectorEnv.
 
     Args:
-        name: Gymnasium's id of the environment.
+        name: The id of the environment.
         num_envs: The number of sub-environments.
         wrappers: Functions that wrap each sub-environment, the first of them innermost. Python then steps one
             sub-environment after another, and Rust each of them.
@@ -46,7 +47,7 @@ def make_vector_env(
             return RustVectorEnv(name, num_envs, **options, **kwargs)
     options |= {option: kwargs.pop(option) for option in _SYNC_OPTIONS & kwargs.keys()}
     kwargs.pop("threads", None)
-    make = partial(_wrapped_env, partial(gym.make, gym.spec(PREFIX + name), **kwargs), tuple(wrappers))
+    make = partial(_wrapped_env, partial(gym.make, spec_to_step(name), **kwargs), tuple(wrappers))
     return SyncVectorEnv([make] * checks.integer("num_envs", num_envs, least=1), **options)
 
 
@@ -58,7 +59,7 @@ def _wrapped_env(make: Callable[[], gym.Env[Any, Any]], wrappers: Sequence[Any])
 
 
 def __getattr__(name: str) -> Any:
-    """Returns the entry point of an id: ``qtab.envs.make_vector:Taxi-v4``."""
-    if gym.registry.get(PREFIX + name) is None:
+    """Returns the vector entry point of an id: ``qtab.envs.make_vector:Taxi-v4``, or that of a table of the user's."""
+    if PREFIX + name not in gym.registry and name not in gym.registry:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return partial(make_vector_env, name)

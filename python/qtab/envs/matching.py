@@ -5,12 +5,20 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from gymnasium import spaces
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
 from qtab.envs.registry import TABULAR, EnvEntry, entry_for_id
 
 # The wrappers of gymnasium.make, none of which changes an observation or a reward.
 _HARMLESS_WRAPPERS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
+
+# What a subclass of TabularEnv may define without changing how it resets and steps.
+_NOT_STEPPING = {
+    *("__init__", "__repr__", "__str__", "metadata", "render", "render_mode", "close"),
+    *("__module__", "__doc__", "__dict__", "__weakref__", "__annotations__", "__parameters__", "__orig_bases__"),
+    *("__firstlineno__", "__static_attributes__", "__annotate_func__", "__annotations_cache__"),
+}
 
 # What wrappers keep besides what they were made with: a reference, a cache, and whether one was closed.
 _IRRELEVANT = ("env", "_cached_spec", "close_called")
@@ -64,10 +72,10 @@ def entry_for_env(env: gym.Env) -> EnvEntry:
 
 def _entry_for_class(unwrapped: Any) -> EnvEntry:
     name, spec = type(unwrapped).__qualname__, unwrapped.spec
-    if _entry_point(unwrapped) == TABULAR.entry_point:
-        return TABULAR
     entry = entry_for_id(spec.id) if spec is not None else None
     if entry is None or _entry_point(unwrapped) not in (entry.gymnasium_entry_point, entry.entry_point):
+        if _is_tabular(unwrapped):
+            return _table_entry(unwrapped)
         made = " without an id of Gymnasium's" if spec is None and type(unwrapped).__module__.startswith("gym") else ""
         raise NotInRustError(
             f"Rust does not implement {name}{made}",
@@ -76,6 +84,32 @@ def _entry_for_class(unwrapped: Any) -> EnvEntry:
             else "an environment whose transition table is known can be a qtab.TabularEnv",
         )
     return entry
+
+
+def _is_tabular(unwrapped: Any) -> bool:
+    """Whether it is a :class:`qtab.TabularEnv` or one of a subclass. Its class is imported only where one exists."""
+    return any(f"{base.__module__}:{base.__qualname__}" == TABULAR.entry_point for base in type(unwrapped).__mro__)
+
+
+def _table_entry(unwrapped: Any) -> EnvEntry:
+    """Returns the entry of a table, whose subclass may add attributes and pictures, but no steps of another kind."""
+    from qtab.envs.tabular import TabularEnv
+
+    cls = type(unwrapped)
+    for base in cls.__mro__[: cls.__mro__.index(TabularEnv)]:
+        for name in vars(base):
+            if hasattr(TabularEnv, name) and name not in _NOT_STEPPING:
+                raise NotInRustError(
+                    f"its class {base.__name__} overrides {name}",
+                    "a subclass of qtab.TabularEnv that leaves reset and step as they are is stepped in Rust",
+                )
+    for name, count in (("observation_space", len(unwrapped.P)), ("action_space", len(unwrapped.P[0]))):
+        if getattr(unwrapped, name) != spaces.Discrete(count):
+            raise NotInRustError(
+                f"its {name} is {getattr(unwrapped, name)!r}, its table has {count}",
+                "leave the spaces as qtab.TabularEnv makes them",
+            )
+    return TABULAR
 
 
 def _check_attributes(unwrapped: Any, entry: EnvEntry) -> None:

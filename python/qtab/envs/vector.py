@@ -15,11 +15,15 @@ from qtab import _core
 from qtab._utils import checks
 from qtab.envs.native import native_env
 from qtab.envs.python_vector import PythonVectorEnv, restore
-from qtab.envs.registry import ENTRIES, PREFIX, gymnasium_id
-from qtab.envs.vector_arguments import check_reset_mask, seeds_of
+from qtab.envs.vector_arguments import check_reset_mask, entry_to_step, seeds_of, spec_to_step
 
 _MAX_RESET_BOUND = 1e6
 """First states beyond this may overflow. Gymnasium's code then decides what happens."""
+
+
+def _draws_its_state(env: gym.Env) -> bool:
+    """Whether a frame depends on nothing but the state."""
+    return type(env).__module__.startswith("qtab.") and not isinstance(env, TaxiEnv)
 
 
 class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
@@ -37,7 +41,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
     - for CartPole, Acrobot and Pendulum on machines where NumPy does not take sine and cosine from the C library.
 
     Args:
-        name: The id of the environment, Gymnasium's or the one with the prefix ``qtab/``.
+        name: The id of an environment that Rust steps: Gymnasium's, one with the prefix ``qtab/``, or one that you
+            registered for a :class:`qtab.TabularEnv`.
         num_envs: The number of sub-environments.
         max_episode_steps: A time limit other than the spec's, as in ``gymnasium.make`` (-1: no limit).
         copy: Whether each step returns new arrays of observations. If False, it returns the same arrays each time.
@@ -62,16 +67,14 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         threads: int | None = None,
         **kwargs: Any,
     ) -> None:
-        name = checks.choice("name", gymnasium_id(name) if isinstance(name, str) else name, ENTRIES)
+        spec = spec_to_step(name)
         self.num_envs = checks.integer("num_envs", num_envs, least=1)
         self._autoreset_mode = AutoresetMode(autoreset_mode)
         self.copy = checks.boolean("copy", copy)
-        # A spec instead of an id: Gymnasium would warn of an old version a second time.
-        spec = gym.spec(PREFIX + name)
-        self._entry_name = ENTRIES[name].name
         self._make = partial(gym.make, spec, max_episode_steps=max_episode_steps, **kwargs)
         self.example = self._make()
         """An environment like the sub-environments, which is never stepped."""
+        self._entry_name = entry_to_step(spec, self.example).name
         self.metadata = {**self.example.metadata, "autoreset_mode": self.autoreset_mode}
         self.render_mode = self.example.render_mode
         self.single_observation_space = self.example.observation_space
@@ -87,8 +90,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
     def _start_in_rust(self) -> bool:
         """Creates the sub-environments in Rust; returns False if Rust does not support them."""
         env = self.example.unwrapped
-        # A frame of Taxi depends on the frames before it.
-        can_render = self.render_mode in ("rgb_array", "ansi") and not isinstance(env, TaxiEnv)
+        # A frame of Taxi depends on the frames before it, and one of a user's class may.
+        can_render = self.render_mode in ("rgb_array", "ansi") and _draws_its_state(env)
         if self.render_mode is not None and not can_render:
             return False
         try:

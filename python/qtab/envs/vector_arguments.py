@@ -1,11 +1,45 @@
-"""Checks of what a vector environment's ``reset`` takes, with the errors and messages of Gymnasium."""
+"""Checks of what a vector environment is made from, and of what its ``reset`` takes, there with Gymnasium's errors."""
 
 from collections.abc import Sequence
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from gymnasium.error import Error, ResetNeeded
 from numpy.typing import NDArray
+
+from qtab._utils import checks
+from qtab.envs.matching import NotInRustError, entry_for_env
+from qtab.envs.registry import ENTRIES, PREFIX, EnvEntry, gymnasium_id
+
+
+def spec_to_step(name: Any) -> EnvSpec:
+    """Returns the spec of the twin of a Gymnasium id, or of another registered id.
+
+    Raises:
+        TypeError: if ``name`` is not a string.
+        ValueError: if it is not a registered id; the message suggests the nearest one that Rust implements.
+    """
+    if isinstance(name, str) and gymnasium_id(name) not in ENTRIES and name in gym.registry:
+        return gym.spec(name)
+    # A spec instead of an id: Gymnasium would warn of an old version a second time.
+    return gym.spec(PREFIX + checks.choice("name", gymnasium_id(name) if isinstance(name, str) else name, ENTRIES))
+
+
+def entry_to_step(spec: EnvSpec, env: gym.Env[Any, Any]) -> EnvEntry:
+    """Returns the entry of an environment that was made from a spec.
+
+    Raises:
+        ValueError: if Rust does not step it; the message gives the reason.
+    """
+    if gymnasium_id(spec.id) in ENTRIES:
+        return ENTRIES[gymnasium_id(spec.id)]
+    try:
+        return entry_for_env(env)
+    except NotInRustError as error:
+        env.close()
+        raise ValueError(f"name must be the id of an environment that Rust steps, got {spec.id!r}: {error}") from None
 
 
 def seeds_of(seed: Any, num_envs: int) -> list[int | None]:

@@ -96,14 +96,42 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
     asked = merge_layers({"env_kwargs": dict(spec.kwargs)}, *layers)
     config = config_of(name, asked)
-    entry = entry_for_spec(spec, config.env_kwargs)
-    if entry is None and config.backend == "rust":
-        raise rust_unavailable(f"Rust does not implement {spec.id} with these keyword arguments and wrappers")
+    entry, python_reason = entry_for_spec(spec, config.env_kwargs), None
     known = None
     if entry is not None and config.backend != "gymnasium" and not asks_for_masks(config.action_mask):
         known = known_table(spec, config.env_kwargs)
     made = _make(spec, config) if known is None else known
-    return _Request(made, entry, config, asked, spec.max_episode_steps, spec=spec)
+    if entry is None:
+        try:
+            entry, python_reason = _match(made, config, is_made=True)
+        except ValueError:
+            made.close()
+            raise
+    return _Request(made, entry, config, asked, spec.max_episode_steps, python_reason, spec)
+
+
+def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[EnvEntry | None, str | None]:
+    """The entry of an environment that Rust steps; otherwise None, and why not and what would help.
+
+    Args:
+        env: The environment.
+        config: What is asked for.
+        is_made: Whether it was made from an id. A render mode then asks for frames, which Rust does not draw.
+
+    Raises:
+        ValueError: if the backend is Rust, and Rust cannot step it.
+    """
+    if config.backend == "gymnasium":
+        return None, None
+    try:
+        entry = entry_for_env(env)
+        if is_made or config.backend == "auto":
+            _check_not_shown(env)
+    except NotInRustError as error:
+        if config.backend == "rust":
+            raise rust_unavailable(str(error)) from None
+        return None, f"{error}; {error.remedy}"
+    return entry, None
 
 
 def _make(spec: EnvSpec, config: Config) -> gym.Env:
@@ -121,16 +149,7 @@ def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:
         raise ValueError(f"env_kwargs must be left out with an environment object, got {shown(asked['env_kwargs'])}")
     asked["env_kwargs"] = kwargs
     config = config_of(name, asked)
-    entry, python_reason = None, None
-    if config.backend != "gymnasium":
-        try:
-            entry = entry_for_env(env)
-            if config.backend == "auto":
-                _check_not_shown(env)
-        except NotInRustError as error:
-            if config.backend == "rust":
-                raise rust_unavailable(str(error)) from None
-            entry, python_reason = None, f"{error}; {error.remedy}"
+    entry, python_reason = _match(env, config, is_made=False)
     limit = time_limit(env)
     if limit is not None and config.max_episode_steps is not None:
         # Its wrapper ends episodes there, whatever is asked for.
