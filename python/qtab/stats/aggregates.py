@@ -1,15 +1,18 @@
-"""Statistics of scores on several environments, as in rliable (Agarwal et al., 2021)."""
+"""Statistics of scores on several environments, as in rliable (Agarwal et al., 2021).
+
+All of them let every environment count the same, also one with fewer runs: a run has the weight 1 / (number of runs on
+its environment). With equal numbers of runs, which rliable requires, this makes no difference.
+"""
 
 from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from qtab._utils import checks
 from qtab.stats.bootstrap import stratified_bootstrap
 from qtab.stats.interval import Interval
-from qtab.stats.intervals import CONFIDENCE, TRIM_FRACTION
+from qtab.stats.intervals import CONFIDENCE, TRIM_FRACTION, interquartile_mean
 from qtab.stats.scores import Scores, as_samples
 
 AGGREGATE_RESAMPLES = 2000
@@ -24,11 +27,22 @@ def _median(*samples: NDArray[np.float64]) -> float:
 
 
 def _iqm(*samples: NDArray[np.float64]) -> float:
-    return float(stats.trim_mean(np.concatenate(samples), TRIM_FRACTION))
+    values = np.concatenate(samples)
+    if len({len(sample) for sample in samples}) == 1:
+        return float(interquartile_mean(values))
+    weights = np.concatenate([np.full(len(sample), 1 / len(sample)) for sample in samples])
+    order = np.argsort(values, kind="stable")
+    values, weights = values[order], weights[order]
+    most = TRIM_FRACTION * len(samples) + ROUNDING
+    # As without weights, a value on the border of a quarter is kept whole.
+    is_kept = (np.cumsum(weights) > most) & (np.cumsum(weights[::-1])[::-1] > most)
+    return float(np.average(values[is_kept], weights=weights[is_kept]))
 
 
 AGGREGATES: Mapping[str, Callable[..., float]] = {"mean": _mean, "median": _median, "iqm": _iqm}
 """The mean and the median of the environments' means, and the interquartile mean of all runs on all environments."""
+ROUNDING = 1e-9
+"""More than the rounding error of a sum of weights, and less than the weight of a run."""
 
 
 def aggregate(
@@ -40,6 +54,9 @@ def aggregate(
     seed: int = 0,
 ) -> Interval:
     """Returns an aggregate over environments with its stratified bootstrap interval.
+
+    Every environment counts the same, whatever its number of runs. The interquartile mean leaves out the lowest and the
+    highest quarter of the runs of all environments, weighted in this way.
 
     The bootstrap is stratified: it resamples the runs of each environment separately. With few runs of few
     environments it is too narrow, as every bootstrap interval: see :func:`mean` and :func:`iqm` for measured figures.
@@ -70,7 +87,8 @@ def optimality_gap(
 ) -> Interval:
     """Returns the mean amount by which scores fall short of ``best``, with its stratified bootstrap interval.
 
-    Scores above ``best`` count as ``best``. See :func:`aggregate` for the other arguments.
+    Scores above ``best`` count as ``best``, and every environment counts the same, whatever its number of runs. See
+    :func:`aggregate` for the other arguments.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -79,6 +97,6 @@ def optimality_gap(
     best = checks.finite("best", best)
 
     def gap(*samples: NDArray[np.float64]) -> float:
-        return best - float(np.mean(np.minimum(np.concatenate(samples), best)))
+        return best - _mean(*(np.minimum(sample, best) for sample in samples))
 
     return stratified_bootstrap(as_samples("scores", scores, least=2), gap, confidence, resamples, seed)

@@ -18,7 +18,7 @@ class Comparison:
     """The result of a paired comparison; all differences are ``a`` minus ``b``."""
 
     difference: Interval
-    """The mean difference with its interval: Student's t for fewer than 30 pairs, else the bootstrap's."""
+    """The mean difference with Student's t interval."""
     effect_size: float | None
     """Cohen's d of paired samples: the mean of the differences divided by their standard deviation; 0 if all
     differences are 0, None if all are equal and not 0, because their standard deviation is then 0."""
@@ -29,11 +29,16 @@ class Comparison:
     mean difference at least as large."""
     pairs: int
     """The number of pairs."""
+    resamples: int = RESAMPLES
+    """The number of permutations that the test drew at random; with fewer than that in all, it tried each of them."""
 
     @property
     def smallest_p_value(self) -> float:
-        """The smallest p-value that the test can give with so few pairs: all differences of one sign."""
-        return 2.0 ** (1 - self.pairs)
+        """The smallest p-value that the test can give: that of differences which all have the same sign.
+
+        It is 2 / 2**pairs if the test tried all permutations, else 2 / (resamples + 1).
+        """
+        return 2 / min(2**self.pairs, self.resamples + 1)
 
     def __repr__(self) -> str:
         """One line."""
@@ -47,7 +52,7 @@ class Comparison:
             "interval": f"{100 * self.difference.confidence:g} %, {self.difference.method}",
             "effect size (Cohen's d)": effect,
             "a is larger": f"in {self.better:.1%} of the pairs",
-            "p-value": f"{self.p_value:.3g}, at least {self.smallest_p_value:.3g} with so many pairs",
+            "p-value": f"{self.p_value:.3g}, at least {self.smallest_p_value:.3g} with {self._limit}",
         }
         return html.summary(f"Comparison of {self.pairs} pairs", facts)
 
@@ -59,8 +64,13 @@ class Comparison:
         text = f"difference {self.difference}, {effect}, better in {self.better:.1%} of {self.pairs} pairs"
         text += f", p = {self.p_value:.3g}"
         if self.smallest_p_value > 1 - self.difference.confidence:
-            text += f" (at least {self.smallest_p_value:.3g} with {self.pairs} pairs: too few for a significant one)"
+            text += f" (at least {self.smallest_p_value:.3g} with {self._limit}: too few for a significant one)"
         return text
+
+    @property
+    def _limit(self) -> str:
+        """What bounds the p-value from below."""
+        return f"{self.pairs} pairs" if 2**self.pairs <= self.resamples else f"{self.resamples} permutations"
 
 
 def compare(
@@ -72,8 +82,9 @@ def compare(
         a: (runs,): one number per run of the first setting.
         b: (runs,): the same for the second setting; ``b[i]`` has the same seed as ``a[i]``.
         confidence: The coverage probability of the interval, between 0 and 1.
-        resamples: The number of bootstrap resamples, and of permutations, at most a million.
-        seed: Seeds both.
+        resamples: The number of permutations that the test draws, at most a million; it tries all of them if there are
+            not more.
+        seed: Seeds the test.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -100,11 +111,12 @@ def compare(
             rng=np.random.default_rng(seed),
         ).pvalue
     return Comparison(
-        difference=mean(differences, confidence=confidence, resamples=resamples, seed=seed),
+        difference=mean(differences, confidence=confidence),
         effect_size=effect,
         better=float(np.mean((differences > 0) + 0.5 * (differences == 0))),
         p_value=float(p_value),
         pairs=len(differences),
+        resamples=resamples,
     )
 
 

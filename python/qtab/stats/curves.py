@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from qtab._utils import arrays, checks
 from qtab.stats.bootstrap import as_resamples, bootstrap
 from qtab.stats.interval import Interval
-from qtab.stats.intervals import CONFIDENCE, SMALL_SAMPLE, interquartile_mean, t_intervals
+from qtab.stats.intervals import CONFIDENCE, interquartile_mean, t_intervals
 
 CURVE_RESAMPLES = 999
 _STATISTICS: dict[str, Any] = {"mean": np.mean, "median": np.median, "iqm": interquartile_mean}
@@ -64,8 +64,8 @@ def curve(
 ) -> list[Interval]:
     """Returns a statistic over the runs with its interval, for each whole block of episodes.
 
-    The intervals are those of :func:`mean`, :func:`median` and :func:`iqm`: Student's t for the mean of fewer than 30
-    runs, else the bootstrap's. Each holds for its block alone, not for the whole curve at once.
+    The intervals are those of :func:`mean`, :func:`median` and :func:`iqm`: Student's t for the mean, else the
+    bootstrap's. Each holds for its block alone, not for the whole curve at once.
 
     Args:
         returns: (runs, episodes), such as ``runs.episode_returns``; at least two runs.
@@ -86,7 +86,7 @@ def curve(
     function = _STATISTICS[checks.choice("statistic", statistic, _STATISTICS)]
     whole = curves.shape[1] // block * block
     means = curves[:, :whole].reshape(len(curves), -1, block).mean(axis=2)
-    if statistic == "mean" and len(curves) < SMALL_SAMPLE:
+    if statistic == "mean":
         as_resamples(resamples)
         checks.integer("seed", seed, least=0)
         return t_intervals(means, confidence)
