@@ -11,10 +11,6 @@ from typing import Any
 import pytest
 
 import qtab
-from qtab.sweeps import claims
-from qtab.sweeps import store as stores
-from qtab.sweeps import study as studies
-from qtab.sweeps.database import RunRecord
 from support.parity import run_of
 from support.posix import posix_only
 from support.sweeps import CAR, GRID, SMALL, assert_equal
@@ -146,18 +142,3 @@ def test_two_processes_share_a_store(tmp_path, small_chunks):
         new.append(len(lines))
     assert sum(new) >= 120
     assert_equal(qtab.sweep(CAR, GRID, store=path, seeds=60, episodes=40), qtab.sweep(CAR, GRID, seeds=60, episodes=40))
-
-
-def test_an_expired_claim_is_taken_over_and_a_late_result_is_not_committed_twice(tmp_path, small_chunks, monkeypatch):
-    path = tmp_path / "study.db"
-    planned = studies.plan_study(CAR, GRID, 5, 100, {"episodes": 40})
-    slow = stores.Store(path, planned.description)
-    claim = slow.claim(lambda start: 3)
-    assert claim == range(3)
-    monkeypatch.setattr(claims, "CLAIM_EXPIRY_SECONDS", -1.0)
-    study = qtab.sweep(CAR, GRID, store=path, **SMALL)
-    monkeypatch.undo()
-    assert slow.commit(claim, [RunRecord(0, None, b"", "late")] * 3, 1.0) is False
-    slow.close()
-    assert study.failed == 0
-    assert len(study) == 30

@@ -4,6 +4,7 @@ import math
 import sqlite3
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 
 from qtab.sweeps.connection import StoreError, damaged, name_of
@@ -23,7 +24,8 @@ CHUNKS = (
     "CREATE TABLE chunks (start INTEGER PRIMARY KEY, stop INTEGER NOT NULL, owner TEXT, heartbeat REAL, seconds REAL, "
     "digest TEXT)"
 )
-"""The runs ``start`` to ``stop`` - 1. With a digest they are stored; without, ``owner`` is training them."""
+"""The runs ``start`` to ``stop`` - 1. With a digest they are stored; without, ``owner`` has claimed them, at the time
+``heartbeat``."""
 _PIECES = (
     "CREATE TABLE pieces ( piece INTEGER PRIMARY KEY, owner TEXT, heartbeat REAL, done INTEGER NOT NULL DEFAULT 0 )"
 )
@@ -174,7 +176,40 @@ def _check_chunks(
     return total
 
 
-def insert_runs(connection: sqlite3.Connection, rows: Sequence[StoredRun]) -> None:
-    """Stores runs."""
+def insert_chunk(connection: sqlite3.Connection, rows: Sequence[StoredRun], seconds: float) -> int:
+    """Stores consecutive runs, which took so many seconds; returns their digest."""
     placeholders = ", ".join("?" * (len(SUMMARY_COLUMNS) + 4))
     connection.executemany(f"INSERT INTO runs VALUES ({placeholders})", rows)  # noqa: S608 - placeholders only
+    start, stop = rows[0][0], rows[-1][0] + 1
+    digest = chunk_digest(start, stop, seconds, rows)
+    connection.execute(
+        "INSERT INTO chunks (start, stop, seconds, digest) VALUES (?, ?, ?, ?)", (start, stop, seconds, to_text(digest))
+    )
+    return digest
+
+
+def replace_runs(
+    connection: sqlite3.Connection, runs: Sequence[StoredRun], seconds: float, content: dict[str, str]
+) -> None:
+    """Writes all that a store holds anew, in a transaction; claims are withdrawn.
+
+    Args:
+        connection: The connection.
+        runs: The runs in their order.
+        seconds: The time that they took.
+        content: What the store says about itself, as for :func:`write_meta`.
+    """
+    connection.execute("DELETE FROM runs")
+    connection.execute("DELETE FROM chunks")
+    digests = []
+    for _, group in groupby(enumerate(runs), lambda pair: pair[1][0] - pair[0]):
+        consecutive = [run for _, run in group]
+        digests.append(insert_chunk(connection, consecutive, seconds * len(consecutive) / len(runs)))
+    write_meta(connection, content, digests)
+
+
+def add_digests(connection: sqlite3.Connection, chunks: Sequence[int]) -> None:
+    """Adds the digests of new chunks to that of the store."""
+    before = connection.execute("SELECT value FROM meta WHERE name = 'digest'").fetchone()[0]
+    after = to_text(combined(int(before, 16), chunks))
+    connection.execute("UPDATE meta SET value = ? WHERE name = 'digest'", (after,))

@@ -15,9 +15,14 @@ from qtab.sweeps.connection import name_of
 from qtab.sweeps.pace import Pace, claim_size
 from qtab.sweeps.store import Store
 from qtab.sweeps.study import Study
-from qtab.sweeps.waiting import POLL_SECONDS, Notice
 from qtab.sweeps.worker import train_chunk, train_claim
 
+POLL_SECONDS = 0.5
+"""The time between two looks at what the executor has returned."""
+NOTICE_SECONDS = 2.0
+"""How long to wait for the executor before it is logged."""
+NEXT_NOTICE_SECONDS = 60.0
+"""The time after which it is logged again."""
 LATE_SECONDS = 10.0
 """A chunk that takes longer than this may be late."""
 LATE_FACTOR = 10.0
@@ -40,7 +45,9 @@ class ExecutorTraining:
 
     def __init__(self, study: Study, store: Store, executor: Executor, report: Callable[[], None]) -> None:
         self._study, self._store, self._executor, self._report = study, store, executor, report
-        self._pace, self._notice = Pace(), Notice()
+        self._pace = Pace()
+        self._next_notice = time.monotonic() + NOTICE_SECONDS
+        """When to log that the executor is being waited for, on this process's clock."""
         self._pending: dict[Future[Any], _Submitted] = {}
         self._poll_seconds = POLL_SECONDS
         self._failures: Counter[int] = Counter()
@@ -59,25 +66,22 @@ class ExecutorTraining:
             RuntimeError: if the executor fails; the message tells how to resume.
         """
         try:
-            while self._pending or self._store.finished() < self._study.runs:
+            while self._store.finished() < self._study.runs:
                 try:
                     all_claimed = self._submit(max_pending)
-                    returned = self._collect() if self._pending else False
+                    returned = self._collect()
                 except _ExecutorError as failure:
                     raise _lost(failure.error, self._study, self._store, is_own) from failure.error
                 if returned:
-                    self._notice.reset()
-                elif not self._pending:
-                    self._notice(self._store.claimed_by_others)
-                    time.sleep(POLL_SECONDS)
+                    self._next_notice = time.monotonic() + NOTICE_SECONDS
                 elif not (all_claimed and self._train_late_chunk()):
-                    self._notice(self._describe_pending)
+                    self._log_wait()
         finally:
             for future in self._pending:
                 future.cancel()
 
     def _submit(self, max_pending: int) -> bool:
-        """Submits chunks; returns whether all runs are finished or claimed."""
+        """Submits chunks; returns whether the executor has all runs that are not stored."""
         while len(self._pending) < max_pending:
             claim = self._store.claim(partial(claim_size, self._study, self._pace, 1))
             if claim is None:
@@ -135,8 +139,8 @@ class ExecutorTraining:
         Dask, for example, tries for 30 seconds to fetch a result from a worker that was killed after it finished, and
         for minutes from one that was stopped.
         """
-        if self._slowest is None:
-            return False  # the executor may still wait for its first worker
+        if self._slowest is None or not self._pending:
+            return False  # the executor may still wait for its first worker; or another process has stored the rest
         limit = max(LATE_SECONDS, LATE_FACTOR * self._slowest)
         future, submitted = min(self._pending.items(), key=lambda pair: pair[1].at)
         late = time.monotonic() - submitted.at
@@ -151,9 +155,13 @@ class ExecutorTraining:
         self._poll_seconds = 0.0  # the next chunk may be late, too
         return True
 
-    def _describe_pending(self) -> str:
-        runs = sum(len(submitted.claim) for submitted in self._pending.values())
-        return f"{runs:,} runs that the executor has in {len(self._pending)} tasks"
+    def _log_wait(self) -> None:
+        """Logs what the sweep is waiting for, if it is time."""
+        now = time.monotonic()
+        if now >= self._next_notice:
+            self._next_notice = now + NEXT_NOTICE_SECONDS
+            runs = sum(len(submitted.claim) for submitted in self._pending.values())
+            _LOGGER.warning("waiting for %s runs that the executor has in %d tasks", f"{runs:,}", len(self._pending))
 
 
 class _ExecutorError(Exception):

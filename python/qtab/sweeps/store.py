@@ -1,17 +1,21 @@
-"""The store of a sweep: processes claim runs in it and commit the results, each run once."""
+"""The store of a sweep: processes choose runs in it and store the results, each run once.
+
+A run has the same results in every process. So it does not matter which of them trains it, and nobody has to find out
+whether another process still lives: a process that finds no other runs also trains those that others have claimed, and
+the first result is stored.
+"""
 
 import json
 import os
-import sqlite3
 import stat
-import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+import uuid
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 from qtab._utils.versions import versions
-from qtab.sweeps import claims, version_1
+from qtab.sweeps import version_1
 from qtab.sweeps.connection import (
     StoreError,
     bounded,
@@ -21,9 +25,17 @@ from qtab.sweeps.connection import (
     translated_errors,
     when_unlocked,
 )
-from qtab.sweeps.database import Contents, RunRecord, create_tables, insert_runs, is_empty, read_contents, read_meta
+from qtab.sweeps.database import (
+    Contents,
+    RunRecord,
+    add_digests,
+    create_tables,
+    insert_chunk,
+    is_empty,
+    read_contents,
+    read_meta,
+)
 from qtab.sweeps.description import Description
-from qtab.sweeps.digests import chunk_digest, combined, to_text
 from qtab.sweeps.stored import check_study, store_path, warn_unchecked
 
 
@@ -42,10 +54,10 @@ class Store:
         self.path = None if path is None else store_path(path)
         """The file; None if the store is in memory."""
         self._description = description
-        self._owner = claims.new_owner()
-        self._claim_watch = claims.ClaimWatch()
+        self._owner = uuid.uuid4().hex
+        self._claims: list[range] = []
+        """What this process has claimed, and neither committed nor released."""
         self._done_until = 0
-        self._closing = threading.Event()
         with translated_errors(self.path):
             self._connection = connect(self.path)
         try:
@@ -55,30 +67,23 @@ class Store:
             self._connection.close()
             raise
         self._file = None if self.path is None else _identity(self.path)
-        self._heartbeat_thread = threading.Thread(target=self._send_heartbeats, daemon=True)
-        if self.path is not None:
-            self._heartbeat_thread.start()
 
     def close(self) -> None:
-        """Releases the unfinished claims of this process and closes the file."""
-        self._closing.set()
-        if self._heartbeat_thread.is_alive():
-            self._heartbeat_thread.join()
-        # A claim that cannot be released is lost when this process ends, or expires.
+        """Withdraws the claims of this process and closes the file."""
+        # A claim that cannot be withdrawn only makes other processes train its runs last.
         with closing(self._connection), suppress(OSError, StoreError), self._transaction():
             self._connection.execute("DELETE FROM chunks WHERE owner = ? AND digest IS NULL", (self._owner,))
 
     def claim(self, size: Callable[[int], int]) -> range | None:
-        """Claims runs that are neither finished nor claimed, for this process; None if there are none.
+        """Chooses runs for this process to train; None if it has claimed all that are not stored.
+
+        Runs that no process has claimed come first, then those that another one claimed the longest ago.
 
         Args:
             size: Returns how many runs to claim, from the index of the first one.
         """
         with self._transaction():
-            free = self._first_gap()
-            if free is None:
-                self._release_lost_claims()
-                free = self._first_gap()
+            free = self._first_unclaimed() or self._first_of_others()
             if free is None:
                 return None
             claimed = range(free.start, min(free.stop, free.start + size(free.start)))
@@ -86,55 +91,42 @@ class Store:
                 "INSERT INTO chunks (start, stop, owner, heartbeat) VALUES (?, ?, ?, ?)",
                 (claimed.start, claimed.stop, self._owner, time.time()),
             )
-            return claimed
+        self._claims.append(claimed)
+        return claimed
 
-    def commit(self, claim: range, records: Sequence[RunRecord], seconds: float) -> bool:
+    def commit(self, claim: range, records: Sequence[RunRecord], seconds: float) -> None:
         """Stores the results of the first runs of a claim in one transaction, and releases the others.
+
+        Runs that another process has stored meanwhile are left as they are.
 
         Args:
             claim: What :meth:`claim` returned.
             records: The results of its first runs, or of all of them.
             seconds: The time that they took.
-
-        Returns:
-            False if another process has taken over the claim; nothing is stored then.
         """
-        stop = claim.start + len(records)
-        rows = [record.as_row(run) for run, record in zip(claim, records, strict=False)]
+        trained = range(claim.start, claim.start + len(records))
+        rows = [record.as_row(run) for run, record in zip(trained, records, strict=True)]
+        bounds = trained.stop, trained.start
         with self._transaction():
-            digest = chunk_digest(claim.start, stop, seconds, rows)
-            is_mine = self._connection.execute(
-                "UPDATE chunks SET stop = ?, seconds = ?, digest = ?, owner = NULL, heartbeat = NULL "
-                "WHERE start = ? AND stop = ? AND owner = ? AND digest IS NULL",
-                (stop, seconds, to_text(digest), claim.start, claim.stop, self._owner),
-            ).rowcount
-            if is_mine:
-                insert_runs(self._connection, rows)
-                before = self._connection.execute("SELECT value FROM meta WHERE name = 'digest'").fetchone()[0]
-                after = to_text(combined(int(before, 16), [digest]))
-                self._connection.execute("UPDATE meta SET value = ? WHERE name = 'digest'", (after,))
-            return bool(is_mine)
+            self._withdraw(claim)
+            self._connection.execute("DELETE FROM chunks WHERE digest IS NULL AND start < ? AND stop > ?", bounds)
+            stored = self._ranges("start < ? AND stop > ?", *bounds)
+            digests = []
+            for part in _gaps(trained, stored):
+                of_part = rows[part.start - trained.start : part.stop - trained.start]
+                digests.append(insert_chunk(self._connection, of_part, seconds * len(part) / len(trained)))
+            add_digests(self._connection, digests)
 
     def release(self, claim: range) -> None:
-        """Releases a claim, so that its runs can be claimed again."""
+        """Withdraws a claim."""
         with self._transaction():
-            self._connection.execute(
-                "DELETE FROM chunks WHERE start = ? AND owner = ? AND digest IS NULL", (claim.start, self._owner)
-            )
+            self._withdraw(claim)
 
     def finished(self) -> int:
         """Returns the number of finished runs."""
         with translated_errors(self.path):
             query = "SELECT coalesce(sum(stop - start), 0) FROM chunks WHERE digest IS NOT NULL"
             return int(self._connection.execute(query).fetchone()[0])
-
-    def claimed_by_others(self) -> str:
-        """Returns which runs other processes are training, for messages."""
-        with translated_errors(self.path):
-            query = "SELECT owner, sum(stop - start) FROM chunks WHERE digest IS NULL GROUP BY owner"
-            rows = self._connection.execute(query).fetchall()
-        owners = ", ".join(f"{runs} by {claims.describe(owner)}" for owner, runs in rows)
-        return f"runs of {name_of(self.path)} that are being trained: {owners or 'none'}"
 
     def contents(self) -> Contents:
         """Returns all that is stored, after checking it."""
@@ -166,33 +158,37 @@ class Store:
         check_study(contents, self._description, path)
         warn_unchecked(contents, path)
 
-    def _first_gap(self) -> range | None:
-        """Returns the first runs that are neither finished nor claimed; None if there are none."""
-        free = self._done_until
+    def _first_unclaimed(self) -> range | None:
+        """Returns the first runs that are neither stored nor claimed; None if there are none."""
         chunks = self._connection.execute(
-            "SELECT start, stop, digest IS NOT NULL FROM chunks WHERE start >= ? ORDER BY start", (free,)
+            "SELECT start, stop, digest IS NOT NULL FROM chunks WHERE start >= ? ORDER BY start", (self._done_until,)
+        ).fetchall()
+        for start, stop, is_stored in chunks:
+            if not is_stored or start > self._done_until:
+                break
+            self._done_until = stop
+        taken = [*(range(start, stop) for start, stop, _ in chunks), *self._claims]
+        return next(_gaps(range(self._done_until, self._description.runs), taken), None)
+
+    def _first_of_others(self) -> range | None:
+        """Returns runs that another process has claimed, and withdraws that claim; None if there are none."""
+        for claim in self._ranges("digest IS NULL AND owner IS NOT ? ORDER BY heartbeat, start", self._owner):
+            free = next(_gaps(claim, self._claims), None)
+            if free is not None:
+                self._connection.execute("DELETE FROM chunks WHERE start = ?", (claim.start,))
+                return free
+        return None
+
+    def _withdraw(self, claim: range) -> None:
+        self._claims.remove(claim)
+        self._connection.execute(
+            "DELETE FROM chunks WHERE start = ? AND owner = ? AND digest IS NULL", (claim.start, self._owner)
         )
-        for start, stop, done in chunks.fetchall():
-            if start > free:
-                return range(free, start)
-            free = stop
-            if done and start == self._done_until:
-                self._done_until = stop
-        return range(free, self._description.runs) if free < self._description.runs else None
 
-    def _release_lost_claims(self) -> None:
-        rows = self._connection.execute("SELECT start, stop, owner, heartbeat FROM chunks WHERE digest IS NULL")
-        for start, stop, owner, heartbeat in rows.fetchall():
-            if owner != self._owner and self._claim_watch.is_lost(start, stop, owner, heartbeat):
-                self._connection.execute("DELETE FROM chunks WHERE start = ? AND digest IS NULL", (start,))
-
-    def _send_heartbeats(self) -> None:
-        with suppress(sqlite3.Error), closing(connect(self.path, "rw")) as connection:
-            while not self._closing.wait(claims.HEARTBEAT_SECONDS):
-                with suppress(sqlite3.OperationalError):  # busy, or the disk is full: the next commit reports it
-                    connection.execute(
-                        "UPDATE chunks SET heartbeat = ? WHERE owner = ? AND digest IS NULL", (time.time(), self._owner)
-                    )
+    def _ranges(self, condition: str, *values: object) -> list[range]:
+        """Returns the runs of the chunks that fulfil a condition."""
+        rows = self._connection.execute(f"SELECT start, stop FROM chunks WHERE {condition}", values)  # noqa: S608 - ours
+        return [range(start, stop) for start, stop in rows.fetchall()]
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:
@@ -221,6 +217,17 @@ class Store:
         file = getattr(self, "_file", None)
         if self.path is not None and file is not None and _identity(self.path) != file:
             raise FileNotFoundError(f"{name_of(self.path)} was deleted or replaced during the sweep")
+
+
+def _gaps(runs: range, taken: Iterable[range]) -> Iterator[range]:
+    """Yields the parts of a range that lie in none of the others."""
+    free = runs.start
+    for other in sorted(taken, key=lambda one: one.start):
+        if free < min(other.start, runs.stop):
+            yield range(free, min(other.start, runs.stop))
+        free = max(free, other.stop)
+    if free < runs.stop:
+        yield range(free, runs.stop)
 
 
 def _identity(path: Path) -> tuple[int, int] | None:

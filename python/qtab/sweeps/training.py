@@ -1,7 +1,6 @@
 """The training of all runs of a study that its store does not have yet."""
 
 import os
-import time
 from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import closing, suppress
@@ -18,7 +17,6 @@ from qtab.sweeps.progress import Callback, ProgressReporter
 from qtab.sweeps.store import Store
 from qtab.sweeps.stored import finished_contents, store_path
 from qtab.sweeps.study import Study
-from qtab.sweeps.waiting import POLL_SECONDS, Notice
 from qtab.sweeps.worker import train_claim
 from qtab.training.process_pool import process_pool
 from qtab.training.train_many import thread_count
@@ -82,13 +80,7 @@ def run_study(
 
 
 def _train_in_threads(study: Study, store: Store, threads: int, report: Callable[[], None]) -> None:
-    pace, notice = Pace(), Notice()
-    while store.finished() < study.runs:
-        claim = store.claim(partial(claim_size, study, pace, threads))
-        if claim is None:
-            notice(store.claimed_by_others)
-            time.sleep(POLL_SECONDS)
-            continue
+    pace = Pace()
+    while (claim := store.claim(partial(claim_size, study, pace, threads))) is not None:
         train_claim(study, store, claim, threads, pace)
-        notice.reset()
         report()

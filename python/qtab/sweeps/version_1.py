@@ -2,14 +2,12 @@
 
 import sqlite3
 from collections.abc import Mapping
-from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 from qtab.sweeps.connection import damaged
-from qtab.sweeps.database import CHUNKS, Contents, write_meta
+from qtab.sweeps.database import CHUNKS, Contents, replace_runs
 from qtab.sweeps.description import Description
-from qtab.sweeps.digests import chunk_digest, to_text
 
 _STEPS = {"rust": 2**26, "gymnasium": 2**16}
 """The estimated steps of a chunk, by backend."""
@@ -46,17 +44,8 @@ def upgrade(connection: sqlite3.Connection, contents: Contents) -> None:
     """Turns a store into one of the present version, inside a transaction. Claims are released."""
     connection.execute("DROP TABLE pieces")
     connection.execute(CHUNKS)
-    digests = []
-    for _, group in groupby(enumerate(contents.runs), lambda pair: pair[1][0] - pair[0]):
-        runs = [run for _, run in group]
-        start, stop = runs[0][0], runs[-1][0] + 1
-        digests.append(chunk_digest(start, stop, 0.0, runs))
-        connection.execute(
-            "INSERT INTO chunks (start, stop, seconds, digest) VALUES (?, ?, 0.0, ?)",
-            (start, stop, to_text(digests[-1])),
-        )
     meta = {"study": contents.description.text, "unchecked_runs": str(len(contents.runs))}
-    write_meta(connection, meta, digests)
+    replace_runs(connection, contents.runs, 0.0, meta)
 
 
 def _chunks(description: Description) -> list[range]:
