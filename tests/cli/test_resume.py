@@ -124,7 +124,7 @@ def test_the_user_names_the_package_of_an_environment_and_not_the_file(
 
 
 REFUSED = [
-    ("", "--episodes must be given for a run that has finished: more than its 4"),
+    ("--episodes 9 --checkpoint 0", "--checkpoint must be an integer of at least 1, got 0"),
     ("--episodes 3", "--episodes must be more than the 4 that the run has finished, got 3"),
     ("--episodes x", "--episodes must be an integer, got 'x'"),
     ("--episodes 9 --env Taxi-v4", "--env must be that of the run to resume, 'FrozenLake-v1', got 'Taxi-v4'"),
@@ -155,4 +155,4 @@ def test_refusals_are_one_line_and_leave_the_file(tmp_path: Path, arguments: str
 )
 def test_what_is_no_run_to_resume_is_refused(tmp_path: Path, name: str, said: str) -> None:
     qtab.train_many(LAKE, seeds=1, episodes=2, tables=True)[0].save(tmp_path / "many.npz")
-    assert refused("resume", name, cwd=tmp_path).startswith(f"qtab resume: error: {said}")
+    assert refused("resume", name, "--episodes", "9", cwd=tmp_path).startswith(f"qtab resume: error: {said}")

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
+from qtab.callbacks import Checkpoint
 from qtab.config.choices import Algorithm
 from support.gridworld import Room
 from support.learner_settings import run_settings
@@ -52,8 +53,7 @@ def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, dat
     part.save(path)
     for stored in (part, qtab.load(path)):
         if stored.completed:
-            with pytest.raises(ValueError, match="episodes must be given for a run that has finished"):
-                qtab.resume(stored)
+            assert qtab.resume(stored) is stored
         else:
             assert_resumed(qtab.resume(stored), whole)
 
@@ -165,11 +165,32 @@ def test_a_run_that_does_not_fit_into_memory_is_refused_before_anything_is_logge
     assert "epsilon now falls linearly over 6 episodes instead of 5" in caplog.text
 
 
+def test_a_run_that_has_finished_is_returned_as_it_is_and_a_message_says_so(tmp_path, caplog):
+    path = tmp_path / "checkpoint.npz"
+
+    def program():
+        resume = path if path.exists() else None
+        return qtab.train("MountainCar-v0", seed=0, episodes=6, resume=resume, callback=Checkpoint(path, every=4))
+
+    whole = program()
+    assert caplog.messages == []
+    assert_same_run(program(), whole)
+    assert caplog.messages == ["the run has finished its 6 episodes: there is nothing to train"]
+    for call in (lambda: qtab.resume(whole), lambda: qtab.resume(whole, 6), lambda: qtab.train(resume=whole)):
+        assert call() is whole
+    of_many = qtab.train_many("MountainCar-v0", seeds=2, episodes=5, tables=True)[0]  # which cannot be resumed
+    assert qtab.train("MountainCar-v0", resume=of_many) is of_many
+    with pytest.raises(ValueError, match="seed must be that of the run to resume, 0, got 1"):
+        qtab.train("MountainCar-v0", seed=1, episodes=6, resume=path)
+    with pytest.raises(TypeError, match="episodes must be an integer"):
+        qtab.resume(whole, 6.0)  # type: ignore[arg-type]
+
+
 def test_what_cannot_be_resumed_is_refused_by_name(tmp_path):
     run = qtab.train("MountainCar-v0", seed=0, episodes=5)
     for call, message in {
-        lambda: qtab.resume(run): "episodes must be given for a run that has finished: more than its 5",
-        lambda: qtab.resume(run, 5): "episodes must be more than the 5 that the run has finished, got 5",
+        lambda: qtab.resume(run, 4): "episodes must be more than the 5 that the run has finished, got 4",
+        lambda: qtab.resume(run, snapshots=[3]): "snapshots must",
         lambda: qtab.resume(
             qtab.train_many("MountainCar-v0", seeds=2, episodes=5, tables=True)[0], 9
         ): "runs of train_many",

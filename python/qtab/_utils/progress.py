@@ -126,5 +126,6 @@ def print_above(line: str) -> None:
     drawn = [bar for bar in _bars if bar.delay == 0 or bar.last_print_t > bar.start_t]
     if drawn:
         drawn[-1].write(line, file=sys.stdout)
+        sys.stdout.flush()
     else:
         print(line, flush=True)  # noqa: T201 - its purpose

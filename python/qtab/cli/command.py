@@ -1,12 +1,12 @@
 """The choice of the subcommand, and the exit codes of errors."""
 
-import os
 import sys
 from importlib import import_module
 
 from qtab._utils.extras import missing
 from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
+from qtab.cli.interruption import discard_output, exit_code
 from qtab.cli.usage import USER_ERRORS, UsageError, one_line, with_origin
 
 SUBCOMMANDS = {
@@ -27,7 +27,7 @@ SUBCOMMANDS = {
 }
 """The subcommands with their help. Each is a module of this package with ``run(arguments) -> exit code``."""
 
-EXIT_ERROR, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
+EXIT_ERROR, EXIT_USAGE = 1, 2
 
 
 def run(arguments: list[str]) -> int:
@@ -52,16 +52,15 @@ def run(arguments: list[str]) -> int:
     except UsageError as error:
         return _fail(name, one_line(error), EXIT_USAGE)
     except BrokenPipeError:
-        # The reader of the output has closed it. Python would report that once more when it flushes at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        discard_output()
         return EXIT_ERROR
     except ModuleNotFoundError as error:
         # All commands need tyro; Python 3.10 has no parser of TOML.
         return _fail(name, one_line(missing(error, "cli") if error.name in ("tyro", "tomli") else error), EXIT_ERROR)
     except USER_ERRORS as error:
         return _fail(name, one_line(error), EXIT_ERROR)
-    except KeyboardInterrupt:
-        return EXIT_INTERRUPTED
+    except KeyboardInterrupt as error:
+        return exit_code(error)
     except Exception as error:
         return _fail(name, with_origin(error), EXIT_ERROR)
 

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 from qtab._utils import checks
 from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
+from qtab.callbacks import Checkpoint
 from qtab.config import Config
 from qtab.rendering.replay import replay_all
 from qtab.rendering.video import VideoRecorder
 from qtab.rendering.window import display_problem, open_window
 from qtab.results.run import Run
+from qtab.training.callbacks import Callback
 
 if TYPE_CHECKING:
     from qtab.planning import Optimum
@@ -23,7 +25,7 @@ DEFAULT_SHOWN = 20
 
 
 class Outputs:
-    """Where a run goes. A context manager, which closes the window and the videos.
+    """The output files of a run, and its window. A context manager, which closes the window and the videos.
 
     Args:
         config: The resolved config of the run.
@@ -32,6 +34,7 @@ class Outputs:
         watch: The number of last episodes to show in a window, or None.
         record: The folder for videos of the last episodes, or None.
         say: Prints a line about what was written.
+        checkpoint: The number of episodes after which to save the run so far to ``save`` each time, or None.
 
     Raises:
         ModuleNotFoundError: if an optional library is missing; it names the ``pip install``.
@@ -47,10 +50,15 @@ class Outputs:
         watch: int | None,
         record: Path | None,
         say: Callable[[str], None] = print_above,
+        checkpoint: int | None = None,
     ) -> None:
         self._save, self._plot, self._record, self._say = save, plot, record, say
         self.files: dict[str, Path] = {}
         """What was written, by the argument that asked for it."""
+        self.written: list[str] = []
+        """Lines about what :meth:`keep` wrote, to be printed."""
+        self.has_files = save is not None or plot is not None or record is not None
+        """Whether there is anything to write."""
         if watch is not None:
             checks.integer("watch", watch, least=1)
         if plot is not None:
@@ -60,6 +68,12 @@ class Outputs:
             check_writable("plot", plot)
         if save is not None:
             check_writable("save", save)
+        self.callbacks: tuple[Callback, ...] = ()
+        """What saves the run while it is in progress."""
+        if checkpoint is not None:
+            if save is None:
+                raise ValueError("--checkpoint needs --save, the file that it writes")
+            self.callbacks = (Checkpoint(save, checks.integer("checkpoint", checkpoint, least=1)),)
         self.shown = watch or (DEFAULT_SHOWN if record is not None else 0)
         """The number of last episodes to replay."""
         with ExitStack() as opened:
@@ -78,7 +92,7 @@ class Outputs:
         self._opened.__exit__(kind, error, traceback)
 
     def keep(self, run: Run, optimum: "Optimum | None" = None) -> None:
-        """Saves and plots a run, finished or interrupted, and prints where.
+        """Saves and plots a run, finished or interrupted. It prints nothing, which may fail: ``written`` says where.
 
         Raises:
             OSError: if a file cannot be written.
@@ -86,13 +100,13 @@ class Outputs:
         if self._save is not None:
             run.save(self._save)
             self.files["save"] = self._save
-            self._say(f"Saved the run to {self._save}")
+            self.written.append(f"Saved the run to {self._save}")
         if self._plot is not None:
             from qtab.plots.run import save_plot
 
             save_plot(run, self._plot, optimum)
             self.files["plot"] = self._plot
-            self._say(f"Saved the plot to {self._plot}")
+            self.written.append(f"Saved the plot to {self._plot}")
 
     def show(self, run: Run) -> None:
         """Replays the recorded episodes in videos and in the window."""

@@ -17,6 +17,7 @@ import numpy as np
 import tyro
 
 from qtab._utils.progress import print_above
+from qtab.cli.interruption import discard_output
 from qtab.cli.usage import UsageError, one_line
 
 _Flag = Annotated[bool, tyro.conf.FlagCreatePairsOff]
@@ -53,6 +54,8 @@ class Report:
         self._on_exit = ExitStack()
         self.progress: bool | None = False if flags.quiet else None
         """Whether to show progress bars, as the argument ``progress`` of the API."""
+        self.writes_files = False
+        """Whether the command writes files: it then finishes even if its output is closed, as ``| head`` does."""
 
     def __enter__(self) -> "Report":
         if self._flags.quiet:
@@ -64,19 +67,27 @@ class Report:
     ) -> None:
         self._on_exit.close()
         if self._flags.json and self._facts:
-            print_above(json_text({"command": self._command, **self._facts}))
+            self._print(json_text({"command": self._command, **self._facts}))
 
     def text(self, lines: str) -> None:
         """Prints text for people."""
         if not (self._flags.quiet or self._flags.json):
+            self._print(lines)
+
+    def _print(self, lines: str) -> None:
+        try:
             print_above(lines)
+        except BrokenPipeError:
+            discard_output()
+            if not self.writes_files:
+                raise
 
     def problem(self, error: Exception) -> None:
         """Reports an error after which the command continues: as text, or on standard error."""
         if self._flags.quiet or self._flags.json:
             sys.stderr.write(f"{self._command}: error: {one_line(error)}\n")
         else:
-            print_above(str(error))
+            self._print(str(error))
 
     def add(self, **facts: Any) -> None:
         """Adds keys to the JSON object."""

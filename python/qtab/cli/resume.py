@@ -12,10 +12,12 @@ from qtab.cli.parsing import parse
 from qtab.cli.reporting import OutputFlags, Report
 from qtab.cli.training_report import Training, backend_words, optimum_of
 from qtab.cli.usage import reading, usage_errors
+from qtab.config.layers import over
 from qtab.results.run import Run
 from qtab.results.storage import load
-from qtab.training.earlier_run import check_agrees, counts_visits, resolve_again, snapshots_of
+from qtab.training.earlier_run import check_agrees, counts_visits, has_finished, resolve_again, snapshots_of
 from qtab.training.options import TrainingOptions
+from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
 
 COMMAND = "qtab resume"
@@ -31,6 +33,8 @@ class Arguments(OutputFlags):
     """The number of episodes of the whole run, those that are finished included; by default that of the run."""
     save: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     """Save the run to this file; by default to RUN, which is replaced. Ctrl-C saves what was learned so far."""
+    checkpoint: Annotated[int | None, tyro.conf.arg(metavar="EPISODES")] = None
+    """Save the run so far to this file each time that so many more episodes are finished."""
     plot: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     """Draw the learning curve of the whole run to this file. Its ending gives the format."""
     snapshots: Annotated[int | None, OPTIONAL_INT] = None
@@ -41,7 +45,7 @@ class Arguments(OutputFlags):
     """Report how far the run is from the optimum, and draw it. Always done for small tables."""
 
 
-FLAGS = ("episodes", "snapshots", "save", "plot", "env", "optimum")
+FLAGS = ("episodes", "snapshots", "save", "checkpoint", "plot", "env", "optimum")
 
 
 def run(arguments: list[str]) -> int:
@@ -52,22 +56,35 @@ def run(arguments: list[str]) -> int:
             with reading("RUN", asked.run):
                 earlier = load(asked.run)
             check_agrees(earlier, asked.env, {})
-            resolved = resolve_again("run", earlier, asked.episodes, None)
+            visits = counts_visits(earlier, False)
+            options = TrainingOptions(visits=visits, snapshots=asked.snapshots)
+            finished = has_finished(earlier, asked.episodes, options)
+            resolved = _resolved_again(earlier) if finished else resolve_again("run", earlier, asked.episodes, None)
         try:
             with usage_errors(FLAGS):
-                save = asked.run if asked.save is None else asked.save
-                outputs = Outputs(resolved.config, save, asked.plot, None, None, report.text)
-                visits = counts_visits(earlier, False)
-                options = TrainingOptions(visits=visits, snapshots=asked.snapshots)
+                save = asked.run if asked.save is None and not finished else asked.save
+                outputs = Outputs(
+                    resolved.config, save, asked.plot, None, None, report.text, None if finished else asked.checkpoint
+                )
                 snapshots = snapshots_of(options, resolved.config.episodes, earlier)
                 best = optimum_of(resolved, asked.optimum, report.progress)
+            report.writes_files = outputs.has_files
             with outputs:
                 report.text(_header(earlier, resolved))
                 wanted = tuple(number for number in snapshots if number > len(earlier.episode_returns))
-                Training(resolved, report, outputs, best, visits, wanted, earlier).run()
+                training = Training(resolved, report, outputs, best, visits, wanted, earlier)
+                if finished:
+                    training.keep_and_report(earlier)
+                else:
+                    training.run()
         finally:
             resolved.close()
     return 0
+
+
+def _resolved_again(earlier: Run) -> ResolvedRun:
+    """Resolves a run that has finished."""
+    return resolve(earlier.config.env, over(earlier.config, {}))
 
 
 def _header(earlier: Run, resolved: ResolvedRun) -> str:

@@ -43,6 +43,7 @@ def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
     options = parse(Arguments, COMMAND, arguments)
     with Report(COMMAND, options) as report:
+        report.writes_files = True
         _run(options, report)
     return 0
 

@@ -20,9 +20,12 @@ def run(arguments: list[str]) -> int:
             resolved = resolve(env, with_initial_q(settings))
         try:
             with usage_errors(flags, "env"):
-                outputs = Outputs(resolved.config, asked.save, asked.plot, asked.watch, asked.record, report.text)
+                outputs = Outputs(
+                    resolved.config, asked.save, asked.plot, asked.watch, asked.record, report.text, asked.checkpoint
+                )
                 snapshots = snapshot_episodes(asked.snapshots, resolved.config.episodes)
                 best = optimum_of(resolved, asked.optimum, report.progress)
+            report.writes_files = outputs.has_files
             with outputs:
                 report.text(_header(resolved))
                 Training(resolved, report, outputs, best, asked.visits, snapshots).run()

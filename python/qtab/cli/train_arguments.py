@@ -40,7 +40,9 @@ class Arguments(OutputFlags):
     plot: _File = None
     """Draw the learning curve to this file. Its ending gives the format."""
     save: _File = None
-    """Save the run to this file, for qtab.load, qtab verify and --initial-q."""
+    """Save the run to this file, for qtab.load, qtab verify and --initial-q. Ctrl-C saves what was learned so far."""
+    checkpoint: Annotated[int | None, tyro.conf.arg(metavar="EPISODES")] = None
+    """Save the run so far to the file of --save each time that so many more episodes are finished."""
     watch: Annotated[int | None, OPTIONAL_INT] = None
     """Show this many of the last training episodes on the screen."""
     record: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER")] = None
@@ -53,8 +55,8 @@ class Arguments(OutputFlags):
     """Report how far the run is from the optimum, and draw it. Always done for small tables."""
 
 
-OUTPUTS = ("save", "plot", "watch", "record")
-"""The arguments that are no settings and say where a run goes."""
+OUTPUTS = ("save", "checkpoint", "plot", "watch", "record")
+"""The arguments that are not settings and say where a run is written or shown."""
 
 
 def flags_of(asked: Arguments) -> tuple[str, ...]:

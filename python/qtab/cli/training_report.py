@@ -73,7 +73,7 @@ class Training:
         done = 0 if self.earlier is None else len(self.earlier.episode_returns)
         averages = _averages(self.report, block, done // block * block)
         options = TrainingOptions(
-            callback=averages,
+            callback=(*self.outputs.callbacks, averages),
             callback_every=block,
             record=self.outputs.shown,
             visits=self.visits,
@@ -85,29 +85,36 @@ class Training:
         except BaseException as error:
             partial = getattr(error, "run", None)
             if isinstance(partial, Run):
-                done, total = len(partial.episode_returns), partial.config.episodes
-                averages(Progress(done, total, partial.episode_returns, partial.episode_lengths))
-                self.report.text(f"Stopped after {done:,} of {total:,} episodes; what was learned so far:")
                 try:
-                    self._report(partial)
+                    self.keep_and_report(partial, averages)
                 except ValueError as problem:  # values that overflowed are not saved
                     self.report.problem(problem)
             raise
-        self._report(finished)
+        self.keep_and_report(finished)
         self.outputs.show(finished)
         self.report.add(files=self.outputs.files)
 
-    def _report(self, run: Run) -> None:
-        gap, threshold = None if self.best is None else self.best.gap(run), reward_threshold(run.config.env)
-        self.report.add(**_summary(run, threshold, gap))
-        self.report.text(_summary_text(run))
-        for line in (_verdict(run, threshold), _gap_text(run, gap)):
-            if line is not None:
-                self.report.text(line)
+    def keep_and_report(self, run: Run, averages: Callable[[Progress], None] | None = None) -> None:
+        """Saves and plots a run before anything is printed, and then reports it; an interrupted one with its averages.
+
+        Raises:
+            Exception: what saving raises, after the report.
+        """
         try:
             self.outputs.keep(run, self.best)
         finally:
-            self.report.add(files=self.outputs.files)
+            if averages is not None:
+                done, total = len(run.episode_returns), run.config.episodes
+                averages(Progress(done, total, run.episode_returns, run.episode_lengths))
+                self.report.text(f"Stopped after {done:,} of {total:,} episodes; what was learned so far:")
+            self._report(run)
+
+    def _report(self, run: Run) -> None:
+        gap, threshold = None if self.best is None else self.best.gap(run), reward_threshold(run.config.env)
+        self.report.add(**_summary(run, threshold, gap), files=self.outputs.files)
+        for line in (_summary_text(run), _verdict(run, threshold), _gap_text(run, gap), *self.outputs.written):
+            if line is not None:
+                self.report.text(line)
 
 
 def _averages(report: Report, block: int, printed: int) -> Callable[[Progress], None]:

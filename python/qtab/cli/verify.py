@@ -11,6 +11,8 @@ from qtab.cli.constructors import OPTIONAL_INT
 from qtab.cli.parsing import parse
 from qtab.cli.reporting import OutputFlags, Report
 from qtab.cli.usage import reading, usage_errors
+from qtab.envs.registry import spec_of
+from qtab.results.run import Run
 from qtab.results.storage import load
 from qtab.training.verify import verify
 
@@ -25,18 +27,32 @@ class Arguments(OutputFlags):
     """A file written by qtab train --save."""
     episodes: Annotated[int | None, OPTIONAL_INT] = None
     """Compare only the first episodes, using the schedules of the full run."""
+    env: Annotated[str | None, tyro.conf.arg(metavar="ENV")] = None
+    """The environment's id, for one that a package registers (package:Name-v0): a file imports nothing."""
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
     options = parse(Arguments, COMMAND, arguments)
     with Report(COMMAND, options) as report:
-        with usage_errors(("episodes",), "run"):
+        with usage_errors(("episodes", "env"), "run"):
             with reading("RUN", options.run):
                 saved = load(options.run)
+            if options.env is not None:
+                _import_environment(saved, options.env)
             total = options.episodes if options.episodes is not None else len(saved.episode_returns)
             with ProgressBar(total, "episode", report.progress, "Gymnasium") as bar:
                 verification = verify(saved, options.episodes, progress=lambda done, _: bar.move_to(done))
         report.text(str(verification))
         report.add(**vars(verification), equal=verification.equal)
     return 0 if verification.equal else 1
+
+
+def _import_environment(saved: Run, env: str) -> None:
+    """Imports the package that registers the environment of a run.
+
+    Raises:
+        ValueError: if ``env`` is another environment.
+    """
+    if spec_of(env).id != saved.config.env.rpartition(":")[2]:
+        raise ValueError(f"env must be that of the run, {str(saved.config.env)!r}, got {env!r}")

@@ -83,6 +83,28 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
     return replace(continued(resolved, run), extensions=extensions(run, config))
 
 
+def has_finished(run: Run, episodes: Any, options: TrainingOptions) -> bool:
+    """Returns whether a run has all its episodes already, and no more are asked for; a message says so.
+
+    Args:
+        run: The earlier part.
+        episodes: How many episodes the whole run is to have; None takes that of ``run``.
+        options: What else the call asks for, which is checked.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+    total = run.config.episodes
+    if episodes is not None and checks.count("episodes", episodes, least=1) != total:
+        return False
+    if len(run.episode_returns) < total:
+        return False
+    snapshots_of(options, total, run)
+    _LOGGER.warning("the run has finished its %s episodes: there is nothing to train", f"{total:,}")
+    return True
+
+
 def with_function(run: Run, function: Any) -> Run:
     """Returns a run from a file with the function that was its discretizer, where one is given."""
     if not isinstance(run.config.discretizer, MissingFunction) or not callable(function):
@@ -192,8 +214,6 @@ def _config(name: str, run: Run, episodes: Any) -> Config:
             f"{name} must have the state of its training, which runs of train_many and files of earlier versions do "
             "not have; qtab.train(..., initial_q=run.q_table) learns on from its table"
         )
-    if episodes is None and finished >= run.config.episodes:
-        raise ValueError(f"episodes must be given for a run that has finished: more than its {finished:,}")
     count = run.config.episodes if episodes is None else checks.count("episodes", episodes, least=1)
     if count <= finished:
         raise ValueError(f"episodes must be more than the {finished:,} that the run has finished, got {episodes!r}")

@@ -7,7 +7,7 @@ import gymnasium as gym
 
 from qtab.results.run import Run
 from qtab.training.callback_list import Callbacks
-from qtab.training.earlier_run import counts_visits, earlier_run, resolve_again
+from qtab.training.earlier_run import counts_visits, earlier_run, has_finished, resolve_again
 from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.train import train_resolved
 
@@ -54,12 +54,13 @@ def resume(
 
     Returns:
         The whole run. Its first episodes are those of ``run``, which stays as it is. Visits are counted on if they were
-        counted, and snapshots are added to those of ``run``.
+        counted, and snapshots are added to those of ``run``. A run that has all its episodes is returned as it is, and
+        a message says so.
 
     Raises:
         OSError: if the file cannot be read.
         TypeError: for an argument of the wrong type.
-        ValueError: for a file that is not a run, a run that has finished or cannot be resumed, or an environment other
+        ValueError: for a file that is not a run, a run that cannot be resumed, or an environment other
             than the run's: it says why.
         KeyboardInterrupt: on Ctrl-C. Like any exception raised by the environment or the callback, it carries the run
             so far as ``.run``, which can be resumed again.
@@ -69,6 +70,8 @@ def resume(
         raise TypeError(f"env must be an environment, got {env!r}")
     visits = counts_visits(earlier, False)
     options = TrainingOptions(callback, callback_every, record, visits, snapshots, progress, memory_limit)
+    if has_finished(earlier, episodes, options):
+        return earlier
     resolved = resolve_again("run", earlier, episodes, env)
     try:
         return train_resolved(resolved, options, earlier)

@@ -29,6 +29,7 @@ from qtab.training.earlier_run import (
     check_agrees,
     counts_visits,
     earlier_run,
+    has_finished,
     log_what_differs,
     resolve_again,
     snapshots_of,
@@ -71,7 +72,8 @@ def train(
             environment its ``env_kwargs`` and ``preset`` as well. A mapping gives only some settings, as keywords do.
         resume: A run that was stopped early, or the path of its file, to be continued exactly where it stopped; see
             :func:`qtab.resume`. It brings its settings along: those given here must be the same, except for
-            ``episodes``. Visits and snapshots are continued if the run has them.
+            ``episodes``. Visits and snapshots are continued if the run has them. A run that has all its episodes is
+            returned as it is, and a message says so.
         callback: A callable, or a sequence of them, called with a :class:`qtab.Progress` after every
             ``callback_every`` episodes and after the last one. Any of them stops the run by returning False. Those of
             :mod:`qtab.callbacks` save, log, evaluate and draw.
@@ -109,6 +111,8 @@ def train(
         earlier = with_function(earlier_run("resume", resume, asked.get("action_mask")), asked.get("discretizer"))
         options = replace(options, visits=counts_visits(earlier, visits))
         check_agrees(earlier, env, asked)
+        if has_finished(earlier, asked.get("episodes"), options):
+            return earlier
         made = env if isinstance(env, gym.Env) else None
         resolved = resolve_again("resume", earlier, asked.get("episodes"), made)
     log_default_limit(resolved)
