@@ -48,7 +48,7 @@ _MODULES = {
     "explain": "qtab.explanation.explain",
     "load": "qtab.results.storage",
     "load_runs": "qtab.results.runs_storage",
-    "load_sweep": "qtab.sweeps.results",
+    "load_sweep": "qtab.sweeps.load",
     "optimum": "qtab.planning.solve",
     "planning": "qtab.planning",
     "play": "qtab.rendering.play",
@@ -108,9 +108,9 @@ if TYPE_CHECKING:
     from qtab.sweeps import designs as designs
     from qtab.sweeps.confirm import Confirmation as Confirmation
     from qtab.sweeps.connection import StoreError as StoreError
+    from qtab.sweeps.load import load_sweep as load_sweep
     from qtab.sweeps.progress import SweepProgress as SweepProgress
     from qtab.sweeps.results import Sweep as Sweep
-    from qtab.sweeps.results import load_sweep as load_sweep
     from qtab.sweeps.sweep import sweep as sweep
     from qtab.training.callbacks import Progress as Progress
     from qtab.training.evaluate import Evaluation as Evaluation

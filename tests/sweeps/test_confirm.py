@@ -137,3 +137,50 @@ def test_a_setting_that_does_not_exist_is_refused(setting: int) -> None:
         sweep.values("final_returns", 0)
     with pytest.raises(TypeError, match="setting must be an integer"):
         sweep.curves("x")  # type: ignore[arg-type]
+
+
+MIXED: dict[str, Any] = {"algorithm": ["sarsa", "q_learning", "expected_sarsa"], "learning_rate": [0.1, 0.5]}
+
+
+def test_the_best_of_each_algorithm_are_confirmed_in_one_call() -> None:
+    sweep = qtab.sweep("FrozenLake-v1", MIXED, 2, episodes=30)
+    ranking = sweep.ranking()
+    best = {name: [i for i in ranking if sweep.settings[i]["algorithm"] == name] for name in MIXED["algorithm"]}
+    found = sweep.confirm(2, per="algorithm")
+    assert sorted(found.chosen) == sorted(indices[0] for indices in best.values())
+    assert list(found.chosen) == [index for index in ranking if index in found.chosen]
+    assert [setting["algorithm"] for setting in found.confirmed.settings] == [
+        sweep.settings[index]["algorithm"] for index in found.chosen
+    ]
+    assert len(sweep.confirm(2, per="algorithm", top=2).chosen) == 6
+
+
+def test_any_settings_are_confirmed_in_the_order_given(tmp_path: Path) -> None:
+    path = tmp_path / "study.db"
+    sweep = qtab.sweep("FrozenLake-v1", MIXED, 2, episodes=30, store=path)
+    for table in (sweep, qtab.load_sweep(path)):
+        found = table.confirm([7, 8], settings=[4, 0])
+        assert found.chosen == (4, 0)
+        assert [dict(setting) for setting in found.confirmed.settings] == [MIXED_SETTINGS[4], MIXED_SETTINGS[0]]
+
+
+MIXED_SETTINGS = qtab.designs.grid(MIXED)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"settings": [6]}, ValueError, "settings must be an integer from 0 to 5, got 6"),
+        ({"settings": []}, ValueError, r"settings must hold different indices, at least one, got \[\]"),
+        ({"settings": [1, 1]}, ValueError, r"settings must hold different indices, at least one, got \[1, 1\]"),
+        ({"settings": 3}, TypeError, "settings must be a sequence of indices of settings, got 3"),
+        ({"settings": [1], "top": 2}, ValueError, "settings must be given without top and per"),
+        ({"settings": [1], "per": "algorithm"}, ValueError, "settings must be given without top and per"),
+        ({"per": "algoritm"}, ValueError, r"per must be .*'algorithm'.*got 'algoritm'"),
+        ({"per": "algorithm", "top": 9}, ValueError, "top must be an integer from 1 to 6, got 9"),
+    ],
+)
+def test_bad_choices_of_settings_are_refused(arguments: dict[str, Any], error: type[Exception], message: str) -> None:
+    sweep = qtab.sweep("FrozenLake-v1", MIXED, 2, episodes=5)
+    with pytest.raises(error, match=message):
+        sweep.confirm(2, **arguments)

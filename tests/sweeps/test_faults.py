@@ -33,7 +33,7 @@ def test_a_store_of_another_kind_is_refused(tmp_path, change, message):
         qtab.sweep(CAR, GRID, store=path, **SMALL)
 
 
-@pytest.mark.parametrize("change", [{"seeds": 6}, {"episodes": 41}, {"block": 7}, {"discount": 0.5}])
+@pytest.mark.parametrize("change", [{"seeds": range(1, 6)}, {"episodes": 41}, {"block": 7}, {"discount": 0.5}])
 def test_a_store_of_another_sweep_is_refused(tmp_path, change):
     path = tmp_path / "study.db"
     qtab.sweep(CAR, GRID, store=path, **SMALL)
@@ -119,7 +119,13 @@ def test_a_run_that_diverges_is_recorded():
         ({"grid": {"epsilon": "abc"}}, TypeError, r"grid\['epsilon'\] must be a list of values"),
         ({"grid": 3}, TypeError, "grid must map names"),
         ({"grid": [3]}, TypeError, "grid must hold mappings"),
-        ({"grid": [{"epsilon": 0.1}, {"discount": 0.1}]}, ValueError, "must have the same names"),
+        (
+            {"grid": [{"epsilon": 0.1}, {"discount": 0.1}]},
+            ValueError,
+            r"every setting in grid must have the names of the first, but grid\[1\] lacks 'epsilon' and also has 'disc",
+        ),
+        ({"grid": [{"epsilon": 0.1, "discount": 0.1}, {"epsilon": 0.1}]}, ValueError, r"grid\[1\] lacks 'discount'$"),
+        ({"grid": [{"epsilon": 0.1}, {"epsilon": 0.1, "seed": 0}]}, ValueError, r"grid\[1\] also has 'seed'$"),
         ({"grid": [{"epsilon": 0.1}, {"epsilon": 0.1}]}, ValueError, "the same one twice"),
         ({"grid": {"epsilom": [0.1]}}, TypeError, "unknown setting 'epsilom'"),
         ({"grid": {"epsilon": ["x"]}}, TypeError, "epsilon must be a number"),

@@ -93,7 +93,7 @@ def test_a_sweep_interrupted_while_it_plans_has_what_is_stored(tmp_path, monkeyp
     def interrupt(*_: Any) -> Any:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(studies, "_settings_of", interrupt)
+    monkeypatch.setattr(studies, "settings_of", interrupt)
     with pytest.raises(KeyboardInterrupt) as caught:
         qtab.sweep(CAR, GRID, store=path if with_store else None, **SMALL)
     partial = run_of(caught.value)

@@ -57,7 +57,7 @@ def test_a_finished_store_on_a_read_only_medium_is_read_and_needs_no_training(fo
     with read_only(folder):
         assert qtab.load_sweep(path).columns["steps"].tolist() == table.columns["steps"].tolist()
         assert_equal(qtab.sweep(CAR, GRID, store=path, **SMALL), table)
-        with pytest.raises(qtab.StoreError, match="belongs to another sweep"):
+        with pytest.raises(qtab.StoreError, match="has runs of 5 seeds, of which this sweep has only 4"):
             qtab.sweep(CAR, GRID, store=path, **{**SMALL, "seeds": 4})
     assert [file.name for file in folder.iterdir()] == ["study.db"]
 

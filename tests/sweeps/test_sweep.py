@@ -142,3 +142,12 @@ def test_two_processes_share_a_store(tmp_path, small_chunks):
         new.append(len(lines))
     assert sum(new) >= 120
     assert_equal(qtab.sweep(CAR, GRID, store=path, seeds=60, episodes=40), qtab.sweep(CAR, GRID, seeds=60, episodes=40))
+
+
+def test_the_names_of_settings_may_come_in_any_order():
+    points: list[dict[str, Any]] = [{"learning_rate": 0.1, "epsilon": 0.3}, {"epsilon": 0.8, "learning_rate": 0.2}]
+    table = qtab.sweep(CAR, points, **SMALL)
+    assert [list(setting) for setting in table.settings] == [["learning_rate", "epsilon"]] * 2
+    assert_equal(table, qtab.sweep(CAR, [points[0], {"learning_rate": 0.2, "epsilon": 0.8}], **SMALL))
+    with pytest.raises(ValueError, match="the same one twice"):
+        qtab.sweep(CAR, [points[0], dict(reversed(points[0].items()))], **SMALL)

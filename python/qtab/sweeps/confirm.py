@@ -1,6 +1,7 @@
-"""The best settings of a sweep, trained again with other seeds."""
+"""Settings of a sweep, trained again with other seeds."""
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -9,9 +10,10 @@ import gymnasium as gym
 import numpy as np
 
 from qtab._utils import checks, html
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.layers import over
-from qtab.sweeps.study import Study
+from qtab.sweeps.study import Study, to_cell
 from qtab.training.train_many import resolve_template, seed_numbers
 
 if TYPE_CHECKING:
@@ -21,10 +23,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Confirmation:
-    """The best settings of a sweep, trained again with seeds that the sweep did not use."""
+    """Settings of a sweep, trained again with seeds that the sweep did not use."""
 
     chosen: tuple[int, ...]
-    """The indices of the settings in the sweep, best first."""
+    """The indices of the settings in the sweep, best first unless they were given."""
     swept: "Sweep"
     """The sweep, whose means of the chosen settings are too high on average."""
     confirmed: "Sweep"
@@ -77,7 +79,7 @@ class Confirmation:
 
     def _line(self, place: int, setting: int) -> str:
         values = ", ".join(f"{name} {value}" for name, value in self.swept.settings[setting].items())
-        runs = np.flatnonzero(self.confirmed.columns["setting"] == place)
+        runs = self.confirmed.rows(place)
         found = len(self.confirmed.values("final_return", place))
         swept, failed = self.swept.mean_final_returns()[setting], len(runs) - found
         mean = f"{self.mean(place)}" if found > 1 else "no mean"
@@ -85,25 +87,65 @@ class Confirmation:
         return f"setting {setting} ({values}): {mean} over {len(runs)} other seeds{lost}; {swept:.6g} in the sweep"
 
 
-def plan_confirmation(sweep: "Sweep", seeds: Any, top: int, env: Any) -> tuple[list[int], Study]:
-    """Returns the indices of the best settings of a sweep, and the study that trains them with other seeds.
+def chosen_settings(sweep: "Sweep", top: int, per: str | None, settings: Any) -> list[int]:
+    """Returns the indices of the settings that are to be trained again; see :meth:`Sweep.confirm`.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+    if settings is not None:
+        if top != 1 or per is not None:
+            raise ValueError("settings must be given without top and per, which choose settings")
+        return _given(settings, len(sweep.settings))
+    ranking = sweep.ranking()
+    if not ranking:
+        raise ValueError("a sweep without finished runs has no best setting")
+    top = checks.integer("top", top, least=1, most=len(ranking))
+    if per is None:
+        return ranking[:top]
+    per = checks.choice("per", per, list(sweep.settings[0]))
+    found: Counter[Any] = Counter()
+    chosen = []
+    for index in ranking:
+        value = to_cell(sweep.settings[index][per])
+        found[value] += 1
+        if found[value] <= top:
+            chosen.append(index)
+    return chosen
+
+
+def _given(settings: Any, count: int) -> list[int]:
+    if isinstance(settings, str | bytes) or not isinstance(settings, Iterable):
+        raise TypeError(f"settings must be a sequence of indices of settings, got {shown(settings)}")
+    indices = [checks.integer("settings", index, least=0, most=count - 1) for index in settings]
+    if not indices or len(set(indices)) < len(indices):
+        raise ValueError(f"settings must hold different indices, at least one, got {shown(indices)}")
+    return indices
+
+
+def origin(sweep: "Sweep", indices: Sequence[int], env: Any) -> tuple[Any, list[Mapping[str, Any]]]:
+    """Returns the environment of a sweep and the overrides of some of its settings, to train them again.
+
+    Raises:
+        ValueError: if they cannot be restored from a store.
+    """
+    if sweep._source is not None:
+        return sweep._source[0] if env is None else env, [sweep._source[1][index] for index in indices]
+    restored = [_restored(sweep.configs[index]) for index in indices]
+    return _registered(sweep.env) if env is None else env, restored
+
+
+def plan_confirmation(sweep: "Sweep", seeds: Any, chosen: Sequence[int], env: Any) -> Study:
+    """Returns the study that trains settings of a sweep with other seeds.
 
     Raises:
         TypeError: for an argument of the wrong type.
         ValueError: for seeds that the sweep used, an argument out of range, or settings that cannot be restored.
     """
-    ranking = sweep.ranking()
-    if not ranking:
-        raise ValueError("a sweep without finished runs has no best setting")
-    chosen = ranking[: checks.integer("top", top, least=1, most=len(ranking))]
     numbers = _other_seeds(sweep, seeds)
     template = {"seed": max(numbers)}
-    if sweep._source is not None:
-        made = sweep._source[0] if env is None else env
-        overrides = [sweep._source[1][index] for index in chosen]
-    else:
-        made = _registered(sweep.env) if env is None else env
-        overrides = [_restored(sweep.configs[index]) for index in chosen]
+    made, overrides = origin(sweep, chosen, env)
     resolved = [resolve_template(made, {**given, **template}) for given in overrides]
     study = Study(made, [sweep.settings[index] for index in chosen], overrides, numbers, resolved, sweep.block)
     for index, config in zip(chosen, study.description.configs, strict=True):
@@ -112,7 +154,7 @@ def plan_confirmation(sweep: "Sweep", seeds: Any, top: int, env: Any) -> tuple[l
         ]
         if different:
             raise ValueError(f"setting {index} cannot be restored here: it would have another {different[0]}")
-    return chosen, study
+    return study
 
 
 def _other_seeds(sweep: "Sweep", seeds: Any) -> tuple[int, ...]:

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from qtab.envs.stored import stored_id
@@ -36,6 +36,11 @@ class Description:
     def text(self) -> str:
         """JSON text that is equal for equal studies only. It is part of the store format."""
         return json.dumps({name: getattr(self, name) for name in _TYPES}, sort_keys=True)
+
+    def has_more_seeds(self, other: "Description") -> bool:
+        """Returns whether this is the study of another description with further seeds."""
+        is_same = replace(self, seeds=()).text == replace(other, seeds=()).text
+        return is_same and set(self.seeds) > set(other.seeds)
 
     def check_run(self, run: int, seed: object, summary: Sequence[object], curve: object, error: object) -> None:
         """Checks that the values of a stored run are possible.

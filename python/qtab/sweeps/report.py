@@ -59,7 +59,7 @@ def settings_table(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
     rows = []
     for setting in sweep.ranking():
         values = sweep.values("final_return", setting)
-        runs = np.flatnonzero(sweep.columns["setting"] == setting)
+        runs = sweep.rows(setting)
         cells = [sweep.columns[name][runs[0]] for name in names]
         numbers: list[Any] = [None] * 5
         if len(values):

@@ -1,35 +1,33 @@
-"""``qtab.Sweep``: the results of a sweep as a table with one row per run, and how they are read from a store."""
+"""``qtab.Sweep``: the results of a sweep as a table with one row per run."""
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils import checks, html, svg
+from qtab._utils import checks
 from qtab._utils.columns import cell_column, integer_column
 from qtab._utils.frames import arrow_table, data_frame
 from qtab._utils.suggestions import did_you_mean
 from qtab.sweeps.database import Contents
 from qtab.sweeps.description import SUMMARY_COLUMNS
 from qtab.sweeps.progress import Callback
-from qtab.sweeps.stored import read_store, store_path
 from qtab.sweeps.study import to_cell
 
 if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
+    from qtab.results.run import Run
     from qtab.sweeps.confirm import Confirmation
-
 
 INTEGER_COLUMNS = ("episodes", "steps")
 """The summary columns that hold integers, which a store keeps as floats."""
-SHOWN_SETTINGS = 6
-"""The number of settings that a notebook shows."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -68,30 +66,9 @@ class Sweep:
 
     def _repr_html_(self) -> str:
         """A table and the mean learning curves of the settings with the best mean final return, for notebooks."""
-        means = {
-            setting: float(values.mean())
-            for setting in range(len(self.settings))
-            if len(values := self.values("final_return", setting))
-        }
-        best = sorted(means, key=means.__getitem__, reverse=True)[:SHOWN_SETTINGS]
-        names = list(self.settings[0]) if self.settings else []
-        columns = ("setting", *names, "runs", "mean final return")
-        rows = [
-            (
-                setting,
-                *(self.settings[setting][name] for name in names),
-                len(self._rows(setting)),
-                f"{means[setting]:.2f}",
-            )
-            for setting in best
-        ]
-        heading = f"Sweep of {self.env}: {len(self.settings)} settings, {len(self):,} runs, {self.failed} failed"
-        if len(best) < len(self.settings):
-            heading += f"; the best {len(best)}"
-        curves = {f"setting {setting}": self.curves(setting).mean(axis=0) for setting in best}
-        label = f"Mean learning curves in blocks of {self.block:,} episodes"
-        colors = [svg.color(index) for index in range(len(best))]
-        return html.listing(heading, columns, rows, svg.lines(label, curves), colors)
+        from qtab.sweeps.display import sweep_html
+
+        return sweep_html(self)
 
     def __len__(self) -> int:
         return len(self.columns["seed"])
@@ -99,7 +76,7 @@ class Sweep:
     @property
     def failed(self) -> int:
         """The number of runs that failed; the column ``error`` has the reasons."""
-        return sum(error is not None for error in self.columns["error"])
+        return int(self._has_failed.sum())
 
     def values(self, column: str, setting: int) -> NDArray[Any]:
         """Returns a column for the runs of one setting that did not fail, ordered as the seeds.
@@ -109,7 +86,7 @@ class Sweep:
             TypeError: if ``setting`` is not an integer.
             ValueError: if there is no such setting.
         """
-        rows = self._rows(setting)
+        rows = self._succeeded(setting)
         if column not in self.columns:
             near = did_you_mean(column, self.columns) if isinstance(column, str) else ""
             raise KeyError(f"column must be one of {', '.join(self.columns)}, got {column!r}{near}")
@@ -123,13 +100,32 @@ class Sweep:
             TypeError: if ``setting`` is not an integer.
             ValueError: if there is no such setting.
         """
-        curves = [np.frombuffer(self._curves[row]) for row in self._rows(setting).tolist()]
+        curves = [np.frombuffer(self._curves[row]) for row in self._succeeded(setting).tolist()]
         return np.array(curves) if curves else np.empty((0, 0))
 
-    def _rows(self, setting: int) -> NDArray[np.intp]:
-        setting = checks.integer("setting", setting, least=0, most=len(self.settings) - 1)
-        succeeded = np.array([error is None for error in self.columns["error"]], dtype=np.bool_)
-        return np.flatnonzero((self.columns["setting"] == setting) & succeeded)
+    def rows(self, setting: int) -> NDArray[np.intp]:
+        """Returns the rows of the runs of one setting, those that failed included, ordered as the seeds.
+
+        Raises:
+            TypeError: if ``setting`` is not an integer.
+            ValueError: if there is no such setting.
+        """
+        return self._by_setting[checks.integer("setting", setting, least=0, most=len(self.settings) - 1)]
+
+    def _succeeded(self, setting: int) -> NDArray[np.intp]:
+        rows = self.rows(setting)
+        return rows[~self._has_failed[rows]]
+
+    @cached_property
+    def _has_failed(self) -> NDArray[np.bool_]:
+        return np.array([error is not None for error in self.columns["error"]], dtype=np.bool_)
+
+    @cached_property
+    def _by_setting(self) -> list[NDArray[np.intp]]:
+        """The rows of each setting."""
+        setting = self.columns["setting"]
+        order = np.argsort(setting, kind="stable")
+        return np.split(order, np.searchsorted(setting[order], np.arange(1, len(self.settings))))
 
     def mean_final_returns(self) -> NDArray[np.float64]:
         """Returns (settings,): the mean final return of each setting, in which a failed run counts as the worst run.
@@ -138,13 +134,13 @@ class Sweep:
         lowest final return of the whole sweep. A setting without any finished run has NaN, one of which all runs failed
         has -inf.
         """
-        setting, returns = self.columns["setting"], self.columns["final_return"]
+        returns = self.columns["final_return"]
         has_failed = np.isnan(returns)
         worst = np.min(returns[~has_failed], initial=np.inf)
         means = np.full(len(self.settings), np.nan)
         for index in range(len(self.settings)):
-            mine = setting == index
-            if mine.any():
+            mine = self.rows(index)
+            if len(mine):
                 is_lost = has_failed[mine].all()
                 means[index] = -np.inf if is_lost else np.where(has_failed[mine], worst, returns[mine]).mean()
         return means
@@ -163,6 +159,8 @@ class Sweep:
         seeds: int | Iterable[int] = 100,
         *,
         top: int = 1,
+        per: str | None = None,
+        settings: Sequence[int] | None = None,
         env: Any = None,
         store: "str | os.PathLike[str] | None" = None,
         executor: Executor | None = None,
@@ -171,13 +169,16 @@ class Sweep:
         callback: Callback | None = None,
         progress: bool | None = None,
     ) -> "Confirmation":
-        """Trains the best settings again with seeds that the sweep did not use, which gives unbiased means.
+        """Trains settings again with seeds that the sweep did not use, by default the best, which gives unbiased means.
 
         The mean by which a setting was chosen is too high on average, because the choice prefers lucky seeds.
 
         Args:
             seeds: Seeds that the sweep did not use; an integer N means the N after its largest seed.
             top: The number of settings to train again, from the first of :meth:`ranking`.
+            per: The name of a setting in the grid, such as ``"algorithm"``: trains the ``top`` best for each of its
+                values again. None takes the best of all.
+            settings: The indices of the settings to train again, whatever their rank.
             env: The environment, as for :func:`qtab.sweep`. None takes that of the sweep; in a sweep that was loaded
                 from a store, its id must be registered already.
             store: As for :func:`qtab.sweep`; it must be another file than that of this sweep.
@@ -194,16 +195,34 @@ class Sweep:
             ValueError: for seeds that the sweep used, an argument out of range, or settings that cannot be restored.
             KeyboardInterrupt: on Ctrl-C; its attribute ``run`` is the table of the finished runs.
         """
-        from qtab.sweeps.confirm import Confirmation, plan_confirmation
+        from qtab.sweeps.confirm import Confirmation, chosen_settings, plan_confirmation
         from qtab.sweeps.training import run_study
 
-        chosen, study = plan_confirmation(self, seeds, top, env)
+        chosen = chosen_settings(self, top, per, settings)
+        study = plan_confirmation(self, seeds, chosen, env)
 
         def build(contents: Contents) -> Sweep:
             return build_sweep(contents, study.settings, (study.env, study.overrides))
 
         again = run_study(study, build, store, executor, threads, memory_limit, callback, progress)
         return Confirmation(tuple(chosen), self, again)
+
+    def run(self, setting: int, seed: int, *, env: Any = None) -> "Run":
+        """Trains a run of the table again, which has its tables and episodes then, and can be verified and plotted.
+
+        Args:
+            setting: The index of its setting.
+            seed: Its seed.
+            env: The environment, as for :meth:`confirm`.
+
+        Raises:
+            TypeError: for an argument of the wrong type.
+            ValueError: for an argument out of range, a run that failed, or one that gives other results here than those
+                of the table.
+        """
+        from qtab.sweeps.again import trained_again
+
+        return trained_again(self, setting, seed, env)
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns the table as a pandas data frame.
@@ -225,23 +244,6 @@ class Sweep:
             ModuleNotFoundError: without pyarrow.
         """
         return arrow_table(self.columns, INTEGER_COLUMNS, ("error",))
-
-
-def load_sweep(path: "str | os.PathLike[str]") -> Sweep:
-    """Returns the finished runs of a store, which may belong to a sweep that is still running.
-
-    The digests of the store are checked. A store from an earlier version of this package has none, which is logged.
-
-    Raises:
-        OSError: if the file does not exist or cannot be read.
-        StoreError: if it is not a store, is damaged or empty, or has another format version.
-        TypeError: if ``path`` is not a path.
-    """
-    found = store_path(path)
-    if not found.exists():
-        raise FileNotFoundError(f"store not found: {str(found)!r}")
-    contents = read_store(found)
-    return build_sweep(contents, contents.description.settings)
 
 
 def build_sweep(contents: Contents, settings: Sequence[Mapping[str, Any]], source: Any = None) -> Sweep:

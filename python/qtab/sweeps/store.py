@@ -36,6 +36,7 @@ from qtab.sweeps.database import (
     read_meta,
 )
 from qtab.sweeps.description import Description
+from qtab.sweeps.more_seeds import add_seeds, numbering
 from qtab.sweeps.stored import check_study, store_path, warn_unchecked
 
 
@@ -58,6 +59,8 @@ class Store:
         self._claims: list[range] = []
         """What this process has claimed, and neither committed nor released."""
         self._done_until = 0
+        self._file: tuple[int, int] | None = None
+        self._numbering: int | None = None
         with translated_errors(self.path):
             self._connection = connect(self.path)
         try:
@@ -147,16 +150,23 @@ class Store:
         with self._transaction(), bounded(self._connection, path):
             if is_empty(self._connection):
                 create_tables(self._connection, self._description, json.dumps(versions()))
+                self._numbering = numbering(self._connection)
                 return
             if read_meta(self._connection, path)["version"] == "1":
                 contents = read_contents(self._connection, path)
                 check_study(contents, self._description, path)
                 version_1.check_chunks(self._connection, path, contents)
                 version_1.upgrade(self._connection, contents)
+        number = numbering(self._connection)  # before the contents, as another process may change both
         with bounded(self._connection, path):
             contents = self.contents()  # finds damage now instead of after the training
         check_study(contents, self._description, path)
         warn_unchecked(contents, path)
+        if self._description.has_more_seeds(contents.description):
+            with self._transaction(), bounded(self._connection, path):
+                add_seeds(self._connection, path, self._description)
+                number = numbering(self._connection)
+        self._numbering = number
 
     def _first_unclaimed(self) -> range | None:
         """Returns the first runs that are neither stored nor claimed; None if there are none."""
@@ -196,6 +206,7 @@ class Store:
             self._check_file()
             when_unlocked(self._connection, "BEGIN IMMEDIATE", self.path)
             try:
+                self._check_numbering()
                 yield
             except BaseException:
                 if self._connection.in_transaction:
@@ -208,14 +219,21 @@ class Store:
         """A transaction that sees one state of the file."""
         self._connection.execute("BEGIN")
         try:
+            self._check_numbering()
             yield
         finally:
             self._connection.execute("ROLLBACK")
 
+    def _check_numbering(self) -> None:
+        """Raises an error if another process has given the store more seeds: its runs have other numbers now."""
+        if self._numbering is not None and numbering(self._connection) != self._numbering:
+            raise StoreError(
+                f"{name_of(self.path)} was given more seeds by another process; give this sweep the same seeds"
+            )
+
     def _check_file(self) -> None:
         """Raises an error if the file is no longer at its path: what is written to it would be lost."""
-        file = getattr(self, "_file", None)
-        if self.path is not None and file is not None and _identity(self.path) != file:
+        if self.path is not None and self._file is not None and _identity(self.path) != self._file:
             raise FileNotFoundError(f"{name_of(self.path)} was deleted or replaced during the sweep")
 
 

@@ -73,15 +73,22 @@ def read_store(path: Path) -> Contents:
 
 
 def check_study(contents: Contents, description: Description, path: Path | None) -> None:
-    """Checks that a store belongs to a study.
+    """Checks that a store belongs to a study, or to the same one with fewer seeds.
 
     Raises:
         StoreError: if it does not.
     """
-    if contents.description.text != description.text:
+    stored = contents.description
+    if stored.text == description.text or description.has_more_seeds(stored):
+        return
+    if stored.has_more_seeds(description):
         raise StoreError(
-            f"{name_of(path)} belongs to another sweep (other settings, seeds or environment); choose another file"
+            f"{name_of(path)} has runs of {len(stored.seeds)} seeds, of which this sweep has only "
+            f"{len(description.seeds)}; give it all of them, or choose another file"
         )
+    raise StoreError(
+        f"{name_of(path)} belongs to another sweep (other settings, seeds or environment); choose another file"
+    )
 
 
 def warn_unchecked(contents: Contents, path: Path | None) -> None:

@@ -100,14 +100,11 @@ def plan_study(
         TypeError: for an argument of the wrong type, or an unknown setting.
         ValueError: for an argument out of range.
     """
-    settings = _settings_of(grid, memory_limit)
+    settings = settings_of(grid, memory_limit)
     _check_runs(len(settings), seeds, memory_limit)
     numbers = seed_numbers(seeds)
     names = list(settings[0])
     check_names({**shared, **settings[0]}, DEFAULTS)
-    for setting in settings:
-        if list(setting) != names:
-            raise ValueError(f"every setting in grid must have the same names, got {names} and {list(setting)}")
     for name, argument in (("seed", "seeds"), ("env", "env")):
         if name in names or name in shared:
             raise TypeError(f"{name} cannot be a setting of a sweep; use the argument {argument}")
@@ -132,7 +129,14 @@ def _check_runs(settings: int, seeds: Any, limit: int) -> None:
     check_memory(f"the results of {runs:,} runs", runs * BYTES_PER_STORED_RUN, limit)
 
 
-def _settings_of(grid: Any, limit: int) -> list[dict[str, Any]]:
+def settings_of(grid: Any, limit: int = 2**63) -> list[dict[str, Any]]:
+    """Returns the settings of a grid, all of which have the same names in the same order.
+
+    Raises:
+        MemoryError: if they need more than ``limit`` bytes.
+        TypeError: if it is neither a mapping nor a list of mappings.
+        ValueError: if it has no settings, the same one twice, or settings with other names.
+    """
     if isinstance(grid, Mapping):
         count = math.prod(len(values) for values in grid.values() if hasattr(values, "__len__"))
         check_memory(f"{count:,} settings", count * BYTES_PER_SETTING, limit)
@@ -146,7 +150,20 @@ def _settings_of(grid: Any, limit: int) -> list[dict[str, Any]]:
             raise TypeError(f"grid must hold mappings of names to values, got {setting!r}")
     if len({json.dumps(dict(setting), sort_keys=True, default=_jsonable) for setting in grid}) < len(grid):
         raise ValueError("grid must hold different settings, got the same one twice")
-    return [dict(setting) for setting in grid]
+    names = list(grid[0])
+    for index, setting in enumerate(grid):
+        missing = [name for name in names if name not in setting]
+        more = [name for name in setting if name not in grid[0]]
+        if missing or more:
+            lacks = f"lacks {_quoted(missing)}" if missing else ""
+            adds = f"also has {_quoted(more)}" if more else ""
+            differs = " and ".join(filter(None, (lacks, adds)))
+            raise ValueError(f"every setting in grid must have the names of the first, but grid[{index}] {differs}")
+    return [{name: setting[name] for name in names} for setting in grid]
+
+
+def _quoted(names: Sequence[Any]) -> str:
+    return ", ".join(map(repr, names))
 
 
 def _jsonable(value: Any) -> Any:

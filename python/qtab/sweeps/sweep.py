@@ -17,8 +17,9 @@ from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
 from qtab.envs.registry import spec_of
 from qtab.sweeps.database import Contents
+from qtab.sweeps.load import load_sweep
 from qtab.sweeps.progress import SweepProgress
-from qtab.sweeps.results import Sweep, build_sweep, empty_sweep, load_sweep
+from qtab.sweeps.results import Sweep, build_sweep, empty_sweep
 from qtab.sweeps.study import plan_study
 from qtab.sweeps.training import run_study
 from qtab.training.resolve import log_default_limit
@@ -45,7 +46,8 @@ def sweep(
 ) -> Sweep:
     """Trains every setting of a grid with the same seeds.
 
-    With a ``store`` an interrupted sweep resumes when it is called again.
+    With a ``store`` an interrupted sweep resumes when it is called again. If it is called with more seeds than before,
+    it trains only the new ones.
 
     Args:
         env: An environment's id, its EnvSpec, or a function that creates one. None takes that of ``config``.
@@ -53,7 +55,8 @@ def sweep(
             :func:`qtab.designs.sobol` returns. The names are those of settings.
         seeds: The seeds of every setting; an integer N means 0 to N - 1.
         config: The settings to start from, as for :func:`qtab.train`, without the seed.
-        store: An SQLite file for the results, which several processes may share. None keeps the results in memory.
+        store: An SQLite file for the results, which several processes may share. None keeps the results in memory. It
+            can be given more seeds later, but no other settings.
         executor: Trains the runs: any :class:`concurrent.futures.Executor`, such as Dask's ``client.get_executor()``.
             None trains on threads of this process, or in worker processes if Python steps the environment.
         threads: The number of threads or processes without an executor; None means one per core.

@@ -1,0 +1,45 @@
+"""A run of a sweep, trained again."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from qtab._utils import checks
+from qtab.results.run import Run
+from qtab.results.summary import summarize
+from qtab.sweeps.confirm import origin
+from qtab.training.resolve import resolve
+from qtab.training.train import train_resolved
+
+if TYPE_CHECKING:
+    from qtab.sweeps.results import Sweep
+
+
+def trained_again(sweep: "Sweep", setting: int, seed: int, env: Any) -> Run:
+    """Trains a run of a sweep again; see :meth:`qtab.Sweep.run`.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range, a run that failed or is not finished, or one that gives other results
+            here.
+    """
+    rows, seed = sweep.rows(setting), checks.integer("seed", seed, least=0)
+    found = [int(row) for row in rows if int(sweep.columns["seed"][row]) == seed]
+    if not found:
+        raise ValueError(f"seed must be that of a finished run of setting {setting}, got {seed}")
+    if (error := sweep.columns["error"][found[0]]) is not None:
+        raise ValueError(f"the run of setting {setting} with seed {seed} failed: {error}")
+    made, (overrides,) = origin(sweep, [int(setting)], env)
+    resolved = resolve(made() if callable(made) else made, {**overrides, "seed": seed}, owns_env=True)
+    try:
+        run = train_resolved(resolved)
+    finally:
+        resolved.close()
+    columns = summarize(run.episode_returns[np.newaxis], run.episode_lengths[np.newaxis], run.terminated[np.newaxis])
+    for name, values in columns.items():
+        if values[0] != sweep.columns[name][found[0]]:
+            raise ValueError(
+                f"the run of setting {setting} with seed {seed} has another {name} here: {values[0]:g} instead of "
+                f"{sweep.columns[name][found[0]]:g}"
+            )
+    return run

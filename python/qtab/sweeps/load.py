@@ -1,0 +1,23 @@
+"""``qtab.load_sweep``: the table of a store."""
+
+import os
+
+from qtab.sweeps.results import Sweep, build_sweep
+from qtab.sweeps.stored import read_store, store_path
+
+
+def load_sweep(path: "str | os.PathLike[str]") -> Sweep:
+    """Returns the finished runs of a store, which may belong to a sweep that is still running.
+
+    The digests of the store are checked. A store from an earlier version of this package has none, which is logged.
+
+    Raises:
+        OSError: if the file does not exist or cannot be read.
+        StoreError: if it is not a store, is damaged or empty, or has another format version.
+        TypeError: if ``path`` is not a path.
+    """
+    found = store_path(path)
+    if not found.exists():
+        raise FileNotFoundError(f"store not found: {str(found)!r}")
+    contents = read_store(found)
+    return build_sweep(contents, contents.description.settings)

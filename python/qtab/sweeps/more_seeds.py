@@ -1,0 +1,37 @@
+"""More seeds for a store: its runs are numbered by setting and seed, so that all of them get new numbers."""
+
+import sqlite3
+from pathlib import Path
+
+from qtab.sweeps.database import read_contents, replace_runs
+from qtab.sweeps.description import Description
+from qtab.sweeps.digests import StoredRun
+from qtab.sweeps.stored import check_study
+
+
+def numbering(connection: sqlite3.Connection) -> int:
+    """Returns how often the runs of a store were numbered."""
+    return int(connection.execute("PRAGMA user_version").fetchone()[0])
+
+
+def add_seeds(connection: sqlite3.Connection, path: Path | None, description: Description) -> None:
+    """Gives a store the seeds of a study, in a transaction. Processes that use it with its old seeds must stop.
+
+    Raises:
+        StoreError: if the store is damaged, or belongs to another study.
+    """
+    contents = read_contents(connection, path)
+    check_study(contents, description, path)
+    old, new = contents.description.seeds, description.seeds
+    if old == new:
+        return  # another process was faster
+    places = {seed: place for place, seed in enumerate(new)}
+
+    def renumbered(stored: StoredRun) -> StoredRun:
+        setting, place = divmod(stored[0], len(old))
+        return (setting * len(new) + places[old[place]], *stored[1:])
+
+    about = {name: value for name, value in contents.meta.items() if name not in ("format", "version", "digest")}
+    runs = sorted(map(renumbered, contents.runs), key=lambda stored: int(stored[0]))
+    replace_runs(connection, runs, contents.seconds, {**about, "study": description.text})
+    connection.execute(f"PRAGMA user_version = {(numbering(connection) + 1) % 2**31}")
