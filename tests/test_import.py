@@ -1,6 +1,7 @@
 """Importing is light, all public names resolve, and errors about missing extras name the command to install them."""
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,7 @@ import pytest
 
 import qtab
 from qtab import _core
+from support.repository import ROOT
 
 
 def in_a_process(code):
@@ -151,3 +153,28 @@ def test_the_version_is_that_of_the_distribution():
 
 def test_the_extension_tells_its_build_profile():
     assert _core.BUILD_PROFILE in ("debug", "release")
+
+
+GIVEN = {"qtab", "IPython", "envpool"}
+"""The package itself; what is only used where it runs already; what only a benchmark uses, if it is there."""
+DISTRIBUTIONS = {"PIL": "pillow", "pygame": "pygame-ce"}
+
+
+def test_every_library_that_is_imported_is_declared():
+    from importlib.metadata import requires
+
+    imported = set()
+    for path in Path(qtab.__file__).parent.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                imported |= {alias.name.partition(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module is not None and not node.level:
+                imported.add(node.module.partition(".")[0])
+    libraries = imported - set(sys.stdlib_module_names) - GIVEN
+    assert libraries >= {"numpy", "matplotlib", "imageio_ffmpeg"}
+    project = (ROOT / "pyproject.toml").read_text(encoding="utf-8").split("[project.optional-dependencies]")[1]
+    declared = set(re.findall(r'"([\w-]+)', project.partition("\n\n")[0])) | {"gymnasium", "numpy"}
+    # What Gymnasium needs is always there, and its extras are among those of this package.
+    declared |= {re.match(r"[\w-]+", requirement)[0] for requirement in requires("gymnasium") or []}  # type: ignore[index]
+    names = {name.lower().replace("_", "-") for name in declared}
+    assert {name for name in libraries if DISTRIBUTIONS.get(name, name).lower().replace("_", "-") not in names} == set()

@@ -191,3 +191,50 @@ def test_an_interrupted_sweep_says_what_is_kept(tmp_path, capsys, monkeypatch, s
     assert said.endswith(f"in {tmp_path / 'study.db'}; the same command resumes\n")
     monkeypatch.undo()
     assert main(["sweep", str(study)]) == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("--top 5 --confirm 3", "--top must be an integer from 1 to 4, got 5"),
+        ("--top 0 --confirm 3", "--top must be an integer from 1 to 4, got 0"),
+        ("--confirm 0", "--confirm must be an integer of at least 1, got 0"),
+        ("--per algorithm --confirm 3", "--per must be one of 'learning_rate', 'scale', got 'algorithm'"),
+        ("--confirm 3 --confirm-store study.db", "--confirm-store must be another file than the store of the sweep, "),
+        ("--confirm 3 --confirm-store ./other/../study.db", "--confirm-store must be another file than the store"),
+        (
+            "--confirm 3 --confirm-store none/c.db",
+            "--confirm-store must be a file that can be written, got 'none/c.db'",
+        ),
+        ("--confirm 3 --confirm-store study.toml", "store '"),
+        ("--confirm 3 --confirm-store .", "store must be a file, got the folder '.'"),
+        ("--top 2", "--top needs --confirm, the number of seeds"),
+        ("--per scale", "--per needs --confirm, the number of seeds"),
+        ("--confirm-store c.db", "--confirm-store needs --confirm, the number of seeds"),
+    ],
+)
+def test_what_cannot_be_confirmed_is_refused_before_the_sweep(tmp_path, capsys, monkeypatch, arguments, message):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "study.toml").write_text(STUDY)
+    assert main(["sweep", "study.toml", *arguments.split()]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"qtab sweep: error: {message}"), said
+    assert said.count("\n") == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["other", "study.toml"]
+
+
+def test_the_best_for_each_value_are_confirmed_without_scipy(tmp_path, capsys, monkeypatch):
+    study = tmp_path / "study.toml"
+    study.write_text(STUDY)
+
+    def missing(*_: Any) -> None:
+        raise ModuleNotFoundError("No module named 'scipy'", name="scipy")
+
+    monkeypatch.setattr(qtab.Confirmation, "mean", missing)
+    assert main(["sweep", str(study), "--confirm", "2", "--per", "scale"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 3
+    assert all(
+        re.fullmatch(r"setting \d \(.*\): -\d+ over 2 other seeds; -\d+ in the sweep", line) for line in lines[1:]
+    )

@@ -1,6 +1,6 @@
 """``qtab sweep``."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,11 +10,15 @@ import gymnasium as gym
 import tyro
 
 from qtab._utils import checks
+from qtab._utils.files import check_writable
+from qtab._utils.shown import shown
 from qtab.cli.parsing import parse
 from qtab.cli.reporting import OutputFlags, Report
 from qtab.cli.study_file import read_study
-from qtab.cli.usage import UsageError, one_line, usage_errors
+from qtab.cli.usage import UsageError, flag, one_line, usage_errors
 from qtab.sweeps import StoreError, Sweep, sweep
+from qtab.sweeps.stored import read_store, store_path
+from qtab.sweeps.study import settings_of
 
 COMMAND = "qtab sweep"
 DEFAULT_SEEDS = 100
@@ -33,8 +37,10 @@ class Arguments(OutputFlags):
     """The number of threads, or of processes for environments stepped in Python; by default one per core."""
     confirm: int | None = None
     """Train the best settings again with this many other seeds: their means in the sweep are too high on average."""
-    top: int = 1
-    """How many settings --confirm trains again."""
+    top: int | None = None
+    """How many settings --confirm trains again; by default 1."""
+    per: str | None = None
+    """Train the best settings again for each value of this setting in the grid, such as algorithm."""
     confirm_store: Path | None = None
     """The SQLite file for the results of --confirm, which can then be interrupted, too."""
 
@@ -52,10 +58,11 @@ def _run(options: Arguments, report: Report) -> None:
     with usage_errors():
         if options.threads is not None:
             checks.threads(options.threads)
-        if options.confirm is not None:
-            checks.integer("confirm", options.confirm, least=1)
         study = read_study(options.study)
         store = options.store or options.study.parent / (study.store or options.study.with_suffix(".db").name)
+        with _names_file(options.study):
+            settings = settings_of(study.grid)
+        _check_confirmation(options, settings, store)
         given = {"seeds": DEFAULT_SEEDS, **study.options}
         if options.threads is not None:
             given["threads"] = options.threads
@@ -68,7 +75,8 @@ def _run(options: Arguments, report: Report) -> None:
         with usage_errors(), _names_file(options.study):
             confirmation = result.confirm(
                 options.confirm,
-                top=options.top,
+                top=1 if options.top is None else options.top,
+                per=options.per,
                 store=options.confirm_store,
                 threads=given.get("threads"),
                 memory_limit=given.get("memory_limit"),
@@ -78,6 +86,32 @@ def _run(options: Arguments, report: Report) -> None:
         report.text(text)
         chosen = zip(confirmation.chosen, confirmation.confirmed.mean_final_returns().tolist(), strict=True)
         report.add(confirmation=[{"setting": setting, "mean_final_return": mean} for setting, mean in chosen])
+
+
+def _check_confirmation(options: Arguments, settings: Sequence[Mapping[str, Any]], store: Path) -> None:
+    """Refuses before the sweep what cannot be confirmed after it.
+
+    Raises:
+        OSError: if the store of the confirmation cannot be written.
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+    if options.confirm is None:
+        for name in ("top", "per", "confirm_store"):
+            if getattr(options, name) is not None:
+                raise ValueError(f"{flag(name)} needs --confirm, the number of seeds")
+        return
+    checks.integer("--confirm", options.confirm, least=1)
+    if options.top is not None:
+        checks.integer("--top", options.top, least=1, most=len(settings))
+    if options.per is not None:
+        checks.choice("--per", options.per, list(settings[0]))
+    if options.confirm_store is not None:
+        if options.confirm_store.resolve() == store.resolve():
+            raise ValueError(f"--confirm-store must be another file than the store of the sweep, {shown(str(store))}")
+        path = check_writable("--confirm-store", store_path(options.confirm_store))
+        if path.exists() and path.stat().st_size:
+            read_store(path)
 
 
 def _facts(result: Sweep) -> dict[str, Any]:

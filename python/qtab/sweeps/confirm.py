@@ -82,9 +82,8 @@ class Confirmation:
         runs = self.confirmed.rows(place)
         found = len(self.confirmed.values("final_return", place))
         swept, failed = self.swept.mean_final_returns()[setting], len(runs) - found
-        mean = f"{self.mean(place)}" if found > 1 else "no mean"
-        lost = f", {failed} failed" if failed else ""
-        return f"setting {setting} ({values}): {mean} over {len(runs)} other seeds{lost}; {swept:.6g} in the sweep"
+        over = f"over {len(runs)} other seeds" + (f", {failed} failed" if failed else "")
+        return f"setting {setting} ({values}): {self._mean(place)} {over}; {swept:.6g} in the sweep"
 
 
 def chosen_settings(sweep: "Sweep", top: int, per: str | None, settings: Any) -> list[int]:
