@@ -3,7 +3,9 @@
 A block of ```` ```python ```` is run. One of ```` ```py ```` is only compiled: it needs a display, a key or patience.
 """
 
+import signal
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -77,11 +79,14 @@ CHECKS = {
 
 
 @pytest.fixture(autouse=True)
-def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)
     # The tracking libraries are not installed: these write down their calls.
     for name in ("wandb", "mlflow"):
         monkeypatch.setitem(sys.modules, name, Recorder())
+    handler = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, handler)
 
 
 @pytest.mark.docs

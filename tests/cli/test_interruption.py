@@ -90,7 +90,12 @@ def test_the_run_is_saved_before_anything_is_printed_about_it(tmp_path: Path, mo
     saved: list[bool] = []
     monkeypatch.setattr("qtab.cli.training_report._summary_text", lambda _: saved.append((tmp_path / "r").exists()))
     save = Run.save
-    monkeypatch.setattr(Run, "save", lambda run, path: (save(run, tmp_path / "run.npz"), (tmp_path / "r").touch()))
+
+    def save_and_tell(run: Run, path: Path) -> None:
+        save(run, path)
+        (tmp_path / "r").touch()
+
+    monkeypatch.setattr(Run, "save", save_and_tell)
     assert qtab_here("train", *LAKE, "--save", "run.npz", cwd=tmp_path).returncode == 0
     assert saved == [True]
 

@@ -61,8 +61,8 @@ def _run(options: Arguments, report: Report) -> None:
         study = read_study(options.study)
         store = options.store or options.study.parent / (study.store or options.study.with_suffix(".db").name)
         with _names_file(options.study):
-            settings = settings_of(study.grid)
-        _check_confirmation(options, settings, store)
+            grid = settings_of(study.grid)
+        _check_confirmation(options, grid, store)
         given = {"seeds": DEFAULT_SEEDS, **study.options}
         if options.threads is not None:
             given["threads"] = options.threads

@@ -38,7 +38,7 @@ class Comparison:
 
         It is 2 / 2**pairs if the test tried all permutations, else 2 / (resamples + 1).
         """
-        return 2 / min(2**self.pairs, self.resamples + 1)
+        return 2.0 / min(1 << self.pairs, self.resamples + 1)
 
     def __repr__(self) -> str:
         """One line."""

@@ -123,7 +123,7 @@ def _given(settings: Any, count: int) -> list[int]:
     return indices
 
 
-def origin(sweep: "Sweep", indices: Sequence[int], env: Any) -> tuple[Any, list[Mapping[str, Any]]]:
+def origin(sweep: "Sweep", indices: Sequence[int], env: Any) -> tuple[Any, Sequence[Mapping[str, Any]]]:
     """Returns the environment of a sweep and the overrides of some of its settings, to train them again.
 
     Raises:
