@@ -22,7 +22,14 @@ def mean(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int = 
     The interval assumes that means of so many runs are about normally distributed. The bootstrap's does not, and is too
     narrow. Measured coverage of 95 % intervals with t, and with the BCa bootstrap in brackets:
 
-    TABLE
+    ====================================================  ============  ============  ============  ============
+    runs                                                  5             10            30            50
+    ====================================================  ============  ============  ============  ============
+    normal                                                95.0 (84.3)   95.1 (90.2)   95.0 (93.4)   94.9 (94.0)
+    MountainCar-v0, the article (skewness 0.4)            94.1 (84.1)   94.6 (90.6)   94.8 (93.9)   94.8 (94.0)
+    MountainCar-v0, "solved", 300 episodes (-3.3)         91.4 (77.7)   90.1 (84.0)   90.3 (88.5)   91.6 (90.2)
+    exponential (2)                                       88.3 (79.7)   90.1 (87.5)   92.7 (92.2)   93.5 (93.5)
+    ====================================================  ============  ============  ============  ============
 
     With two or three runs the interval is wide, and rightly so. No interval can tell of a kind of run, such as a rare
     failure, that the sample does not contain.
