@@ -2,6 +2,7 @@
 
 import runpy
 from pathlib import Path
+from typing import Any
 
 import optuna
 import pytest
@@ -18,5 +19,6 @@ def test_a_trial_gets_the_mean_return_of_its_setting():
     study = example["search"](batches=2, size=2, episodes=100)
     assert [trial.state.name for trial in study.trials] == ["COMPLETE"] * 4
     for trial in study.trials:
-        runs = qtab.train_many("MountainCar-v0", seeds=example["SEEDS"], preset="solved", episodes=100, **trial.params)
+        shared: dict[str, Any] = {"preset": "solved", "learning_rate_schedule": "linear", "episodes": 100}
+        runs = qtab.train_many("MountainCar-v0", seeds=example["SEEDS"], **shared, **trial.params)
         assert trial.value == runs.final_returns(100).mean()
