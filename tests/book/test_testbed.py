@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab import _core
 from qtab.book.testbed import ENV, TestbedExperiment, run_testbeds
+from qtab.training.train_many import resolve_template
 
 NAMES = [name for name, experiment in qtab.book.EXPERIMENTS.items() if isinstance(experiment, TestbedExperiment)]
 
@@ -74,6 +76,62 @@ def test_the_order_of_the_methods_is_that_of_the_book() -> None:
     assert gradient["without baseline, α = 0.4"] < gradient["without baseline, α = 0.1"] < 60
 
 
-def test_bad_specs_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"^algorithm must be 'q_learning' or 'gradient_bandit'"):
-        run_testbeds({"algorithm": "sarsa", "episodes": 2}, range(1), 1)
+BOOK: dict[str, Any] = {"episodes": 30, "max_episode_steps": 1, "seed": None}
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"count_bonus": 3.0},
+        {"algorithm": "sarsa", "on_truncation": "terminate"},
+        {"algorithm": "double_q_learning", "epsilon": 0.3},
+        {"time_aware": True},
+        {"bit_generator": "MT19937"},
+        {"exploration": "softmax", "temperature": 0.5},
+        {"exploration": "ucb", "confidence": 2.0, "count_bonus": 1.0},
+        {"initial_q": np.array([[-np.inf] + [0.0] * 9])},
+        {"action_mask": lambda _: np.arange(10) < 3},
+        {"env_kwargs": {"random_walk": 0.1}, "learning_rate": 0.1, "learning_rate_schedule": "linear"},
+    ],
+    ids=lambda settings: "-".join(settings),
+)
+def test_a_testbed_honours_every_setting_that_training_honours(settings: dict[str, Any]) -> None:
+    config = {**BOOK, "algorithm": "q_learning", **settings}
+    rewards, optimal = run_testbeds(config, range(2), 1)
+    for seed in range(2):
+        run = qtab.train(ENV, **{**config, "seed": seed}, record=30)
+        assert rewards[seed].tobytes() == run.episode_returns.tobytes()
+        assert qtab.verify(run).equal
+        if "env_kwargs" not in settings:
+            best = np.argmax(np.random.default_rng(seed).standard_normal(10))
+            assert optimal[seed].tolist() == [100.0 * (one.actions[0] == best) for one in run.recordings]
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"algorithm": "gradient_bandit", "learning_rate": 1e-308, "env_kwargs": {"deviation": 1.7e308}},
+        {"algorithm": "q_learning", "learning_rate_schedule": "constant", "initial_q": -1.7e308}
+        | {"env_kwargs": {"mean": 1.7e308}},
+    ],
+    ids=lambda settings: settings["algorithm"],
+)
+def test_a_testbed_ends_where_a_learner_diverges(settings: dict[str, Any]) -> None:
+    config = {**BOOK, **settings}
+    for train in (lambda: qtab.train(ENV, **{**config, "seed": 0}), lambda: run_testbeds(config, range(2), 1)):
+        with pytest.raises(OverflowError, match=r"^the action values overflowed (in|by) episode \d+ "):
+            train()
+
+
+def test_a_testbed_is_a_bandit_that_rust_steps() -> None:
+    resolved = resolve_template("CliffWalking-v1", {"episodes": 2, "seed": 0})
+    rewards, optimal = np.empty((1, 2)), np.empty((1, 2), np.bool_)
+    with pytest.raises(ValueError, match=r"^env must be a k-armed bandit, got another environment"):
+        _core.run_testbeds(resolved.spec(), [0], rewards, optimal, 1)
+    with pytest.raises(
+        ValueError, match=r"^env must be a k-armed bandit that Rust steps, got one that is stepped in Py"
+    ):
+        run_testbeds({"backend": "gymnasium", "episodes": 2}, range(1), 1)
+    bandit = resolve_template(ENV, {"episodes": 3, "seed": 0})
+    with pytest.raises(ValueError, match=r"^rewards must be an array of shape \(1, 3\), got \[1, 2\]"):
+        _core.run_testbeds(bandit.spec(), [0], rewards, optimal, 1)

@@ -141,6 +141,8 @@ class PredictionSettings:
             "epsilon_schedule": "constant",
             "bit_generator": self.bit_generator,
             "action_mask": False,
+            "count_bonus": 0.0,
+            "time_aware": False,
         }
 
 

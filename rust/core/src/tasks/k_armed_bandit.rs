@@ -1,9 +1,12 @@
 //! The k-armed bandit testbed (Sutton & Barto, section 2.3).
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::{Next, RngSnapshot, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::features::OutOfBounds;
-use crate::memory::{AllocationError, reserve};
+use crate::memory::{AllocationError, with_capacity};
 use crate::numeric::argmax;
 use crate::random::Pcg64;
 
@@ -19,6 +22,10 @@ pub struct Testbed {
     /// The standard deviation of the steps by which each true value walks after each action; 0 for a stationary problem.
     pub random_walk: f64,
 }
+
+/// Whether the optimal action was taken in each episode; false for those that are not finished. The task writes it, and
+/// whoever asked for it reads it.
+pub type OptimalActions = Arc<Vec<AtomicBool>>;
 
 /// A bandit problem, drawn by the first reset: q⁎(a) is normal, and a reward is normal with mean q⁎(A) and variance 1. An
 /// episode is one action.
@@ -36,34 +43,42 @@ pub struct KArmedBandit<const RECORDS: bool = false> {
     /// The action with the largest true value.
     optimal: usize,
     rng: Pcg64,
-    /// Whether the optimal action was taken in each episode; empty without `RECORDS`.
-    record: Vec<bool>,
+    /// Empty without `RECORDS`.
+    optimal_actions: OptimalActions,
+    /// The number of finished episodes; 0 without `RECORDS`.
+    episode: usize,
 }
 
 impl KArmedBandit {
     /// A problem of the testbed; `rng` is the environment's generator.
     pub fn new(testbed: Testbed, rng: Pcg64) -> Self {
         let walking = if testbed.random_walk == 0.0 { 0 } else { testbed.num_actions as u64 };
-        Self { testbed, walking, values: Vec::new(), optimal: 0, rng, record: Vec::new() }
+        Self { testbed, walking, values: Vec::new(), optimal: 0, rng, optimal_actions: Arc::default(), episode: 0 }
     }
 
     /// The same, recording whether the optimal action is taken in each of so many episodes.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn recording(self, episodes: usize) -> Result<KArmedBandit<true>, AllocationError> {
-        let Self { testbed, walking, values, optimal, rng, mut record } = self;
-        reserve(&mut record, episodes)?;
-        Ok(KArmedBandit { testbed, walking, values, optimal, rng, record })
+    pub fn recording(self, episodes: usize) -> Result<(KArmedBandit<true>, OptimalActions), AllocationError> {
+        let mut flags = with_capacity(episodes)?;
+        flags.resize_with(episodes, AtomicBool::default);
+        let optimal_actions = Arc::new(flags);
+        let Self { testbed, walking, values, optimal, rng, episode, .. } = self;
+        let task = KArmedBandit {
+            testbed,
+            walking,
+            values,
+            optimal,
+            rng,
+            optimal_actions: Arc::clone(&optimal_actions),
+            episode,
+        };
+        Ok((task, optimal_actions))
     }
 }
 
 impl<const RECORDS: bool> KArmedBandit<RECORDS> {
-    /// Whether the optimal action was taken in each episode; empty if this is not recorded.
-    pub fn took_optimal(&self) -> &[bool] {
-        &self.record
-    }
-
     /// Draws q⁎.
     #[cold]
     fn draw(&mut self) {
@@ -103,7 +118,10 @@ impl<const RECORDS: bool> Task for KArmedBandit<RECORDS> {
         let noise = self.rng.standard_normal();
         let mut reward = self.values[action] + noise;
         if RECORDS {
-            self.record.push(action == self.optimal);
+            if let Some(flag) = self.optimal_actions.get(self.episode) {
+                flag.store(action == self.optimal, Ordering::Relaxed);
+            }
+            self.episode += 1;
         }
         if self.walking != 0 {
             reward = self.walk(reward);

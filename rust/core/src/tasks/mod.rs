@@ -13,7 +13,7 @@ mod visit_counter;
 pub use boxed_task::BoxedTask;
 pub use changing_task::ChangingTask;
 pub use episode_recorder::{EpisodeRecorder, Recording, Recordings};
-pub use k_armed_bandit::{KArmedBandit, Testbed};
+pub use k_armed_bandit::{KArmedBandit, OptimalActions, Testbed};
 pub use native_task::{NativeTask, TimedState};
 pub use rng_snapshot::RngSnapshot;
 pub use task::{Next, NextKind, Task, Transition};

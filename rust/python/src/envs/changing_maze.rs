@@ -35,7 +35,7 @@ impl ChangingMazeEnv {
 }
 
 impl NativeEnv for ChangingMazeEnv {
-    fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+    fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         let (tables, change_after, limit) = (self.tables.clone(), self.change_after, spec.max_episode_steps);
         spec.discretizer.check_identity(tables[0].num_states())?;
         let (num_actions, num_states) = (tables[0].num_actions(), tables[0].num_states());
@@ -43,6 +43,6 @@ impl NativeEnv for ChangingMazeEnv {
             return Err(invalid("num_actions", format!("{num_actions}, the environment's"), spec.num_actions));
         }
         let new_task = move |seed: &Seed| ChangingTask::new(tables.clone(), change_after, limit, environment_rng(seed));
-        Ok(boxed_factory(new_task, (num_states, 1), spec, record, AnyRecordings::Native))
+        Ok(boxed_factory(new_task, (num_states, 1), spec, AnyRecordings::Native))
     }
 }

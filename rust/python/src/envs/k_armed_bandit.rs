@@ -8,7 +8,7 @@ use qtab_core::tasks::Testbed;
 
 use super::native_env::NativeEnv;
 use crate::error::invalid;
-use crate::runs::{RunFactory, bandit_runs};
+use crate::runs::{RunFactory, bandit_runs, testbed_runs};
 use crate::spec::RunSpec;
 
 pub(crate) struct KArmedBanditEnv(Testbed);
@@ -31,15 +31,24 @@ fn testbed(env: &Bound<'_, PyAny>) -> PyResult<Testbed> {
 }
 
 impl NativeEnv for KArmedBanditEnv {
-    fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-        spec.discretizer.check_identity(1)?;
-        if spec.num_actions != self.0.num_actions {
-            return Err(invalid("num_actions", format!("{}, the environment's", self.0.num_actions), spec.num_actions));
-        }
-        Ok(bandit_runs(self.0, spec, record))
+    fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
+        self.check(spec)?;
+        Ok(bandit_runs(self.0, spec))
     }
 
-    fn testbed(&self) -> Option<Testbed> {
-        Some(self.0)
+    fn testbed_runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
+        self.check(spec)?;
+        Ok(testbed_runs(self.0, spec))
+    }
+}
+
+impl KArmedBanditEnv {
+    /// Refuses a spec for other spaces.
+    fn check(&self, spec: &RunSpec) -> PyResult<()> {
+        spec.discretizer.check_identity(1)?;
+        if spec.num_actions == self.0.num_actions {
+            return Ok(());
+        }
+        Err(invalid("num_actions", format!("{}, the environment's", self.0.num_actions), spec.num_actions))
     }
 }

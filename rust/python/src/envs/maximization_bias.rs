@@ -25,8 +25,8 @@ impl MaximizationBiasEnv {
 }
 
 impl NativeEnv for MaximizationBiasEnv {
-    fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+    fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         spec.discretizer.check_identity(MAXIMIZATION_BIAS_STATES as usize)?;
-        generic(self.0, Identity(MAXIMIZATION_BIAS_STATES), spec, record)
+        generic(self.0, Identity(MAXIMIZATION_BIAS_STATES), spec)
     }
 }

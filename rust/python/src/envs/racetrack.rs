@@ -40,8 +40,8 @@ fn ground(cell: u8) -> Ground {
 }
 
 impl NativeEnv for RacetrackEnv {
-    fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+    fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         spec.discretizer.check_identity(self.0.num_states() as usize)?;
-        generic(self.0.clone(), Identity(self.0.num_states()), spec, record)
+        generic(self.0.clone(), Identity(self.0.num_states()), spec)
     }
 }

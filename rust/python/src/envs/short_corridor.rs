@@ -20,8 +20,8 @@ impl ShortCorridorEnv {
 }
 
 impl NativeEnv for ShortCorridorEnv {
-    fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+    fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         spec.discretizer.check_identity(1)?;
-        generic(ShortCorridor, Identity(1), spec, record)
+        generic(ShortCorridor, Identity(1), spec)
     }
 }

@@ -47,7 +47,7 @@ pub(crate) fn estimate_values(
         None => Ok(()),
     };
     let fields = Fields::new(spec)?;
-    let mut run_spec = RunSpec::parse(&fields)?;
+    let run_spec = RunSpec::parse(&fields)?;
     let prediction = PredictionSpec::parse(&Fields::new(prediction)?, run_spec.num_actions)?;
     let (Seeds(seeds), episodes) = (seeds, episodes.as_slice()?);
     let expected = [seeds.len(), episodes.len(), prediction.n_weights()];
@@ -57,12 +57,11 @@ pub(crate) fn estimate_values(
     }
     let size = expected[1] * expected[2];
     let calls_python = prediction.calls_python();
-    run_spec.prediction = Some(Arc::new(prediction));
-    let run_spec = Arc::new(run_spec);
+    let run_spec = Arc::new(run_spec.predicting(prediction)?);
     let mut rows = weights.as_slice_mut()?.chunks_mut(size.max(1)).enumerate();
     match EnvironmentSpec::parse(&fields.nested("env")?)? {
         EnvironmentSpec::Native(env) => {
-            let factory = env.runs(&run_spec, 0)?;
+            let factory = env.runs(&run_spec)?;
             if calls_python {
                 let check = || py.check_signals().and_then(|()| report());
                 return Ok(run_attached(py, &*factory, &seeds, episodes, rows, &finished, check));
@@ -97,7 +96,7 @@ pub(crate) fn estimate_values(
         }
         EnvironmentSpec::Python(env) => {
             let [seed] = &seeds[..] else { return Err(invalid("seeds", "one, where Python steps", seeds.len())) };
-            let mut run = python_run(py, env, &run_spec, seed, (0, &StopFlag::new()))?.run;
+            let mut run = python_run(py, env, &run_spec, seed, &StopFlag::new())?.run;
             let Some((_, row)) = rows.next() else { return Ok(Vec::new()) };
             let check = || Ok(py.check_signals().and_then(|()| report())?);
             advance(&mut *run, episodes, row, &finished, check).map_err(as_python)?;

@@ -33,7 +33,10 @@ pub(super) fn generic_agent(
             PolicySpec::Ucb { confidence, ties } => {
                 AnyPolicy::Ucb(Ucb::new(confidence, ties, shape, stop).map_err(allocation)?)
             }
-            _ => policy(spec),
+            other => {
+                let has_masks = spec.initial_q.has_masked_actions() || !spec.action_masks.is_none();
+                policy(other, spec.episodes, spec.num_actions, has_masks)
+            }
         },
         learning_rate: learning_rate(spec, n_rows * spec.num_actions, n_active, stop).map_err(allocation)?,
         discount: spec.discount,
@@ -42,18 +45,16 @@ pub(super) fn generic_agent(
     })
 }
 
-/// The behaviour policy, whichever the spec names, except for UCB, which counts visits of a table.
-pub(super) fn policy(spec: &RunSpec) -> AnyPolicy {
-    match spec.policy {
-        PolicySpec::EpsilonGreedy { epsilon, ties } => {
-            let epsilon = epsilon.build(spec.episodes);
-            if spec.initial_q.has_masked_actions() || !spec.action_masks.is_none() {
-                AnyPolicy::MaskedEpsilonGreedy { epsilon, ties }
-            } else {
-                AnyPolicy::EpsilonGreedy { epsilon, ties }
-            }
+/// The behaviour policy of a run of so many episodes, whichever it is, except for UCB, which counts visits of a table.
+pub(super) fn policy(spec: PolicySpec, episodes: u64, num_actions: usize, has_masks: bool) -> AnyPolicy {
+    match spec {
+        PolicySpec::EpsilonGreedy { epsilon, ties } if has_masks => {
+            AnyPolicy::MaskedEpsilonGreedy { epsilon: epsilon.build(episodes), ties }
         }
-        PolicySpec::Softmax { temperature } => AnyPolicy::softmax(temperature, spec.num_actions),
+        PolicySpec::EpsilonGreedy { epsilon, ties } => {
+            AnyPolicy::EpsilonGreedy { epsilon: epsilon.build(episodes), ties }
+        }
+        PolicySpec::Softmax { temperature } => AnyPolicy::softmax(temperature, num_actions),
         PolicySpec::Ucb { .. } => unreachable!("generic_agent makes it"),
     }
 }

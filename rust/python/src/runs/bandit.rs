@@ -1,128 +1,151 @@
-//! Runs of action-value methods on a bandit, compiled for their policy and learning rate.
+//! Runs of action-value methods on a bandit, compiled for their policy and learning rate where that is possible.
 
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::learners::{Agent, AnyAlgorithm, LearnerVisitor, QLearning, TdLearner};
+use qtab_core::learners::{Agent, AnyAlgorithm, QLearning, TdLearner};
 use qtab_core::policies::{Policy, SingleStateEpsilonGreedy, SingleStateUcb, Ucb};
 use qtab_core::random::Pcg64;
 use qtab_core::schedules::{StepSize, VisitRate};
 use qtab_core::tasks::{KArmedBandit, Testbed};
-use qtab_core::{QTable, StopFlag};
+use qtab_core::{QTable, StopFlag, Trainer};
 
 use super::factory::{Batching, Factory};
-use super::pending::PendingRun;
-use super::{AnyRecordings, RunFactory, boxed_factory};
+use super::generic::boxed_run;
+use super::path::{Path, PlainSpec};
+use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
-use crate::error::{allocation, invalid};
-use crate::rng::{BitGenerator, agent_pcg64, environment_rng};
+use crate::error::allocation;
+use crate::rng::{agent_pcg64, environment_rng};
 use crate::spec::{LearningRateSpec, PolicySpec, RunSpec};
 
 /// The number of actions in the book, with which the loops over actions are unrolled.
 const BOOK_ACTIONS: usize = 10;
 
-/// Runs on a bandit: compiled for their types where that is possible, generic otherwise.
-pub(crate) fn bandit_runs(testbed: Testbed, spec: &Arc<RunSpec>, record: usize) -> Box<dyn RunFactory> {
-    let new_task = move |seed: &Seed| KArmedBandit::new(testbed, environment_rng(seed));
-    if record > 0 || !is_specialized(spec) {
-        return boxed_factory(new_task, (1, 1), spec, record, AnyRecordings::Native);
-    }
-    let spec = Arc::clone(spec);
+/// Runs on a bandit.
+pub(crate) fn bandit_runs(testbed: Testbed, spec: &Arc<RunSpec>) -> Box<dyn RunFactory> {
+    let (spec, plain) = (Arc::clone(spec), compiled(spec));
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
-        let run = with_learner(&spec, seed, stop, |rng| PendingRun { task: new_task(seed), rng })?;
-        Ok((run, AnyRecordings::None))
+        let task = KArmedBandit::new(testbed, environment_rng(seed));
+        match &plain {
+            Some(plain) => Ok((compiled_run(task, plain, seed, stop)?, AnyRecordings::None)),
+            None => boxed_run(task, (1, 1), seed, &spec, stop, AnyRecordings::Native),
+        }
     };
     Box::new(Factory { build, batching: Batching::one_by_one() })
 }
 
-/// Whether [`with_learner`] has the learner of a spec.
-pub(super) fn is_specialized(spec: &RunSpec) -> bool {
-    let policy = match spec.policy {
+/// The same runs, which also record whether the optimal action was taken.
+pub(crate) fn testbed_runs(testbed: Testbed, spec: &Arc<RunSpec>) -> Box<dyn RunFactory> {
+    let (spec, plain) = (Arc::clone(spec), compiled(spec));
+    let build = move |seed: &Seed, stop: &StopFlag<'_>| {
+        let task = KArmedBandit::new(testbed, environment_rng(seed));
+        let (task, optimal) = task.recording(spec.episodes as usize).map_err(allocation)?;
+        let run = match &plain {
+            Some(plain) => compiled_run(task, plain, seed, stop)?,
+            None => boxed_run(task, (1, 1), seed, &spec, stop, AnyRecordings::Native)?.0,
+        };
+        Ok((run, AnyRecordings::OptimalActions(optimal)))
+    };
+    Box::new(Factory { build, batching: Batching::one_by_one() })
+}
+
+/// The spec, if [`compiled_run`] has the runs that it describes.
+fn compiled(spec: &RunSpec) -> Option<PlainSpec> {
+    let Path::Plain(plain) = Path::of(spec) else { return None };
+    let policy = match plain.policy {
         PolicySpec::EpsilonGreedy { .. } => true,
         PolicySpec::Ucb { confidence, .. } => confidence >= 0.0,
         PolicySpec::Softmax { .. } => false,
     };
-    let all_actions = !spec.initial_q.has_masked_actions() && spec.action_masks.is_none();
-    policy
-        && all_actions
-        && matches!(spec.algorithm, AnyAlgorithm::QLearning)
-        && spec.bit_generator == BitGenerator::Pcg64
-        && spec.count_bonus == 0.0
-        && !spec.count_visits
+    let is_compiled = policy
+        && matches!(plain.algorithm, AnyAlgorithm::QLearning)
+        && !plain.initial_q.has_masked_actions()
+        && !plain.count_visits;
+    is_compiled.then_some(plain)
 }
 
-/// Passes the learner of a spec to the visitor that `new_visitor` makes of the agent's generator, which has drawn the table.
-pub(super) fn with_learner<V: LearnerVisitor<[u32; 1]>>(
-    spec: &RunSpec,
+/// A run of Q-learning, in which each episode is a step in the same state.
+fn compiled_run<const RECORDS: bool>(
+    task: KArmedBandit<RECORDS>,
+    spec: &PlainSpec,
     seed: &Seed,
     stop: &StopFlag<'_>,
-    new_visitor: impl FnOnce(Pcg64) -> V,
-) -> PyResult<V::Output> {
+) -> PyResult<Box<dyn Run>> {
     let mut rng = agent_pcg64(seed);
     let shape = (1, spec.num_actions);
     if spec.num_actions == BOOK_ACTIONS {
         let table = spec.initial_q.table::<BOOK_ACTIONS>((0, 1), shape, &mut rng, stop)?;
-        with_table(spec, table, stop, new_visitor(rng))
+        with_table(task, table, rng, spec, stop)
     } else {
         let table = spec.initial_q.table::<0>((0, 1), shape, &mut rng, stop)?;
-        with_table(spec, table, stop, new_visitor(rng))
+        with_table(task, table, rng, spec, stop)
     }
 }
 
-fn with_table<V: LearnerVisitor<[u32; 1]>, const N: usize>(
-    spec: &RunSpec,
+fn with_table<const RECORDS: bool, const N: usize>(
+    task: KArmedBandit<RECORDS>,
     table: QTable<N>,
+    rng: Pcg64,
+    spec: &PlainSpec,
     stop: &StopFlag<'_>,
-    visitor: V,
-) -> PyResult<V::Output> {
+) -> PyResult<Box<dyn Run>> {
     match spec.policy {
         PolicySpec::EpsilonGreedy { epsilon, ties } => {
             let policy = SingleStateEpsilonGreedy::new(epsilon.build(spec.episodes), ties);
-            with_policy(spec, table, policy, stop, visitor)
+            with_policy(task, table, policy, rng, spec, stop)
         }
         PolicySpec::Ucb { confidence, ties } => {
             let ucb = Ucb::new(confidence, ties, (1, spec.num_actions), stop).map_err(allocation)?;
-            with_policy(spec, table, SingleStateUcb::new(ucb), stop, visitor)
+            with_policy(task, table, SingleStateUcb::new(ucb), rng, spec, stop)
         }
-        PolicySpec::Softmax { .. } => Err(invalid("policy", "'epsilon_greedy' or 'ucb'", "'softmax'")),
+        PolicySpec::Softmax { .. } => unreachable!("it is not compiled"),
     }
 }
 
-fn with_policy<V, P, const N: usize>(
-    spec: &RunSpec,
+fn with_policy<P: Policy + Send + 'static, const RECORDS: bool, const N: usize>(
+    task: KArmedBandit<RECORDS>,
     table: QTable<N>,
     policy: P,
+    rng: Pcg64,
+    spec: &PlainSpec,
     stop: &StopFlag<'_>,
-    visitor: V,
-) -> PyResult<V::Output>
-where
-    V: LearnerVisitor<[u32; 1]>,
-    P: Policy + Send + 'static,
-{
+) -> PyResult<Box<dyn Run>> {
     match spec.learning_rate {
         LearningRateSpec::Schedule(schedule) => {
-            Ok(with_learning_rate(spec, table, policy, schedule.build(spec.episodes), visitor))
+            Ok(with_learning_rate(task, table, policy, schedule.build(spec.episodes), rng, spec))
         }
         LearningRateSpec::Visits { value, minimum } => {
             let rate = VisitRate::new(value, minimum, spec.num_actions, stop).map_err(allocation)?;
-            Ok(with_learning_rate(spec, table, policy, rate, visitor))
+            Ok(with_learning_rate(task, table, policy, rate, rng, spec))
         }
     }
 }
 
-fn with_learning_rate<V, P, A, const N: usize>(
-    spec: &RunSpec,
+fn with_learning_rate<P, A, const RECORDS: bool, const N: usize>(
+    task: KArmedBandit<RECORDS>,
     table: QTable<N>,
     policy: P,
     learning_rate: A,
-    visitor: V,
-) -> V::Output
+    rng: Pcg64,
+    spec: &PlainSpec,
+) -> Box<dyn Run>
 where
-    V: LearnerVisitor<[u32; 1]>,
     P: Policy + Send + 'static,
     A: StepSize + Send + 'static,
 {
-    let RunSpec { discount, terminal_update, .. } = *spec;
+    let PlainSpec {
+        num_actions: _,       // the table's
+        max_episode_steps: _, // an episode is a single step
+        algorithm: _,         // `QLearning`
+        policy: _,            // `policy`
+        learning_rate: _,     // `learning_rate`
+        episodes: _,          // in their schedules
+        initial_q: _,         // the table
+        count_visits: _,      // never of a compiled run
+        discount,
+        terminal_update,
+    } = *spec;
     let agent = Agent { table, policy, learning_rate, discount, terminal_update, masks: None };
-    visitor.visit(TdLearner { agent, rule: QLearning })
+    Box::new(Trainer::new(task, TdLearner { agent, rule: QLearning }, rng))
 }

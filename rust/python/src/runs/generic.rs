@@ -12,6 +12,7 @@ use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
 use super::agent::generic_agent;
 use super::factory::{Batching, Factory};
 use super::observed::observed_box;
+use super::path::Path;
 use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
@@ -19,11 +20,7 @@ use crate::rng::environment_rng;
 use crate::spec::{DiscretizerSpec, RunSpec, TilesSpec};
 
 /// Runs in an environment whose observations are `M` float32 numbers, with any discretizer of a Box.
-pub(crate) fn generic_box<E, const M: usize>(
-    env: E,
-    spec: &Arc<RunSpec>,
-    record: usize,
-) -> PyResult<Box<dyn RunFactory>>
+pub(crate) fn generic_box<E, const M: usize>(env: E, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
 where
     E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
 {
@@ -31,24 +28,25 @@ where
     if dimensions != M {
         return Err(invalid("discretizer", format!("one for observations of {M} components"), dimensions));
     }
-    if let Some(prediction) = spec.prediction_by_observation() {
+    let path = Path::of(spec);
+    if let Path::ObservedPrediction(prediction) = &path {
         check_actions(&env, spec)?;
         return observed_box(env, spec, prediction);
     }
     match &spec.discretizer {
         // Compiled for the usual numbers of tilings, but not once more for what is rarely asked for besides.
-        DiscretizerSpec::Tiles(tiles) if record == 0 && !spec.count_visits => match tiles.tilings {
+        DiscretizerSpec::Tiles(tiles) if !path.has_wrappers() => match tiles.tilings {
             8 => fixed_tilings::<E, M, 8>(env, tiles, spec),
             16 => fixed_tilings::<E, M, 16>(env, tiles, spec),
             32 => fixed_tilings::<E, M, 32>(env, tiles, spec),
-            _ => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec, record),
+            _ => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec),
         },
-        DiscretizerSpec::Tiles(tiles) => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec, record),
-        grid => generic(env, grid.grid(|bound| bound as f32)?, spec, record),
+        DiscretizerSpec::Tiles(tiles) => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec),
+        grid => generic(env, grid.grid(|bound| bound as f32)?, spec),
     }
 }
 
-/// Runs with exactly `N` tilings, without recordings and visit counts.
+/// Runs with exactly `N` tilings, in a task without wrappers.
 fn fixed_tilings<E, const M: usize, const N: usize>(
     env: E,
     tiles: &TilesSpec,
@@ -79,7 +77,7 @@ fn check_actions(env: &impl Env, spec: &RunSpec) -> PyResult<()> {
 }
 
 /// Runs in an environment with any features.
-pub(crate) fn generic<E, F>(env: E, features: F, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>>
+pub(crate) fn generic<E, F>(env: E, features: F, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
 where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active: Send> + Clone + Send + Sync + 'static,
@@ -88,7 +86,7 @@ where
     let (spec, shape) = (Arc::clone(spec), (features.len(), spec.discretizer.n_active()));
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
-        boxed_run(task, shape, seed, &spec, (record, stop), AnyRecordings::Native)
+        boxed_run(task, shape, seed, &spec, stop, AnyRecordings::Native)
     };
     Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
 }
@@ -98,7 +96,6 @@ pub(crate) fn boxed_factory<W>(
     new_task: impl Fn(&Seed) -> W + Send + Sync + 'static,
     shape: (usize, usize),
     spec: &Arc<RunSpec>,
-    record: usize,
     keep: fn(Recordings<W::Snapshot>) -> AnyRecordings,
 ) -> Box<dyn RunFactory>
 where
@@ -107,8 +104,7 @@ where
     RunError: From<W::Error> + From<TrainingError<W::Error>>,
 {
     let spec = Arc::clone(spec);
-    let build =
-        move |seed: &Seed, stop: &StopFlag<'_>| boxed_run(new_task(seed), shape, seed, &spec, (record, stop), keep);
+    let build = move |seed: &Seed, stop: &StopFlag<'_>| boxed_run(new_task(seed), shape, seed, &spec, stop, keep);
     Box::new(Factory { build, batching: Batching::one_by_one() })
 }
 
@@ -118,7 +114,7 @@ pub(super) fn boxed_run<W>(
     shape: (usize, usize),
     seed: &Seed,
     spec: &RunSpec,
-    (record, stop): (usize, &StopFlag<'_>),
+    stop: &StopFlag<'_>,
     keep: impl FnOnce(Recordings<W::Snapshot>) -> AnyRecordings,
 ) -> PyResult<(Box<dyn Run>, AnyRecordings)>
 where
@@ -126,10 +122,10 @@ where
     W::Snapshot: Send,
     RunError: From<W::Error> + From<TrainingError<W::Error>>,
 {
-    if record == 0 {
+    if spec.record == 0 {
         return Ok((run_of(task, shape, seed, spec, stop)?, AnyRecordings::None));
     }
-    let (task, recordings) = EpisodeRecorder::new(task, record, spec.max_recorded_actions);
+    let (task, recordings) = EpisodeRecorder::new(task, spec.record, spec.max_recorded_actions);
     Ok((run_of(task, shape, seed, spec, stop)?, keep(recordings)))
 }
 

@@ -2,21 +2,18 @@
 
 use std::sync::Arc;
 
+use qtab_core::learners::LearnerVisitor;
+use qtab_core::random::Pcg64;
 use qtab_core::tasks::NativeTask;
-use qtab_core::{Env, Features, StopFlag};
+use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer};
 
 use super::factory::{Batching, Factory};
-use super::pending::PendingRun;
-use super::{AnyRecordings, RunFactory};
+use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
+use crate::error::RunError;
 use crate::prediction::PredictionSpec;
-use crate::rng::{BitGenerator, agent_pcg64, environment_rng};
+use crate::rng::{agent_pcg64, environment_rng};
 use crate::spec::RunSpec;
-
-/// Whether [`predicting`] has the runs of a spec.
-pub(super) fn is_specialized(spec: &RunSpec, record: usize) -> bool {
-    record == 0 && spec.bit_generator == BitGenerator::Pcg64 && !spec.terminate_on_truncation
-}
 
 /// Runs of any method; those of TD(0) are compiled for the method, too.
 pub(super) fn predicting<E, F>(
@@ -37,4 +34,22 @@ where
         Ok((run, AnyRecordings::None))
     };
     Box::new(Factory { build, batching: Batching::one_by_one() })
+}
+
+/// A task and the agent's generator. With a learner, whatever its type, they become a boxed run.
+struct PendingRun<T> {
+    task: T,
+    rng: Pcg64,
+}
+
+impl<T> LearnerVisitor<[u32; 1]> for PendingRun<T>
+where
+    T: Task<Active = [u32; 1], State: Send> + Send + 'static,
+    RunError: From<T::Error>,
+{
+    type Output = Box<dyn Run>;
+
+    fn visit<L: Learner<[u32; 1]> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
+        Box::new(Trainer::new(self.task, learner, self.rng))
+    }
 }

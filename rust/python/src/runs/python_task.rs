@@ -28,10 +28,10 @@ pub(crate) fn python_run(
     mut env: PythonEnv,
     spec: &RunSpec,
     seed: &Seed,
-    (record, stop): (usize, &StopFlag<'_>),
+    stop: &StopFlag<'_>,
 ) -> PyResult<BuiltRun> {
     env.keep_actions(py, spec.num_actions)?;
-    let task = TaskBuilder { env, first_seed: seed.to_python(py)?.unbind(), spec, seed, record, stop };
+    let task = TaskBuilder { env, first_seed: seed.to_python(py)?.unbind(), spec, seed, stop };
     if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
         return task.run(reader.clone(), reader.n_rows());
     }
@@ -50,7 +50,6 @@ struct TaskBuilder<'a> {
     first_seed: Py<PyAny>,
     spec: &'a RunSpec,
     seed: &'a Seed,
-    record: usize,
     stop: &'a StopFlag<'a>,
 }
 
@@ -112,10 +111,10 @@ impl TaskBuilder<'_> {
     where
         R: ObservationReader<Active: Send> + Send + 'static,
     {
-        let Self { spec, seed, record, stop, .. } = self;
+        let Self { spec, seed, stop, .. } = self;
         let shape = (n_rows, spec.discretizer.n_active());
         let task = self.task(reader);
-        let (run, recordings) = boxed_run(task, shape, seed, spec, (record, stop), AnyRecordings::Python)?;
+        let (run, recordings) = boxed_run(task, shape, seed, spec, stop, AnyRecordings::Python)?;
         Ok(BuiltRun { run, recordings, steps_python: true })
     }
 }

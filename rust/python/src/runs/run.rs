@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::random::Rng;
-use qtab_core::tasks::Recordings;
+use qtab_core::tasks::{OptimalActions, Recordings};
 use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer, TrainingError};
 
 use crate::error::RunError;
@@ -157,6 +157,8 @@ pub(crate) enum AnyRecordings {
     Native(Recordings<(u64, Option<u32>)>),
     /// By the state of the environment's generator when the episode began.
     Python(Recordings<Py<PyAny>>),
+    /// Of a bandit: whether the optimal action was taken in each episode.
+    OptimalActions(OptimalActions),
 }
 
 /// A run that has not started.

@@ -13,11 +13,12 @@ use qtab_core::{Env, Features, StopFlag, Trainer};
 
 use super::agent::policy;
 use super::factory::{Batching, Factory};
+use super::path::{Path, PlainSpec};
 use super::prediction::predicting;
 use super::{AnyRecordings, Run, RunFactory, generic};
 use crate::convert::Seed;
 use crate::error::allocation;
-use crate::rng::{BitGenerator, agent_pcg64, environment_rng};
+use crate::rng::{agent_pcg64, environment_rng};
 use crate::spec::{LearningRateSpec, PolicySpec, RunSpec, ScheduleSpec};
 
 /// A run of an update rule `U` with a policy `P` and a learning rate `A`.
@@ -81,49 +82,41 @@ pub(crate) fn specialized<E, F, const N: usize>(
     env: E,
     features: F,
     spec: &Arc<RunSpec>,
-    record: usize,
     batching: OneStepBatching<E, F, EpsilonGreedy, N>,
 ) -> PyResult<Box<dyn RunFactory>>
 where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active = [u32; 1]> + Clone + Send + Sync + 'static,
 {
-    if let Some(prediction) = &spec.prediction {
-        if super::prediction::is_specialized(spec, record) {
-            return Ok(predicting(env, features, spec, prediction));
-        }
-        return generic(env, features, spec, record);
-    }
-    let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else {
-        return generic(env, features, spec, record);
+    let plain = match Path::of(spec) {
+        Path::PlainPrediction(prediction) => return Ok(predicting(env, features, spec, &prediction)),
+        Path::Plain(plain) if has_actions(&env, &plain, N) => plain,
+        _ => return generic(env, features, spec),
+    };
+    let LearningRateSpec::Schedule(learning_rate) = plain.learning_rate else {
+        return generic(env, features, spec);
     };
     let one_step =
-        matches!(spec.algorithm, AnyAlgorithm::QLearning | AnyAlgorithm::Sarsa | AnyAlgorithm::ExpectedSarsa);
-    let counts = matches!(spec.policy, PolicySpec::Ucb { .. });
-    if !one_step || counts || record > 0 || !is_plain(&env, spec, N) {
-        return generic(env, features, spec, record);
+        matches!(plain.algorithm, AnyAlgorithm::QLearning | AnyAlgorithm::Sarsa | AnyAlgorithm::ExpectedSarsa);
+    if !one_step || matches!(plain.policy, PolicySpec::Ucb { .. }) {
+        return generic(env, features, spec);
     }
-    let builder = Builder::<E, F, N> { env, features, spec: Arc::clone(spec) };
-    Ok(match plain_epsilon_greedy(spec) {
+    let epsilon_greedy = plain_epsilon_greedy(&plain);
+    let any_policy = policy(plain.policy, plain.episodes, N, plain.initial_q.has_masked_actions());
+    let builder = Builder::<E, F, N> { env, features, spec: plain };
+    Ok(match epsilon_greedy {
         Some(epsilon_greedy) => builder.factory(epsilon_greedy, learning_rate, batching),
-        None => builder.factory(policy(spec), learning_rate, OneStepBatching::one_by_one()),
+        None => builder.factory(any_policy, learning_rate, OneStepBatching::one_by_one()),
     })
 }
 
-/// Whether a spec for so many actions leaves out what only generic runs have.
-pub(super) fn is_plain(env: &impl Env, spec: &RunSpec, num_actions: usize) -> bool {
-    spec.num_actions == num_actions
-        && env.num_actions() == num_actions
-        && spec.bit_generator == BitGenerator::Pcg64
-        && spec.prediction.is_none()
-        && !spec.time_aware
-        && spec.count_bonus == 0.0
-        && spec.action_masks.is_none()
-        && !spec.terminate_on_truncation
+/// Whether a spec and its environment have so many actions.
+pub(super) fn has_actions(env: &impl Env, spec: &PlainSpec, num_actions: usize) -> bool {
+    spec.num_actions == num_actions && env.num_actions() == num_actions
 }
 
 /// The policy of a spec, if it is ε-greedy as in the article, or with a constant ε.
-pub(super) fn plain_epsilon_greedy(spec: &RunSpec) -> Option<EpsilonGreedy> {
+pub(super) fn plain_epsilon_greedy(spec: &PlainSpec) -> Option<EpsilonGreedy> {
     let PolicySpec::EpsilonGreedy { epsilon, ties: TieBreaking::First } = spec.policy else { return None };
     let (value, minimum) = match epsilon {
         ScheduleSpec::Linear { value, minimum, warm_up: 0 } => (value, minimum),
@@ -137,7 +130,7 @@ pub(super) fn plain_epsilon_greedy(spec: &RunSpec) -> Option<EpsilonGreedy> {
 pub(super) struct Builder<E, F, const N: usize> {
     pub(super) env: E,
     pub(super) features: F,
-    pub(super) spec: Arc<RunSpec>,
+    pub(super) spec: PlainSpec,
 }
 
 impl<E, F, const N: usize> Builder<E, F, N>
@@ -184,19 +177,29 @@ where
         A: StepSize + Clone + Send + Sync + 'static,
     {
         let Self { env, features, spec } = self;
-        let count_visits = spec.count_visits;
+        let PlainSpec {
+            num_actions: _, // N
+            max_episode_steps,
+            algorithm: _,     // `rule`,
+            policy: _,        // `policy`
+            learning_rate: _, // and `learning_rate` are made of these,
+            episodes: _,      // with the schedules of a run of so many episodes.
+            discount,
+            initial_q,
+            terminal_update,
+            count_visits,
+        } = spec;
         let parts = move |seed: &Seed, stop: &StopFlag<'_>| {
             let mut rng = agent_pcg64(seed);
             let agent = Agent {
-                table: spec.initial_q.table((0, 1), (features.len(), N), &mut rng, stop)?,
+                table: initial_q.table((0, 1), (features.len(), N), &mut rng, stop)?,
                 policy: policy.clone(),
                 learning_rate: learning_rate.clone(),
-                discount: spec.discount,
-                terminal_update: spec.terminal_update,
+                discount,
+                terminal_update,
                 masks: None,
             };
-            let task =
-                NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
+            let task = NativeTask::new(env.clone(), features.clone(), Some(max_episode_steps), environment_rng(seed));
             let learner = TdLearner { agent, rule: rule.clone() };
             PyResult::Ok((task, learner, rng))
         };

@@ -10,51 +10,49 @@ use qtab_core::learners::{AnyAlgorithm, ExpectedSarsa, QLearning, Sarsa};
 use qtab_core::schedules::LearningRate;
 
 use super::factory::Batching;
-use super::specialized::{Builder, is_plain, plain_epsilon_greedy};
+use super::path::{Path, PlainSpec};
+use super::specialized::{Builder, has_actions, plain_epsilon_greedy};
 use super::{RunFactory, generic_box};
 use crate::spec::{DiscretizerSpec, LearningRateSpec, RunSpec, TilesSpec};
 
 /// Runs of `N` actions that train in batches where the spec asks for Q-learning, Sarsa or Expected Sarsa on a usual number of
 /// tilings (Sutton & Barto, section 9.5.4: a power of two that is at least four times the number of dimensions); the generic
 /// ones otherwise.
-pub(crate) fn tiled_box<E, const M: usize, const N: usize>(
-    env: E,
-    spec: &Arc<RunSpec>,
-    record: usize,
-) -> PyResult<Box<dyn RunFactory>>
+pub(crate) fn tiled_box<E, const M: usize, const N: usize>(env: E, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
 where
     E: SimdEnv<M> + Env<Observation = [f32; M], State: Send> + Send + Sync + 'static,
 {
-    let runs = match &spec.discretizer {
-        DiscretizerSpec::Tiles(tiles) if record == 0 => match tiles.tilings {
-            8 => of_tilings::<E, M, N, 8>(&env, tiles, spec),
-            16 => of_tilings::<E, M, N, 16>(&env, tiles, spec),
-            32 => of_tilings::<E, M, N, 32>(&env, tiles, spec),
+    let runs = match (&spec.discretizer, Path::of(spec)) {
+        (DiscretizerSpec::Tiles(tiles), Path::Plain(plain)) => match tiles.tilings {
+            8 => of_tilings::<E, M, N, 8>(&env, tiles, plain),
+            16 => of_tilings::<E, M, N, 16>(&env, tiles, plain),
+            32 => of_tilings::<E, M, N, 32>(&env, tiles, plain),
             _ => None,
         },
         _ => None,
     };
-    runs.map_or_else(|| generic_box(env, spec, record), Ok)
+    runs.map_or_else(|| generic_box(env, spec), Ok)
 }
 
 /// Runs with so many tilings; `None` if the spec asks for what is not compiled.
 fn of_tilings<E, const M: usize, const N: usize, const TILINGS: usize>(
     env: &E,
     tiles: &TilesSpec,
-    spec: &Arc<RunSpec>,
+    spec: PlainSpec,
 ) -> Option<Box<dyn RunFactory>>
 where
     E: SimdEnv<M> + Env<Observation = [f32; M], State: Send> + Send + Sync + 'static,
 {
-    if spec.count_visits || !is_plain(env, spec, N) {
+    if spec.count_visits || !has_actions(env, &spec, N) {
         return None;
     }
     let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else { return None };
-    let policy = plain_epsilon_greedy(spec)?;
+    let policy = plain_epsilon_greedy(&spec)?;
     let features = FixedTileCoding::<f32, M, TILINGS>::new(&tiles.tile_coding())?;
     let learning_rate = LearningRate::scheduled(learning_rate.build(spec.episodes), TILINGS);
-    let builder = Builder::<E, _, N> { env: *env, features, spec: Arc::clone(spec) };
-    match spec.algorithm {
+    let algorithm = spec.algorithm;
+    let builder = Builder::<E, _, N> { env: *env, features, spec };
+    match algorithm {
         AnyAlgorithm::QLearning => Some(builder.with_rule(QLearning, policy, learning_rate, Batching::in_lanes())),
         AnyAlgorithm::Sarsa => Some(builder.with_rule(Sarsa, policy, learning_rate, Batching::in_lanes())),
         AnyAlgorithm::ExpectedSarsa => {

@@ -48,15 +48,58 @@ pub(crate) struct RunSpec {
     pub(crate) terminate_on_truncation: bool,
     pub(crate) episodes: u64,
     pub(crate) bit_generator: BitGenerator,
+    /// How many of the last episodes to record. Like the next two, not part of what is learned, so not of Python's spec.
+    pub(crate) record: usize,
     /// How many actions all recordings together may hold.
     pub(crate) max_recorded_actions: u64,
-    /// Whether to count the visits of each state-action pair. Not part of what is learned, so not of Python's spec.
+    /// Whether to count the visits of each state-action pair.
     pub(crate) count_visits: bool,
     /// What is estimated instead of learning to act. It has a spec of its own in Python.
     pub(crate) prediction: Option<Arc<PredictionSpec>>,
 }
 
 impl RunSpec {
+    /// The same task, in which the values of a policy are estimated.
+    ///
+    /// # Errors
+    /// `ValueError` for what only a learner of actions has. The pattern names every field, so that none is added without a
+    /// decision here.
+    pub(crate) fn predicting(self, prediction: PredictionSpec) -> PyResult<Self> {
+        let Self {
+            discretizer: _,
+            num_actions: _,
+            max_episode_steps: _,
+            time_aware,
+            algorithm: _, // The prediction has a method,
+            policy: _,    // policies,
+            learning_rate: _,
+            discount: _,
+            count_bonus,
+            initial_q: _, // and weights instead.
+            action_masks,
+            terminal_update,
+            terminate_on_truncation: _,
+            episodes: _,
+            bit_generator: _,
+            record,
+            max_recorded_actions: _,
+            count_visits,
+            prediction: _,
+        } = &self;
+        let refused = [
+            ("time_aware", *time_aware),
+            ("count_bonus", *count_bonus != 0.0),
+            ("action_masks", !action_masks.is_none()),
+            ("terminal_update", *terminal_update != TerminalUpdate::Target),
+            ("record", *record > 0),
+            ("visits", *count_visits),
+        ];
+        match refused.iter().find(|(_, is_given)| *is_given) {
+            Some((name, _)) => Err(invalid(name, "left out where values are estimated", "one")),
+            None => Ok(Self { prediction: Some(Arc::new(prediction)), ..self }),
+        }
+    }
+
     /// The prediction, if its policies read the observations of a Box.
     pub(crate) fn prediction_by_observation(&self) -> Option<&Arc<PredictionSpec>> {
         self.prediction.as_ref().filter(|prediction| prediction.reads_observations())
@@ -87,6 +130,7 @@ impl RunSpec {
             terminate_on_truncation: fields.word("on_truncation", &[("bootstrap", false), ("terminate", true)])?,
             episodes,
             bit_generator: fields.word("bit_generator", BitGenerator::WORDS)?,
+            record: 0,
             max_recorded_actions: u64::MAX,
             count_visits: false,
             prediction: None,

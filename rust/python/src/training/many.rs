@@ -37,7 +37,7 @@ pub(crate) fn train_many(
         return Err(invalid("env", "an environment that Rust steps", "one that is stepped in Python"));
     };
     let run_spec = Arc::new(RunSpec::parse(&fields)?);
-    let factory = env.runs(&run_spec, 0)?;
+    let factory = env.runs(&run_spec)?;
     let Seeds(seeds) = seeds;
     let rows = results.rows(seeds.len())?;
     let threads = threads.min(seeds.len());

@@ -1,18 +1,20 @@
 //! Many runs on the k-armed testbed in one call.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use numpy::{PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use qtab_core::StopFlag;
+use qtab_core::{Budget, StopFlag};
 
+use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
 use crate::convert::{Seed, Seeds};
 use crate::error::invalid;
 use crate::interrupt::run_interruptible;
-use crate::runs::run_testbed;
-use crate::spec::{Fields, RunSpec};
+use crate::runs::{AnyRecordings, RunFactory, check_tables};
+use crate::spec::{Fields, InitialQSpec, RunSpec};
 
 /// The results of one run.
 type Row<'a> = (&'a Seed, &'a mut [f64], &'a mut [bool]);
@@ -29,13 +31,12 @@ pub(crate) fn run_testbeds(
     threads: usize,
 ) -> PyResult<()> {
     let fields = Fields::new(spec)?;
-    let testbed = match EnvironmentSpec::parse(&fields.nested("env")?)? {
-        EnvironmentSpec::Native(env) => env.testbed(),
-        EnvironmentSpec::Python(_) => None,
+    let EnvironmentSpec::Native(env) = EnvironmentSpec::parse(&fields.nested("env")?)? else {
+        return Err(invalid("env", "a k-armed bandit that Rust steps", "one that is stepped in Python"));
     };
-    let testbed = testbed.ok_or_else(|| invalid("env", "a k-armed bandit", "another environment"))?;
-    let spec = RunSpec::parse(&fields)?;
-    let (Seeds(seeds), steps) = (seeds, rewards.shape()[1]);
+    let spec = Arc::new(RunSpec::parse(&fields)?);
+    let factory = env.testbed_runs(&spec)?;
+    let (Seeds(seeds), steps) = (seeds, spec.episodes as usize);
     for (name, shape) in [("rewards", rewards.shape()), ("optimal", optimal.shape())] {
         if shape != [seeds.len(), steps] || steps == 0 {
             return Err(invalid(name, format!("an array of shape ({}, {steps})", seeds.len()), format!("{shape:?}")));
@@ -51,7 +52,7 @@ pub(crate) fn run_testbeds(
             if stop.is_set() || has_failed() {
                 return;
             }
-            if let Err(error) = run_testbed(testbed, &spec, seed, (rewards, optimal), stop) {
+            if let Err(error) = run_testbed(&*factory, &spec.initial_q, (seed, rewards, optimal), stop) {
                 failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
                 return;
             }
@@ -69,4 +70,29 @@ pub(crate) fn run_testbeds(
         });
     })?;
     failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+}
+
+/// Trains until both slices are full, or `stop` is set.
+fn run_testbed(
+    factory: &dyn RunFactory,
+    initial_q: &InitialQSpec,
+    (seed, rewards, optimal): Row<'_>,
+    stop: &StopFlag<'_>,
+) -> PyResult<()> {
+    let mut built = factory.build(seed, stop)?;
+    let run = &mut *built.run;
+    while run.episodes().returns.len() < rewards.len() {
+        if stop.is_set() {
+            return Ok(());
+        }
+        run.advance(Budget { episodes: rewards.len(), work: WORK_BETWEEN_CHECKS })?;
+    }
+    check_tables(run, initial_q)?;
+    rewards.copy_from_slice(&run.episodes().returns);
+    if let AnyRecordings::OptimalActions(taken) = &built.recordings {
+        for (optimal, taken) in optimal.iter_mut().zip(taken.iter()) {
+            *optimal = taken.load(Ordering::Relaxed);
+        }
+    }
+    Ok(())
 }

@@ -52,13 +52,13 @@ impl PyTrainer {
         visits: bool,
     ) -> PyResult<Self> {
         let fields = Fields::new(spec)?;
-        let run_spec = RunSpec { max_recorded_actions, count_visits: visits, ..RunSpec::parse(&fields)? };
+        let run_spec = RunSpec { record, max_recorded_actions, count_visits: visits, ..RunSpec::parse(&fields)? };
         let environment = EnvironmentSpec::parse(&fields.nested("env")?)?;
         let initial_q = run_spec.initial_q.clone();
         // A large table takes seconds to fill.
         let built = run_polling(|stop| match environment {
-            EnvironmentSpec::Native(env) => env.runs(&Arc::new(run_spec), record)?.build(&seed, stop),
-            EnvironmentSpec::Python(env) => python_run(spec.py(), env, &run_spec, &seed, (record, stop)),
+            EnvironmentSpec::Native(env) => env.runs(&Arc::new(run_spec))?.build(&seed, stop),
+            EnvironmentSpec::Python(env) => python_run(spec.py(), env, &run_spec, &seed, stop),
         })?;
         Ok(Self { run: Mutex::new(built?), initial_q, over: AtomicBool::new(false) })
     }
@@ -172,7 +172,7 @@ impl PyTrainer {
         let built = self.lock()?;
         self.over.store(true, Ordering::Release);
         match &built.recordings {
-            AnyRecordings::None => Ok(Vec::new()),
+            AnyRecordings::None | AnyRecordings::OptimalActions(_) => Ok(Vec::new()),
             AnyRecordings::Native(recordings) => take(recordings)
                 .into_iter()
                 .map(|Recording { snapshot, actions }| {

@@ -77,7 +77,7 @@ impl ClassicEnv for Acrobot {
         set_state::<4>(attributes, *state)
     }
 
-    fn runs(&self, _actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-        generic_box(*self, spec, record)
+    fn runs(&self, _actions: &[f32], spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
+        generic_box(*self, spec)
     }
 }

@@ -58,13 +58,13 @@ impl ClassicEnv for CartPole {
         set_state::<4>(attributes, *state)
     }
 
-    fn runs(&self, _actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+    fn runs(&self, _actions: &[f32], spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         if spec.prediction_by_observation().is_none()
             && let DiscretizerSpec::Bins(bins) = &spec.discretizer
             && let Some(grid) = bins.bins::<4>()
         {
-            return specialized::<_, _, 2>(*self, grid, spec, record, OneStepBatching::in_lanes());
+            return specialized::<_, _, 2>(*self, grid, spec, OneStepBatching::in_lanes());
         }
-        tiled_box::<_, 4, 2>(*self, spec, record)
+        tiled_box::<_, 4, 2>(*self, spec)
     }
 }

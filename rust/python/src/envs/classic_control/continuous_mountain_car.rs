@@ -54,7 +54,7 @@ impl ClassicEnv for ContinuousMountainCar {
         set_f32_state(attributes, &env.observe(state))
     }
 
-    fn runs(&self, actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-        runs_with_discrete_actions(*self, actions, spec, record)
+    fn runs(&self, actions: &[f32], spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
+        runs_with_discrete_actions(*self, actions, spec)
     }
 }

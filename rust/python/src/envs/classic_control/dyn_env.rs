@@ -91,8 +91,8 @@ struct ClassicControl<E> {
 }
 
 impl<E: ClassicEnv> NativeEnv for ClassicControl<E> {
-    fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-        self.env.runs(&self.actions, spec, record)
+    fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
+        self.env.runs(&self.actions, spec)
     }
 
     fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {

@@ -86,7 +86,7 @@ pub(super) trait ClassicEnv:
     ) -> PyResult<()>;
 
     /// Training runs; `actions` are what a learner chooses from where the action space is continuous.
-    fn runs(&self, actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>>;
+    fn runs(&self, actions: &[f32], spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>;
 }
 
 /// A [`ClassicEnv`] whose type is known at run time only.

@@ -57,13 +57,13 @@ impl ClassicEnv for MountainCar {
         attributes.set_item(intern!(py, "state"), PyTuple::new(py, numbers)?)
     }
 
-    fn runs(&self, _actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+    fn runs(&self, _actions: &[f32], spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         if spec.prediction_by_observation().is_none()
             && let DiscretizerSpec::Round(round) = &spec.discretizer
             && let Some(grid) = round.rounding::<2>()
         {
-            return specialized::<_, _, 3>(*self, grid, spec, record, OneStepBatching::in_lanes());
+            return specialized::<_, _, 3>(*self, grid, spec, OneStepBatching::in_lanes());
         }
-        tiled_box::<_, 2, 3>(*self, spec, record)
+        tiled_box::<_, 2, 3>(*self, spec)
     }
 }

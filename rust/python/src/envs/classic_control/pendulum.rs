@@ -61,7 +61,7 @@ impl ClassicEnv for Pendulum {
         attributes.set_item(intern!(py, LAST_TORQUE), torque)
     }
 
-    fn runs(&self, actions: &[f32], spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-        runs_with_discrete_actions(*self, actions, spec, record)
+    fn runs(&self, actions: &[f32], spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
+        runs_with_discrete_actions(*self, actions, spec)
     }
 }

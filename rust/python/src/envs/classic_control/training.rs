@@ -15,11 +15,10 @@ pub(super) fn runs_with_discrete_actions<E, const M: usize>(
     env: E,
     actions: &[f32],
     spec: &Arc<RunSpec>,
-    record: usize,
 ) -> PyResult<Box<dyn RunFactory>>
 where
     E: Env<Action = Scalar, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
 {
     let actions = actions.iter().copied().map(Scalar::Single).collect();
-    generic_box(DiscreteActions { env, actions }, spec, record)
+    generic_box(DiscreteActions { env, actions }, spec)
 }

@@ -44,10 +44,10 @@ fn rules(env: &Bound<'_, PyAny>) -> PyResult<Blackjack> {
 }
 
 impl NativeEnv for BlackjackEnv {
-    fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+    fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         spec.discretizer.check_identity(Blackjack::OBSERVATION_SHAPE.iter().product())?;
         let features = MultiDiscreteIndex(Blackjack::OBSERVATION_SHAPE.map(|count| count as u32));
-        specialized::<_, _, 2>(self.0, features, spec, record, OneStepBatching::one_by_one())
+        specialized::<_, _, 2>(self.0, features, spec, OneStepBatching::one_by_one())
     }
 
     fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {

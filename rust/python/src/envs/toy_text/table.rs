@@ -37,18 +37,18 @@ pub(super) fn identity(table: &TabularMdp, spec: &RunSpec) -> PyResult<Identity>
 }
 
 /// Runs on a table, compiled for the numbers of actions that Gymnasium's tables have.
-pub(super) fn table_runs(table: TabularMdp, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+pub(super) fn table_runs(table: TabularMdp, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
     let features = identity(&table, spec)?;
     if table.num_actions() == 4 {
-        specialized::<_, _, 4>(table, features, spec, record, OneStepBatching::one_by_one())
+        specialized::<_, _, 4>(table, features, spec, OneStepBatching::one_by_one())
     } else {
-        specialized::<_, _, 6>(table, features, spec, record, OneStepBatching::one_by_one())
+        specialized::<_, _, 6>(table, features, spec, OneStepBatching::one_by_one())
     }
 }
 
 impl NativeEnv for TableEnv {
-    fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
-        table_runs(self.0.clone(), spec, record)
+    fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
+        table_runs(self.0.clone(), spec)
     }
 
     fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {

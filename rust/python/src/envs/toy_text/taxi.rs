@@ -46,11 +46,11 @@ impl TaxiEnv {
 }
 
 impl NativeEnv for TaxiEnv {
-    fn runs(&self, spec: &Arc<RunSpec>, record: usize) -> PyResult<Box<dyn RunFactory>> {
+    fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         if self.taxi.fickle.is_some() {
-            return generic(self.taxi.clone(), identity(&self.taxi.table, spec)?, spec, record);
+            return generic(self.taxi.clone(), identity(&self.taxi.table, spec)?, spec);
         }
-        table_runs(self.taxi.table.clone(), spec, record)
+        table_runs(self.taxi.table.clone(), spec)
     }
 
     fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {
