@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import qtab
-from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES, WITH_STATE_VALUES
+from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES, WITH_STATE_VALUES, fixed_settings
 from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.records import Update
 from support.explained_algorithms import PLANNED
@@ -113,9 +113,8 @@ def test_the_queue_of_prioritized_sweeping_gives_the_table() -> None:
 @pytest.mark.parametrize("algorithm", PREFERENCES)
 def test_the_updates_of_an_episode_give_the_preferences_after_it(algorithm: Any) -> None:
     env, limit = ("qtab/KArmedBandit-v0", 1) if algorithm == "gradient_bandit" else (CORRIDOR, 9)
-    run = qtab.train(
-        env, algorithm=algorithm, learning_rate=0.01, discount=0.9, **{**SHORT, "max_episode_steps": limit}
-    )
+    settings = {"discount": 0.9, **fixed_settings(algorithm), **SHORT, "max_episode_steps": limit}
+    run = qtab.train(env, algorithm=algorithm, learning_rate=0.01, **settings)
     explanation, before = last_episode(run)
     preferences = before.tables[0].copy()
     known = float(before.tables[1][0, 0]) if algorithm in WITH_STATE_VALUES else None

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import strategies as st
 
 from qtab import _core
-from qtab.config.options import ONE_STEP, PREFERENCES, TABLES_ONLY, WITH_PROBABILITIES
+from qtab.config.options import ONE_STEP, PREFERENCES, TABLES_ONLY, WITH_PROBABILITIES, fixed_settings
 from qtab.envs.registry import ENTRIES
 from support.machine import MACHINE
 
@@ -139,6 +139,7 @@ def environments(draw: st.DrawFn, env: str) -> dict[str, Any]:
 
 
 def own_options(algorithm: str) -> st.SearchStrategy[dict[str, Any]]:
+    """The options of an algorithm, and the settings that have a single value for it."""
     traced = {"trace_decay": share, "trace_cutoff": st.sampled_from([0.0, 1e-3, 0.3])}
     kinds = st.sampled_from(["accumulating", "replacing", "clearing"])
     target = st.sampled_from(["greedy", "behavior"])
@@ -154,15 +155,16 @@ def own_options(algorithm: str) -> st.SearchStrategy[dict[str, Any]]:
             "planning_steps": st.integers(0, 5),
             "priority_threshold": st.sampled_from([0.0, 1e-4, 0.3]),
         },
-        "differential_sarsa": {"reward_learning_rate": share, "discount": st.just(1.0)},
-        "differential_q_learning": {"reward_learning_rate": share, "discount": st.just(1.0)},
+        "differential_sarsa": {"reward_learning_rate": share},
+        "differential_q_learning": {"reward_learning_rate": share},
         "dyna_q_plus": {"planning_steps": st.integers(0, 5), "time_weight": st.floats(0, 1)},
         "gradient_bandit": {"baseline": st.booleans()},
         "reinforce_with_baseline": {"value_learning_rate": share},
         "actor_critic": {"value_learning_rate": share},
         "actor_critic_lambda": {"value_learning_rate": share, "trace_decay": share},
     }
-    return st.fixed_dictionaries(options.get(algorithm, {}))
+    fixed = {name: st.just(value) for name, value in fixed_settings(algorithm).items()}
+    return st.fixed_dictionaries({**options.get(algorithm, {}), **fixed})
 
 
 @st.composite
@@ -177,10 +179,10 @@ def run_settings(draw: st.DrawFn, algorithm: str, env: str = CAR) -> dict[str, A
         **draw(learning_rates(most, by_visits=algorithm not in BY_EPISODE, algorithm=algorithm)),
         **draw(explorations(possible_explorations(algorithm, settings))),
         "discount": draw(st.floats(0, 1)),
-        **draw(own_options(algorithm)),
         "algorithm": algorithm,
         "initial_q": draw(st.sampled_from([0.0, 1.5, (-1.0, 1.0), (-0.001, 0.0)])),
         "on_truncation": draw(st.sampled_from(["bootstrap", "terminate"])),
+        **draw(own_options(algorithm)),
         "bit_generator": draw(st.sampled_from(["PCG64", "MT19937"])),
         "max_episode_steps": limit,
         "seed": draw(st.integers(0, 2**32 - 1)),

@@ -65,7 +65,7 @@ def lines(timings: Timings) -> list[list[str]]:
 
 
 def _bandit(config: dict[str, Any]) -> Benchmark:
-    whole = {"max_episode_steps": 1, "discount": 1.0, "episodes": STEPS, **config}
+    whole = {"max_episode_steps": 1, "episodes": STEPS, **config}
 
     def choose(index: int) -> int:
         rewards, _ = run_testbeds(whole, range(index * PROBLEMS, (index + 1) * PROBLEMS), 1)

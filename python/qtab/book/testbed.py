@@ -82,7 +82,6 @@ class TestbedExperiment(Experiment):
         return {
             "env_kwargs": {"mean": self.mean},
             "max_episode_steps": 1,
-            "discount": 1.0,
             "episodes": self.steps,
             **setting.config,
         }

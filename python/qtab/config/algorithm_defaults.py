@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from qtab.config.options import AVERAGE_REWARD, is_set
+from qtab.config.options import FIXED, is_set
 
 _AVERAGES: Mapping[str, Any] = {"learning_rate": 1.0, "learning_rate_schedule": "visits"}
 """Values are averages of returns."""
@@ -12,7 +12,7 @@ _DEFAULTS: Mapping[str, Mapping[str, Any]] = {
     "monte_carlo": _AVERAGES,
     "monte_carlo_es": {**_AVERAGES, "epsilon": 0.0},  # exploring starts are the only exploration
     "off_policy_monte_carlo": _AVERAGES,
-    **{algorithm: {"discount": 1.0} for algorithm in AVERAGE_REWARD},
+    **{algorithm: fixed.values for algorithm, fixed in FIXED.items()},
 }
 """The settings of each algorithm that differ from those of :class:`qtab.Config`."""
 

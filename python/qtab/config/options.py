@@ -21,6 +21,16 @@ class Option:
     """The default where it applies. None: it has none, or is found from the observation space."""
 
 
+@dataclass(frozen=True)
+class Fixed:
+    """Settings that have a single value for an algorithm, which would ignore any other."""
+
+    values: Mapping[str, Any]
+    """The value of each of these settings."""
+    reason: str
+    """What follows "the algorithm, which" in a message."""
+
+
 _WITH_TRACES = ("sarsa_lambda", "watkins_q_lambda")
 _WITH_TARGET_POLICY = ("n_step_tree_backup", "n_step_q_sigma")
 _FALLING = ("linear", "exponential")
@@ -35,6 +45,15 @@ AVERAGE_REWARD = ("differential_sarsa", "differential_q_learning")
 """The algorithms that learn the average reward, without a discount."""
 MONTE_CARLO = ("monte_carlo", "monte_carlo_es", "off_policy_monte_carlo")
 """The algorithms that learn from the returns of whole episodes."""
+
+_RETURNS_ALONE = Fixed({"on_truncation": "terminate"}, "learns from the rewards of an episode alone")
+FIXED: Mapping[str, Fixed] = {
+    **dict.fromkeys(AVERAGE_REWARD, Fixed({"discount": 1.0}, "learns the average reward")),
+    "gradient_bandit": Fixed({"discount": 0.0, "on_truncation": "terminate"}, "learns from the next reward alone"),
+    "reinforce": _RETURNS_ALONE,
+    "reinforce_with_baseline": _RETURNS_ALONE,
+}
+"""The algorithms for which some settings are fixed."""
 
 # A choice comes before the options that depend on it.
 OPTIONS: Mapping[str, Option] = {
@@ -145,8 +164,11 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
         return other_choice(name, value, ("visits",), f"for algorithm {algorithm!r}")
     if name == "learning_rate_schedule" and value != "visits" and algorithm == "off_policy_monte_carlo":
         return f"{name} must be 'visits' for algorithm {algorithm!r}, got {shown(value)}"
-    if name == "discount" and value != 1 and algorithm in AVERAGE_REWARD:
-        return f"discount must be 1 for algorithm {algorithm!r}, which learns the average reward, got {shown(value)}"
+    if name in fixed_settings(algorithm) and value != (only := FIXED[algorithm].values[name]):
+        wanted = f"{only:g}" if isinstance(only, float) else repr(only)
+        return (
+            f"{name} must be {wanted} for algorithm {algorithm!r}, which {FIXED[algorithm].reason}, got {shown(value)}"
+        )
     if name == "algorithm" and value in TABLES_ONLY and with_tiles:
         others = other_choice(name, value, TABLES_ONLY, "for discretizer 'tiles'")
         return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"
@@ -204,6 +226,11 @@ def without_rates(start: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[st
 
 def _belongs(name: str, rate: str) -> bool:
     return name == _SCHEDULES[rate][0] or (name in OPTIONS and OPTIONS[name].choice == _SCHEDULES[rate][0])
+
+
+def fixed_settings(algorithm: Any) -> Mapping[str, Any]:
+    """Returns the settings that have a single value for an algorithm; none for what is not an algorithm."""
+    return FIXED[algorithm].values if isinstance(algorithm, str) and algorithm in FIXED else {}
 
 
 def turned_off(fields: Mapping[str, Any]) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from typing import Any
 
 from qtab.config.action_mask import STORED
 from qtab.config.config import DEFAULTS, Config
-from qtab.config.options import OPTIONS
+from qtab.config.options import OPTIONS, fixed_settings
 
 ADDED = (
     *("action_mask", "shape", "max_rows", "baseline", "value_learning_rate", "confidence"),
@@ -26,6 +26,14 @@ def stored_settings(config: Config) -> dict[str, Any]:
         if kept.get(name) == OPTIONS[name].default:
             del kept[name]
     return {name: STORED if name == "action_mask" and callable(value) else value for name, value in kept.items()}
+
+
+def corrected_settings(stored: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the settings of a stored config with the values that were in effect.
+
+    Earlier versions accepted other values of settings that are fixed for an algorithm, and ignored them.
+    """
+    return {**stored, **fixed_settings(stored.get("algorithm"))}
 
 
 def implied_settings(config: Config) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Truncation: time-outs that are treated as terminal states."""
 
+from qtab.config.options import fixed_settings
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, percent
 
@@ -8,6 +9,8 @@ def truncation(facts: Facts) -> Finding | None:
     """Finds time-outs that are treated as terminal states."""
     timed_out = int((~facts.run.terminated).sum())
     if facts.config.on_truncation != "terminate" or facts.config.time_aware or timed_out == 0:
+        return None
+    if "on_truncation" in fixed_settings(facts.config.algorithm):
         return None
     share = timed_out / len(facts.run.terminated)
     return Finding(

@@ -16,7 +16,7 @@ from qtab.config.action_mask import STORED
 from qtab.config.config import replace_checked
 from qtab.config.discretizer import MissingFunction
 from qtab.config.options import defaults
-from qtab.config.stored import implied_settings
+from qtab.config.stored import corrected_settings, implied_settings
 from qtab.envs.stored import stored_id
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent
@@ -176,7 +176,7 @@ def _state(header: Mapping[str, Any], array: Any) -> RunState:
 
 
 def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Callable[[Any], Any] | None) -> Config:
-    fields = dict(header["config"])
+    fields = corrected_settings(header["config"])
     name = header.get("discretizer_function")
     if fields["discretizer"] is None and isinstance(name, str):
         fields["discretizer"] = function if callable(function) else MissingFunction(name)

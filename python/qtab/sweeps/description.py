@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from qtab.config.stored import corrected_settings
 from qtab.envs.stored import stored_id
 from qtab.results.summary import FINAL_EPISODES
 
@@ -102,7 +103,7 @@ def read_description(text: str) -> Description:
         for name in ("episodes", "max_episode_steps"):
             if type(config.get(name)) is not int or config[name] < 1:
                 raise ValueError(f"a config of its study has bad {name}")
-    configs = [{**config, "env": stored_id(config["env"])} for config in configs]
+    configs = [{**corrected_settings(config), "env": stored_id(config["env"])} for config in configs]
     return Description(configs, settings, tuple(seeds), block)
 
 
