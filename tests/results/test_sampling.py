@@ -122,3 +122,53 @@ def test_rounding_never_draws_an_action_of_probability_zero():
     assert sample(probabilities, Largest()).tolist() == [9, 3]  # type: ignore[arg-type]
     config = constant(0.5).config
     assert action_probabilities(config, 5, np.zeros((3, 4))).sum(axis=1).tolist() == [1.0, 1.0, 1.0]
+
+
+POLICIES: dict[str, dict[str, Any]] = {
+    "epsilon_greedy": {"epsilon": 0.9, "epsilon_schedule": "constant"},
+    "random_ties": {"epsilon": 0.2, "epsilon_schedule": "constant", "ties": "random", "initial_q": 0.0},
+    "softmax": {"exploration": "softmax", "temperature": 0.5},
+    "ucb": {"exploration": "ucb", "confidence": 1.0},
+    "preferences": {"algorithm": "reinforce"},
+    "two_tables": {"algorithm": "double_q_learning", "epsilon": 1.0, "epsilon_schedule": "constant"},
+    "time_aware": {"time_aware": True, "max_episode_steps": 3, "epsilon": 1.0, "epsilon_schedule": "constant"},
+    "trained_with_masks": {"action_mask": lambda _: [1, 1, 1, 1], "epsilon": 1.0, "epsilon_schedule": "constant"},
+}
+
+
+@pytest.mark.parametrize("name", POLICIES)
+@pytest.mark.parametrize("mask", [[1, 0, 0, 0], [0, 0, 1, 0], [0, 1, 0, 1], [1, 1, 1, 1]], ids=str)
+def test_only_actions_that_the_given_masks_allow_are_drawn(name: str, mask: list[int]) -> None:
+    run = qtab.train(LAKE, seed=0, episodes=5, **POLICIES[name])
+    allowed = np.flatnonzero(mask)
+    drawn, _ = run.predict(np.full(400, 3), deterministic=False, action_masks=np.tile(mask, (400, 1)))
+    assert set(drawn.tolist()) <= set(allowed.tolist())
+    single = [run.predict(3, deterministic=False, action_masks=mask)[0] for _ in range(20)]
+    assert set(single) <= set(allowed.tolist())
+    if POLICIES[name].get("epsilon") == 1.0:
+        expected = [bool(allows) / len(allowed) for allows in mask]
+        assert (np.bincount(drawn, minlength=4) / 400).tolist() == pytest.approx(expected, abs=0.1)
+
+
+def test_masks_of_a_batch_apply_to_their_own_observations() -> None:
+    run = constant(1.0)
+    masks = np.eye(4, dtype=np.int8)
+    assert run.predict(np.arange(4), deterministic=False, action_masks=masks)[0].tolist() == [0, 1, 2, 3]
+    car = qtab.train(
+        "MountainCar-v0", seed=0, episodes=2, discretizer="tiles", epsilon=1.0, epsilon_schedule="constant"
+    )
+    observations = np.tile(np.array([-0.5, 0.0], np.float32), (60, 1))
+    drawn, _ = car.predict(observations, deterministic=False, action_masks=np.tile([True, False, True], (60, 1)))
+    assert set(drawn.tolist()) == {0, 2}
+
+
+@pytest.mark.parametrize("deterministic", [True, False])
+def test_masks_must_leave_an_action_that_the_state_has(deterministic: bool) -> None:
+    initial_q = np.zeros((16, 4))
+    initial_q[:, :2] = -np.inf
+    run = constant(1.0, initial_q=initial_q)
+    assert run.predict(5, deterministic=deterministic, action_masks=[1, 1, 0, 1])[0] == 3
+    with pytest.raises(
+        ValueError, match=r"^action_masks must leave an action that the state has by the run's initial_q"
+    ):
+        run.predict(5, deterministic=deterministic, action_masks=[1, 1, 0, 0])

@@ -13,14 +13,13 @@ def action_probabilities(config: Config, episodes: int, values: NDArray[np.float
     Args:
         config: The config of a run.
         episodes: The number of finished episodes, which determines ε.
-        values: (n, actions): the action values, -inf for actions that there are not.
+        values: (n, actions): the action values, -inf for actions that there are not; each row has one that there is.
     """
     chosen = policy(config)
     if isinstance(chosen, EpsilonGreedy):
         epsilon = chosen.epsilon.after(episodes, config.episodes)
-        available = _available(config, values)
         greedy = _greedy(values, chosen.ties == "random")
-        return epsilon * _uniform(available) + (1.0 - epsilon) * _uniform(greedy)
+        return epsilon * _uniform(~np.isneginf(values)) + (1.0 - epsilon) * _uniform(greedy)
     if isinstance(chosen, Ucb):  # the counts of its bounds are not part of a run
         return _uniform(_greedy(values, chosen.ties == "random"))
     with np.errstate(under="ignore"):
@@ -37,15 +36,6 @@ def sample(probabilities: NDArray[np.float64], generator: np.random.Generator) -
     drawn = np.minimum(generator.random(total.shape) * total, np.nextafter(total, 0.0))
     actions: NDArray[np.int64] = np.argmax(drawn < cumulative, axis=1)
     return actions
-
-
-def _available(config: Config, values: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which actions there are: -inf marks the others, by a mask or in an initial table."""
-    if config.action_mask is not False or (
-        isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q).any()
-    ):
-        return ~np.isneginf(values)
-    return np.ones(values.shape, dtype=np.bool_)
 
 
 def _greedy(values: NDArray[np.float64], all_of_them: bool) -> NDArray[np.bool_]:
