@@ -1,12 +1,16 @@
 """What can be done with a run that was trained with action masks: predict, save, resume, explain, play."""
 
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 import pytest
+from gymnasium.spaces import Box, Dict, Discrete, MultiDiscrete, Tuple
+from gymnasium.vector.utils import concatenate, create_empty_array
 
 import qtab
+from support.environments import Sampled
 from support.masked import MASKS, SHORT, TILES, MaskedGraph
 from support.parity import assert_same_run
 
@@ -132,3 +136,56 @@ def test_a_played_episode_is_that_of_evaluate() -> None:
     played = qtab.play(run, 2, seed=5, window=False, env=Legal(gym.make("Taxi-v4", render_mode="rgb_array")))
     evaluated = qtab.evaluate(run, 2, seed=5)
     assert played.returns.tobytes() == evaluated.returns.tobytes()
+
+
+NESTED: dict[str, gym.Space[Any]] = {
+    "dict": Dict(b=Discrete(3), a=Discrete(4, start=2)),
+    "tuple_of_discretes": Tuple((Discrete(3), Discrete(2), Discrete(4, start=-1))),
+    "tuple": Tuple((Box(0, 2, (2,), np.int64), Discrete(3))),
+    "deep": Dict(x=Dict(y=Discrete(2), z=Tuple((Discrete(3), MultiDiscrete([2, 2])))), w=Box(0, 3, (2, 2), np.int64)),
+    "multi_discrete": MultiDiscrete([2, 3, 4]),
+    "floats": Dict(place=Box(-1.0, 1.0, (2,)), room=Discrete(2)),
+}
+
+
+@pytest.mark.parametrize("max_rows", [None, 500])
+@pytest.mark.parametrize("name", NESTED)
+def test_a_function_gets_the_observations_of_a_batch_one_by_one(
+    name: str, max_rows: int | None, tmp_path: Path
+) -> None:
+    space = NESTED[name]
+
+    def mask(observation: Any) -> Any:
+        allowed = np.ones(3, bool)
+        allowed[int(np.abs(gym.spaces.flatten(space, observation)).sum() * 7) % 3] = False
+        return allowed
+
+    features: dict[str, Any] = {"discretizer": "bins", "bins": 3} if name == "floats" else {}
+    settings: dict[str, Any] = {"episodes": 3, "max_episode_steps": 10, "seed": 0, "max_rows": max_rows, **features}
+    run = qtab.train(Sampled(space), action_mask=mask, **settings)
+    run.save(tmp_path / "run.npz")
+    space.seed(1)
+    for count in (1, 2, 3, 5):
+        observations = [space.sample() for _ in range(count)]
+        batch = concatenate(space, observations, create_empty_array(space, count))
+        for one in (run, qtab.load(tmp_path / "run.npz", action_mask=mask)):
+            values = np.array([one.q_values(observation) for observation in observations])
+            assert one.q_values(batch).tobytes() == values.tobytes()
+            assert one.predict(batch)[0].tolist() == [one.predict(observation)[0] for observation in observations]
+            drawn = one.predict(batch, deterministic=False)[0]
+            assert all(mask(seen)[action - 2] for seen, action in zip(observations, drawn.tolist(), strict=True))
+
+
+def test_a_row_of_numbers_is_passed_to_the_function_in_the_structure_of_the_space() -> None:
+    space = NESTED["dict"]
+    seen: list[Any] = []
+
+    def mask(observation: Any) -> Any:
+        seen.append(observation)
+        return [1, 1, observation["b"] == 1]
+
+    run = qtab.train(Sampled(space), action_mask=mask, **SHORT, seed=0)
+    seen.clear()
+    assert np.isneginf(run.q_values(np.array([[1, 2], [0, 2]]))).tolist() == [[False] * 3, [False, False, True]]
+    assert np.isneginf(run.q_values(np.array([0.0, 2.0]))).tolist() == [False, False, True]
+    assert seen == [{"a": 2, "b": 1}, {"a": 2, "b": 0}, {"a": 2, "b": 0}]

@@ -63,7 +63,7 @@ def test_one_integer_is_the_number_of_a_row() -> None:
         (None, TypeError, "got None$"),
         ([1, [2]], TypeError, r"discretizer must return integers, 2 indices .*, got \[1, \[2\]\]$"),
         ([[0, 0]], TypeError, r"got \[\[0, 0\]\]$"),
-        (2**70, TypeError, "got 1180591620717411303424$"),
+        (2**70, ValueError, "or the number of a row, got 1180591620717411303424$"),
     ],
     ids=str,
 )
@@ -135,6 +135,22 @@ def test_what_a_function_needs_and_what_needs_a_function() -> None:
         qtab.train("MountainCar-v0", discretizer=cells, shape=(19, 15), scale=(10, 100), **SETTINGS)
     with pytest.raises(ValueError, match=r"shape must give a table of fewer than 2\*\*32 values"):
         qtab.train("MountainCar-v0", discretizer=cells, shape=(10**6, 10**6), **SETTINGS)
+
+
+@pytest.mark.parametrize("returned", [2**63, -(2**63) - 1, 10**30, (0, 2**64), np.uint64(2**63), [2**63, -1]], ids=str)
+def test_an_integer_beyond_64_bits_is_refused_by_name(returned: Any) -> None:
+    with pytest.raises(ValueError, match=r"^discretizer must return integers from -2\*\*63 to 2\*\*63 - 1, got "):
+        qtab.train("MountainCar-v0", discretizer=lambda _: returned, max_rows=9, **SETTINGS)
+    with pytest.raises(
+        ValueError, match=r"^discretizer must return 2 indices within the shape \(19, 15\), or the number"
+    ):
+        qtab.train("MountainCar-v0", discretizer=lambda _: returned, shape=(19, 15), **SETTINGS)
+
+
+def test_the_largest_integers_of_64_bits_are_cells() -> None:
+    ends = (-(2**63), 2**63 - 1)
+    run = qtab.train("MountainCar-v0", discretizer=lambda seen: ends[int(seen[1] > 0)], max_rows=2, **SETTINGS)
+    assert run.discretizer.n_seen == 2  # type: ignore[attr-defined]
 
 
 @pytest.mark.slow

@@ -128,6 +128,53 @@ def test_a_verified_run_leaves_its_rows_as_they_are() -> None:
     assert_same_run(run, qtab.train(Tutorial(3), config=run.config))
 
 
+class Counted(gym.Env[Any, Any]):
+    """Shows one of two numbers that floats do not tell apart, beside a float."""
+
+    def __init__(self, numbers: tuple[int, int], dtype: Any = np.int64) -> None:
+        self.numbers, self.dtype = numbers, dtype
+        self.observation_space = Dict(
+            count=Box(np.iinfo(dtype).min, np.iinfo(dtype).max, (), dtype), x=Box(0.0, 1.0, ())
+        )
+        self.action_space = Discrete(2)
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        super().reset(seed=seed)
+        self.last = int(self.np_random.integers(2))
+        return self.seen(self.last), {}
+
+    def step(self, action: Any) -> Any:
+        return self.seen(self.last), float(self.last), True, False, {}
+
+    def seen(self, which: int) -> dict[str, Any]:
+        return {"count": np.array(self.numbers[which], self.dtype), "x": np.array(0.5, np.float32)}
+
+
+@pytest.mark.parametrize(
+    ("numbers", "dtype"),
+    [((2**53, 2**53 + 1), np.int64), ((-(2**63), 1 - 2**63), np.int64), ((2**64 - 2, 2**64 - 1), np.uint64)],
+    ids=str,
+)
+def test_large_integers_beside_floats_have_rows_of_their_own(
+    numbers: tuple[int, int], dtype: Any, tmp_path: Path
+) -> None:
+    env = Counted(numbers, dtype)
+    run = qtab.train(env, discretizer="bins", max_rows=9, **{**SETTINGS, "learning_rate": 1.0})
+    assert run.discretizer.n_seen == 2  # type: ignore[attr-defined]
+    assert qtab.verify(run, env=env).equal
+    run.save(tmp_path / "run.npz")
+    both = {"count": np.array(numbers, dtype), "x": np.full(2, 0.5, np.float32)}
+    for one in (run, qtab.load(tmp_path / "run.npz")):
+        assert [one.values(env.seen(which)) for which in range(2)] == [0.0, 1.0]
+        assert one.values(both).tolist() == [0.0, 1.0]
+
+
+def test_a_float_that_is_no_64_bit_integer_is_refused() -> None:
+    run = qtab.train(Counted((0, 1)), discretizer="bins", max_rows=9, **SETTINGS)
+    with pytest.raises(TypeError, match=r"^observation\['count'\] must hold integers, as the space does, got \[1e\+30\]"):
+        run.values({"count": np.array(1e30), "x": np.array(0.5, np.float32)})
+
+
 def test_plain_data_does_not_leave_out_how_observations_are_read(tmp_path: Path) -> None:
     for max_rows in (81, None):
         run = qtab.train(Tutorial(3), max_rows=max_rows, **SETTINGS)

@@ -158,6 +158,10 @@ class Discretizer(ABC):
         """
         return self._compiled.active_rows(observation)
 
+    def split(self, observation: Any, count: int | None) -> list[Any]:
+        """Returns each of so many observations, which :meth:`active_rows` takes together; None means a single one."""
+        return [observation] if count is None else list(observation)
+
     def row(self, observation: Any) -> int:
         """Returns the row of the cell of one observation.
 

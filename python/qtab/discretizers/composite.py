@@ -239,6 +239,10 @@ class Composite(Discretizer):
 
         return _NUMBERED.sub(as_given, message)
 
+    def split(self, observation: Any, count: int | None) -> list[Any]:
+        """Returns each of so many observations, in the structure of the space; None means a single one."""
+        return self.layout.split(observation, count)
+
     def cells(self, observation: Any) -> NDArray[np.int64]:
         """Returns (d,): the index of one observation along each component, however many cells there are.
 
@@ -246,7 +250,12 @@ class Composite(Discretizer):
             TypeError: if it does not hold numbers (integers for what is discrete).
             ValueError: if it has another shape than the space, or lies outside the space.
         """
-        return self.cells_of(self.observe(observation))
+        return self._cells(observation, ())
+
+    def cells_of(self, observation: Any) -> NDArray[np.int64]:
+        """Returns (d,) as :meth:`cells` does, or (n, d) of n observations."""
+        count = self.layout.batch_size(observation)
+        return self._cells(observation, () if count is None else (count,))
 
     @cached_property
     def _indices(self) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
@@ -256,24 +265,30 @@ class Composite(Discretizer):
         return indices, np.array([count or 2**62 for count in self.counts])
 
     @cached_property
-    def _of_components(self) -> list[tuple[int, _core.Discretizer, str]]:
-        return [
-            (component, _core.Discretizer(group.spec_of(component)), group.discretizer.dtype)
+    def _of_components(self) -> dict[int, tuple[_core.Discretizer, str]]:
+        """The discretizer of each component that is no index, and its dtype."""
+        return {
+            component: (_core.Discretizer(group.spec_of(component)), group.discretizer.dtype)
             for group in self.groups
             for component in group.components
-        ]
+        }
 
-    def cells_of(self, numbers: NDArray[Any]) -> NDArray[np.int64]:
-        """Returns (d,): the index along each component of the numbers that :meth:`observe` returned."""
+    def _cells(self, observation: Any, shape: tuple[int, ...]) -> NDArray[np.int64]:
         indices, counts = self._indices
-        cells: NDArray[np.int64] = np.where(indices, numbers, 0).astype(np.int64)
-        for component, discretizer, dtype in self._of_components:
-            cells[component] = discretizer.active_rows(numbers[component : component + 1].astype(dtype))[0]
+        cells = np.empty((*shape, self.layout.size), np.int64)
+        for components, numbers in self.layout.numbers(observation, self._first, shape):
+            if indices[components].any():
+                cells[..., components] = numbers  # never as floats, which do not hold every integer
+                continue
+            for component, column in zip(range(components.start, components.stop), numbers.T, strict=True):
+                discretizer, dtype = self._of_components[component]
+                as_read = column.astype(self._dtype).astype(dtype)[..., np.newaxis]
+                cells[..., component] = discretizer.active_rows(as_read)[..., 0]
         bounded = counts < 2**62
         outside = indices & bounded & ((cells < 0) | (cells >= counts))
         if outside.any():
-            component = int(np.argmax(outside))
-            value = int(cells[component]) + self._bounds[component][0]
+            *_, component = np.argwhere(outside)[0]
+            value = int(cells[..., component][outside[..., component]].flat[0]) + self._bounds[component][0]
             raise ValueError(f"{self.layout.name_of(component)} is {value}, outside the observation space")
         return cells
 

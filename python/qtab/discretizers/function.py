@@ -96,16 +96,15 @@ class Function(Discretizer):
             ValueError: if they do not lie within the shape.
         """
         returned = self.function(observation)
-        try:
-            indices = np.asarray(returned)
-        except ValueError:  # parts of different lengths
-            indices = np.empty(0, object)
-        if indices.dtype.kind not in "iub" or indices.ndim > 1:
+        indices = _integers(returned)
+        if indices is None:
             one_axis = self.cell_shape is not None and len(self.cell_shape) == 1
             wanted = self._wanted if one_axis else f"integers, {self._wanted}"
             raise TypeError(f"discretizer must return {wanted}, got {shown(returned)}")
         cell = tuple(int(index) for index in np.atleast_1d(indices))
         if self.cell_shape is None:
+            if not all(-(2**63) <= index < 2**63 for index in cell):
+                raise ValueError(f"discretizer must return integers from -2**63 to 2**63 - 1, got {shown(returned)}")
             return cell
         if not indices.ndim and len(self.cell_shape) > 1 and 0 <= cell[0] < self.n_rows:
             return tuple(int(index) for index in np.unravel_index(cell[0], self.cell_shape))
@@ -147,6 +146,19 @@ class Function(Discretizer):
             ValueError: if they do not lie within the shape.
         """
         return rows_of(self.observe, observation, self.observation_shape)
+
+
+def _integers(returned: Any) -> NDArray[Any] | None:
+    """Returns what a function returned as an array of up to one axis; None unless it holds integers, of any size."""
+    try:
+        indices = np.asarray(returned)
+        if indices.dtype.kind not in "iub":  # integers beyond 64 bits come as objects or floats
+            indices = np.asarray(returned, object)
+    except ValueError:  # parts of different lengths
+        return None
+    if indices.dtype == object and not all(isinstance(index, int | np.integer) for index in indices.flat):
+        return None
+    return None if indices.ndim > 1 else indices
 
 
 def rows_of(

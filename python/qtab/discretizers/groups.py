@@ -16,7 +16,8 @@ from qtab.config.options import OPTIONS, defaults
 from qtab.discretizers.bins import Bins
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.discretizers.edges import Edges
-from qtab.discretizers.layout import Layout, Part
+from qtab.discretizers.layout import Layout
+from qtab.discretizers.part import Part
 from qtab.discretizers.rounding import Rounding
 from qtab.discretizers.tile_coding import TileCoding
 

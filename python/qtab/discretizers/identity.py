@@ -14,10 +14,17 @@ from qtab.config import Config
 from qtab.discretizers.base import Discretizer, check_table_size
 from qtab.discretizers.refusals import too_large
 
+_IS_TUPLE = "is_tuple"
+"""The name in files of :attr:`Identity.is_tuple`."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Identity(Discretizer):
     """Integers from ``low`` to ``high``, both int64; each combination is a cell, numbered in C order."""
+
+    is_tuple: bool | None = False
+    """Whether the space is a Tuple, of which Gymnasium batches n observations as a tuple of (n,) arrays. None: unknown,
+    from a file of an earlier version."""
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Identity":  # noqa: ARG003 - it has no options
@@ -42,7 +49,7 @@ class Identity(Discretizer):
             raise ValueError(f"the observation space must have at least one component, got {space}")
         values = float(np.prod((high - low + 1).astype(np.float64))) * n_actions
         check_table_size("the observation space", space, values, too_large(()))
-        return cls(low, high)
+        return cls(low, high, isinstance(space, spaces.Tuple))
 
     @classmethod
     def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Identity":  # noqa: ARG003
@@ -52,7 +59,49 @@ class Identity(Discretizer):
             raise ValueError("its bounds are not those of a space")
         if low.shape != high.shape or low.ndim > 1 or (low > high).any():
             raise ValueError("its bounds are not those of a discrete space")
-        return cls(low, high)
+        is_tuple = arrays.get(_IS_TUPLE)
+        if is_tuple is not None and (is_tuple.dtype != np.bool_ or is_tuple.shape):
+            raise ValueError("its observations are not those of a space")
+        return cls(low, high, (None if is_tuple is None else bool(is_tuple)) if low.ndim else False)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Returns the arrays to save."""
+        known = {_IS_TUPLE: np.array(self.is_tuple)} if self.low.ndim and self.is_tuple is not None else {}
+        return {**super().arrays(), **known}
+
+    def active_rows(self, observation: Any) -> NDArray[np.int64]:
+        """Returns the (1,) row of an observation, or the (n, 1) rows of n observations.
+
+        Those of a Tuple space are batched as Gymnasium's vector environments do, as a tuple of (n,) arrays, or as any
+        other space's, (n, d).
+
+        Raises:
+            TypeError: if the observation does not hold integers.
+            ValueError: if it has another shape than the space, or has no row.
+        """
+        return super().active_rows(self._in_rows(observation))
+
+    def split(self, observation: Any, count: int | None) -> list[Any]:
+        """Returns each of so many observations; None means a single one."""
+        rows = super().split(observation if count is None else self._in_rows(observation), count)
+        return rows if count is None or not self.is_tuple else [tuple(np.asarray(row).tolist()) for row in rows]
+
+    def _in_rows(self, observation: Any) -> Any:
+        """Returns (n, d), if it is a tuple of (n,) arrays, one for each component."""
+        is_tuple = self.is_tuple is not False and isinstance(observation, tuple) and len(observation) == self.low.size
+        if not is_tuple or not all(isinstance(part, np.ndarray) and part.ndim == 1 for part in observation):
+            return observation
+        counts = {len(part) for part in observation}
+        if len(counts) > 1:
+            raise ValueError(
+                f"observations must be batched alike in all their components, got {sorted(counts)} of them"
+            )
+        if self.is_tuple is None and counts == {len(observation)}:
+            raise ValueError(
+                f"observations must be an array of shape {(*counts, len(observation))} for a run from a file of an "
+                "earlier version, which does not tell a Tuple space from a MultiDiscrete one, got a tuple of arrays"
+            )
+        return np.stack(observation, axis=-1)
 
     @cached_property  # a call of train() asks seven times
     def shape(self) -> tuple[int, ...]:

@@ -155,9 +155,13 @@ class Sparse(Discretizer):
         """
         if isinstance(self.cells, Function):
             return rows_of(self._known_row, observation, self.cells.observation_shape)
-        flat = self.cells.flat(observation)
-        rows = [self.seen.get(_key(self.cells.cells_of(numbers)), self.max_rows) for numbers in np.atleast_2d(flat)]
-        return np.array(rows, np.int64).reshape(*flat.shape[:-1], 1)
+        cells = self.cells.cells_of(observation)
+        rows = [self.seen.get(_key(cell), self.max_rows) for cell in np.atleast_2d(cells)]
+        return np.array(rows, np.int64).reshape(*cells.shape[:-1], 1)
+
+    def split(self, observation: Any, count: int | None) -> list[Any]:
+        """Returns each of so many observations; None means a single one."""
+        return self.cells.split(observation, count)
 
     def _known_row(self, observation: Any) -> int:
         return self.seen.get(_key(self.cells.cells(observation)), self.max_rows)

@@ -111,6 +111,10 @@ class TimeAware(Discretizer):
         """
         return self.cells.active_rows(observation)
 
+    def split(self, observation: Any, count: int | None) -> list[Any]:
+        """Returns each of so many observations; None means a single one."""
+        return self.cells.split(observation, count)
+
     def rows_after(self, steps: Any, observation: Any) -> NDArray[np.int64]:
         """Returns the (1,) row of an observation after a number of steps, or the (n, 1) rows of n observations.
 

@@ -7,6 +7,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.action_mask import FORGOTTEN, checked_mask
 from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
@@ -75,7 +76,13 @@ def to_choose_from(run: "Run", observation: Any, action_masks: Any, steps: Any =
         masks = [checked_mask("action_masks", mask, values.shape[-1]) for mask in np.atleast_2d(given)]
         if len(masks) != len(np.atleast_2d(values)) or given.ndim > values.ndim:
             raise ValueError(f"action_masks must have shape {values.shape}, an item for each action, got {given.shape}")
-        return np.where(np.reshape(masks, values.shape), values, -np.inf)
+        masked = np.where(np.reshape(masks, values.shape), values, -np.inf)
+        if np.isneginf(masked).all(axis=-1).any():
+            raise ValueError(
+                "action_masks must leave an action that the state has by the run's initial_q, got "
+                f"{shown(action_masks)}"
+            )
+        return masked
     available = _available(run, observation, rows)
     if available is not None:
         return np.where(available, values, -np.inf)
@@ -98,11 +105,9 @@ def _available(run: "Run", observation: Any, rows: NDArray[np.int64]) -> NDArray
     """Which actions the observations have, of shape (..., actions): by the function, or as last seen in their cells."""
     setting = run.config.action_mask
     if callable(setting):
-        n_actions = len(run.actions)
-        if rows.ndim == 1:
-            return checked_mask("action_mask", setting(observation), n_actions)
-        masks = [checked_mask("action_mask", setting(one), n_actions) for one in observation]
-        return np.array(masks, np.bool_).reshape(-1, n_actions)
+        observations = run.discretizer.split(observation, None if rows.ndim == 1 else len(rows))
+        masks = [checked_mask("action_mask", setting(one), len(run.actions)) for one in observations]
+        return np.array(masks, np.bool_).reshape(*rows.shape[:-1], len(run.actions))
     if run.action_masks is None:
         return None
     known: NDArray[np.bool_] = run.action_masks.reshape(-1, len(run.actions))

@@ -1,0 +1,160 @@
+"""A part of an observation space: a space without spaces in it, and where it is found."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from qtab.discretizers.refusals import refusal
+
+SMALL = 1024
+"""An integer Box of at most this many values a component indexes the table; a larger one is discretized."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A space without spaces in it, whose components follow each other in C order."""
+
+    path: tuple[str | int, ...]
+    """The keys and indices under which it is found in an observation."""
+    shape: tuple[int, ...]
+    low: tuple[float, ...]
+    """The lower bound of each component: integers where ``kind`` is not ``"float"``; it can be infinite."""
+    high: tuple[float, ...]
+    kind: str
+    """``"index"`` for a space that is discrete, ``"integer"`` for a Box of integers, ``"float"`` for one of floats."""
+    single: bool = False
+    """Whether the floats have at most the precision of float32."""
+
+    @property
+    def size(self) -> int:
+        """The number of its components."""
+        return len(self.low)
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether every component has finite bounds."""
+        return all(map(math.isfinite, (*self.low, *self.high)))
+
+    @property
+    def is_small(self) -> bool:
+        """Whether it takes few integers, so that it indexes the table unless another discretizer is asked for."""
+        if self.kind == "index":
+            return True
+        if self.kind == "float" or not self.is_bounded:
+            return False
+        return all(high - low < SMALL and abs(low) < 2**62 for low, high in zip(self.low, self.high, strict=True))
+
+    @property
+    def name(self) -> str:
+        """How messages name it: ``observation['agent']``."""
+        return "observation" + "".join(f"[{key!r}]" for key in self.path)
+
+    def names(self) -> Iterator[str]:
+        """Yields a name for each of its components, such as ``agent[0]``."""
+        first, *others = self.path or ("observation",)
+        stem = first if isinstance(first, str) else f"observation[{first}]"
+        stem += "".join(f".{key}" if isinstance(key, str) else f"[{key}]" for key in others)
+        for index in product(*map(range, self.shape)):
+            yield stem + (f"[{', '.join(map(str, index))}]" if index else "")
+
+    def find(self, observation: Any) -> NDArray[Any]:
+        """Returns its part of an observation.
+
+        Raises:
+            ValueError: if the observation has no such part.
+        """
+        for key in self.path:
+            try:
+                observation = observation[key]
+            except (KeyError, IndexError, TypeError):
+                raise ValueError(f"an observation must have a part {self.name}, as the space has") from None
+        return np.asarray(observation)
+
+    def numbers(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Checks that values are numbers of its kind.
+
+        Raises:
+            TypeError: if they are not.
+        """
+        if values.dtype.kind in ("iub" if self.kind != "float" else "iubf"):
+            return values
+        if values.dtype.kind == "f" and (np.rint(values) == values).all() and (np.abs(values) < 2.0**63).all():
+            return values
+        wanted = "numbers" if self.kind == "float" else "integers"
+        raise TypeError(f"{self.name} must hold {wanted}, as the space does, got {values.tolist()!r:.80}")
+
+
+def restored_part(stored: Any) -> Part:
+    """Returns a part in a file, of which nothing is known.
+
+    Raises:
+        KeyError: if something is missing.
+        ValueError: if it is not a part of a space.
+    """
+    path, shape, low, high = (tuple(stored[name]) for name in ("path", "shape", "low", "high"))
+    kind, single = stored["kind"], stored["single"]
+    numbers = (*low, *high)
+    integral = all(isinstance(number, int) or math.isinf(number) for number in numbers)
+    fits = (
+        kind in ("index", "integer", "float")
+        and isinstance(single, bool)
+        and all(isinstance(key, str | int) for key in path)
+        and all(isinstance(size, int) and size >= 0 for size in shape)
+        and math.prod(shape) == len(low) == len(high)
+        and all(isinstance(number, int | float) and not math.isnan(number) for number in numbers)
+        and (kind == "float" or integral)
+        and (kind != "index" or all(isinstance(number, int) for number in numbers))
+        and all(first <= last for first, last in zip(low, high, strict=True))
+    )
+    if not fits:
+        raise ValueError("its observations are not those of a space")
+    return Part(path, shape, low, high, kind, single)
+
+
+def parts_of(space: Any, whole: Any, path: tuple[str | int, ...] = ()) -> Iterator[Part]:
+    """Yields the parts of a space, which is found under ``path`` in the whole one.
+
+    Raises:
+        ValueError: if a table cannot serve it; the message says what would help.
+    """
+    if isinstance(space, spaces.Dict):
+        for key, part in space.spaces.items():
+            yield from parts_of(part, whole, (*path, key))
+    elif isinstance(space, spaces.Tuple):
+        for index, part in enumerate(space.spaces):
+            yield from parts_of(part, whole, (*path, index))
+    else:
+        yield _part(space, whole, path)
+
+
+def _part(space: Any, whole: Any, path: tuple[str | int, ...]) -> Part:
+    if not all(isinstance(key, str | int) for key in path):
+        raise ValueError(f"the observation space must have texts as the keys of its Dict, got {path[-1]!r}")
+    if isinstance(space, spaces.Discrete):
+        first = int(space.start)
+        return Part(path, (), (first,), (first + int(space.n) - 1,), "index")
+    if isinstance(space, spaces.MultiDiscrete):
+        starts = np.broadcast_to(space.start, space.nvec.shape).ravel().tolist()
+        lasts = [first + int(count) - 1 for first, count in zip(starts, space.nvec.ravel().tolist(), strict=True)]
+        return Part(path, space.nvec.shape, tuple(starts), tuple(lasts), "index")
+    if isinstance(space, spaces.MultiBinary):
+        count = math.prod(space.shape)
+        return Part(path, space.shape, (0,) * count, (1,) * count, "index")
+    if isinstance(space, spaces.Box) and space.dtype is not None:
+        low, high = space.low.ravel(), space.high.ravel()
+        if space.dtype.kind == "b":
+            return Part(path, space.shape, tuple(map(int, low)), tuple(map(int, high)), "index")
+        if space.dtype.kind in "iu":
+            lows = np.where(space.bounded_below.ravel(), low.astype(object), -math.inf).tolist()
+            highs = np.where(space.bounded_above.ravel(), high.astype(object), math.inf).tolist()
+            return Part(path, space.shape, tuple(lows), tuple(highs), "integer")
+        if space.dtype in (np.float16, np.float32, np.float64):
+            bounds = tuple(low.astype(np.float64).tolist()), tuple(high.astype(np.float64).tolist())
+            return Part(path, space.shape, *bounds, "float", space.dtype != np.float64)
+    raise ValueError(refusal(space, whole, path))
