@@ -90,3 +90,30 @@ def test_sample_averages_are_the_means_of_the_rewards() -> None:
 def test_bad_arguments_are_refused(kwargs: dict[str, Any], error: type[Exception], text: str) -> None:
     with pytest.raises(error, match=text):
         gym.make(BANDIT, **kwargs)
+
+
+@pytest.mark.parametrize(
+    "chosen",
+    [
+        {"time_aware": True},
+        {"time_aware": True, "exploration": "ucb", "count_bonus": 1.0},
+        {"on_truncation": "terminate", "algorithm": "sarsa"},
+        {"action_mask": lambda _: np.arange(10) % 2 == 0, "bit_generator": "MT19937"},
+    ],
+    ids=lambda chosen: "-".join(chosen),
+)
+def test_a_bandit_honours_what_other_environments_do(chosen: dict[str, Any]) -> None:
+    settings: dict[str, Any] = {"episodes": 60, "max_episode_steps": 3, **chosen}
+    run = qtab.train(BANDIT, seed=1, record=5, visits=True, **settings)
+    assert run.config.backend == "rust"
+    assert run.q_table.shape == ((3, 1, 10) if "time_aware" in chosen else (1, 10))
+    assert run.visits is not None
+    assert run.visits.sum() == 60
+    assert len(run.recordings) == 5
+    assert qtab.verify(run).equal
+    many = qtab.train_many(BANDIT, seeds=2, threads=1, tables=True, **settings)
+    assert many[1].tables.tobytes() == run.tables.tobytes()
+    stopped = qtab.train(
+        BANDIT, seed=1, callback=lambda progress: progress.episodes < 20, callback_every=20, **settings
+    )
+    assert qtab.resume(stopped).tables.tobytes() == run.tables.tobytes()

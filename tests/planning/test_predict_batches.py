@@ -53,3 +53,14 @@ def test_a_state_of_another_length_is_refused(lake):
         lake.predict([0, 1], [3, 4], [True])
     with pytest.raises(TypeError, match="state must be an integer"):
         lake.predict([0, 1], [0.5, 1.0])
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_a_vector_environment_of_tuples_is_answered_as_one_by_one(count):
+    found = qtab.optimum("Blackjack-v1")
+    run = qtab.train("Blackjack-v1", seed=0, episodes=200)
+    hands = [(12, 2, 0), (20, 10, 0), (18, 1, 1), (5, 7, 0)][:count]
+    batch = tuple(np.array(parts) for parts in zip(*hands, strict=True))
+    assert found.predict(batch)[0].tolist() == [found.predict(hand)[0] for hand in hands]
+    assert run.predict(batch)[0].tolist() == [run.predict(hand)[0] for hand in hands]
+    assert run.q_values(batch).tolist() == run.q_values(np.array(hands)).tolist()

@@ -157,7 +157,8 @@ def test_a_function_gets_the_observations_of_a_batch_one_by_one(
 
     def mask(observation: Any) -> Any:
         allowed = np.ones(3, bool)
-        allowed[int(np.abs(gym.spaces.flatten(space, observation)).sum() * 7) % 3] = False
+        numbers: Any = gym.spaces.flatten(space, observation)
+        allowed[int(np.abs(numbers).sum() * 7) % 3] = False
         return allowed
 
     features: dict[str, Any] = {"discretizer": "bins", "bins": 3} if name == "floats" else {}
@@ -167,7 +168,8 @@ def test_a_function_gets_the_observations_of_a_batch_one_by_one(
     space.seed(1)
     for count in (1, 2, 3, 5):
         observations = [space.sample() for _ in range(count)]
-        batch = concatenate(space, observations, create_empty_array(space, count))
+        empty: Any = create_empty_array(space, count)
+        batch = concatenate(space, observations, empty)
         for one in (run, qtab.load(tmp_path / "run.npz", action_mask=mask)):
             values = np.array([one.q_values(observation) for observation in observations])
             assert one.q_values(batch).tobytes() == values.tobytes()

@@ -6,6 +6,7 @@ The files in ``saved/`` were written by ``run.save`` and ``qtab.sweep(..., store
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,8 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab.config.config import replace_checked
+from qtab.sweeps.description import Description, read_description
 
 SAVED = Path(__file__).with_name("saved")
 RUNS = sorted(path.stem for path in SAVED.glob("*.npz"))
@@ -60,3 +63,44 @@ def test_a_store_resumes_and_holds_the_same_rows(name: str, tmp_path: Path) -> N
     expected = qtab.load_sweep(SAVED / "finished.db")
     assert table.columns["steps"].tolist() == expected.columns["steps"].tolist()
     assert table.columns["final_return"].tolist() == expected.columns["final_return"].tolist()
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "ignored"),
+    [
+        ("gradient_bandit", {"discount": 0.9, "on_truncation": "bootstrap"}),
+        ("reinforce", {"on_truncation": "bootstrap"}),
+        ("reinforce_with_baseline", {"on_truncation": "bootstrap"}),
+    ],
+)
+def test_settings_that_earlier_versions_ignored_become_those_in_effect(
+    algorithm: Any, ignored: dict[str, Any], tmp_path: Path
+) -> None:
+    run = qtab.train("CliffWalking-v1", algorithm=algorithm, episodes=6, max_episode_steps=9, seed=1)
+    stopped = qtab.train(config=run.config, callback=lambda progress: progress.episodes < 3, callback_every=1)
+    for name, one in (("run", run), ("stopped", stopped)):
+        replace(one, config=replace_checked(one.config, **ignored)).save(tmp_path / f"{name}.npz")
+    loaded = qtab.load(tmp_path / "run.npz")
+    assert loaded.config == run.config
+    assert qtab.verify(loaded).equal
+    assert qtab.train(config=loaded.config).tables.tobytes() == run.tables.tobytes()
+    assert qtab.train(resume=tmp_path / "stopped.npz").tables.tobytes() == run.tables.tobytes()
+
+
+def test_a_store_with_such_settings_is_that_of_the_same_sweep() -> None:
+    table = qtab.sweep("CliffWalking-v1", {"algorithm": ["reinforce", "q_learning"]}, seeds=1, episodes=3)
+    now = Description([dict(config) for config in table.configs], list(table.settings), (0,), 1)
+    before = json.loads(now.text)
+    assert [config["on_truncation"] for config in before["configs"]] == ["terminate", "bootstrap"]
+    before["configs"][0]["on_truncation"] = "bootstrap"
+    assert read_description(json.dumps(before)).text == now.text
+
+
+def test_a_batch_of_which_an_earlier_file_does_not_tell_the_layout_is_refused() -> None:
+    run = qtab.load(SAVED / "blackjack.npz")
+    hands = np.array([(12, 2, 0), (20, 10, 0), (18, 1, 1)])
+    assert run.predict(tuple(hands[:2].T))[0].tolist() == run.predict(hands[:2])[0].tolist()
+    with pytest.raises(
+        ValueError, match=r"^observations must be an array of shape \(3, 3\) for a run from a file of an"
+    ):
+        run.predict(tuple(hands.T))

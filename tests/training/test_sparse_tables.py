@@ -171,7 +171,9 @@ def test_large_integers_beside_floats_have_rows_of_their_own(
 
 def test_a_float_that_is_no_64_bit_integer_is_refused() -> None:
     run = qtab.train(Counted((0, 1)), discretizer="bins", max_rows=9, **SETTINGS)
-    with pytest.raises(TypeError, match=r"^observation\['count'\] must hold integers, as the space does, got \[1e\+30\]"):
+    with pytest.raises(
+        TypeError, match=r"^observation\['count'\] must hold integers, as the space does, got \[1e\+30\]"
+    ):
         run.values({"count": np.array(1e30), "x": np.array(0.5, np.float32)})
 
 

@@ -30,7 +30,7 @@ from qtab.config.choices import (
     Ties,
     Traces,
 )
-from qtab.config.options import PREFERENCES, fixed_settings, implied_schedules
+from qtab.config.options import PREFERENCES, fixed_settings, freed_settings, implied_schedules
 from qtab.config.unknown import check_names
 from qtab.config.validation import validated
 
@@ -87,8 +87,7 @@ class Config:
     """α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided among the
     tilings, and may be up to 2. For preferences any step size that is not negative."""
     discount: float = 0.9
-    """γ: the discount factor, in [0, 1]. It is 1 for algorithms that learn the average reward, and 0 for the gradient
-    bandit algorithm, which learns from the next reward alone."""
+    """γ: the discount factor, in [0, 1]: 1 for algorithms that learn the average reward, 0 for the gradient bandit."""
     learning_rate_schedule: LearningRateSchedule = "constant"
     """How the learning rate falls: linearly or exponentially over the episodes, or (visits) as learning_rate / n at the
     n-th visit of a state and action. A learning rate that is given alone is constant; with min_learning_rate or
@@ -242,16 +241,11 @@ class Config:
         check_names(changes, DEFAULTS)
         given: dict[str, Any] = dict(changes)
         if "algorithm" in given:
-            given = {**freed(self, given["algorithm"]), **fixed_settings(given["algorithm"]), **given}
+            usual = {name: DEFAULTS[name] for name in freed_settings(self.algorithm, given["algorithm"])}
+            given = {**usual, **fixed_settings(given["algorithm"]), **given}
         if given.get("time_aware"):
             given.setdefault("on_truncation", "terminate")
         return dataclasses.replace(self, **given)
-
-
-def freed(config: Config, algorithm: Any) -> dict[str, Any]:
-    """Returns the defaults of the settings that are fixed for the algorithm of a config, but not for another one."""
-    fixed = fixed_settings(config.algorithm).keys() - fixed_settings(algorithm).keys()
-    return {name: DEFAULTS[name] for name in fixed}
 
 
 DEFAULTS: Mapping[str, Any] = {

@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.shown import shown
-from qtab.config.config import DEFAULTS, Config, freed, replace_checked
-from qtab.config.options import applicable, is_set, turned_off
+from qtab.config.config import DEFAULTS, Config, replace_checked
+from qtab.config.options import applicable, freed_settings, is_set, turned_off
 from qtab.config.unknown import check_names
 
 Base: TypeAlias = Config | Mapping[str, Any]
@@ -61,8 +61,7 @@ def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:
     a preset has.
     """
     if isinstance(base, Config):
-        if "algorithm" in settings:
-            base = replace_checked(base, **freed(base, settings["algorithm"]))
-        given = {name: value for name, value in vars(base).items() if name != "env" and is_set(value)}
+        left_out = {"env", *freed_settings(base.algorithm, settings.get("algorithm", base.algorithm))}
+        given = {name: value for name, value in vars(base).items() if name not in left_out and is_set(value)}
         base = applicable({**given, **turned_off(vars(base))}, {**vars(base), **settings})
     return {**base, **settings}

@@ -233,6 +233,11 @@ def fixed_settings(algorithm: Any) -> Mapping[str, Any]:
     return FIXED[algorithm].values if isinstance(algorithm, str) and algorithm in FIXED else {}
 
 
+def freed_settings(before: Any, now: Any) -> set[str]:
+    """Returns the names of the settings that were fixed for the algorithm before, and are not for the one now."""
+    return fixed_settings(before).keys() - fixed_settings(now).keys()
+
+
 def turned_off(fields: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the options that a complete config, such as that of a run, has off, each with its None.
 

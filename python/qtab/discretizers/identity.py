@@ -79,15 +79,21 @@ class Identity(Discretizer):
             TypeError: if the observation does not hold integers.
             ValueError: if it has another shape than the space, or has no row.
         """
-        return super().active_rows(self._in_rows(observation))
+        return super().active_rows(self.in_rows(observation))
 
     def split(self, observation: Any, count: int | None) -> list[Any]:
         """Returns each of so many observations; None means a single one."""
-        rows = super().split(observation if count is None else self._in_rows(observation), count)
+        rows = super().split(observation if count is None else self.in_rows(observation), count)
         return rows if count is None or not self.is_tuple else [tuple(np.asarray(row).tolist()) for row in rows]
 
-    def _in_rows(self, observation: Any) -> Any:
-        """Returns (n, d), if it is a tuple of (n,) arrays, one for each component."""
+    def in_rows(self, observation: Any) -> Any:
+        """Returns n observations of a Tuple space that are batched as a tuple of (n,) arrays as one (n, d) array.
+
+        Any other observation is returned as it is.
+
+        Raises:
+            ValueError: if the arrays have different lengths, or a file does not tell whether the space is a Tuple.
+        """
         is_tuple = self.is_tuple is not False and isinstance(observation, tuple) and len(observation) == self.low.size
         if not is_tuple or not all(isinstance(part, np.ndarray) and part.ndim == 1 for part in observation):
             return observation

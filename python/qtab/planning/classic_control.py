@@ -98,6 +98,10 @@ class GridSolver:
         """The shape of an observation."""
         return (self._known.observation_length,)
 
+    def in_rows(self, observation: Any) -> Any:
+        """Returns the observation, which is of a Box."""
+        return observation
+
     def action(self, observation: ArrayLike, steps_taken: int) -> Any:  # noqa: ARG002 - see needs_step_count
         """Returns the best action: an integer, or of Pendulum a (1,) float32 torque.
 

@@ -32,6 +32,9 @@ class Solver(Protocol):
     def observation_shape(self) -> tuple[int, ...]:
         """The shape of an observation."""
 
+    def in_rows(self, observation: Any) -> Any:
+        """Returns n observations of a Tuple space as one array; any other observation as it is."""
+
     def action(self, observation: ArrayLike, steps_taken: int) -> int:
         """Returns the best action after a number of steps of the episode."""
 
@@ -106,7 +109,8 @@ class Optimum:
         Under a finite horizon the best action depends on the steps left. The state is then the number of steps taken in
         the episode; otherwise it is None.
 
-        For n observations, an array with one more leading axis, it returns an array of n actions, and of n states.
+        For n observations, batched as Gymnasium's vector environments do, it returns an array of n actions, and of n
+        states.
 
         Args:
             observation: An observation, or n of them.
@@ -119,6 +123,7 @@ class Optimum:
             ValueError: for an observation outside the space, or one that does not determine the best action; or for a
                 ``state`` or ``episode_start`` of another length.
         """
+        observation = self.solver.in_rows(observation)
         if np.ndim(observation) == len(self.solver.observation_shape) + 1:
             return self._predict_each(np.asarray(observation), state, episode_start)
         if not self.solver.needs_step_count:

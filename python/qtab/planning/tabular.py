@@ -63,6 +63,10 @@ class TabularSolver:
         """The shape of an observation: () for a Discrete space."""
         return self._cells.low.shape
 
+    def in_rows(self, observation: Any) -> Any:
+        """Returns n observations of a Tuple space as one array; any other observation as it is."""
+        return self._cells.in_rows(observation)
+
     def action(self, observation: ArrayLike, steps_taken: int) -> int:
         """Returns the best action after a number of steps of the episode.
 

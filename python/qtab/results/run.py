@@ -202,9 +202,9 @@ class Run(WithPage):
     ) -> tuple[Any, Any]:
         """Returns the action of an observation as ``env.step`` takes it, and the state of the policy, as SB3 does.
 
-        For n observations, an array with one more leading axis, it returns an array of n actions. The policy of a run
-        with ``time_aware=True`` has a state, the number of steps taken in the episode, which the next call takes; from
-        the time limit on it acts as in the last step. Any other run returns None as the state.
+        For n observations, batched as Gymnasium's vector environments do, it returns an array of n actions. The policy
+        of a run with ``time_aware=True`` has a state, the number of steps taken in the episode, which the next call
+        takes; from the time limit on it acts as in the last step. Any other run returns None as the state.
 
         Args:
             observation: An observation, or n of them.
@@ -216,7 +216,8 @@ class Run(WithPage):
                 action from the behaviour policy, with the ε or the temperature that the last episode of the training
                 left: an ε that fell to 0 leaves the greedy action, as does exploration "ucb". The draws come from a
                 generator of this run, seeded by the run's seed, with other numbers than those of the training.
-            action_masks: (actions,) or (n, actions): which actions there are. None: by the run's ``action_mask``.
+            action_masks: (actions,) or (n, actions): which actions may be taken or drawn. None: by the run's
+                ``action_mask``.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space), or ``deterministic`` is
