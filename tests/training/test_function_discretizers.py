@@ -6,7 +6,8 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from gymnasium.spaces import Box, Dict, Text
+from gymnasium.spaces import Box, Dict, Discrete, Text, Tuple
+from gymnasium.vector.utils import concatenate, create_empty_array
 
 import qtab
 from support.environments import Sampled
@@ -124,6 +125,31 @@ def test_a_function_serves_spaces_that_hold_no_numbers() -> None:
     )
     assert run.q_table.shape == (6, 4, 3)
     assert qtab.verify(run, env=env).equal
+
+
+@pytest.mark.parametrize("max_rows", [None, 50])
+@pytest.mark.parametrize(
+    "space", [Dict(a=Discrete(3), b=Box(0, 2, (2,), np.int64)), Tuple((Discrete(3), Discrete(2)))], ids=str
+)
+def test_a_function_gets_the_observations_of_a_batch_one_by_one(
+    space: Any, max_rows: int | None, tmp_path: Path
+) -> None:
+    def place(observation: Any) -> Any:
+        first, second = observation.values() if isinstance(observation, dict) else observation
+        return int(first), int(np.sum(second))
+
+    table: dict[str, Any] = {"shape": (3, 5)} if max_rows is None else {"max_rows": max_rows}
+    run = qtab.train(Sampled(space), discretizer=place, **table, **SETTINGS)
+    run.save(tmp_path / "run.npz")
+    space.seed(1)
+    for count in (1, 2, 3):
+        observations = [space.sample() for _ in range(count)]
+        empty: Any = create_empty_array(space, count)
+        batch = concatenate(space, observations, empty)
+        for one in (run, qtab.load(tmp_path / "run.npz", discretizer=place)):
+            values = np.array([one.q_values(observation) for observation in observations])
+            assert one.q_values(batch).tobytes() == values.tobytes()
+            assert one.q_values(batch).shape == (count, 3)
 
 
 def test_what_a_function_needs_and_what_needs_a_function() -> None:

@@ -6,7 +6,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from gymnasium.spaces import Box, Dict, Discrete
+from gymnasium.spaces import Box, Dict, Discrete, MultiDiscrete, Tuple
 
 import qtab
 from support.environments import Sampled
@@ -175,6 +175,20 @@ def test_a_float_that_is_no_64_bit_integer_is_refused() -> None:
         TypeError, match=r"^observation\['count'\] must hold integers, as the space does, got \[1e\+30\]"
     ):
         run.values({"count": np.array(1e30), "x": np.array(0.5, np.float32)})
+
+
+def test_a_list_of_observations_of_a_tuple_space_is_no_batch() -> None:
+    env = Sampled(Tuple((MultiDiscrete([2, 2]), MultiDiscrete([2, 3]))))
+    run = qtab.train(env, **SETTINGS)
+    observations = [(np.array([0, 1]), np.array([1, 1])), (np.array([1, 0]), np.array([0, 2]))]
+    columns = tuple(np.stack(parts) for parts in zip(*observations, strict=True))
+    expected = [run.q_values(observation).tolist() for observation in observations]
+    assert run.q_values(columns).tolist() == expected
+    assert run.q_values(list(observations[0])).tolist() == expected[0]
+    with pytest.raises(
+        ValueError, match=r"^observations of a Tuple space must be batched as a tuple with an array for"
+    ):
+        run.q_values(observations)
 
 
 def test_plain_data_does_not_leave_out_how_observations_are_read(tmp_path: Path) -> None:

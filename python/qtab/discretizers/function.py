@@ -2,10 +2,12 @@
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from gymnasium import spaces
 from numpy.typing import NDArray
 
 from qtab._discretizer_spec import IdentitySpec
@@ -13,6 +15,7 @@ from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.discretizer import function_name
 from qtab.discretizers.base import Discretizer, check_table_size
+from qtab.discretizers.layout import Layout
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -28,6 +31,8 @@ class Function(Discretizer):
     """The shape of the table without its actions; None where rows are assigned for any integers."""
     observation_shape: tuple[int, ...] | None
     """The shape of an observation, by which a batch of them is recognized; None where the space has none."""
+    layout: Layout | None = None
+    """The layout of a Dict or Tuple of numbers, by which a batch is recognized there; None for any other space."""
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Function":
@@ -43,15 +48,19 @@ class Function(Discretizer):
             )
         if config.shape is not None and n_actions:
             check_table_size("shape", config.shape, math.prod(map(float, config.shape)) * n_actions)
-        return cls._of(config, space.shape)
+        layout = None
+        if isinstance(space, spaces.Dict | spaces.Tuple):
+            with suppress(ValueError):  # it holds what are no numbers
+                layout = Layout.of_space(space)
+        return cls._of(config, space.shape, layout)
 
     @classmethod
-    def _of(cls, config: Config, observation_shape: tuple[int, ...] | None) -> "Function":
+    def _of(cls, config: Config, observation_shape: tuple[int, ...] | None, layout: Layout | None) -> "Function":
         shape: Any = config.shape
         low = np.zeros(len(shape or ()), np.int64)
         high = low if shape is None else np.array(shape, np.int64) - 1
         function: Any = config.discretizer
-        return cls(low, high, function, shape, observation_shape)
+        return cls(low, high, function, shape, observation_shape, layout)
 
     @classmethod
     def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Function":
@@ -61,10 +70,13 @@ class Function(Discretizer):
         stored = arrays.get("observation_shape")
         if stored is not None and (stored.dtype != np.int64 or stored.ndim != 1 or (stored < 0).any()):
             raise ValueError("its observations do not have a shape")
-        return cls._of(config, None if stored is None else tuple(stored.tolist()))
+        layout = Layout.from_json(str(arrays["layout"])) if "layout" in arrays else None
+        return cls._of(config, None if stored is None else tuple(stored.tolist()), layout)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Returns the arrays to save."""
+        if self.layout is not None:
+            return {"layout": np.array(self.layout.to_json())}
         if self.observation_shape is None:
             return {}
         return {"observation_shape": np.array(self.observation_shape, np.int64)}
@@ -139,13 +151,38 @@ class Function(Discretizer):
         return np.array(self.cells(observation))
 
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
-        """Returns the (1,) row of an observation, or the (n, 1) rows of n observations of a space that has a shape.
+        """Returns the (1,) row of an observation, or the (n, 1) rows of n observations.
+
+        Observations are batched as Gymnasium's vector environments do. A space that holds other things than numbers has
+        no batches.
 
         Raises:
             TypeError: if the function does not return integers.
             ValueError: if they do not lie within the shape.
         """
-        return rows_of(self.observe, observation, self.observation_shape)
+        return self.rows_by(self.observe, observation)
+
+    def rows_by(self, row: Callable[[Any], int], observation: Any) -> NDArray[np.int64]:
+        """Returns (1,) or (n, 1): what a function of an observation returns for one, or for each of n."""
+        count = self._batch_size(observation)
+        if count is None:
+            return np.array([row(observation)], np.int64)
+        return np.array([row(one) for one in self.split(observation, count)], np.int64).reshape(-1, 1)
+
+    def _batch_size(self, observation: Any) -> int | None:
+        if self.layout is not None:
+            try:
+                return self.layout.batch_size(observation)
+            except ValueError:  # the function may read what the space does not describe
+                return None
+        if self.observation_shape is None:
+            return None
+        shape = np.shape(observation)
+        return shape[0] if shape and shape[1:] == self.observation_shape else None
+
+    def split(self, observation: Any, count: int | None) -> list[Any]:
+        """Returns each of so many observations, in the structure of the space; None means a single one."""
+        return super().split(observation, count) if self.layout is None else self.layout.split(observation, count)
 
 
 def _integers(returned: Any) -> NDArray[Any] | None:
@@ -159,14 +196,3 @@ def _integers(returned: Any) -> NDArray[Any] | None:
     if indices.dtype == object and not all(isinstance(index, int | np.integer) for index in indices.flat):
         return None
     return None if indices.ndim > 1 else indices
-
-
-def rows_of(
-    row: Callable[[Any], int], observation: Any, observation_shape: tuple[int, ...] | None
-) -> NDArray[np.int64]:
-    """Returns the (1,) row of an observation, or the (n, 1) rows of n observations of this shape."""
-    if observation_shape is not None:
-        shape = np.shape(observation)
-        if shape != observation_shape and shape[1:] == observation_shape and len(shape) == len(observation_shape) + 1:
-            return np.array([[row(one)] for one in observation], np.int64).reshape(-1, 1)
-    return np.array([row(observation)], np.int64)

@@ -84,6 +84,11 @@ class Layout:
             counts.add(None if shape == part.shape else shape[0])
         if len(counts) > 1:
             raise ValueError(f"observations must be batched alike in all their parts, got {sorted(map(str, counts))}")
+        if isinstance(observation, list) and self.parts[0].path and counts != {None}:
+            raise ValueError(
+                "observations of a Tuple space must be batched as a tuple with an array for each part, as Gymnasium's "
+                "vector environments do, got a list"
+            )
         return counts.pop()
 
     def flat(

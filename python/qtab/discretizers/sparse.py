@@ -12,7 +12,7 @@ from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.discretizers.base import Discretizer, check_table_size
 from qtab.discretizers.composite import Composite
-from qtab.discretizers.function import Function, rows_of
+from qtab.discretizers.function import Function
 
 _STORED = "met"
 """The name in files of the cells that were seen."""
@@ -154,7 +154,7 @@ class Sparse(Discretizer):
             ValueError: if it has another shape than the space, or lies outside the space.
         """
         if isinstance(self.cells, Function):
-            return rows_of(self._known_row, observation, self.cells.observation_shape)
+            return self.cells.rows_by(self._known_row, observation)
         cells = self.cells.cells_of(observation)
         rows = [self.seen.get(_key(cell), self.max_rows) for cell in np.atleast_2d(cells)]
         return np.array(rows, np.int64).reshape(*cells.shape[:-1], 1)
