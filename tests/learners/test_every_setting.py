@@ -176,3 +176,13 @@ def test_an_algorithm_brings_its_only_value_and_takes_it_away_again(algorithm: A
     for name in fixed:
         assert getattr(back, name) == getattr(usual, name)
         assert getattr(trained, name) == getattr(fresh, name)
+
+
+def test_a_time_aware_run_keeps_what_its_time_limit_needs() -> None:
+    config = qtab.train("FrozenLake-v1", algorithm="reinforce", time_aware=True, episodes=1).config
+    other = qtab.Config(algorithm="reinforce", time_aware=True).replace(algorithm="actor_critic")
+    assert (other.on_truncation, other.time_aware) == ("terminate", True)
+    trained = qtab.train("FrozenLake-v1", config=config, algorithm="actor_critic", episodes=1).config
+    assert (trained.on_truncation, trained.time_aware) == ("terminate", True)
+    with pytest.raises(ValueError, match=r"^on_truncation must be 'terminate' for algorithm 'reinforce'"):
+        config.replace(algorithm="reinforce", on_truncation="bootstrap")

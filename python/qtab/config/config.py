@@ -87,7 +87,7 @@ class Config:
     """α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided among the
     tilings, and may be up to 2. For preferences any step size that is not negative."""
     discount: float = 0.9
-    """γ: the discount factor, in [0, 1]: 1 for algorithms that learn the average reward, 0 for the gradient bandit."""
+    """γ: the discount factor, in [0, 1]. It is 1 where the average reward is learned, and 0 for the gradient bandit."""
     learning_rate_schedule: LearningRateSchedule = "constant"
     """How the learning rate falls: linearly or exponentially over the episodes, or (visits) as learning_rate / n at the
     n-th visit of a state and action. A learning rate that is given alone is constant; with min_learning_rate or
@@ -239,13 +239,13 @@ class Config:
             ValueError: for a value that is out of range, or that does not apply beside the others.
         """
         check_names(changes, DEFAULTS)
-        given: dict[str, Any] = dict(changes)
-        if "algorithm" in given:
-            usual = {name: DEFAULTS[name] for name in freed_settings(self.algorithm, given["algorithm"])}
-            given = {**usual, **fixed_settings(given["algorithm"]), **given}
-        if given.get("time_aware"):
-            given.setdefault("on_truncation", "terminate")
-        return dataclasses.replace(self, **given)
+        own: dict[str, Any] = {}
+        if "algorithm" in changes:
+            own |= {name: DEFAULTS[name] for name in freed_settings(self.algorithm, changes["algorithm"])}
+            own |= fixed_settings(changes["algorithm"])
+        if changes.get("time_aware", own and self.time_aware):
+            own["on_truncation"] = "terminate"
+        return dataclasses.replace(self, **{**own, **changes})
 
 
 DEFAULTS: Mapping[str, Any] = {
