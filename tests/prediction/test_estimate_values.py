@@ -13,8 +13,6 @@ from qtab.prediction import METHODS, state_aggregation, tile_coding
 from qtab.prediction.verification import verify_values
 
 WALK = "qtab/RandomWalk-v0"
-TOY_TEXT = ("FrozenLake-v1", "CliffWalking-v1", "Taxi-v4", "Blackjack-v1")
-BOOK = ("BlockingMaze", "KArmedBandit", "MaximizationBias", "Racetrack", "RandomWalk", "ShortCorridor")
 LEAN = np.tile([0.4, 0.6], (7, 1))
 OPTIONS: dict[str, dict[str, Any]] = {
     "td": {"learning_rate": 0.1},
@@ -284,22 +282,3 @@ def test_batch_td_settles_where_all_rewards_are_zero() -> None:
     visited = found.values != 0.5
     assert visited.any()
     assert np.abs(found.values[visited]).max() < 1e-10
-
-
-@pytest.mark.parametrize("changes", [{}, {"bit_generator": "MT19937"}, {"on_truncation": "terminate"}], ids=str)
-@pytest.mark.parametrize("env", [*TOY_TEXT, *(f"qtab/{name}-v0" for name in BOOK)])
-def test_every_environment_in_rust_is_estimated_as_in_plain_numpy(env: str, changes: dict[str, Any]) -> None:
-    found = qtab.estimate_values(env, "random", episodes=4, max_episode_steps=7, discount=0.9, **changes)
-    assert found.config is not None
-    assert found.config.backend == "rust"
-    assert found.verify().equal
-
-
-@pytest.mark.parametrize("features", [None, [0], [[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]]], ids=str)
-def test_a_policy_on_a_bandit_has_the_value_of_its_action(features: Any) -> None:
-    for arm, true in enumerate(np.random.default_rng(0).standard_normal(10)):
-        settings: dict[str, Any] = {"episodes": 400, "features": features, "max_episode_steps": 1}
-        found = qtab.estimate_values("qtab/KArmedBandit-v0", np.array([arm]), **settings)
-        assert found.values.shape == (1, 1)
-        assert abs(found.values[0, 0] - true) < 4.0 / np.sqrt(400)
-        assert found.verify(episodes=20).equal

@@ -12,7 +12,7 @@ use qtab_core::{QTable, StopFlag, Trainer};
 
 use super::factory::{Batching, Factory};
 use super::generic::boxed_run;
-use super::path::{Path, PlainSpec};
+use super::path::{PlainSpec, RunPath};
 use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::allocation;
@@ -52,7 +52,7 @@ pub(crate) fn testbed_runs(testbed: Testbed, spec: &Arc<RunSpec>) -> Box<dyn Run
 
 /// The spec, if [`compiled_run`] has the runs that it describes.
 fn compiled(spec: &RunSpec) -> Option<PlainSpec> {
-    let Path::Plain(plain) = Path::of(spec) else { return None };
+    let RunPath::Plain(plain) = RunPath::of(spec) else { return None };
     let policy = match plain.policy {
         PolicySpec::EpsilonGreedy { .. } => true,
         PolicySpec::Ucb { confidence, .. } => confidence >= 0.0,
@@ -135,16 +135,18 @@ where
     A: StepSize + Send + 'static,
 {
     let PlainSpec {
-        num_actions: _,       // the table's
-        max_episode_steps: _, // an episode is a single step
-        algorithm: _,         // `QLearning`
-        policy: _,            // `policy`
-        learning_rate: _,     // `learning_rate`
-        episodes: _,          // in their schedules
-        initial_q: _,         // the table
-        count_visits: _,      // never of a compiled run
         discount,
         terminal_update,
+        // The arguments are made of these.
+        num_actions: _,
+        algorithm: _,
+        policy: _,
+        learning_rate: _,
+        initial_q: _,
+        episodes: _,
+        // An episode is a single step, whatever its limit, and `compiled` leaves out runs that count visits.
+        max_episode_steps: _,
+        count_visits: _,
     } = *spec;
     let agent = Agent { table, policy, learning_rate, discount, terminal_update, masks: None };
     Box::new(Trainer::new(task, TdLearner { agent, rule: QLearning }, rng))

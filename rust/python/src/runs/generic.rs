@@ -12,7 +12,7 @@ use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
 use super::agent::generic_agent;
 use super::factory::{Batching, Factory};
 use super::observed::observed_box;
-use super::path::Path;
+use super::path::RunPath;
 use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
@@ -28,8 +28,8 @@ where
     if dimensions != M {
         return Err(invalid("discretizer", format!("one for observations of {M} components"), dimensions));
     }
-    let path = Path::of(spec);
-    if let Path::ObservedPrediction(prediction) = &path {
+    let path = RunPath::of(spec);
+    if let RunPath::ObservedPrediction(prediction) = &path {
         check_actions(&env, spec)?;
         return observed_box(env, spec, prediction);
     }

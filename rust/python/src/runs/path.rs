@@ -10,7 +10,7 @@ use crate::rng::BitGenerator;
 use crate::spec::{ActionMasksSpec, InitialQSpec, LearningRateSpec, PolicySpec, RunSpec};
 
 /// The paths that a run may take.
-pub(super) enum Path {
+pub(super) enum RunPath {
     /// A learner that asks for nothing beyond a [`PlainSpec`]. Code that is compiled for its types may take it over.
     Plain(PlainSpec),
     /// The values of a policy over numbered states, with the common generator and without anything at the time limit.
@@ -39,7 +39,7 @@ pub(super) struct PlainSpec {
     pub(super) count_visits: bool,
 }
 
-impl Path {
+impl RunPath {
     /// The path of a run. The pattern names every field of the spec, so that none is added without a decision here.
     pub(super) fn of(spec: &RunSpec) -> Self {
         let RunSpec {
@@ -66,10 +66,12 @@ impl Path {
         let is_common = *bit_generator == BitGenerator::Pcg64 && !terminate_on_truncation;
         if let Some(prediction) = prediction {
             // `RunSpec::predicting` has refused all that only a learner of actions has.
-            return match prediction {
-                prediction if prediction.reads_observations() => Self::ObservedPrediction(Arc::clone(prediction)),
-                prediction if is_common => Self::PlainPrediction(Arc::clone(prediction)),
-                _ => Self::Generic,
+            return if prediction.reads_observations() {
+                Self::ObservedPrediction(Arc::clone(prediction))
+            } else if is_common {
+                Self::PlainPrediction(Arc::clone(prediction))
+            } else {
+                Self::Generic
             };
         }
         if *record > 0 || *time_aware {

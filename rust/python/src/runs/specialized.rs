@@ -13,7 +13,7 @@ use qtab_core::{Env, Features, StopFlag, Trainer};
 
 use super::agent::policy;
 use super::factory::{Batching, Factory};
-use super::path::{Path, PlainSpec};
+use super::path::{PlainSpec, RunPath};
 use super::prediction::predicting;
 use super::{AnyRecordings, Run, RunFactory, generic};
 use crate::convert::Seed;
@@ -88,9 +88,9 @@ where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active = [u32; 1]> + Clone + Send + Sync + 'static,
 {
-    let plain = match Path::of(spec) {
-        Path::PlainPrediction(prediction) => return Ok(predicting(env, features, spec, &prediction)),
-        Path::Plain(plain) if has_actions(&env, &plain, N) => plain,
+    let plain = match RunPath::of(spec) {
+        RunPath::PlainPrediction(prediction) => return Ok(predicting(env, features, spec, &prediction)),
+        RunPath::Plain(plain) if has_actions(&env, &plain, N) => plain,
         _ => return generic(env, features, spec),
     };
     let LearningRateSpec::Schedule(learning_rate) = plain.learning_rate else {
@@ -178,16 +178,17 @@ where
     {
         let Self { env, features, spec } = self;
         let PlainSpec {
-            num_actions: _, // N
             max_episode_steps,
-            algorithm: _,     // `rule`,
-            policy: _,        // `policy`
-            learning_rate: _, // and `learning_rate` are made of these,
-            episodes: _,      // with the schedules of a run of so many episodes.
             discount,
             initial_q,
             terminal_update,
             count_visits,
+            // The arguments and `N` are made of these.
+            num_actions: _,
+            algorithm: _,
+            policy: _,
+            learning_rate: _,
+            episodes: _,
         } = spec;
         let parts = move |seed: &Seed, stop: &StopFlag<'_>| {
             let mut rng = agent_pcg64(seed);

@@ -10,7 +10,7 @@ use qtab_core::learners::{AnyAlgorithm, ExpectedSarsa, QLearning, Sarsa};
 use qtab_core::schedules::LearningRate;
 
 use super::factory::Batching;
-use super::path::{Path, PlainSpec};
+use super::path::{PlainSpec, RunPath};
 use super::specialized::{Builder, has_actions, plain_epsilon_greedy};
 use super::{RunFactory, generic_box};
 use crate::spec::{DiscretizerSpec, LearningRateSpec, RunSpec, TilesSpec};
@@ -22,8 +22,8 @@ pub(crate) fn tiled_box<E, const M: usize, const N: usize>(env: E, spec: &Arc<Ru
 where
     E: SimdEnv<M> + Env<Observation = [f32; M], State: Send> + Send + Sync + 'static,
 {
-    let runs = match (&spec.discretizer, Path::of(spec)) {
-        (DiscretizerSpec::Tiles(tiles), Path::Plain(plain)) => match tiles.tilings {
+    let runs = match (&spec.discretizer, RunPath::of(spec)) {
+        (DiscretizerSpec::Tiles(tiles), RunPath::Plain(plain)) => match tiles.tilings {
             8 => of_tilings::<E, M, N, 8>(&env, tiles, plain),
             16 => of_tilings::<E, M, N, 16>(&env, tiles, plain),
             32 => of_tilings::<E, M, N, 32>(&env, tiles, plain),

@@ -62,29 +62,32 @@ impl RunSpec {
     /// The same task, in which the values of a policy are estimated.
     ///
     /// # Errors
-    /// `ValueError` for what only a learner of actions has. The pattern names every field, so that none is added without a
-    /// decision here.
+    /// `ValueError` for what only a learner of actions has.
     pub(crate) fn predicting(self, prediction: PredictionSpec) -> PyResult<Self> {
+        // Every field is named, so that none is added without a decision here.
         let Self {
+            // The task, and what runs that estimate values honour as well.
             discretizer: _,
             num_actions: _,
             max_episode_steps: _,
-            time_aware,
-            algorithm: _, // The prediction has a method,
-            policy: _,    // policies,
             learning_rate: _,
             discount: _,
-            count_bonus,
-            initial_q: _, // and weights instead.
-            action_masks,
-            terminal_update,
             terminate_on_truncation: _,
             episodes: _,
             bit_generator: _,
-            record,
-            max_recorded_actions: _,
-            count_visits,
+            // The prediction has a method, policies and initial weights instead.
+            algorithm: _,
+            policy: _,
+            initial_q: _,
             prediction: _,
+            // What they do not honour.
+            time_aware,
+            count_bonus,
+            action_masks,
+            terminal_update,
+            record,
+            max_recorded_actions: _, // It only matters to runs that record.
+            count_visits,
         } = &self;
         let refused = [
             ("time_aware", *time_aware),
