@@ -178,6 +178,14 @@ def test_a_function_gets_the_observations_of_a_batch_one_by_one(
             assert all(mask(seen)[action - 2] for seen, action in zip(observations, drawn.tolist(), strict=True))
 
 
+def test_a_batch_without_observations_has_no_actions() -> None:
+    for space in NESTED.values():
+        options: dict[str, Any] = {"discretizer": "bins"} if space is NESTED["floats"] else {}
+        run = qtab.train(Sampled(space), action_mask=lambda _: [1, 0, 1], episodes=1, max_episode_steps=5, **options)
+        assert run.predict(create_empty_array(space, 0))[0].shape == (0,)
+        assert run.predict(create_empty_array(space, 0), deterministic=False)[0].shape == (0,)
+
+
 def test_a_row_of_numbers_is_passed_to_the_function_in_the_structure_of_the_space() -> None:
     space = NESTED["dict"]
     seen: list[Any] = []

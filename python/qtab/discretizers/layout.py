@@ -158,7 +158,10 @@ class Layout:
                 column = np.rint(column).astype(np.int64)
             columns.append((part.path, column.reshape(-1, *part.shape)))
             start = stop
-        return [_nested([(path, column[index]) for path, column in columns]) for index in range(count or 1)]
+        return [
+            _nested([(path, column[index]) for path, column in columns])
+            for index in range(1 if count is None else count)
+        ]
 
     def _is_flat(self, observation: Any) -> bool:
         """Whether it is one array of the components of a nested space or of a Box of several axes."""
