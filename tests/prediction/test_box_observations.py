@@ -183,6 +183,9 @@ class FullTorque:
     needs_step_count = False
     observation_shape = (3,)
 
+    def in_rows(self, observation: Any) -> Any:
+        return observation
+
     def action(self, observation: NDArray[np.float32], steps_taken: int) -> NDArray[np.float32]:
         return np.array([2.0 if observation[2] + steps_taken > 0 else -2.0], np.float32)
 
