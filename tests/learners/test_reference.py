@@ -7,7 +7,7 @@ from hypothesis import given, settings
 
 import qtab
 from qtab.config.choices import Algorithm
-from qtab.config.options import PREFERENCES, TABLES_ONLY
+from qtab.config.options import PREFERENCES, TABLES_ONLY, fixed_settings
 from qtab.reference import LEARNERS
 from support.environments import Chain
 from support.learner_settings import CAR, TRAINED, run_settings
@@ -49,8 +49,8 @@ def test_a_long_episode_gives_the_identical_table(algorithm: Any) -> None:
         episodes=1,
         max_episode_steps=250,
         learning_rate=0.3,
-        discount=1.0,
         initial_q=0.0,
+        **{"discount": 1.0, **fixed_settings(algorithm)},
         **exploration,
         **cells,
     )

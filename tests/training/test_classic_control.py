@@ -9,7 +9,7 @@ import pytest
 import qtab
 from qtab import _core
 from qtab.config.choices import Algorithm
-from qtab.config.options import TABLES_ONLY
+from qtab.config.options import TABLES_ONLY, fixed_settings
 from support.learner_settings import CAR, KEYWORDS, LIMITS, TRAINED
 from support.machine import MACHINE
 from support.parity import assert_same_run
@@ -39,6 +39,7 @@ def test_every_learner_and_discretizer_makes_the_table_of_gymnasium(env: str) ->
         chosen = {**settings_of(env, kind), "algorithm": algorithm, "seed": seed, "episodes": 1 if seed % 2 else 4}
         chosen["max_episode_steps"] = 200 if seed % 2 else 37
         chosen["on_truncation"] = "terminate" if seed % 3 else "bootstrap"
+        chosen |= fixed_settings(algorithm)
         fast = qtab.train(env, backend="rust", **chosen)
         assert_same_run(fast, qtab.train(env, backend="gymnasium", **chosen))
 
