@@ -63,8 +63,7 @@ def check(steps: tuple[ExplainedStep, ...], discount: float, tables: NDArray[np.
     """Follows the steps of an episode from the tables before it, to those after it."""
     for step in steps:
         for update in (*step.updates, *step.planning):
-            if update.step is not None:
-                assert update.target == target(update, discount)
+            assert update.target == target(update, discount)
             assert update.error == update.target - update.before
             apply(update, tables[update.table])
         if traced:  # the other values that changed

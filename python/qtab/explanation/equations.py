@@ -1,5 +1,6 @@
 """The equations of an update, in symbols and with their numbers."""
 
+import math
 from collections.abc import Sequence
 
 BOOTSTRAP = {
@@ -25,7 +26,7 @@ BOOTSTRAP = {
 
 G' is the return from the next step on."""
 SHOWN_REWARDS = 4
-"""The longer sums of n-step Sarsa are shortened."""
+"""Of more rewards, which n-step Sarsa has, only their discounted sum is shown."""
 
 
 def number(value: float) -> str:
@@ -47,19 +48,17 @@ def bootstrap_symbol(algorithm: str, table: int) -> str:
 
 
 def target_equation(
-    symbol: str, rewards: Sequence[float], discount: float, bootstrap: float | None, target: float
+    symbol: str, rewards: Sequence[float], discount: float, bootstrap: float | None, target: float, reward_name: str
 ) -> tuple[str, str]:
     """Returns the equation of a target and its numbers: discounted rewards, and the value of what follows."""
     symbols, numbers = [], []
-    for index, reward in enumerate(rewards):
-        if index >= SHOWN_REWARDS - 1 and index < len(rewards) - 1:
-            if index == SHOWN_REWARDS - 1:
-                symbols.append("...")
-                numbers.append("...")
-            continue
-        name = "R" if len(rewards) == 1 else f"R{index + 1}"
-        symbols.append(power("γ", index) + name)
-        numbers.append(power(number(discount), index, " · ") + (term(reward) if index else number(reward)))
+    if len(rewards) > SHOWN_REWARDS:
+        symbols.append("Σ γ^(k-1) Rk")
+        numbers.append(number(math.fsum(reward * discount**index for index, reward in enumerate(rewards))))
+    else:
+        for index, reward in enumerate(rewards):
+            symbols.append(power("γ", index) + (reward_name if len(rewards) == 1 else f"R{index + 1}"))
+            numbers.append(power(number(discount), index, " · ") + (term(reward) if index else number(reward)))
     if bootstrap is not None:
         symbols.append(power("γ", len(rewards), " ") + symbol)
         numbers.append(power(number(discount), len(rewards), " · ") + term(bootstrap))

@@ -130,7 +130,6 @@ def _repeat(run: Run, episode: int, env: gym.Env | None, start: Start | None, pr
         with ProgressBar(episodes, "episode", progress, "repeating") as bar, observed_by(watcher):
             watched = _Watched(stepped, run, watcher, episodes, bar.move_to)
             table, returns, lengths = LEARNERS[run.config.algorithm](watched, run.config, stop_after=episodes)
-            watcher.finish()
         return _Repeated(watcher, table, returns, lengths, map_columns(stepped))
     finally:
         if env is None:
@@ -167,12 +166,14 @@ def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> E
         action_name=run.action_names[choice.action],
         choice=choice,
         reward=step.reward,
+        bonus=step.bonus,
         next_observation=step.next_observation,
         next_rows=step.next_rows,
         next_cell=_cell(run, step.next_rows[0]),
         next_state=state_in_words(env, step.next_observation, columns),
         terminated=step.terminated,
         truncated=step.truncated,
+        terminal=step.terminal,
         updates=tuple(step.updates),
         policy_updates=tuple(step.policy_updates),
         planning=tuple(step.planning),
@@ -231,10 +232,8 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
     def step(self, action: Any) -> Any:
         observation, reward, terminated, truncated, info = self.env.step(action)
         if self._watcher.active:
-            config = self._run.config
             self._steps += 1
             rows = self._active_rows(observation)
-            terminal = terminated or (truncated and config.on_truncation == "terminate")
             self._watcher.record(
                 SeenStep(
                     observation=self._observation,
@@ -244,7 +243,6 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
                     next_rows=rows,
                     terminated=bool(terminated),
                     truncated=bool(truncated),
-                    terminal=bool(terminal),
                 )
             )
             self._observation, self._rows = observation, rows

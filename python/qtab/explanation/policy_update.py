@@ -93,8 +93,8 @@ def equations_of(
         config: The config of the run.
         parts: The reward, the bootstrap, the target, the reference, and the target minus the reference.
         step: The number of the step.
-        size: α, times the number of active rows.
-        factor: The gradient for the preference of A, or its trace.
+        size: α: by how much the preference of A changes for an error and a direction of 1.
+        factor: The direction: the gradient for the preference of A, or the mean of its traces.
         preference: The preference of A before and after the update.
     """
     algorithm = config.algorithm

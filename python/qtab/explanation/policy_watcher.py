@@ -8,23 +8,24 @@ from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.config.options import WITH_STATE_VALUES
+from qtab.explanation.equations import gain
+from qtab.explanation.largest_traces import changed, largest_traces
 from qtab.explanation.policy_update import PolicyUpdate, equations_of
 from qtab.explanation.records import Trace
-from qtab.explanation.updates import total
+from qtab.explanation.updates import Target, total
 from qtab.reference.action_masks import ActionMasks
 from qtab.reference.policies import Policy
 from qtab.reference.task import value, values
 
 Table = NDArray[np.float64]
 Cell = tuple[int, ...] | None
-SHOWN_TRACES = 8
-"""The largest traces of a step are kept."""
 
 
 @dataclass(frozen=True)
 class _Advantage:
     step: int
     reward: float | None
+    """None where the target is a return."""
     following: float | None
     target: float
     reference: float
@@ -57,17 +58,18 @@ class PolicyWatcher:
 
     def advantage(
         self,
-        step: int,
+        reported: Target,
         tables: Sequence[Table],
         state: Sequence[int],
-        parts: tuple[float | None, float | None],
         target: float,
         reference: float,
         power: float,
     ) -> None:
-        """Keeps what an action was worth; ``parts`` are the reward and the bootstrap in the target, if it has them."""
+        """Keeps what an action was worth."""
         known = value(tables[1], list(state), 0) if self.config.algorithm in WITH_STATE_VALUES else None
-        self._advantage = _Advantage(step, *parts, target, reference, power, known)
+        assert reported.step is not None  # noqa: S101 - no policy gradient method plans
+        reward = reported.rewards[0] if reported.rewards else None
+        self._advantage = _Advantage(reported.step, reward, reported.following, target, reference, power, known)
 
     def begin(
         self,
@@ -80,14 +82,7 @@ class PolicyWatcher:
     ) -> None:
         """Keeps the preferences before the update."""
         rows = tuple(state)
-        traced = np.empty((0, 2), np.int64) if z is None else np.argwhere(z != 0.0)
-        largest: tuple[Trace, ...] = ()
-        if z is not None:
-            order = np.argsort(-np.abs(z[z != 0.0]), kind="stable")[:SHOWN_TRACES]
-            largest = tuple(
-                Trace(row, self.cell(row), column, float(z[row, column]), float(H[row, column]), float("nan"))
-                for row, column in traced[order].tolist()
-            )
+        largest, n_traces = ((), 0) if z is None else largest_traces(z, H, self.cell)
         self._begun = _Begun(
             rows,
             action,
@@ -95,7 +90,7 @@ class PolicyWatcher:
             tuple(gradient),
             () if z is None else _rows(z, rows),
             largest,
-            len(traced),
+            n_traces,
             _rows(H, rows),
             self._probabilities(H, rows),
         )
@@ -105,14 +100,20 @@ class PolicyWatcher:
         worth, begun, H = self._advantage, self._begun, tables[0]  # noqa: N806 - the book's name
         error = worth.target - worth.reference
         after = _rows(H, begun.rows)
-        factors = [row[begun.action] for row in begun.traces] or [begun.gradient[begun.action]]
+        if begun.traces:
+            # A preference changes once, however often its row is active.
+            alpha = begun.step_size * len(begun.rows)
+            direction = sum(row[begun.action] for row in begun.traces) / len(begun.traces)
+        else:
+            alpha = gain(begun.rows, (begun.step_size,) * len(begun.rows), ())
+            direction = begun.gradient[begun.action]
         preferences = [total(tuple(row[begun.action] for row in one)) for one in (begun.before, after)]
         lines = equations_of(
             self.config,
             (worth.reward, worth.following, worth.target, worth.reference, error),
             worth.step,
-            begun.step_size * len(begun.rows),
-            sum(factors) / len(factors),
+            alpha,
+            direction,
             (preferences[0], preferences[1]),
         )
         known = None
@@ -141,11 +142,7 @@ class PolicyWatcher:
             equations=tuple(symbols for symbols, _ in lines),
             numbers=tuple(numbers for _, numbers in lines),
         )
-        traces = tuple(
-            Trace(one.row, one.cell, one.action, one.trace, one.before, float(H[one.row, one.action]))
-            for one in begun.largest
-        )
-        return update, traces, begun.n_traces
+        return update, changed(begun.largest, H), begun.n_traces
 
     def _probabilities(self, H: Table, rows: Sequence[int]) -> tuple[float, ...]:  # noqa: N803
         state = list(rows)

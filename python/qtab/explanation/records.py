@@ -46,13 +46,23 @@ class Choice:
             return f"exploring start: drawn with probability {self.probability:.3g}"
         if self.epsilon is None:
             return f"softmax: drawn with probability {self.probability:.3g} at temperature {self.temperature:.6g}"
+        drawn, limit = _told_apart(self.drawn, 1.0 - self.epsilon)
         if self.reason == "explored":
-            return f"explored: drawn at random, as {self.drawn:.3g} >= 1 - epsilon = {1.0 - self.epsilon:.3g}"
-        below = f"{self.drawn:.3g} < 1 - epsilon = {1.0 - self.epsilon:.3g}"
+            return f"explored: drawn at random, as {drawn} >= 1 - epsilon = {limit}"
+        below = f"{drawn} < 1 - epsilon = {limit}"
         if self.reason == "greedy":
             return f"greedy: the largest of {len(self.values)} values, as {below}"
         how = "drawn from" if self.random_ties else "the first of"
         return f"tie broken: {how} {self.tied} actions with the largest value, as {below}"
+
+
+def _told_apart(one: float, other: float) -> tuple[str, str]:
+    """Returns two numbers with as many digits, three or more, as tell which one is smaller."""
+    for digits in range(3, 17):
+        shown = f"{one:.{digits}g}", f"{other:.{digits}g}"
+        if (float(shown[0]) < float(shown[1])) == (one < other):
+            return shown
+    return repr(one), repr(other)
 
 
 @dataclass(frozen=True)
@@ -71,10 +81,11 @@ class Update:
     action: int
     """The column of A."""
     rewards: tuple[float, ...]
-    """The rewards in the target: one, or up to n for n-step methods; none in planning, whose target is shown alone."""
+    """The rewards in the target, with their count bonuses: one, or up to n for n-step Sarsa. In planning, that of
+    Dyna-Q+ includes the bonus for the time since the last try: R + κ √τ."""
     bootstrap: float | None
     """The value of the next state in the target, or for Monte Carlo methods the return from the next step on; None
-    where the next state is terminal, and in planning."""
+    where the next state is terminal."""
     target: float
     error: float
     """The TD error: the target minus ``before``."""
@@ -136,6 +147,9 @@ class ExplainedStep:
     choice: Choice
     """Why the action was chosen."""
     reward: float
+    """The reward of the environment."""
+    bonus: float
+    """The count bonus, which the learner adds to the reward: R in the equations is their sum. 0 without one."""
     next_observation: Any
     next_rows: tuple[int, ...]
     next_cell: tuple[int, ...] | None
@@ -143,6 +157,9 @@ class ExplainedStep:
     """The next observation in words."""
     terminated: bool
     truncated: bool
+    terminal: bool
+    """Whether the learner took the next state as terminal: it is, or the time limit ended the episode and
+    ``on_truncation="terminate"`` counts that as an end."""
     updates: tuple[Update, ...]
     """The updates that followed the step: one; for n-step methods none at first and several at the end of the episode.
     For Monte Carlo methods the update of this step, if it has one: they are made after the episode, from its last step
@@ -164,13 +181,23 @@ class ExplainedStep:
     note: str
     """Why no value changed, where none did."""
 
+    @property
+    def reward_text(self) -> str:
+        """The reward, and R, where a count bonus makes it another number."""
+        if not self.bonus:
+            return f"{self.reward:.6g}"
+        bonus = f"({self.bonus:.6g})" if self.bonus < 0 else f"{self.bonus:.6g}"
+        return (
+            f"{self.reward:.6g}, with the count bonus R = {self.reward:.6g} + {bonus} = {self.reward + self.bonus:.6g}"
+        )
+
     def _repr_html_(self) -> str:
         """The step as a table, for notebooks."""
         rows: list[tuple[str, object]] = [
             ("state", self.state),
             ("action", self.action_name),
             ("why", self.choice),
-            ("reward", f"{self.reward:.6g}"),
+            ("reward", self.reward_text),
             ("next state", self.next_state + (", terminal" if self.terminated else "")),
         ]
         for update in self.updates:
@@ -184,26 +211,26 @@ class ExplainedStep:
         return html.report(f"Step {self.step}", (), rows)
 
     @property
-    def _first(self) -> Update | None:
-        """The first update that is not one of the episode before."""
+    def first_update(self) -> Update | None:
+        """The first update that is not one of the episode before; None where there is none."""
         return next((update for update in self.updates if update.step != -1), None)
 
     @property
     def target(self) -> float | None:
         """The target of the first update; None where there is none."""
-        return None if self._first is None else self._first.target
+        return None if self.first_update is None else self.first_update.target
 
     @property
     def td_error(self) -> float | None:
         """The TD error of the first update; None where there is none."""
-        return None if self._first is None else self._first.error
+        return None if self.first_update is None else self.first_update.error
 
     @property
     def before(self) -> float | None:
         """The value before the first update; None where there is none."""
-        return None if self._first is None else self._first.before
+        return None if self.first_update is None else self.first_update.before
 
     @property
     def after(self) -> float | None:
         """The value after the first update; None where there is none."""
-        return None if self._first is None else self._first.after
+        return None if self.first_update is None else self.first_update.after

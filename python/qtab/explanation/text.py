@@ -36,7 +36,7 @@ def details(step: ExplainedStep) -> list[tuple[str, str]]:
         ("state", f"{step.state}; {place(step.rows, step.cell)}"),
         ("action", f"{step.action_name}; values {', '.join(number(value) for value in step.choice.values)}"),
         ("why", str(step.choice)),
-        ("reward", f"{number(step.reward)}, then {step.next_state}; {ending(step)}"),
+        ("reward", f"{step.reward_text}, then {step.next_state}; {ending(step)}"),
     ]
     if step.future_return is not None:
         lines.append(("return", f"G = {number(step.future_return)}, the discounted rewards from here on"))
@@ -110,9 +110,7 @@ def ending(step: ExplainedStep) -> str:
     where = place(step.next_rows, step.next_cell)
     if not step.truncated:
         return where
-    return f"{where}; the time limit ends the episode" + (
-        ", and counts as a terminal state" if step.updates and step.updates[-1].bootstrap is None else ""
-    )
+    return f"{where}; the time limit ends the episode" + (", and counts as a terminal state" if step.terminal else "")
 
 
 def steps_waiting(step: ExplainedStep) -> str:
@@ -123,7 +121,7 @@ def steps_waiting(step: ExplainedStep) -> str:
 
 def _cells(step: ExplainedStep) -> list[str]:
     """The cells of a step's row in the HTML table. The equation's cell also has traces and planning updates."""
-    update = step.updates[0] if step.updates else None
+    update = step.first_update
     numbers = ["", "", "", ""]
     if update is not None:
         numbers = [number(value) for value in (update.target, update.error, update.before, update.after)]

@@ -17,16 +17,26 @@ ActionValues = tuple[tuple[float, ...], ...]
 """(n_active, actions): the rows of a state."""
 
 
+@dataclass(frozen=True)
+class Target:
+    """What the target of an update is made of, as the learner reports it."""
+
+    step: int | None
+    """The step of S and A; None in planning."""
+    rewards: tuple[float, ...]
+    """The rewards in the target; none where it is a return."""
+    following: float | None
+    """The value that follows them; None where nothing does."""
+
+
 @dataclass
 class UnfinishedUpdate:
     """An update before the values change."""
 
-    step: int | None
+    reported: Target
     table: int
     rows: tuple[int, ...]
     action: int
-    rewards: tuple[float, ...]
-    bootstrap: float | None
     target: float
     weights: ActionValues
     step_sizes: tuple[float, ...] = ()
@@ -44,31 +54,27 @@ def finish_update(
     before, after = total(weights_before), total(weights_after)
     name = f"Q{unfinished.table + 1}(S, A)" if config.algorithm == "double_q_learning" else "Q(S, A)"
     lines = []
-    if unfinished.average_reward is not None and unfinished.bootstrap is not None:
-        reward, average, following = unfinished.rewards[0], unfinished.average_reward, unfinished.bootstrap
-        symbol, step_size = (
-            bootstrap_symbol(config.algorithm, 0),
-            required("reward_learning_rate", config.reward_learning_rate),
-        )
-        lines += differential_equations(symbol, reward, average, following, unfinished.target, before, step_size)
-    elif unfinished.step is not None:
-        symbol = bootstrap_symbol(config.algorithm, unfinished.table)
-        lines.append(
-            target_equation(symbol, unfinished.rewards, config.discount, unfinished.bootstrap, unfinished.target)
-        )
+    step, rewards, following = unfinished.reported.step, unfinished.reported.rewards, unfinished.reported.following
+    symbol = bootstrap_symbol(config.algorithm, unfinished.table)
+    if unfinished.average_reward is not None and following is not None:
+        average, step_size = unfinished.average_reward, required("reward_learning_rate", config.reward_learning_rate)
+        lines += differential_equations(symbol, rewards[0], average, following, unfinished.target, before, step_size)
+    else:
+        name_of_reward = "(R + κ √τ)" if config.algorithm == "dyna_q_plus" and step is None else "R"
+        lines.append(target_equation(symbol, rewards, config.discount, following, unfinished.target, name_of_reward))
     sizes = unfinished.rows, unfinished.step_sizes, unfinished.traces
     if unfinished.old_value is None:
         lines.append(update_equation(name, before, unfinished.target, after, *sizes))
     else:
         lines.append(true_online_equation(name, before, unfinished.target, after, unfinished.old_value, *sizes))
     return Update(
-        step=unfinished.step,
+        step=step,
         table=unfinished.table,
         rows=unfinished.rows,
         cell=cell,
         action=unfinished.action,
-        rewards=unfinished.rewards,
-        bootstrap=unfinished.bootstrap,
+        rewards=rewards,
+        bootstrap=following,
         target=unfinished.target,
         error=unfinished.target - before,
         step_sizes=unfinished.step_sizes,

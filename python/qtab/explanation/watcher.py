@@ -11,11 +11,11 @@ from qtab.config import Config
 from qtab.config.options import MONTE_CARLO
 from qtab.explanation.choices import ObservedPolicy, ObservedStream, explained, exploring_start
 from qtab.explanation.fast_forward import Start
+from qtab.explanation.largest_traces import changed, largest_traces
 from qtab.explanation.policy_update import PolicyUpdate
-from qtab.explanation.policy_watcher import SHOWN_TRACES, PolicyWatcher
+from qtab.explanation.policy_watcher import PolicyWatcher
 from qtab.explanation.records import Choice, Trace, Update
-from qtab.explanation.targets import bootstrap, discounted
-from qtab.explanation.updates import UnfinishedUpdate, finish_update
+from qtab.explanation.updates import Target, UnfinishedUpdate, finish_update
 from qtab.reference.action_masks import ActionMasks
 from qtab.reference.observer import Observer
 from qtab.reference.policies import Policy
@@ -37,8 +37,10 @@ class SeenStep:
     next_rows: tuple[int, ...]
     terminated: bool
     truncated: bool
-    terminal: bool
-    """Whether the learner takes the next state as terminal, so that its value is zero."""
+    bonus: float = 0.0
+    """What the learner added to the reward."""
+    terminal: bool = False
+    """Whether the learner took the next state as terminal, so that its value is zero."""
     updates: list[Update] = field(default_factory=list)
     policy_updates: list[PolicyUpdate] = field(default_factory=list)
     planning: list[Update] = field(default_factory=list)
@@ -59,17 +61,16 @@ class Watcher(Observer):
         self.steps: list[SeenStep] = []
         self._stream: ObservedStream
         self._policy: Policy | None = None
-        self._masks: ActionMasks
-        self._unfinished: UnfinishedUpdate | None = None
         self._draws: list[float] = []
-        self._given: tuple[int, tuple[float, ...], float | None] | None = None
+        self._target: Target | None = None
+        self._unfinished: UnfinishedUpdate
         self._average_reward: float | None = None
         self._before_the_first: list[Update] = []
         self._policy_watcher = PolicyWatcher(config, cell)
 
     def masks(self, masks: ActionMasks) -> None:
         """Keeps the action masks, which are filled in as states are seen."""
-        self._masks = self._policy_watcher.masks = masks
+        self._policy_watcher.masks = masks
 
     def stream(self, stream: AgentStream) -> AgentStream:
         """Returns a stream that keeps the last number that decided."""
@@ -100,14 +101,18 @@ class Watcher(Observer):
 
     def record(self, step: SeenStep) -> None:
         """Receives a step of the environment, before the learner learns from it."""
-        self.finish()
         self.steps.append(step)
         step.updates += self._before_the_first
         self._before_the_first.clear()
 
-    def target(self, step: int, reward: float, following: float | None) -> None:
+    def stepped(self, bonus: float, terminal: bool) -> None:
+        """Keeps how the learner takes the step."""
+        if self.active:
+            self.steps[-1].bonus, self.steps[-1].terminal = bonus, terminal
+
+    def target(self, step: int | None, rewards: Sequence[float], following: float | None) -> None:
         """Keeps what the target of the next update is made of."""
-        self._given = step, (reward,), following
+        self._target = Target(step, tuple(rewards), following)
 
     def returned(self, step: int, target: float) -> None:
         """Keeps the return of a step."""
@@ -123,15 +128,10 @@ class Watcher(Observer):
         if self.active and self._policy is not None:
             self.choices.append(exploring_start(self._policy, values, action, valid))
 
-    def advantage(self, step: int, state: Sequence[int], target: float, reference: float, power: float) -> None:
+    def advantage(self, state: Sequence[int], target: float, reference: float, power: float) -> None:
         """Keeps what an action was worth."""
         if self.active:
-            _, rewards, following = self._given or (step, (), None)
-            if self.config.algorithm == "gradient_bandit":
-                rewards = (target,)
-            parts = (rewards[0] if rewards else None, following)
-            self._policy_watcher.advantage(step, self.tables, state, parts, target, reference, power)
-            self._given = None
+            self._policy_watcher.advantage(self._reported(), self.tables, state, target, reference, power)
 
     def before_ascent(
         self,
@@ -155,62 +155,44 @@ class Watcher(Observer):
             seen.traces, seen.n_traces = traces, n_traces
 
     def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:  # noqa: N803
-        """Begins an update: of this step, of an earlier one for n-step Sarsa, or in planning."""
-        if not self.active:
-            return
-        table = next(index for index, known in enumerate(self.tables) if known is Q)
-        step: int | None
-        rewards: tuple[float, ...]
-        algorithm = self.config.algorithm
-        planned = algorithm in ("dyna_q", "dyna_q_plus") and self.steps[-1].updates
-        if planned or algorithm == "prioritized_sweeping":
-            step, rewards, following = None, (), None  # planning
-        else:
-            step, rewards, following = self._given or self._target(table)
-            self._given = None
-        self._unfinished = UnfinishedUpdate(
-            step, table, tuple(state), action, rewards, following, target, self._weights(table, state)
-        )
-        self._unfinished.average_reward, self._average_reward = self._average_reward, None
+        """Begins an update: of this step, of an earlier one for n-step methods, or in planning."""
+        if self.active:
+            table = next(index for index, known in enumerate(self.tables) if known is Q)
+            weights = self._weights(table, state)
+            self._unfinished = UnfinishedUpdate(self._reported(), table, tuple(state), action, target, weights)
+            self._unfinished.average_reward = self._average_reward
 
-    def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:  # noqa: N803, ARG002
+    def traces(self, z: Table, old_value: float | None = None) -> None:
+        """Keeps the traces that the update begun last applies: those of S and A, and the largest ones of all."""
+        if self.active:
+            unfinished, seen = self._unfinished, self.steps[-1]
+            unfinished.old_value = old_value
+            unfinished.traces = tuple(float(z[row, unfinished.action]) for row in unfinished.rows)
+            seen.traces, seen.n_traces = largest_traces(z, self.tables[0], self.cell)
+
+    def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:  # noqa: N803
         """Ends it."""
-        if self._unfinished is not None:
-            self._unfinished.step_sizes = tuple(step_sizes or ())
-            self._end()
-
-    def before_traces(self, Q: Table, z: Table, error: float, rate: LearningRate) -> None:  # noqa: N803, ARG002
-        """Begins an update of all values with a trace. It ends before the next step, or with the episode."""
         if not self.active:
             return
-        step, rewards, following = self._target(0)
-        seen, action = self.steps[step], self.choices[step].action
-        target = discounted(rewards, self.config.discount, following)
-        unfinished = UnfinishedUpdate(
-            step, 0, seen.rows, action, rewards, following, target, self._weights(0, seen.rows)
-        )
-        unfinished.step_sizes = tuple(rate.step(row, action) for row in seen.rows)
-        unfinished.traces = tuple(float(z[row, action]) for row in seen.rows)
-        if self.config.algorithm == "true_online_sarsa_lambda":
-            unfinished.old_value = (self.steps[step - 1].updates[0].bootstrap or 0.0) if step > 0 else 0.0
-        traced = np.argwhere(z != 0.0)
-        order = np.argsort(-np.abs(z[z != 0.0]), kind="stable")[:SHOWN_TRACES]
-        seen.n_traces = len(traced)
-        seen.traces = tuple(
-            Trace(row, self.cell(row), column, float(z[row, column]), float(Q[row, column]), float("nan"))
-            for row, column in traced[order].tolist()
-        )
-        self._unfinished = unfinished
+        unfinished, seen = self._unfinished, self.steps[-1] if self.steps else None
+        unfinished.step_sizes = tuple(step_sizes or ())
+        weights = self._weights(unfinished.table, unfinished.rows)
+        update = finish_update(unfinished, self.config, self.cell(unfinished.rows[0]), weights)
+        if seen is None:
+            self._before_the_first.append(update)
+        elif update.step is None:
+            seen.planning.append(update)
+        else:
+            by_episode = self.config.algorithm in MONTE_CARLO
+            self.steps[update.step if by_episode else -1].updates.append(update)
+            seen.traces = changed(seen.traces, Q)
 
-    def finish(self) -> None:
-        """Ends the update of the traces, if there is one."""
-        if self._unfinished is not None:
-            seen, Q = self.steps[-1], self.tables[0]  # noqa: N806
-            seen.traces = tuple(
-                Trace(one.row, one.cell, one.action, one.trace, one.before, float(Q[one.row, one.action]))
-                for one in seen.traces
-            )
-            self._end()
+    def _reported(self) -> Target:
+        """Takes the target that the learner has reported; every update has one of its own."""
+        reported, self._target = self._target, None
+        if reported is None:
+            raise AssertionError(f"{self.config.algorithm} did not report the target of an update")
+        return reported
 
     def _skip(self, schedule: Policy | Schedule) -> None:
         for _ in range(0 if self.start is None else self.start.episode):
@@ -221,37 +203,5 @@ class Watcher(Observer):
             drawn = self._draws[0] if self._draws else float("nan")
             self.choices.append(explained(self._policy, values, state, bounds, action, drawn))
 
-    def _target(self, table: int) -> tuple[int, tuple[float, ...], float | None]:
-        """The step that is updated next, the rewards in its target, and the value of what follows them."""
-        if self.config.algorithm == "n_step_sarsa":
-            step = sum(len(seen.updates) for seen in self.steps)
-            end = min(step + (self.config.n_steps or 1), len(self.steps))
-        else:
-            step, end = len(self.steps) - 1, len(self.steps)
-        rewards = tuple(seen.reward for seen in self.steps[step:end])
-        last = self.steps[end - 1]
-        if last.terminal:
-            return step, rewards, None
-        assert self._policy is not None  # noqa: S101 - it is given before the first step
-        next_action = self.choices[end].action if len(self.choices) > end else -1
-        following = bootstrap(
-            self.config.algorithm, self.tables, table, list(last.next_rows), next_action, self._policy, self._masks
-        )
-        return step, rewards, following
-
     def _weights(self, table: int, rows: Sequence[int]) -> tuple[tuple[float, ...], ...]:
         return tuple(tuple(self.tables[table][row].tolist()) for row in rows)
-
-    def _end(self) -> None:
-        unfinished, self._unfinished = self._unfinished, None
-        if unfinished is not None:
-            update = finish_update(
-                unfinished, self.config, self.cell(unfinished.rows[0]), self._weights(unfinished.table, unfinished.rows)
-            )
-            if unfinished.step == -1:
-                self._before_the_first.append(update)
-            elif unfinished.step is None:
-                self.steps[-1].planning.append(update)
-            else:
-                by_episode = self.config.algorithm in MONTE_CARLO
-                self.steps[unfinished.step if by_episode else -1].updates.append(update)

@@ -71,8 +71,6 @@ def actor_critic_lambda(env: gym.Env, config: Config, stop_after: int | None = N
 def td_error(task: Task, critic: Critic, state: Rows, step: Step, power: float) -> float:
     """Returns δ = R + γ v(S', w) - v(S, w)."""
     following = None if step.terminal else critic.value(step.state)
-    target = step.reward if following is None else step.reward + task.discount * following
-    number = task.lengths[-1] - 1
-    task.observer.target(number, step.reward, following)
-    task.observer.advantage(number, state, target, critic.value(state), power)
+    target = task.target(step.reward, following)
+    task.observer.advantage(state, target, critic.value(state), power)
     return target - critic.value(state)

@@ -15,7 +15,7 @@ class AverageReward:
         """δ = R - R̄ + following - Q(S, A), R̄ <- R̄ + β δ, Q(S, A) <- Q(S, A) + α δ."""
         target = (reward - self.value) + following
         # Before the first step of an episode, the update of the last step of the one before.
-        self.task.observer.target(self.task.lengths[-1] - 1, reward, following)
+        self.task.observer.target(self.task.step_number, (reward,), following)
         self.task.observer.average_reward(self.value)
         self.value += self.step_size * (target - value(self.Q, state, action))
         self.task.update(self.Q, state, action, target)

@@ -61,7 +61,7 @@ def n_step_backups(
                     elif not (terminal and end == last_step):  # nothing follows a terminal state
                         following = expected(task, Q, states[k], greedy)
                     G = rewards[k] if following is None else rewards[k] + task.discount * following
-                task.observer.target(tau, rewards[tau + 1], following)
+                task.observer.target(tau, (rewards[tau + 1],), following)
                 task.update(Q, states[tau], actions[tau], G)
             t += 1
             tau += 1

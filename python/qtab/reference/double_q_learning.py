@@ -23,12 +23,10 @@ def double_q_learning(env: gym.Env, config: Config, stop_after: int | None = Non
             # A coin decides which table learns:
             # Q1(S, A) <- Q1(S, A) + α [R + γ Q2(S', argmax Q1(S', a)) - Q1(S, A)], or the same with both exchanged.
             Q, other, rate = (Q1, Q2, rate1) if task.rng.random() < 0.5 else (Q2, Q1, rate2)
-            if step.terminal:
-                task.end(Q, state, action, step.reward, rate)
-            else:
-                greedy = int(np.argmax(task.values(Q, step.state)))
-                target = step.reward + task.discount * value(other, step.state, greedy)
-                task.update(Q, state, action, target, rate)
+            following = None
+            if not step.terminal:
+                following = value(other, step.state, int(np.argmax(task.values(Q, step.state))))
+            task.learn(Q, state, action, step.reward, following, rate=rate)
 
             state, over = step.state, step.over
 

@@ -26,7 +26,7 @@ def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Resul
             action = task.choose(Q, state)
             step = task.step(action)
             next_state = None if step.terminal else step.state
-            learn(task, Q, state, action, step.reward, next_state)
+            task.learn(Q, state, action, step.reward, largest(task, Q, next_state))
             outcomes = model.setdefault(state[0], {}).setdefault(action, {})
             if options.model == "deterministic":
                 outcomes.clear()
@@ -38,7 +38,8 @@ def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Resul
                 tried = list(model[row])
                 past_action = tried[int(task.rng.integers(0, len(tried)))]
                 reward, after = sample(task, model[row][past_action])
-                learn(task, Q, [row], past_action, reward, None if after is None else [after])
+                following = largest(task, Q, None if after is None else [after])
+                task.learn(Q, [row], past_action, reward, following, planned=True)
 
             state, over = step.state, step.over
 
@@ -55,9 +56,6 @@ def sample(task: Task, outcomes: Outcomes) -> tuple[float, int | None]:
     raise AssertionError("the counts are those of the outcomes")
 
 
-def learn(task: Task, Q: Table, state: Rows, action: int, reward: float, next_state: Rows | None) -> None:
-    """Q(S, A) <- Q(S, A) + α [R + γ max Q(S', a) - Q(S, A)]."""
-    if next_state is None:
-        task.end(Q, state, action, reward)
-    else:
-        task.update(Q, state, action, reward + task.discount * float(np.max(task.values(Q, next_state))))
+def largest(task: Task, Q: Table, next_state: Rows | None) -> float | None:
+    """Returns max Q(S', a); None where S' is terminal."""
+    return None if next_state is None else float(np.max(task.values(Q, next_state)))

@@ -7,7 +7,7 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.config.algorithms import DynaQPlus
-from qtab.reference.dyna_q import learn
+from qtab.reference.dyna_q import largest
 from qtab.reference.task import Result, Rows, Task
 
 
@@ -29,7 +29,7 @@ def dyna_q_plus(env: gym.Env, config: Config, stop_after: int | None = None) -> 
             next_state = None if step.terminal else step.state
             now += 1
             last_tried[state[0], action] = now
-            learn(task, Q, state, action, step.reward, next_state)
+            task.learn(Q, state, action, step.reward, largest(task, Q, next_state))
             model.setdefault(state[0], {})[action] = (step.reward, next_state)
 
             for _ in range(options.planning_steps):
@@ -39,7 +39,7 @@ def dyna_q_plus(env: gym.Env, config: Config, stop_after: int | None = None) -> 
                 reward, after = model[row].get(any_action, (0.0, [row]))
                 # The reward grows with the time since the pair was last tried: R + κ √τ
                 bonus = options.time_weight * math.sqrt(now - int(last_tried[row, any_action]))
-                learn(task, Q, [row], any_action, reward + bonus, after)
+                task.learn(Q, [row], any_action, reward + bonus, largest(task, Q, after), planned=True)
 
             state, over = step.state, step.over
 

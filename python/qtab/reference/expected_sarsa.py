@@ -20,11 +20,7 @@ def expected_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) 
             step = task.step(action)
 
             # Q(S, A) <- Q(S, A) + α [R + γ Σ π(a | S') Q(S', a) - Q(S, A)]
-            if step.terminal:
-                task.end(Q, state, action, step.reward)
-            else:
-                expected = expected_value(task, Q, step.state)
-                task.update(Q, state, action, step.reward + task.discount * expected)
+            task.learn(Q, state, action, step.reward, None if step.terminal else expected_value(task, Q, step.state))
 
             state, over = step.state, step.over
 

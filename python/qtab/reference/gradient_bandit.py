@@ -29,9 +29,10 @@ def gradient_bandit(env: gym.Env, config: Config, stop_after: int | None = None)
                 reference = average.setdefault(row, step.reward)
                 count[row] = count.get(row, 0) + 1
                 average[row] += (step.reward - reference) / count[row]
-            task.observer.advantage(task.lengths[-1] - 1, state, step.reward, reference, 1.0)
+            target = task.target(step.reward, None)
+            task.observer.advantage(state, target, reference, 1.0)
             # H(A) <- H(A) + α (R - R̄) (1 - π(A)), and H(a) <- H(a) - α (R - R̄) π(a) for the others
-            ascend(task, H, state, action, step.reward - reference)
+            ascend(task, H, state, action, target - reference)
 
             state, over = step.state, step.over
 

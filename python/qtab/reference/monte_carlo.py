@@ -36,6 +36,6 @@ def first_visits(task: Task, Q: Table, state: Rows, action: int) -> None:
         G = task.discount * G + rewards[t]
         task.observer.returned(t, G)
         if pairs.index(pairs[t]) == t:
-            task.observer.target(t, rewards[t], following)
+            task.observer.target(t, (rewards[t],), following)
             row, past_action = pairs[t]
             task.update(Q, [row], past_action, G)

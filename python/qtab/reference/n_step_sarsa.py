@@ -36,8 +36,11 @@ def n_step_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) ->
                 for reward in rewards[tau + 1 : end + 1]:
                     target += power * reward
                     power *= task.discount
+                following = None
                 if not (terminal and end == last_step):
-                    target += power * value(Q, states[end], actions[end])
+                    following = value(Q, states[end], actions[end])
+                    target += power * following
+                task.observer.target(tau, rewards[tau + 1 : end + 1], following)
                 task.update(Q, states[tau], actions[tau], target)
             t += 1
             tau += 1

@@ -38,13 +38,23 @@ class Observer:
     def table(self, Q: Table) -> None:
         """Called with each table before the first episode."""
 
-    def target(self, step: int, reward: float, following: float | None) -> None:
-        """Called before an update with what only the learner knows of its target.
+    def stepped(self, bonus: float, terminal: bool) -> None:
+        """Called after each step of the environment, before the learner learns from it.
 
         Args:
-            step: The number of the step in the episode, from 0.
-            reward: The reward in the target.
-            following: The value that is discounted in it; None if nothing follows.
+            bonus: What the learner adds to the reward: the count bonus, or 0.
+            terminal: Whether the learner takes the next state as terminal, so that its value is zero.
+        """
+
+    def target(self, step: int | None, rewards: Sequence[float], following: float | None) -> None:
+        """Called before every update, with what its target is made of.
+
+        Args:
+            step: The number of the step in the episode, from 0; -1 is the last one of the episode before, and None one
+                that was planned.
+            rewards: The rewards in the target, with their bonuses, of which the k-th is discounted by γ^(k-1); none
+                where the target is a return G.
+            following: The value that is discounted in it after the rewards; None if nothing follows.
         """
 
     def returned(self, step: int, target: float) -> None:
@@ -56,12 +66,11 @@ class Observer:
     def exploring_start(self, values: Table, action: int, valid: int) -> None:
         """Called with the first action of an episode where it is drawn among all valid actions of the state."""
 
-    def advantage(self, step: int, state: Sequence[int], target: float, reference: float, power: float) -> None:
+    def advantage(self, state: Sequence[int], target: float, reference: float, power: float) -> None:
         """Called before a state value and the preferences change.
 
         Args:
-            step: The number of the step in the episode, from 0.
-            state: The active rows of its state.
+            state: The active rows of the state.
             target: What its action was worth.
             reference: What that is compared with; 0 without a baseline.
             power: γ^t.
@@ -81,8 +90,8 @@ class Observer:
     def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:
         """Called after that, with the step size of each active row; None where the target was assigned."""
 
-    def before_traces(self, Q: Table, z: Table, error: float, rate: "LearningRate") -> None:
-        """Called before all values with a trace change by an error."""
+    def traces(self, z: Table, old_value: float | None = None) -> None:
+        """Called in an update before all values with a trace change; ``old_value`` is Q_old of true online Sarsa(λ)."""
 
 
 _observer: ContextVar[Observer | None] = ContextVar("_observer", default=None)

@@ -34,7 +34,7 @@ def off_policy_monte_carlo(env: gym.Env, config: Config, stop_after: int | None 
             C[row, action] += W
             # α W / C, and no less than its minimum; α is 1 in the book.
             step_size = max(config.learning_rate * W / float(C[row, action]), least)
-            task.observer.target(t, reward, following)
+            task.observer.target(t, (reward,), following)
             task.observer.before_update(Q, [row], action, G)
             Q[row, action] += step_size * (G - Q[row, action])
             task.observer.after_update(Q, [step_size])

@@ -3,11 +3,10 @@
 import heapq
 
 import gymnasium as gym
-import numpy as np
 
 from qtab.config import Config
 from qtab.config.algorithms import PrioritizedSweeping
-from qtab.reference.dyna_q import learn
+from qtab.reference.dyna_q import largest
 from qtab.reference.task import Result, Rows, Task
 
 Pair = tuple[int, int]
@@ -28,10 +27,9 @@ def prioritized_sweeping(env: gym.Env, config: Config, stop_after: int | None = 
 
     def insert(pair: Pair) -> None:
         """Inserts a pair with the size of its error, if that is large enough; the higher of two priorities counts."""
-        (row, action), (reward, following) = pair, model[pair]
-        target = reward
-        if following is not None:
-            target += task.discount * float(np.max(task.values(Q, following)))
+        (row, action), (reward, next_state) = pair, model[pair]
+        following = largest(task, Q, next_state)
+        target = reward if following is None else reward + task.discount * following
         priority = abs(target - float(Q[row, action]))
         if priority > options.priority_threshold and priority > priorities.get(pair, 0.0):
             priorities[pair] = priority
@@ -66,7 +64,8 @@ def prioritized_sweeping(env: gym.Env, config: Config, stop_after: int | None = 
                 if planned is None:
                     break
                 row, past_action = planned
-                learn(task, Q, [row], past_action, *model[planned])
+                reward, following = model[planned]
+                task.learn(Q, [row], past_action, reward, largest(task, Q, following), planned=True)
                 for predecessor in predecessors.get(row, ()):
                     insert(predecessor)
 

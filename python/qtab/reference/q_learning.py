@@ -28,11 +28,8 @@ def q_learning(env: gym.Env, config: Config, stop_after: int | None = None) -> R
             step = task.step(action)
 
             # Q(S, A) <- Q(S, A) + α [R + γ max Q(S', a) - Q(S, A)]; nothing follows a terminal state.
-            if step.terminal:
-                task.end(Q, state, action, step.reward)
-            else:
-                target = step.reward + task.discount * float(np.max(task.values(Q, step.state)))
-                task.update(Q, state, action, target)
+            following = None if step.terminal else float(np.max(task.values(Q, step.state)))
+            task.learn(Q, state, action, step.reward, following)
 
             state, over = step.state, step.over
 

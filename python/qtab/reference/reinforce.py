@@ -43,7 +43,8 @@ def _reinforce(task: Task, *, with_baseline: bool) -> Result:
             if critic is not None:
                 reference = critic.value(state)
             task.observer.returned(t, returns[t])
-            task.observer.advantage(t, state, returns[t], reference, power)
+            task.observer.target(t, (), None)
+            task.observer.advantage(state, returns[t], reference, power)
             if critic is not None:
                 # δ = G - v(S, w), w <- w + α δ ∇v(S, w)
                 error -= reference

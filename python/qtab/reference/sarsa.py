@@ -18,13 +18,12 @@ def sarsa(env: gym.Env, config: Config, stop_after: int | None = None) -> Result
             step = task.step(action)
 
             # Q(S, A) <- Q(S, A) + α [R + γ Q(S', A') - Q(S, A)]. At a time-out A' is drawn, but not taken.
-            if step.terminal:
-                task.end(Q, state, action, step.reward)
-            else:
+            next_action, following = action, None
+            if not step.terminal:
                 next_action = task.choose(Q, step.state)
-                task.update(Q, state, action, step.reward + task.discount * value(Q, step.state, next_action))
-                action = next_action
+                following = value(Q, step.state, next_action)
+            task.learn(Q, state, action, step.reward, following)
 
-            state, over = step.state, step.over
+            state, action, over = step.state, next_action, step.over
 
     return task.result(Q)

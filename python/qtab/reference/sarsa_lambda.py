@@ -6,7 +6,7 @@ import numpy as np
 from qtab.config import Config
 from qtab.config.algorithms import EligibilityTraces
 from qtab.reference.task import Result, Task, value
-from qtab.reference.traces import apply_td_error, decay, mark
+from qtab.reference.traces import decay, learn, mark
 
 
 def sarsa_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
@@ -25,11 +25,11 @@ def sarsa_lambda(env: gym.Env, config: Config, stop_after: int | None = None) ->
             mark(z, state, action, options.traces)
 
             # δ = R + γ Q(S', A') - Q(S, A)
-            target = step.reward
+            following = None
             if not step.terminal:
                 next_action = task.choose(Q, step.state)
-                target = step.reward + task.discount * value(Q, step.state, next_action)
-            apply_td_error(task, Q, z, target - value(Q, state, action))
+                following = value(Q, step.state, next_action)
+            learn(task, Q, z, state, action, task.target(step.reward, following))
             decay(z, task.discount * options.trace_decay, options.trace_cutoff)
 
             state, action, over = step.state, next_action, step.over

@@ -131,8 +131,11 @@ class Task:
         # A terminal state may have no action; after the last step of time_aware there is no state.
         if not terminated and self.lengths[-1] != self.limit:
             self.masks.see(state, observation, info)
+        bonus = 0.0
         if self.config.count_bonus:
-            reward = float(reward) + self.bonus(action)
+            bonus = self.bonus(action)
+            reward = float(reward) + bonus
+        self.observer.stepped(bonus, bool(terminal))
         self.state = state
         return Step(float(reward), state, bool(terminal), bool(terminated or truncated))
 
@@ -155,6 +158,34 @@ class Task:
     def valid_actions(self, Q: Table, state: Rows) -> list[int]:
         """Returns the actions that S has: all, unless a mask or the initial table says otherwise."""
         return valid_actions(self.config, self.values(Q, state))
+
+    @property
+    def step_number(self) -> int:
+        """The number of the last step in its episode, from 0; -1 before the first one."""
+        return self.lengths[-1] - 1
+
+    def target(self, reward: float, following: float | None) -> float:
+        """Returns R + γ times the value of the next state; None follows a terminal state."""
+        self.observer.target(self.step_number, (reward,), following)
+        return reward if following is None else reward + self.discount * following
+
+    def learn(
+        self,
+        Q: Table,
+        state: Rows,
+        action: int,
+        reward: float,
+        following: float | None,
+        *,
+        rate: LearningRate | None = None,
+        planned: bool = False,
+    ) -> None:
+        """Q(S, A) <- Q(S, A) + α [R + γ following - Q(S, A)]; None follows a terminal state."""
+        self.observer.target(None if planned else self.step_number, (reward,), following)
+        if following is None:
+            self.end(Q, state, action, reward, rate)
+        else:
+            self.update(Q, state, action, reward + self.discount * following, rate)
 
     def update(self, Q: Table, state: Rows, action: int, target: float, rate: LearningRate | None = None) -> None:
         """Q(S, A) <- Q(S, A) + α [target - Q(S, A)]; the active rows of S share the change."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from qtab.config.choices import Traces
-from qtab.reference.task import Rows, Table, Task
+from qtab.reference.task import Rows, Table, Task, value
 
 
 def mark(z: Table, state: Rows, action: int, kind: Traces) -> None:
@@ -17,9 +17,16 @@ def mark(z: Table, state: Rows, action: int, kind: Traces) -> None:
             z[row, action] = 1.0
 
 
+def learn(task: Task, Q: Table, z: Table, state: Rows, action: int, target: float) -> None:
+    """W <- w + α z [target - Q(S, A)], whose traces z already know of S and A."""
+    task.observer.before_update(Q, state, action, target)
+    task.observer.traces(z)
+    apply_td_error(task, Q, z, target - value(Q, state, action))
+    task.observer.after_update(Q, [task.learning_rate.step(row, action) for row in state])
+
+
 def apply_td_error(task: Task, Q: Table, z: Table, error: float) -> None:
     """W <- w + α δ z, for the weights whose trace is not zero."""
-    task.observer.before_traces(Q, z, error, task.learning_rate)
     traced = np.nonzero(z)
     Q[traced] += task.learning_rate.steps(*traced) * error * z[traced]
 

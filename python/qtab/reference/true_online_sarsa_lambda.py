@@ -22,10 +22,10 @@ def true_online_sarsa_lambda(env: gym.Env, config: Config, stop_after: int | Non
         action = next_action = task.choose(Q, state)
         while not over:
             step = task.step(action)
-            next_value = 0.0
+            next_value, following = 0.0, None
             if not step.terminal:
                 next_action = task.choose(Q, step.state)
-                next_value = value(Q, step.state, next_action)
+                next_value = following = value(Q, step.state, next_action)
             this_value = value(Q, state, action)
             error = step.reward + task.discount * next_value - this_value
             alpha = task.learning_rate.step(0, 0)
@@ -39,9 +39,12 @@ def true_online_sarsa_lambda(env: gym.Env, config: Config, stop_after: int | Non
                 z[row, action] += 1.0 - alpha * gamma_lambda * overlap
 
             # w <- w + α (δ + Q - Q_old) z - α (Q - Q_old) x
+            task.observer.before_update(Q, state, action, task.target(step.reward, following))
+            task.observer.traces(z, old_value)
             apply_td_error(task, Q, z, error + (this_value - old_value))
             for row in state:
                 Q[row, action] -= alpha * (this_value - old_value)
+            task.observer.after_update(Q, [alpha] * len(state))
 
             state, action, over, old_value = step.state, next_action, step.over, next_value
 

@@ -5,8 +5,8 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.config.algorithms import EligibilityTraces
-from qtab.reference.task import Result, Task, value
-from qtab.reference.traces import apply_td_error, decay, mark
+from qtab.reference.task import Result, Task
+from qtab.reference.traces import decay, learn, mark
 
 
 def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
@@ -25,13 +25,13 @@ def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None
             mark(z, state, action, options.traces)
 
             # δ = R + γ max Q(S', a) - Q(S, A); the traces last while A' is greedy.
-            target, greedy = step.reward, False
+            following, greedy = None, False
             if not step.terminal:
                 next_action = task.choose(Q, step.state)
                 next_values = task.values(Q, step.state)
                 greedy = bool(next_values[next_action] == np.max(next_values))
-                target = step.reward + task.discount * float(np.max(next_values))
-            apply_td_error(task, Q, z, target - value(Q, state, action))
+                following = float(np.max(next_values))
+            learn(task, Q, z, state, action, task.target(step.reward, following))
             if greedy:
                 decay(z, task.discount * options.trace_decay, options.trace_cutoff)
             else:
