@@ -134,7 +134,7 @@ def test_an_optimum_costs_nothing_and_every_other_action_what_it_gives_away(lake
 
 
 def test_several_runs_have_one_scale(car: qtab.Run) -> None:
-    other = qtab.train(CAR, preset="solved", episodes=50, seed=0)
+    other = qtab.train(CAR, preset="solved", episodes=50, seed=0, discount=car.config.discount)
     figure: Any = plots.values([car, other]).figure
     ranges = {
         mesh.get_clim()

@@ -28,8 +28,9 @@ def draw_heat_maps(
     label: str,
     title: str | None,
     text: Text | None,
+    one_scale: bool = True,
 ) -> "Axes":
-    """Draws a panel for each subject, with one scale of colors and one color bar.
+    """Draws a panel for each subject, with one scale of colors and one color bar, or one for each.
 
     Args:
         panels: What to draw, and where each panel shows which state.
@@ -39,6 +40,7 @@ def draw_heat_maps(
         label: The label of the color bar.
         title: The title of each panel; None names its subject.
         text: Writes the numbers into their cells, where there is room; None writes none.
+        one_scale: Whether all panels have the same scale.
 
     Returns:
         The axes, of several panels the first.
@@ -48,10 +50,13 @@ def draw_heat_maps(
         ValueError: if one axes is given for several panels.
     """
     axes = axes_for([raster for _, raster in panels], ax)  # without matplotlib, this names the extra
-    scale = norm(grids)
-    for (subject, raster), grid, panel in zip(panels, grids, axes, strict=True):
+    scales = [norm(grids)] * len(grids) if one_scale else [norm([grid]) for grid in grids]
+    for (subject, raster), grid, panel, scale in zip(panels, grids, axes, scales, strict=True):
         image = draw_heat_map(panel, raster, grid, scale, subject.name if title is None else title, text)
-    color_bar(axes, panels[0][1], image, label)
+        if not one_scale:
+            color_bar([panel], raster, image, label)
+    if one_scale:
+        color_bar(axes, panels[0][1], image, label)
     return axes[0]
 
 

@@ -59,6 +59,18 @@ def joined(*parts: str, separator: str = "; ") -> str:
     return separator.join(part for part in parts if part)
 
 
+def earlier_limits(ax: "Axes") -> tuple[float, float] | None:
+    """Returns the limits of an x axis on which something is drawn, here or on axes that share it; None elsewhere."""
+    has_data = any(sibling.has_data() for sibling in ax.get_shared_x_axes().get_siblings(ax))
+    return ax.get_xlim() if has_data else None
+
+
+def set_x_limits(ax: "Axes", left: float, right: float, earlier: tuple[float, float] | None) -> None:
+    """Sets the limits of the x axis so that they include those of earlier plots, if there are any."""
+    ends = (left, right) if earlier is None else (min(left, earlier[0]), max(right, earlier[1]))
+    ax.set_xlim(*ends)
+
+
 def episode_ticks(ax: "Axes") -> None:
     """Labels the x axis with whole numbers of episodes, as many as fit beside each other."""
     from matplotlib.ticker import MaxNLocator

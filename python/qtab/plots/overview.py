@@ -9,6 +9,7 @@ from qtab.plots.axes import shown_figure
 from qtab.plots.policy import policy
 from qtab.plots.run import plot
 from qtab.plots.schedule import schedule
+from qtab.plots.subject import subject_of
 from qtab.plots.values import values
 from qtab.plots.visits import visits
 from qtab.results.run import Run
@@ -47,7 +48,8 @@ def overview(
     figure = shown_figure(12, 7.5)
     (curve, value), (greedy, last) = figure.subplots(2, 2)
     plot(run, curve, optimum=optimum)
-    values(run, value, at=at, layout=layout, title="Values")
+    drawn = subject_of("run", run).learned
+    values(run, value, at=at, layout=layout, title="Preferences" if drawn == "preferences" else "Values")
     policy(run, greedy, at=at, layout=layout, title="Greedy policy")
     if run.visits is not None:
         visits(run, last, at=at, layout=layout, title="Visits")

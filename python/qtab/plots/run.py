@@ -11,7 +11,7 @@ from qtab._utils import checks
 from qtab.plots.axes import axes_or_new, check_axes, new_figure, save_figure
 from qtab.plots.blocks import counted_episodes, fitting_block
 from qtab.plots.colors import palette
-from qtab.plots.labels import episode_ticks, finish
+from qtab.plots.labels import earlier_limits, episode_ticks, finish, set_x_limits
 from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
 from qtab.results.run import Run
 
@@ -66,6 +66,7 @@ def plot(
     else:
         block = checks.integer("block", block, least=1, most=max(finished, 1))
     ax = axes_or_new(ax)
+    earlier = earlier_limits(ax)
     [hue] = palette([run.config.algorithm], ax, None, color)
     episodes = np.arange(finished)
     if finished > MAX_DOTS:
@@ -83,7 +84,7 @@ def plot(
         rasterized=True,
     )
     _draw_means(ax, run.mean_returns(block), block, hue)
-    ax.set_xlim(0, max(finished, 1))
+    set_x_limits(ax, 0, max(finished, 1), earlier)
     mark_optimum(ax, optimum)
     mark_threshold(ax, threshold, run.config.env)
     episode_ticks(ax)

@@ -8,10 +8,10 @@ from qtab._utils import checks
 from qtab.config.policies import Softmax, Ucb
 from qtab.config.policies import policy as policy_of
 from qtab.config.schedules import ByVisits, learning_rate
-from qtab.config.schedules import rates as rates_in
 from qtab.plots.axes import axes_or_new
 from qtab.plots.colors import color
-from qtab.plots.labels import check_title, finish
+from qtab.plots.labels import check_title, earlier_limits, finish, set_x_limits
+from qtab.results.rates import rates_of
 from qtab.results.run import Run
 
 if TYPE_CHECKING:
@@ -24,8 +24,9 @@ MAX_POINTS = 2_000
 def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) -> "Axes":
     """Draws the exploration rate ε, or the temperature τ or the confidence c, and the learning rate α in each episode.
 
-    A learning rate that falls with the visits of a state and action is no function of the episode: a band shows where
-    it lies, from its value at the first visit down to its minimum.
+    The episodes are the finished ones, at least one, with the rates that they had: where a run was resumed with more
+    episodes while a rate fell, the line jumps. A learning rate that falls with the visits of a state and action is no
+    function of the episode: a band shows where it lies, from its value at the first visit down to its minimum.
 
     Args:
         run: The run.
@@ -42,8 +43,10 @@ def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) ->
     checks.instance("run", run, Run)
     check_title(title)
     ax = axes_or_new(ax)
+    earlier = earlier_limits(ax)
     config = run.config
-    episodes = np.unique(np.linspace(0, config.episodes - 1, MAX_POINTS).astype(np.int64))
+    finished = max(len(run.episode_returns), 1)
+    episodes = np.unique(np.linspace(0, finished - 1, MAX_POINTS).astype(np.int64))
     behaviour = policy_of(config)
     if isinstance(behaviour, Softmax):
         ax.axhline(
@@ -53,18 +56,18 @@ def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) ->
         label = f"confidence c = {behaviour.confidence:g}"
         ax.axhline(behaviour.confidence, color=color(0), linewidth=2, label=label)
     else:
-        rates = rates_in(behaviour.epsilon, episodes, config.episodes)
+        rates = rates_of(run, behaviour.epsilon, episodes)
         ax.plot(episodes + 1, rates, color=color(0), linewidth=2, label="exploration rate ε")
     rate = learning_rate(config)
     if isinstance(rate, ByVisits):
         label = f"learning rate α = {rate.value:g} / visits of the pair"
         ax.axhspan(rate.minimum, rate.value, color=color(1), alpha=0.25, linewidth=0, label=label)
     else:
-        rates = rates_in(rate, episodes, config.episodes)
+        rates = rates_of(run, rate, episodes)
         shared = run.discretizer.n_active
         label = "learning rate α" if shared == 1 else f"learning rate α, divided among {shared} tilings"
         ax.plot(episodes + 1, rates, color=color(1), linewidth=2, linestyle="--", label=label)
-    ax.set_xlim(1, max(config.episodes, 2))
+    set_x_limits(ax, 1, max(finished, 2), earlier)
     ax.set_ylim(bottom=0)
     ax.margins(y=0.08)
     ax.xaxis.set_major_formatter("{x:,.0f}")

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from qtab._utils.checks import load_hint
 from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.choices import ALGORITHM_NAMES
+from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
 from qtab.discretizers import Discretizer, Identity
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.edges import Edges
@@ -23,6 +24,9 @@ from qtab.results.time_steps import at_step, checked_step
 
 Drawable = Run | Runs | Optimum
 """What the pictures show."""
+
+Learned = Literal["action values", "state values", "preferences"]
+"""What the value of a state in a picture is: that of its greedy action, a learned state value, or a preference."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +44,17 @@ class Subject:
     discretizer: Discretizer
     """Maps observations to rows of the tables."""
     tables: NDArray[np.float64]
-    """(seeds, rows, actions): the action values that the greedy policy reads, on the scale of returns."""
+    """(seeds, rows, actions): what the greedy policy reads: action values on the scale of returns, or preferences."""
     known: NDArray[np.bool_] | None
     """(seeds, rows): whether anything was learned there; None where every value means something."""
     action_names: tuple[str, ...]
     """(actions,)"""
+    discount: float
+    """The discount of the values."""
+    learned: Learned = "action values"
+    """What :meth:`state_values` returns."""
+    state_table: NDArray[np.float64] | None = None
+    """(seeds, rows, 1): the state values that were learned beside preferences; None for other methods."""
 
     @property
     def axes(self) -> tuple[Axis, ...]:
@@ -57,11 +67,14 @@ class Subject:
         Args:
             rows: (ny, nx, n_active): the active rows at each point of a picture, -1 where there is no state.
         """
+        return self._read(self.tables, rows)
+
+    def _read(self, tables: NDArray[np.float64], rows: NDArray[np.int64]) -> NDArray[np.float64]:
         points = rows.reshape(-1, rows.shape[-1])
         first, *others = np.ascontiguousarray(points.T)
-        total = np.empty((len(self.tables), len(points), self.tables.shape[-1]))
+        total = np.empty((len(tables), len(points), tables.shape[-1]))
         part = np.empty(total.shape[1:])
-        for seed, table in enumerate(self.tables):
+        for seed, table in enumerate(tables):
             np.take(table, first, axis=0, out=total[seed], mode="wrap")
             for active in others:
                 # Into one array: a new one for each tiling would take several times as long.
@@ -73,8 +86,11 @@ class Subject:
         return total.reshape(len(total), *rows.shape[:2], -1)
 
     def state_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Returns (ny, nx): the largest action value, the mean over the seeds; NaN where none knows one."""
-        largest = self.action_values(rows).max(axis=-1)
+        """Returns (ny, nx): the state value that was learned, or else the largest action value or preference.
+
+        It is the mean over the seeds; NaN where none knows one.
+        """
+        largest = self._read(self.tables if self.state_table is None else self.state_table, rows).max(axis=-1)
         count = (~np.isnan(largest)).sum(axis=0)
         total = np.nansum(largest, axis=0)
         mean: NDArray[np.float64] = np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
@@ -111,7 +127,7 @@ def subject_of(name: str, source: Any, step: Any = 0) -> Subject:
         return _of_runs(
             source,
             source.config,
-            read_by_policy(source.config, source.tables)[np.newaxis],
+            source.tables[np.newaxis],
             source.action_names,
             f"seed {source.config.seed}",
         )
@@ -121,8 +137,7 @@ def subject_of(name: str, source: Any, step: Any = 0) -> Subject:
         if not len(source):
             raise ValueError(f"{name} must hold at least one run, got none")
         names = action_names(source.config.env, source.actions)
-        tables = np.moveaxis(read_by_policy(source.config, np.moveaxis(source.tables, 1, 0)), 0, 1)
-        return _of_runs(source, source.config, tables, names, f"{len(source):,} seeds")
+        return _of_runs(source, source.config, source.tables, names, f"{len(source):,} seeds")
     if isinstance(source, Optimum):
         return _of_optimum(source)
     if isinstance(source, Subject):
@@ -133,7 +148,11 @@ def subject_of(name: str, source: Any, step: Any = 0) -> Subject:
 def _of_runs(
     source: Run | Runs, config: Config, tables: NDArray[np.float64], names: tuple[str, ...], which: str
 ) -> Subject:
-    summed = tables[:, 0] if tables.shape[1] == 1 else (tables[:, 0] + tables[:, 1]) / 2
+    # (k, seeds, rows, actions): two tables of action values are on the scale of returns as their mean.
+    read = read_by_policy(config, np.moveaxis(tables, 1, 0))
+    summed = read[0] if len(read) == 1 else (read[0] + read[1]) / 2
+    with_state_values = config.algorithm in WITH_STATE_VALUES
+    learned: Learned = "preferences" if config.algorithm in PREFERENCES else "action values"
     if source.action_masks is not None:
         summed = np.where(source.action_masks.reshape(summed.shape), summed, -np.inf)
     return Subject(
@@ -145,6 +164,9 @@ def _of_runs(
         summed,
         _known(source, config, tables),
         names,
+        config.discount,
+        "state values" if with_state_values else learned,
+        tables[:, 1, :, :1] if with_state_values else None,
     )
 
 
@@ -153,10 +175,13 @@ def _known(source: Run | Runs, config: Config, tables: NDArray[np.float64]) -> N
     if isinstance(source, Run) and source.visits is not None:
         visited: NDArray[np.bool_] = source.visits.reshape(1, -1, source.visits.shape[-1]) > 0
         return np.asarray(visited.any(axis=-1))
-    if isinstance(config.initial_q, int | float):
-        changed: NDArray[np.bool_] = (tables != config.initial_q).any(axis=(1, 3))
-        return changed
-    return None
+    if not isinstance(config.initial_q, int | float):
+        return None
+    initial = np.full(tables.shape[1], config.initial_q)
+    if config.algorithm in WITH_STATE_VALUES:
+        initial[1] = 0.0
+    changed: NDArray[np.bool_] = (tables != initial[:, np.newaxis, np.newaxis]).any(axis=(1, 3))
+    return changed
 
 
 def _of_optimum(best: Optimum) -> Subject:
@@ -179,4 +204,4 @@ def _of_optimum(best: Optimum) -> Subject:
     tables = best.q_values.reshape(1, -1, best.q_values.shape[-1])
     names = action_names(best.env, Actions(tables.shape[-1]))
     name = f"{best.env}: {best.label}"
-    return Subject(best, best.env, best.env_kwargs, name, discretizer, tables, None, names)
+    return Subject(best, best.env, best.env_kwargs, name, discretizer, tables, None, names, best.discount)

@@ -10,14 +10,17 @@ from qtab._utils import checks
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.heat_maps import draw_heat_maps
 from qtab.plots.panels import arranged
-from qtab.plots.subject import Drawable, Subject
+from qtab.plots.subject import Drawable, Learned, Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import Normalize
 
-VALUE_LABEL = "value, max$_a$ Q(s, a)"
-ESTIMATED_LABEL = "value, v(s)"
+_LABELS: Mapping[Learned, str] = {
+    "action values": "value, max$_a$ Q(s, a)",
+    "state values": "value, v(s)",
+    "preferences": "largest preference, max$_a$ H(s, a)",
+}
 
 
 @runtime_checkable
@@ -38,7 +41,10 @@ def values(
     step: int = 0,
     numbers: bool = True,
 ) -> "Axes":
-    """Draws the value of each state under the greedy policy: the largest action value.
+    """Draws the value of each state: the largest action value, which is that of the greedy policy.
+
+    Of REINFORCE with baseline and actor-critic methods it is the state value that they learned, and of methods that
+    learn preferences alone the largest preference, as the color bar says.
 
     States along the axes of the observation, or on the map that the environment has; Taxi's by the place of the
     passenger and the destination, Blackjack's as in Sutton & Barto (2nd ed., Figure 5.2). Tile coding is sampled on
@@ -47,7 +53,8 @@ def values(
 
     Args:
         run: A run; the runs of many seeds with their tables, of which the mean is shown; an optimum; or the values that
-            :func:`qtab.estimate_values` found. A sequence of them makes panels with one scale of colors.
+            :func:`qtab.estimate_values` found. A sequence of them makes panels with one scale of colors; values of
+            different discounts differ in size, so that each panel has a scale of its own.
         ax: The axes to draw on; None creates a new figure. A sequence needs None.
         at: For observations of more than two components, the values of those that are not axes, by the names in
             ``run.axes``, such as ``{"cart position": 0.0, "cart velocity": 0.0}``. Acrobot and Pendulum have angles
@@ -68,13 +75,27 @@ def values(
     """
     numbers = checks.boolean("numbers", numbers)
     given: list[Any] = list(run) if isinstance(run, list | tuple) else [run]
-    estimated = [isinstance(source, Estimates) for source in given]
     sources: Any = [source._subject() if isinstance(source, Estimates) else source for source in given]
     panels = arranged(sources if isinstance(run, list | tuple) else sources[0], at, layout, title, step)
+    label = value_label([subject for subject, _ in panels])
     grids = [subject.state_values(raster.rows) for subject, raster in panels]
     text = value_text if numbers else None
-    label = ESTIMATED_LABEL if all(estimated) else VALUE_LABEL
-    return draw_heat_maps(panels, grids, ax, norm=common_norm, label=label, title=title, text=text)
+    one_scale = len({subject.discount for subject, _ in panels}) == 1
+    return draw_heat_maps(panels, grids, ax, norm=common_norm, label=label, title=title, text=text, one_scale=one_scale)
+
+
+def value_label(subjects: Sequence[Subject]) -> str:
+    """Returns the label of the color bar of several subjects.
+
+    Raises:
+        ValueError: for values beside preferences, which no scale has in common.
+    """
+    learned = {subject.learned for subject in subjects}
+    if len(learned) == 1:
+        return _LABELS[learned.pop()]
+    if "preferences" in learned:
+        raise ValueError("run must hold runs that learned values or runs that learned preferences alone, got both")
+    return "value"
 
 
 def common_norm(grids: Sequence[NDArray[np.float64]]) -> "Normalize":

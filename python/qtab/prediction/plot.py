@@ -32,7 +32,18 @@ def subject_of_values(estimates: "ValueEstimates") -> Subject:
     which = "1 seed" if count == 1 else f"{count:,} seeds"
     name = f"{estimates.env}: values by {settings.method}, {which}"
     known = values != initial
-    return Subject(estimates, estimates.env, env_kwargs, name, discretizer, values[..., np.newaxis], known, ("",))
+    return Subject(
+        estimates,
+        estimates.env,
+        env_kwargs,
+        name,
+        discretizer,
+        values[..., np.newaxis],
+        known,
+        ("",),
+        settings.discount,
+        "state values",
+    )
 
 
 def draw_values(estimates: "ValueEstimates", ax: "Axes | None", true_values: NDArray[np.float64] | None) -> "Axes":

@@ -15,7 +15,7 @@ from qtab.plots.heat_maps import draw_heat_map
 from qtab.plots.panels import color_bar
 from qtab.plots.policy import policy
 from qtab.plots.subject import Subject, subject_of
-from qtab.plots.values import VALUE_LABEL, common_norm, value_text
+from qtab.plots.values import common_norm, value_label, value_text
 from qtab.rendering.frames import Frames
 from qtab.results.run import Run
 
@@ -125,7 +125,7 @@ class _Painter:
             if panel == "values":
                 image = draw_heat_map(ax, self.raster, self.grids[index], self.norm, title, value_text)
                 if self.bar is None:
-                    self.bar = color_bar([ax], self.raster, image, VALUE_LABEL).ax
+                    self.bar = color_bar([ax], self.raster, image, value_label(self.subjects)).ax
             else:
                 source: Any = self.subjects[index].source
                 policy(source, ax, at=self.at, layout=self.layout, title=title)
