@@ -55,7 +55,7 @@ def test_of_many_settings_the_best_are_drawn_and_the_legend_reports_it() -> None
 
 
 @pytest.mark.parametrize(
-    ("episodes", "block", "points"), [(3, 1, 3), (8, 2, 4), (99, 20, 4), (150, 20, 7), (400, 100, 4)]
+    ("episodes", "block", "points"), [(3, 1, 3), (8, 1, 8), (99, 2, 49), (150, 5, 30), (500, 20, 25), (2000, 100, 20)]
 )
 def test_short_runs_have_a_mean_line_whose_label_tells_the_block(episodes: int, block: int, points: int) -> None:
     run = qtab.train("MountainCar-v0", episodes=episodes, seed=0)
@@ -116,6 +116,13 @@ NAN = np.where(ARRAY[0, 0] < ARRAY, np.nan, ARRAY)
         (qtab.plot, RUN, {"optimum": True}, TypeError, "optimum must be a number or a result"),
         (qtab.plot, RUN, {"threshold": np.inf}, ValueError, "threshold must be finite, got inf"),
         (qtab.plot, RUN, {"block": 10**30}, ValueError, "block must be an integer from 1 to 50, got 1000000"),
+        (
+            plots.learning_curves,
+            {"a": [0.0], "b": SWEEP},
+            {},
+            ValueError,
+            "returns must have at least 10 episodes beside a sweep whose points average as many, got 1",
+        ),
         (plots.learning_curves, SWEEP, {"block": 15}, ValueError, "block must be a multiple of the sweep's block, 10"),
         (
             plots.learning_curves,

@@ -131,3 +131,23 @@ def test_a_distribution_counts_every_run():
     bars = ax.containers[0]
     assert len(bars) == 5
     assert sum(bar.get_height() for bar in bars) == 12
+
+
+@pytest.mark.parametrize("draw", [plots.learning_curves, plots.distribution, plots.profile])
+def test_lines_differ_in_their_style_as_well_as_in_their_color(draw: Any) -> None:
+    named = {
+        name: RETURNS + index if draw is plots.learning_curves else RETURNS[:, -1] + index
+        for index, name in enumerate("abcde")
+    }
+    ax = draw(named, colors="black")
+    lines = [line for line in ax.lines if line.get_linewidth() >= 2]
+    assert len(lines) == 5
+    assert len({str(line._unscaled_dash_pattern) for line in lines}) == 5
+    assert lines[0].get_linestyle() == "-"
+
+
+def test_lines_of_several_calls_differ_in_their_style() -> None:
+    ax = plots.learning_curves(RETURNS, label="a")
+    plots.learning_curves(RETURNS, ax, label="b", index=1)
+    thick = [line for line in ax.lines if line.get_linewidth() > 2]
+    assert [line.get_linestyle() for line in thick] == ["-", "--"]

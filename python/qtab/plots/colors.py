@@ -1,4 +1,4 @@
-"""Colors: one per algorithm, sequential ones for ordered parameters, and all of them readable on dark backgrounds."""
+"""Colors: one per algorithm, sequential ones for ordered parameters, all readable on dark backgrounds; line styles."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -16,6 +16,15 @@ COLORS = (
 )
 """Colors that differ in lightness, and that most color-blind readers can distinguish."""
 
+LINE_STYLES: tuple[Any, ...] = (
+    "solid",
+    (0, (7, 2)),
+    (0, (7, 2, 1.2, 2)),
+    (0, (2.5, 1.5)),
+    (0, (7, 2, 1.2, 2, 1.2, 2)),
+)
+"""Styles that tell lines apart without their colors: dashes longer or shorter than those of an optimum, and dots."""
+
 SEQUENTIAL = "viridis"
 """The colormap of ordered values."""
 _DARK = 0.35
@@ -27,6 +36,11 @@ _LIGHTENED = 0.45
 def color(index: int, ax: "Axes | None" = None) -> Any:
     """Returns the color of a line by its index, lightened where the axes are dark."""
     return readable(COLORS[index % len(COLORS)], ax)
+
+
+def line_style(index: int) -> Any:
+    """Returns the style of a line by its index: the first is solid."""
+    return LINE_STYLES[index % len(LINE_STYLES)]
 
 
 def readable(chosen: str, ax: "Axes | None") -> Any:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab.plots.axes import axes_or_new, check_axes
-from qtab.plots.colors import palette
+from qtab.plots.colors import line_style, palette
 from qtab.plots.inputs import color_keys, entries, only_env
 from qtab.plots.labels import finish
 from qtab.plots.marks import check_threshold, mark_threshold
@@ -63,13 +63,14 @@ def distribution(
     hues = palette(color_keys(drawn), ax, None, colors, [entry.label for entry in drawn])
     # Many filled histograms on top of each other would mix to a color of none of them.
     fill = 0.5 / math.sqrt(len(drawn)) if len(drawn) <= MAX_FILLED else 0.06
-    for entry, hue in zip(drawn, hues, strict=True):
+    for index, (entry, hue) in enumerate(zip(drawn, hues, strict=True)):
         middle = float(np.median(entry.values))
         runs = f"{len(entry.values)} run{'' if len(entry.values) == 1 else 's'}, median {middle:.4g}"
         label = f"{entry.label}: {runs}" if entry.label else runs
         ax.hist(entry.values, edges, color=hue, alpha=fill, label=label)
-        ax.hist(entry.values, edges, color=hue, histtype="step", linewidth=1.4)
-        ax.axvline(middle, color=hue, linewidth=2)
+        style: Any = line_style(index)
+        ax.hist(entry.values, edges, color=hue, histtype="step", linewidth=1.4, linestyle=style)
+        ax.axvline(middle, color=hue, linewidth=2, linestyle=style)
     mark_threshold(ax, threshold, only_env(drawn), "x")
     ax.locator_params(axis="y", integer=True)
     return finish(ax, "Final return", "Runs", title, legend_title=note)

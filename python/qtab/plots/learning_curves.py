@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab.plots.axes import axes_or_new, check_axes
 from qtab.plots.blocks import common_block, counted_episodes
-from qtab.plots.colors import palette
+from qtab.plots.colors import line_style, palette
 from qtab.plots.inputs import Entry, color_keys, entries, only_env
 from qtab.plots.labels import episode_ticks, finish, joined
 from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
@@ -51,12 +51,12 @@ def learning_curves(
             the legend reports.
         ax: The axes to draw on; None creates a new figure, which a notebook and ``plt.show()`` show.
         block: The number of episodes in a block. Each point shows the mean returns of one block. None means 100; more
-            for runs of more than 10,000 episodes, and fewer for those of fewer than 400.
+            for runs of more than 10,000 episodes, and fewer for those of fewer than 2,000.
         statistic: The statistic over the runs: ``"mean"``, ``"median"`` or ``"iqm"``.
         confidence: The coverage probability of the interval, between 0 and 1.
         label: The name in the legend of a single curve; several have the names of the mapping or the settings.
-        index: The index of the color. Settings on the same axes need different ones. None means the algorithm's color
-            where the algorithm is known, else the first.
+        index: The index of the color and of the line's style. Settings on the same axes need different ones. None
+            means the algorithm's color where the algorithm is known, else the first.
         settings: The indices of the settings of a sweep to draw, such as ``[0, 3]``.
         colors: A color, a sequence of colors, or a mapping of names to colors; None chooses.
         optimum: A result of :func:`qtab.optimum`, or a return, to mark by a dashed line with its number in the legend.
@@ -96,12 +96,12 @@ def learning_curves(
     ax = axes_or_new(ax)
     hues = palette(color_keys(drawn), ax, index, colors, [entry.label for entry in drawn])
     names, heading = _names(drawn, statistic, f"{100 * confidence:.4g}%")
-    for name, runs, curve, hue in zip(names, means, points, hues, strict=True):
+    for position, (name, runs, curve, hue) in enumerate(zip(names, means, points, hues, strict=True)):
         x = block * (np.arange(runs.shape[1]) + 1)
         if curve is not None and len(drawn) <= MAX_CLOUDS:
             faint: dict[str, Any] = {"color": hue, "linewidth": 0.6, "alpha": max(0.04, min(0.4, 8 / len(runs)))}
             ax.plot(x, runs[:MAX_SINGLE_RUNS].T, rasterized=True, zorder=1, **faint)
-        _draw_curve(ax, x, runs, curve, hue, name)
+        _draw_curve(ax, x, runs, curve, hue, name, line_style((index or 0) + position))
     mark_optimum(ax, optimum)
     mark_threshold(ax, threshold, only_env(drawn))
     episode_ticks(ax)
@@ -117,6 +117,7 @@ def _draw_curve(
     curve: "list[Interval] | None",
     hue: Any,
     name: str,
+    style: Any,
 ) -> None:
     """Draws a statistic with its interval, or the means of a single run."""
     y: Any = runs[0]
@@ -125,7 +126,7 @@ def _draw_curve(
         low, high = [point.low for point in curve], [point.high for point in curve]
         ax.fill_between(x, low, high, color=hue, alpha=0.3, linewidth=0, zorder=2)
     marker: dict[str, Any] = {"marker": "o", "markersize": 4} if len(x) == 1 else {}
-    ax.plot(x, y, color=hue, linewidth=2.2, label=name, zorder=3, **marker)
+    ax.plot(x, y, color=hue, linewidth=2.2, linestyle=style, label=name, zorder=3, **marker)
 
 
 def _names(drawn: list[Entry], statistic: str, confidence: str) -> tuple[list[str], str]:

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import arrays, checks
 from qtab.plots.axes import axes_or_new, check_axes
-from qtab.plots.colors import palette
+from qtab.plots.colors import line_style, palette
 from qtab.plots.inputs import color_keys, entries, final_returns
 from qtab.plots.labels import finish, joined
 from qtab.results.run import Run
@@ -77,11 +77,12 @@ def profile(
     ax = axes_or_new(ax)
     hues = palette(keys, ax, None, colors, labels)
     has_band = False
-    for label, setting, band, hue in zip(labels, environments, bands, hues, strict=True):
+    for index, (label, setting, band, hue) in enumerate(zip(labels, environments, bands, hues, strict=True)):
         proportions = stats.performance_profile(setting, levels)
         counts = sorted({len(runs) for runs in setting.values()})
         runs = f"{'-'.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} run{'' if counts[-1] == 1 else 's'}"
-        ax.step(levels, proportions, where="post", color=hue, linewidth=2, label=label or runs)
+        style: dict[str, Any] = {"color": hue, "linewidth": 2, "linestyle": line_style(index)}
+        ax.step(levels, proportions, where="post", label=label or runs, **style)
         if band is not None:
             has_band = True
             low, high = [point.low for point in band], [point.high for point in band]

@@ -40,7 +40,7 @@ def plot(
         run: The run. :func:`qtab.plots.learning_curves` draws several.
         ax: The axes to draw on; None creates a new figure, which a notebook and ``plt.show()`` show.
         block: The number of episodes in a block. None means 100; more for a run of more than 10,000 episodes, and
-            fewer for one of fewer than 400.
+            fewer for one of fewer than 2,000.
         color: The color; None means that of the algorithm.
         optimum: A result of :func:`qtab.optimum`, or a return, to mark by a dashed line with its number in the legend.
         threshold: A return to mark by a dotted line. None means that at which Gymnasium considers the environment

@@ -7,7 +7,7 @@ import numpy as np
 
 from qtab._utils import checks
 from qtab.plots.axes import axes_or_new, check_axes
-from qtab.plots.colors import palette
+from qtab.plots.colors import line_style, palette
 from qtab.plots.inputs import short
 from qtab.plots.labels import category_ticks, finish, joined
 from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
@@ -84,10 +84,11 @@ def sensitivity(
     is_numeric = len(numbers) == len(values)
     if by is None and not is_numeric:  # each category has its color, as each algorithm has elsewhere
         for point, hue in zip(lines[0][1], palette(values, ax, None, colors), strict=True):
-            _draw_line(ax, [point], values, hue, "")
+            _draw_line(ax, [point], values, hue, "", "none")
     else:
-        for (_, points), label, hue in zip(lines, labels, palette(keys, ax, None, colors, labels), strict=True):
-            _draw_line(ax, points, None if is_numeric else values, hue, label)
+        hues = palette(keys, ax, None, colors, labels)
+        for index, ((_, points), label, hue) in enumerate(zip(lines, labels, hues, strict=True)):
+            _draw_line(ax, points, None if is_numeric else values, hue, label, line_style(index))
     if is_numeric and min(numbers) > 0 and max(numbers) / min(numbers) >= LOG_SCALE_RATIO:
         ax.set_xscale("log")
     if not is_numeric:
@@ -98,14 +99,14 @@ def sensitivity(
     return finish(ax, parameter, f"{statistic} {column}", title, legend_title=joined(note, shown))
 
 
-def _draw_line(ax: "Axes", points: list[Point], categories: list[Any] | None, hue: Any, label: str) -> None:
+def _draw_line(ax: "Axes", points: list[Point], categories: list[Any] | None, hue: Any, label: str, line: Any) -> None:
     """Draws the points of one line, with bars where the x axis has categories, between which there is nothing."""
     x = [point.value if categories is None else categories.index(point.value) for point in points]
     y = [point.estimate for point in points]
     low, high = np.array([point.low for point in points]), np.array([point.high for point in points])
     if categories is None and len(points) > 1:
         ax.fill_between(x, low, high, color=hue, alpha=0.3, linewidth=0)
-        ax.plot(x, y, "o-", color=hue, linewidth=2, label=label or None)
+        ax.plot(x, y, marker="o", color=hue, linewidth=2, linestyle=line, label=label or None)
     else:
         style: dict[str, Any] = {"linestyle": "none", "capsize": 4, "linewidth": 2}
         ax.errorbar(x, y, [np.subtract(y, low), np.subtract(high, y)], fmt="o", color=hue, label=label, **style)
