@@ -199,8 +199,11 @@ class Run(WithPage):
         episode_start: Any = None,
         deterministic: bool = True,
         action_masks: ArrayLike | None = None,
-    ) -> tuple[Any, Any]:
+    ) -> tuple[Any, int | NDArray[np.int64] | None]:
         """Returns the action of an observation as ``env.step`` takes it, and the state of the policy, as SB3 does.
+
+        The action has the type of the action space's samples, which no annotation can name: an integer, an array, or a
+        tuple or a dict of these.
 
         For n observations, batched as Gymnasium's vector environments do, it returns an array of n actions. The policy
         of a run with ``time_aware=True`` has a state, the number of steps taken in the episode, which the next call
