@@ -115,6 +115,29 @@ def test_a_table_that_differs_by_one_bit_is_reported(cell):
     assert (report.episode, report.step) == (None, None)
 
 
+def test_the_table_of_a_run_is_compared_whenever_all_its_episodes_are():
+    run = train()
+    shifted = dataclasses.replace(run, tables=run.tables + 1)
+    for episodes in (None, 12):
+        report = qtab.verify(shifted, episodes=episodes)
+        assert (report.equal, report.table_equal, report.table_of_run) == (False, False, True)
+        assert "Q table  DIFFERENT\n" in str(report)
+    part = qtab.verify(shifted, episodes=11)
+    assert (part.equal, part.table_of_run) == (True, False)
+    sentence = "that of Rust, trained again: the run holds none after 11 episodes"
+    assert sentence in str(part)
+    assert sentence in part._repr_html_()
+    assert sentence not in str(qtab.verify(run))
+    assert qtab.verify(run, episodes=12).equal
+
+
+def test_the_table_of_a_stopped_run_is_compared_unless_an_unfinished_episode_changed_it():
+    assert qtab.verify(stopped(), episodes=6).table_of_run
+    assert not qtab.verify(stopped(), episodes=5).table_of_run
+    changed = dataclasses.replace(stopped(), tables=stopped().tables + 1)
+    assert not qtab.verify(changed, episodes=6).table_of_run
+
+
 def test_the_sign_of_a_zero_is_a_difference():
     run = train(initial_q=(0.0, 0.0))
     untouched = int(np.flatnonzero(run.tables == 0.0)[0])

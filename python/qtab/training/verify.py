@@ -52,10 +52,13 @@ class Verification:
     """The class name of a wrapper of ``env`` with statistics of its own; None where nothing differs, or without one."""
     trained_with: dict[str, str] | None = None
     """The platform and the versions of the run that are not those of this comparison; None where nothing differs."""
+    table_of_run: bool = True
+    """Whether the Q table compared was the run's own. False where the run holds none after so many episodes: for its
+    first ones alone, and where it was stopped within an episode. It is then that of Rust, trained again."""
 
     @property
     def equal(self) -> bool:
-        """Whether returns, lengths and the Q table are equal byte for byte."""
+        """Whether returns, lengths and the Q table, see :attr:`table_of_run`, are equal byte for byte."""
         return self.returns_equal and self.lengths_equal and self.table_equal
 
     def __repr__(self) -> str:
@@ -69,6 +72,8 @@ class Verification:
         lines = [self._heading, *(f"  {name:7}  {word}" for name, word in self._words().items())]
         if self.episode is not None:
             lines.append(f"  they differ from {self._place} on (counted from 0)")
+        if not self.table_of_run:
+            lines.append(f"  the Q table is {self._other_table}")
         lines += [f"  {sentence}" for sentence in self._about_the_environment() + self._about_the_machine()]
         lines.append("  " + ", ".join(f"{name} {value}" for name, value in self.versions.items()))
         return "\n".join(lines)
@@ -78,6 +83,8 @@ class Verification:
         facts = {"compared": f"{self.episodes:,} episodes, byte for byte", **self._words()}
         if self.episode is not None:
             facts["they differ from"] = f"{self._place} on (counted from 0)"
+        if not self.table_of_run:
+            facts["Q table compared"] = self._other_table
         if self.repeats is not None:
             facts["environment"] = " ".join(self._about_the_environment())
         if self.trained_with:
@@ -111,6 +118,10 @@ class Verification:
         return f"{self.env}, seed {self.seed}, {self.episodes} episodes against Gymnasium and NumPy, byte for byte"
 
     @property
+    def _other_table(self) -> str:
+        return f"that of Rust, trained again: the run holds none after {self.episodes:,} episodes"
+
+    @property
     def _place(self) -> str:
         return f"episode {self.episode}" + ("" if self.step is None else f", step {self.step}")
 
@@ -132,8 +143,9 @@ def verify(
 
     Args:
         run: What to verify.
-        episodes: Compare only the first episodes, using the full run's schedule: both sides train again, and their
-            tables after that many are compared. None compares the run as it is, its Q table included.
+        episodes: Compare only the first episodes, using the full run's schedule: where these are not all of them, the
+            run holds no table of that time, and the one that Rust has after training again is compared. None compares
+            all episodes and the run's own Q table.
         env: The environment, for a run that was trained on one without an id: an environment, which is not closed, an
             id or an EnvSpec.
         progress: Called after every episode of the reference with the number done and the total.
@@ -184,7 +196,8 @@ def verify(
         if env is None:
             recorder.close()
 
-    ours = run.tables if episodes is None else _again(config, env, count)[0]
+    is_whole = count == finished and run.completed
+    ours = run.tables if is_whole else _again(config, env, count)[0]
     episode = _first_difference((returns, run.episode_returns[:count]), (lengths, run.episode_lengths[:count]))
     verification = Verification(
         env=config.env,
@@ -196,6 +209,8 @@ def verify(
         episode=episode,
         step=None if episode is None else _first_step(config, env, run, recorder, episode),
         versions=versions(),
+        # An unfinished episode changes the tables of a stopped run.
+        table_of_run=is_whole or (count == finished and same_bytes(ours, run.tables)),
     )
     if verification.equal:
         return verification
