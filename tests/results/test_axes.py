@@ -1,5 +1,6 @@
 """Names of observations and actions, the edges of cells, and values in batches."""
 
+import dataclasses
 import warnings
 from typing import Any
 
@@ -30,6 +31,9 @@ def test_every_environment_is_described_as_its_spaces_are(env: str) -> None:
         else space.shape[0]
     )
     assert len(described.observation) == components
+    assert (described.bounds is not None) == isinstance(space, gym.spaces.Box)
+    if described.bounds is not None:
+        assert np.array(described.bounds, space.dtype).tolist() == [space.low.tolist(), space.high.tolist()]
     actions: Any = made.action_space
     if isinstance(actions, gym.spaces.Discrete):
         assert len(described.actions) == (2 if "Bias" in env else actions.n)
@@ -39,7 +43,7 @@ def test_every_environment_is_described_as_its_spaces_are(env: str) -> None:
 
 
 def test_no_description_is_for_an_environment_that_does_not_exist() -> None:
-    assert set(DESCRIPTIONS) == {env.partition("-v")[0] for env in IDS}
+    assert set(DESCRIPTIONS) == set(IDS)
 
 
 @pytest.mark.parametrize("env", ["MountainCar-v0", "qtab/MountainCar-v0"])
@@ -128,6 +132,58 @@ def test_values_are_the_largest_action_values(chosen: dict[str, Any]) -> None:
     assert one == values[1]
 
 
-def test_only_the_version_at_the_end_of_an_id_is_left_out():
-    assert describe("FrozenLake-variant-v0") is UNKNOWN
-    assert describe("somewhere:FrozenLake-v12") is DESCRIPTIONS["FrozenLake"]
+class CliffWalking(Unknown):
+    """An environment of a user's with the name of one of Gymnasium's, and other actions."""
+
+    def __init__(self) -> None:
+        self.observation_space = gym.spaces.Discrete(48)
+        self.action_space = gym.spaces.Discrete(4)
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        return 0, {}
+
+    def step(self, action: Any) -> Any:
+        return 1, 0.0, bool(action == 1), False, {}
+
+
+def test_a_class_of_the_same_name_has_neutral_names() -> None:
+    run = qtab.train(CliffWalking(), episodes=2, seed=0, max_episode_steps=5)
+    assert run.config.env == "CliffWalking"
+    assert run.action_names == ("action 0", "action 1", "action 2", "action 3")
+    assert qtab.explain(run, steps=1, env=CliffWalking())[0].action_name.startswith("action ")
+    assert qtab.plots.policy(run).get_xlabel() == "state"  # not Gymnasium's map
+
+
+@pytest.mark.parametrize("version", ["CliffWalking-v7", "mine/CliffWalking-v1"])
+def test_an_id_of_another_version_or_namespace_has_neutral_names(version: str) -> None:
+    assert describe(version) is UNKNOWN
+    gym.register(version, CliffWalking)
+    try:
+        assert qtab.train(version, episodes=1, seed=0, max_episode_steps=5).action_names[0] == "action 0"
+    finally:
+        del gym.registry[version]
+
+
+def test_another_environment_under_the_same_id_has_neutral_names() -> None:
+    of_gymnasium = gym.registry["CliffWalking-v1"]
+    assert describe("CliffWalking-v1") is describe("somewhere:CliffWalking-v1") is DESCRIPTIONS["CliffWalking-v1"]
+    try:
+        with pytest.warns(UserWarning, match="Overriding environment"):
+            gym.register("CliffWalking-v1", CliffWalking)
+        assert describe("CliffWalking-v1") is UNKNOWN
+        assert qtab.train("CliffWalking-v1", episodes=1, seed=0, max_episode_steps=5).action_names[0] == "action 0"
+        wrapped = gym.envs.registration.WrapperSpec("A", "gymnasium.wrappers:FlattenObservation", {})
+        gym.registry["CliffWalking-v1"] = dataclasses.replace(of_gymnasium, additional_wrappers=(wrapped,))
+        assert describe("CliffWalking-v1") is UNKNOWN
+    finally:
+        gym.registry["CliffWalking-v1"] = of_gymnasium
+
+
+def test_a_rescaled_position_has_no_unit() -> None:
+    env = gym.wrappers.RescaleObservation(gym.make("MountainCar-v0"), np.float32(0.0), np.float32(1.0))
+    run = qtab.train(env, discretizer="bins", bins=3, episodes=2, seed=0, max_episode_steps=9)
+    assert [axis.label for axis in run.axes] == ["observation[0]", "observation[1]"]
+    assert run.action_names == ("push left", "no push", "push right")
+    ax = qtab.plots.values(run)
+    assert (ax.get_xlabel(), [text.get_text() for text in ax.texts]) == ("observation[0]", [])  # no flag at 0.5
+    assert qtab.explain(run, steps=1, env=env)[0].state.startswith("(0.")

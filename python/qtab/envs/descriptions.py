@@ -4,12 +4,16 @@ They come from Gymnasium's documentation, which names the components of observat
 pictures, ``run.axes`` and ``run.action_names`` show them. An environment that is not listed has neutral names.
 """
 
-import re
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
-from qtab.envs.registry import gymnasium_id
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.envs.registry import entry_for_id, gymnasium_id
 
 
 @dataclass(frozen=True)
@@ -68,29 +72,44 @@ class Description:
     """What pictures mark along an axis."""
     layout: Literal["", "map", "taxi", "blackjack"] = ""
     """How pictures arrange the states; empty for the axes of the observation."""
+    bounds: tuple[tuple[float, ...], tuple[float, ...]] | None = None
+    """The lower and the upper bounds of the observations, where they are a Box."""
 
 
 _POSITION, _VELOCITY = Quantity("position", "m"), Quantity("velocity", "m/step")
 _STATE = (Quantity("state"),)
+_CAR = ((-1.2, -0.07), (0.6, 0.07))
+_TILT = 24 * 2 * math.pi / 360
+"""The largest angle of CartPole's pole."""
+
+_CART_POLE = Description(
+    (
+        Quantity("cart position", "m"),
+        Quantity("cart velocity", "m/s"),
+        Quantity("pole angle", "rad"),
+        Quantity("pole angular velocity", "rad/s"),
+    ),
+    ("push left", "push right"),
+    plane=("pole angle", "pole angular velocity"),
+    bounds=((-4.8, -math.inf, -_TILT, -math.inf), (4.8, math.inf, _TILT, math.inf)),
+)
 
 DESCRIPTIONS: Mapping[str, Description] = {
-    "MountainCar": Description(
-        (_POSITION, _VELOCITY), ("push left", "no push", "push right"), marks=(Mark("position", 0.5, "flag"),)
+    "MountainCar-v0": Description(
+        (_POSITION, _VELOCITY),
+        ("push left", "no push", "push right"),
+        marks=(Mark("position", 0.5, "flag"),),
+        bounds=_CAR,
     ),
-    "MountainCarContinuous": Description(
-        (_POSITION, _VELOCITY), continuous_actions=(Quantity("force"),), marks=(Mark("position", 0.45, "flag"),)
+    "MountainCarContinuous-v0": Description(
+        (_POSITION, _VELOCITY),
+        continuous_actions=(Quantity("force"),),
+        marks=(Mark("position", 0.45, "flag"),),
+        bounds=_CAR,
     ),
-    "CartPole": Description(
-        (
-            Quantity("cart position", "m"),
-            Quantity("cart velocity", "m/s"),
-            Quantity("pole angle", "rad"),
-            Quantity("pole angular velocity", "rad/s"),
-        ),
-        ("push left", "push right"),
-        plane=("pole angle", "pole angular velocity"),
-    ),
-    "Acrobot": Description(
+    "CartPole-v0": _CART_POLE,
+    "CartPole-v1": _CART_POLE,
+    "Acrobot-v1": Description(
         (
             Quantity("cos θ1"),
             Quantity("sin θ1"),
@@ -102,60 +121,82 @@ DESCRIPTIONS: Mapping[str, Description] = {
         ("torque -1", "torque 0", "torque +1"),
         angles=(Angle(Quantity("θ1", "rad"), 0, 1), Angle(Quantity("θ2", "rad"), 2, 3)),
         plane=("θ1", "θ2"),
+        bounds=((-1, -1, -1, -1, -4 * math.pi, -9 * math.pi), (1, 1, 1, 1, 4 * math.pi, 9 * math.pi)),
     ),
-    "Pendulum": Description(
+    "Pendulum-v1": Description(
         (Quantity("cos θ"), Quantity("sin θ"), Quantity("angular velocity", "rad/s")),
         continuous_actions=(Quantity("torque", "N m"),),
         angles=(Angle(Quantity("θ", "rad"), 0, 1),),
         plane=("θ", "angular velocity"),
+        bounds=((-1, -1, -8), (1, 1, 8)),
     ),
-    "FrozenLake": Description(_STATE, ("left", "down", "right", "up"), layout="map"),
-    "FrozenLake8x8": Description(_STATE, ("left", "down", "right", "up"), layout="map"),
-    "CliffWalking": Description(_STATE, ("up", "right", "down", "left"), layout="map"),
-    "CliffWalkingSlippery": Description(_STATE, ("up", "right", "down", "left"), layout="map"),
-    "Taxi": Description(_STATE, ("south", "north", "east", "west", "pick up", "drop off"), layout="taxi"),
-    "Blackjack": Description(
+    "FrozenLake-v1": Description(_STATE, ("left", "down", "right", "up"), layout="map"),
+    "FrozenLake8x8-v1": Description(_STATE, ("left", "down", "right", "up"), layout="map"),
+    "CliffWalking-v1": Description(_STATE, ("up", "right", "down", "left"), layout="map"),
+    "CliffWalkingSlippery-v1": Description(_STATE, ("up", "right", "down", "left"), layout="map"),
+    "Taxi-v4": Description(_STATE, ("south", "north", "east", "west", "pick up", "drop off"), layout="taxi"),
+    "Blackjack-v1": Description(
         (Quantity("player's sum"), Quantity("dealer's card"), Quantity("usable ace", values=("no", "yes"))),
         ("stick", "hit"),
         layout="blackjack",
     ),
-    "qtab/AccessControlQueue": Description(_STATE, ("reject", "accept")),
-    "qtab/BlockingMaze": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/DynaMaze": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/Racetrack": Description(
+    "qtab/AccessControlQueue-v0": Description(_STATE, ("reject", "accept")),
+    "qtab/BlockingMaze-v0": Description(_STATE, ("up", "right", "down", "left")),
+    "qtab/DynaMaze-v0": Description(_STATE, ("up", "right", "down", "left")),
+    "qtab/Racetrack-v0": Description(
         _STATE, tuple(f"{up:+} up, {right:+} right" for up in (-1, 0, 1) for right in (-1, 0, 1))
     ),
-    "qtab/ShortcutMaze": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/GamblersProblem": Description((Quantity("capital", "$"),), tuple(f"stake {stake}" for stake in range(1, 51))),
-    "qtab/GridWorld4x4": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/GridWorld5x5": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/JacksCarRental": Description(_STATE, tuple(f"move {moved}" for moved in range(-5, 6))),
-    "qtab/RandomMdp": Description(_STATE, ("first", "second")),
-    "qtab/RandomWalk": Description(_STATE, ("left", "right")),
-    "qtab/KArmedBandit": Description(
+    "qtab/ShortcutMaze-v0": Description(_STATE, ("up", "right", "down", "left")),
+    "qtab/GamblersProblem-v0": Description(
+        (Quantity("capital", "$"),), tuple(f"stake {stake}" for stake in range(1, 51))
+    ),
+    "qtab/GridWorld4x4-v0": Description(_STATE, ("up", "right", "down", "left")),
+    "qtab/GridWorld5x5-v0": Description(_STATE, ("up", "right", "down", "left")),
+    "qtab/JacksCarRental-v0": Description(_STATE, tuple(f"move {moved}" for moved in range(-5, 6))),
+    "qtab/RandomMdp-v0": Description(_STATE, ("first", "second")),
+    "qtab/RandomWalk-v0": Description(_STATE, ("left", "right")),
+    "qtab/KArmedBandit-v0": Description(
         (Quantity("state", values=("bandit",)),), tuple(f"arm {number}" for number in range(1, 11))
     ),
-    "qtab/ShortCorridor": Description((Quantity("state", values=("corridor",)),), ("left", "right")),
-    "qtab/MaximizationBias": Description((Quantity("state", values=("A", "B", "end")),), ("right", "left")),
+    "qtab/ShortCorridor-v0": Description((Quantity("state", values=("corridor",)),), ("left", "right")),
+    "qtab/MaximizationBias-v0": Description((Quantity("state", values=("A", "B", "end")),), ("right", "left")),
 }
-"""The environments by their id, without its version."""
-
-VERSION = re.compile(r"-v\d+$")
-"""The end of an id."""
+"""The environments by their id."""
 
 UNKNOWN = Description()
 """The description of an environment that is not listed."""
 
 
 def describe(env: str) -> Description:
-    """Returns the description of an id, of Gymnasium's or of this package's; ``UNKNOWN`` for any other."""
-    full_name = VERSION.sub("", env.rpartition(":")[2])
-    return DESCRIPTIONS.get(full_name) or DESCRIPTIONS.get(gymnasium_id(full_name), UNKNOWN)
+    """Returns the description of an id, of Gymnasium's or of this package's; ``UNKNOWN`` for any other.
+
+    Another environment may be registered under the id, or with wrappers: it is another one, too.
+    """
+    bare = env.rpartition(":")[2]
+    entry, spec = entry_for_id(bare), gym.registry.get(bare)
+    if entry is None or spec is None or spec.additional_wrappers:
+        return UNKNOWN
+    if spec.entry_point not in (entry.gymnasium_entry_point, entry.entry_point):
+        return UNKNOWN
+    return DESCRIPTIONS.get(bare) or DESCRIPTIONS[gymnasium_id(bare)]
 
 
-def observation_quantities(env: str, count: int) -> tuple[Quantity, ...]:
-    """Returns the ``count`` components of an environment's observations; neutral names where they do not fit."""
-    known = describe(env).observation
-    if len(known) == count:
+def describe_observed(env: str, low: NDArray[Any], high: NDArray[Any]) -> Description:
+    """Returns the description of an environment whose observations have these bounds, (d,) or ().
+
+    Bounds that are not the environment's show that a wrapper changes its observations: nothing of them is described.
+    """
+    known = describe(env)
+    if known.bounds is None:
         return known
+    own = np.array(known.bounds)
+    if low.shape == own[0].shape and np.allclose([low, high], own, rtol=1e-6):
+        return known
+    return Description(actions=known.actions, continuous_actions=known.continuous_actions)
+
+
+def observation_quantities(known: Description, count: int) -> tuple[Quantity, ...]:
+    """Returns the ``count`` components of an environment's observations; neutral names where they do not fit."""
+    if len(known.observation) == count:
+        return known.observation
     return _STATE if count == 1 else tuple(Quantity(f"observation[{index}]") for index in range(count))

@@ -21,6 +21,7 @@ from qtab.explanation.words import map_columns, state_in_words
 from qtab.reference import LEARNERS
 from qtab.reference.observer import observed_by
 from qtab.reference.schedules import LearningRate
+from qtab.results.axes import description_of
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
 from qtab.training.extensions import ONLY_FIRST, repeatable
@@ -155,13 +156,13 @@ def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> E
     pending: tuple[int, ...] = ()
     if run.config.algorithm in N_STEP:
         pending = tuple(range(sum(len(seen.updates) for seen in watcher.steps[: index + 1]), index + 1))
-    env = run.config.env
+    known = description_of(run.config, run.discretizer)
     return ExplainedStep(
         step=index,
         observation=step.observation,
         rows=step.rows,
         cell=_cell(run, step.rows[0]),
-        state=state_in_words(env, step.observation, columns),
+        state=state_in_words(known, step.observation, columns),
         action=run.actions[choice.action],
         action_name=run.action_names[choice.action],
         choice=choice,
@@ -170,7 +171,7 @@ def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> E
         next_observation=step.next_observation,
         next_rows=step.next_rows,
         next_cell=_cell(run, step.next_rows[0]),
-        next_state=state_in_words(env, step.next_observation, columns),
+        next_state=state_in_words(known, step.next_observation, columns),
         terminated=step.terminated,
         truncated=step.truncated,
         terminal=step.terminal,

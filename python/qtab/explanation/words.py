@@ -6,26 +6,25 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-from qtab.envs.descriptions import describe
-from qtab.envs.registry import gymnasium_id
+from qtab.envs.descriptions import Description
 
 _PLACES = ("red", "green", "yellow", "blue")
 
 
-def state_in_words(env: str, observation: Any, columns: int | None = None) -> str:
+def state_in_words(known: Description, observation: Any, columns: int | None = None) -> str:
     """Returns an observation in words: its components by name, or a place on a map of so many columns."""
     if columns is not None:
         return f"row {int(observation) // columns}, column {int(observation) % columns}"
     if isinstance(observation, Mapping) or (isinstance(observation, tuple) and any(map(_has_parts, observation))):
         return _number(observation)
-    if gymnasium_id(env) == "Taxi-v4" and np.ndim(observation) == 0:
+    if known.layout == "taxi" and np.ndim(observation) == 0:
         return _taxi(int(observation))
     numbers: Sequence[Any] = np.atleast_1d(np.asarray(observation)).tolist()
-    known = describe(env).observation
-    if len(known) != len(numbers):
+    named = known.observation
+    if len(named) != len(numbers):
         return _number(observation)
-    words = [one.values[number] if one.values else _number(number) for one, number in zip(known, numbers, strict=True)]
-    return ", ".join(f"{one.name} {word}" for one, word in zip(known, words, strict=True))
+    words = [one.values[number] if one.values else _number(number) for one, number in zip(named, numbers, strict=True)]
+    return ", ".join(f"{one.name} {word}" for one, word in zip(named, words, strict=True))
 
 
 def map_columns(env: gym.Env) -> int | None:

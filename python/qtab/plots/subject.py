@@ -15,9 +15,10 @@ from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
 from qtab.discretizers import Discretizer, Identity
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.edges import Edges
+from qtab.envs.descriptions import Description, describe
 from qtab.planning.optimum import Optimum
 from qtab.results.action_values import read_by_policy
-from qtab.results.axes import Axis, action_names, axes_of
+from qtab.results.axes import Axis, action_names, axes_of, description_of
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.results.time_steps import at_step, checked_step
@@ -39,6 +40,8 @@ class Subject:
     """The environment's id, or the name of its class."""
     env_kwargs: Mapping[str, Any]
     """Keyword arguments of the environment's constructor."""
+    description: Description
+    """What its numbers mean."""
     name: str
     """A title."""
     discretizer: Discretizer
@@ -59,7 +62,7 @@ class Subject:
     @property
     def axes(self) -> tuple[Axis, ...]:
         """The components of the observation."""
-        return axes_of(self.env, self.discretizer)
+        return axes_of(self.description, self.discretizer)
 
     def action_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
         """Returns (seeds, ny, nx, actions) values; NaN where no state is, and where nothing was learned.
@@ -136,7 +139,7 @@ def subject_of(name: str, source: Any, step: Any = 0) -> Subject:
             raise ValueError(f"{name} must hold tables: train_many(..., tables=True) keeps them")
         if not len(source):
             raise ValueError(f"{name} must hold at least one run, got none")
-        names = action_names(source.config.env, source.actions)
+        names = action_names(description_of(source.config, source.discretizer), source.actions)
         return _of_runs(source, source.config, source.tables, names, f"{len(source):,} seeds")
     if isinstance(source, Optimum):
         return _of_optimum(source)
@@ -159,6 +162,7 @@ def _of_runs(
         source,
         config.env,
         config.env_kwargs,
+        description_of(config, source.discretizer),
         f"{config.env}: {ALGORITHM_NAMES[config.algorithm]}, {which}",
         source.discretizer,
         summed,
@@ -202,6 +206,7 @@ def _of_optimum(best: Optimum) -> Subject:
     else:
         discretizer = Identity(np.zeros(len(shape), np.int64), np.array(shape) - 1)
     tables = best.q_values.reshape(1, -1, best.q_values.shape[-1])
-    names = action_names(best.env, Actions(tables.shape[-1]))
+    description = describe(best.env)
+    names = action_names(description, Actions(tables.shape[-1]))
     name = f"{best.env}: {best.label}"
-    return Subject(best, best.env, best.env_kwargs, name, discretizer, tables, None, names, best.discount)
+    return Subject(best, best.env, best.env_kwargs, description, name, discretizer, tables, None, names, best.discount)

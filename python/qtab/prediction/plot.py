@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.envs.descriptions import describe_observed
 from qtab.plots.axes import axes_or_new
 from qtab.plots.labels import finish
 from qtab.plots.subject import Subject
@@ -36,6 +37,7 @@ def subject_of_values(estimates: "ValueEstimates") -> Subject:
         estimates,
         estimates.env,
         env_kwargs,
+        describe_observed(estimates.env, discretizer.low, discretizer.high),
         name,
         discretizer,
         values[..., np.newaxis],

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.config import Config
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.time_aware import TimeAware
-from qtab.envs.descriptions import Quantity, describe, observation_quantities
+from qtab.envs.descriptions import Description, Quantity, describe_observed, observation_quantities
 
 if TYPE_CHECKING:
     from qtab.discretizers import Discretizer
@@ -42,21 +43,23 @@ class Axis:
         return f"<Axis {self.label}: {cells:,} cell{'' if cells == 1 else 's'} {within}>"
 
 
-def axes_of(env: str, discretizer: "Discretizer") -> tuple[Axis, ...]:
+def description_of(config: Config, discretizer: "Discretizer") -> Description:
+    """Returns what the numbers of a run's environment mean, as far as it is one that is described."""
+    return describe_observed(config.env, discretizer.low, discretizer.high)
+
+
+def axes_of(known: Description, discretizer: "Discretizer") -> tuple[Axis, ...]:
     """Returns an axis for each component of the observations of an environment; the steps taken are the first one."""
     edges = discretizer.cell_edges()
     if isinstance(discretizer, TimeAware):
-        return (Axis("steps taken", "", edges[0]), *axes_of(env, discretizer.cells))
+        return (Axis("steps taken", "", edges[0]), *axes_of(known, discretizer.cells))
     named = tuple(map(Quantity, discretizer.component_names))
-    quantities = named or observation_quantities(env, len(edges))
-    return tuple(
-        Axis(known.name, known.unit, found, known.values) for known, found in zip(quantities, edges, strict=True)
-    )
+    quantities = named or observation_quantities(known, len(edges))
+    return tuple(Axis(one.name, one.unit, found, one.values) for one, found in zip(quantities, edges, strict=True))
 
 
-def action_names(env: str, actions: Actions) -> tuple[str, ...]:
+def action_names(known: Description, actions: Actions) -> tuple[str, ...]:
     """Returns a name for each action: Gymnasium's word, the value of a continuous action, or ``"action 2"``."""
-    known = describe(env)
     if actions.values is not None:
         quantities = known.continuous_actions
         components = actions.values.reshape(len(actions), -1)

@@ -16,7 +16,7 @@ from qtab.config import Config
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.results import action_values, behaviour, plain_data, run_file, saving, time_steps
-from qtab.results.axes import Axis, action_names, axes_of
+from qtab.results.axes import Axis, action_names, axes_of, description_of
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
 from qtab.results.page import WithPage
@@ -138,12 +138,12 @@ class Run(WithPage):
     @property
     def axes(self) -> tuple[Axis, ...]:
         """For each component of the observation its name, its unit and the edges of its cells."""
-        return axes_of(self.config.env, self.discretizer)
+        return axes_of(description_of(self.config, self.discretizer), self.discretizer)
 
     @property
     def action_names(self) -> tuple[str, ...]:
         """(actions,): Gymnasium's words for the actions, such as "push left", or the values of continuous ones."""
-        return action_names(self.config.env, self.actions)
+        return action_names(description_of(self.config, self.discretizer), self.actions)
 
     def _require_cells(self, attribute: str, method: str) -> None:
         if not self.discretizer.has_cells:
@@ -199,7 +199,7 @@ class Run(WithPage):
         episode_start: Any = None,
         deterministic: bool = True,
         action_masks: ArrayLike | None = None,
-    ) -> tuple[Any, int | NDArray[np.int64] | None]:
+    ) -> tuple[Any, Any]:
         """Returns the action of an observation as ``env.step`` takes it, and the state of the policy, as SB3 does.
 
         The action has the type of the action space's samples, which no annotation can name: an integer, an array, or a

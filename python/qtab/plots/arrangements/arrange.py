@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 
-from qtab.envs.descriptions import describe
 from qtab.plots.arrangements import blackjack as blackjack_module
 from qtab.plots.arrangements.blackjack import blackjack
 from qtab.plots.arrangements.grid_map import Layout, checked_layout, grid_map, known_layout
@@ -34,7 +33,7 @@ def arrange(
     """
     shape = subject.discretizer.shape
     has_components = subject.discretizer.has_component_axes
-    kind = describe(subject.env).layout if has_components else ""  # other rows are not the states of a known map
+    kind = subject.description.layout if has_components else ""  # other rows are not the states of a known map
     numbered = subject.discretizer.low.ndim == 0 and len(shape) == 1 and has_components
     if layout is not None and not numbered:
         raise ValueError(f"layout must be None for observations that are not numbered states, got {layout!r}")

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.envs.descriptions import describe
 from qtab.plots.subject import Subject
 from qtab.results.axes import Axis
 
@@ -39,7 +38,7 @@ class Coordinate:
 def coordinates(subject: Subject) -> tuple[Coordinate, ...]:
     """Returns the quantities that can be axes: angles first, then the remaining components in their order."""
     axes = subject.axes
-    description = describe(subject.env)
+    description = subject.description
     named = tuple(axis.name for axis in axes) == tuple(one.name for one in description.observation)
     angles = description.angles if named else ()
     used = {index for angle in angles for index in (angle.cosine, angle.sine)}
