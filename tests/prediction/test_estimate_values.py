@@ -190,13 +190,19 @@ def test_estimates_are_saved_and_loaded(tmp_path: Any) -> None:
         qtab.ValueEstimates.load(path)
 
 
-def test_pictures_and_tables_of_estimates() -> None:
+def test_pictures_and_tables_of_estimates(tmp_path: Any) -> None:
     found = qtab.estimate_values(WALK, "random", seeds=3, episodes=3, learning_rate=0.1)
     assert "<table" in found._repr_html_()
     assert repr(found) == "<ValueEstimates of qtab/RandomWalk-v0: td, 19 states, 3 runs of 3 episodes>"
     assert len(found.plot(true_values=np.zeros(19)).lines) == 2
     blackjack = qtab.estimate_values("Blackjack-v1", "random", episodes=3)
-    assert len(blackjack.plot().images) == 1
+    labels = {text.get_text() for text in blackjack.plot().texts}
+    assert {"usable ace", "no usable ace"} <= labels
+    blackjack.save(tmp_path / "values.npz")
+    ax = qtab.ValueEstimates.load(tmp_path / "values.npz").plot()  # without the observations
+    assert len(ax.images) == 1
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("dealer's card", "player's sum")
+    assert ax.get_title() == "Blackjack-v1: values by td, usable ace = yes"
 
 
 @pytest.mark.parametrize(

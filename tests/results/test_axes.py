@@ -132,10 +132,10 @@ def test_values_are_the_largest_action_values(chosen: dict[str, Any]) -> None:
     assert one == values[1]
 
 
-class CliffWalking(Unknown):
+class CliffWalking(gym.Env[Any, Any]):
     """An environment of a user's with the name of one of Gymnasium's, and other actions."""
 
-    def __init__(self) -> None:
+    def __init__(self, **_: Any) -> None:
         self.observation_space = gym.spaces.Discrete(48)
         self.action_space = gym.spaces.Discrete(4)
 

@@ -12,7 +12,6 @@ from qtab._utils import html, svg
 from qtab._utils.fields import with_fields
 from qtab.config import Config
 from qtab.discretizers import Discretizer
-from qtab.discretizers.box import BoxDiscretizer
 from qtab.prediction import storage
 from qtab.prediction.observation_policies import ObservationPolicies
 from qtab.prediction.settings import PredictionSettings
@@ -184,9 +183,9 @@ class ValueEstimates:
     def plot(self, ax: "Axes | None" = None, *, true_values: ArrayLike | None = None) -> "Axes":
         """Draws the mean values over the states, and returns the axes.
 
-        States of one component are a line with a band of two standard errors to each side; those of two or more are a
-        map of the first two components, with the others at the middle of their range. Of a Box with two components or
-        more it is the picture of :func:`qtab.plots.values`.
+        States of one component are a line with a band of two standard errors to each side; of two or more it is the
+        picture of :func:`qtab.plots.values`. Estimates from a file may not hold the observations of the states: it is
+        then a map of the first two components, with the others at the middle of their range.
 
         Args:
             ax: The axes to draw on; None creates a new figure.
@@ -197,7 +196,7 @@ class ValueEstimates:
         """
         from qtab.prediction.plot import draw_values
 
-        if self.rows is None or (isinstance(self.discretizer, BoxDiscretizer) and len(self.discretizer.low) > 1):
+        if self.rows is None or (self.discretizer is not None and len(self.shape) > 1):
             from qtab.plots import values
 
             return values(self, ax)

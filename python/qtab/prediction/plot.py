@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.envs.descriptions import describe_observed
+from qtab.envs.descriptions import describe, describe_observed, observation_quantities
 from qtab.plots.axes import axes_or_new
 from qtab.plots.labels import finish
 from qtab.plots.subject import Subject
@@ -63,9 +63,13 @@ def draw_values(estimates: "ValueEstimates", ax: "Axes | None", true_values: NDA
         if true_values is not None:
             ax.plot(states, true_values, color="0.5", linestyle="--", linewidth=1.2, label="true values")
         return finish(ax, "state", "value", title)
-    while mean.ndim > 2:
-        mean = mean[..., mean.shape[-1] // 2]
+    first, second, *others = observation_quantities(describe(estimates.env), mean.ndim)
+    notes: list[str] = []
+    for known in reversed(others):
+        middle = mean.shape[-1] // 2
+        notes.insert(0, f"{known.name} = {known.values[middle] if known.values else middle}")
+        mean = mean[..., middle]
     image = ax.imshow(mean, aspect="auto", origin="lower")
     ax.figure.colorbar(image, ax=ax, label="value")
-    ax.set(xlabel="second component", ylabel="first component", title=title)
+    ax.set(xlabel=second.name, ylabel=first.name, title=", ".join([title, *notes]))
     return ax
