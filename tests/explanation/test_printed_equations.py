@@ -21,14 +21,14 @@ from support.masked import MASKS, MaskedGraph
 from support.printed_equations import NotNumericError, check_equations, check_symbols, evaluated, printed
 
 ALGORITHMS = CHOICES["algorithm"]
-EXAMPLES = max(1, (settings.default or settings()).max_examples // 20)
+EXAMPLES = max(1, (settings.default or settings()).max_examples // 10)
 LAKE: dict[str, Any] = {"env": "FrozenLake-v1", "max_episode_steps": 9, "episodes": 30, "seed": 3, "initial_q": 0.5}
 HASHED: dict[str, Any] = {"discretizer": "tiles", "tilings": 4, "tiles": (5, 4), "hashed_rows": 3}
 CAR: dict[str, Any] = {"env": "MountainCar-v0", "max_episode_steps": 15, "episodes": 8, "seed": 1}
 
 
-def check(explanation: qtab.Explanation) -> None:
-    """Evaluates all equations of all steps, and what is printed of them."""
+def check(explanation: qtab.Explanation) -> int:
+    """Evaluates all equations of all steps, and what is printed of them; returns the number of the printed ones."""
     expected = 0
     for step in explanation.steps:
         for update in (*step.updates, *step.planning):
@@ -40,7 +40,7 @@ def check(explanation: qtab.Explanation) -> None:
         check_reward(step)
     found = check_equations(str(explanation))
     assert found >= expected
-    assert expected or all(not step.updates and not step.policy_updates for step in explanation.steps)
+    return found
 
 
 def check_update(update: Update, config: qtab.Config) -> None:
@@ -120,9 +120,9 @@ def options(algorithm: str) -> dict[str, Any]:
     return {"planning_steps": 3} if algorithm in ("dyna_q", "dyna_q_plus", "prioritized_sweeping") else {}
 
 
-def explained(run: qtab.Run, **given: Any) -> None:
-    for episode in sorted({0, 1, len(run.episode_returns) - 1}):
-        check(qtab.explain(run, episode, steps=10_000, **given))
+def explained(run: qtab.Run, **given: Any) -> int:
+    episodes = sorted({0, 1, len(run.episode_returns) - 1})
+    return sum(check(qtab.explain(run, episode, steps=10_000, **given)) for episode in episodes)
 
 
 def bandit(algorithm: str, chosen: dict[str, Any]) -> dict[str, Any]:
@@ -138,7 +138,7 @@ def test_every_equation_is_true(algorithm: Any, on_truncation: Any, count_bonus:
     chosen = bandit(algorithm, LAKE) | options(algorithm)
     if on_truncation == "terminate" and "reinforce" not in algorithm:
         chosen["on_truncation"] = on_truncation
-    explained(qtab.train(algorithm=algorithm, count_bonus=count_bonus, **chosen))
+    assert explained(qtab.train(algorithm=algorithm, count_bonus=count_bonus, **chosen)) > 0
 
 
 @pytest.mark.parametrize("algorithm", [name for name in ALGORITHMS if name not in (*TABLES_ONLY, "gradient_bandit")])
@@ -163,9 +163,11 @@ def test_equations_of_steps_with_rows_of_their_own_are_true(algorithm: Any) -> N
 
 @pytest.mark.parametrize("algorithm", ONE_STEP)
 def test_equations_of_assigned_values_are_true(algorithm: Any) -> None:
-    run = qtab.train(algorithm=algorithm, terminal_update="assign", count_bonus=0.5, **LAKE | {"initial_q": 0.1})
+    run = qtab.train(
+        algorithm=algorithm, terminal_update="assign", count_bonus=0.5, **LAKE | {"initial_q": 0.1, "episodes": 10}
+    )
     explained(run)
-    steps = [step for episode in range(30) for step in qtab.explain(run, episode, steps=100).steps]
+    steps = [step for episode in range(10) for step in qtab.explain(run, episode, steps=100).steps]
     assert any(update.assigned for step in steps for update in (*step.updates, *step.planning))
 
 
