@@ -81,10 +81,12 @@ def test_an_array_of_initial_values_is_shown_by_its_shape(folder: Path) -> None:
 
 def test_text_has_the_verdict_and_the_gap(tmp_path: Path) -> None:
     text = qtab_here("train", "--seed", "0", "--episodes", "200", cwd=tmp_path).stdout
-    assert "Not solved: the best mean return over 100 consecutive episodes is -200.00" in text
+    found = "the last 100 training episodes -200; greedy policy -200 over 100 episodes, threshold -110"
+    assert f"Not solved: {found}; --preset solved reaches it\n" in text
     assert "Best known -97.67, gap 102.3 over the last 100 episodes\n" in text
     other = qtab_here("train", "--episodes", "200", "--max-episode-steps", "300", cwd=tmp_path).stdout
     assert "Best known" not in other
+    assert "Not known whether solved: Gymnasium's threshold of -110 holds for 200 steps, not for max_episode_" in other
 
 
 def test_values_that_overflow_are_reported_and_nothing_is_saved(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import qtab
 from qtab.diagnosis.checks import CHECKS
 
 LAKE, TAXI, CAR = "FrozenLake-v1", "Taxi-v4", "MountainCar-v0"
+TILES: dict[str, Any] = {"preset": "solved", "episodes": 200}
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,14 @@ FAULTS = [
         "CliffWalking-v1",
         {"algorithm": "sarsa", "epsilon": 0.5, "epsilon_schedule": "constant"},
     ),
+    Fault(
+        "lasting bonus",
+        "CliffWalking-v1",
+        {"count_bonus": 100.0, "episodes": 500, "max_episode_steps": 300},
+        beside=("too short",),
+    ),
+    Fault("limits too narrow", CAR, {**TILES, "low": (-0.7, -0.02), "high": (-0.3, 0.02)}),
+    Fault("limits too wide", CAR, {**TILES, "low": (-100, -10), "high": (100, 10)}),
     Fault("slow learning", LAKE, {"learning_rate": 1e-4, "episodes": 1000}),
     Fault(
         "noisy values",
@@ -57,8 +66,8 @@ FAULTS = [
 
 
 def test_every_check_has_a_planted_fault() -> None:
-    # Divergence has a test below, and not solved is in each of these.
-    assert {fault.finding for fault in FAULTS} | {"divergence", "not solved"} == set(CHECKS)
+    # Two have tests below, and not solved is in each of these.
+    assert {fault.finding for fault in FAULTS} | {"divergence", "short time limit", "not solved"} == set(CHECKS)
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.finding)
@@ -74,7 +83,8 @@ def test_a_planted_fault_is_found_alone(fault: Fault) -> None:
         assert finding.changes
 
 
-MENDED_AT_ONCE = "exploration", "slow learning", "too optimistic", "time-outs treated as terminal"
+MENDED_AT_ONCE = "exploration", "lasting bonus", "slow learning", "too optimistic", "time-outs treated as terminal"
+MENDED_AT_ONCE += "limits too narrow", "limits too wide"
 
 
 @pytest.mark.slow
@@ -85,9 +95,6 @@ def test_the_advised_change_removes_the_finding(fault: Fault) -> None:
     run = qtab.train(fault.env, seed=0, **fault.settings)
     change = qtab.diagnose(run, seeds=0)[fault.finding].changes[0]
     assert fault.finding not in qtab.diagnose(qtab.train(config=run.config, **change), seeds=0)
-
-
-DIVERGING: dict[str, Any] = {"preset": "solved", "algorithm": "sarsa_lambda", "traces": "accumulating", "seed": 0}
 
 
 def test_values_that_diverge_are_found_before_anything_else() -> None:
@@ -129,13 +136,15 @@ def test_a_run_that_overflowed_is_diagnosed() -> None:
         ("CliffWalking-v1", "solved", 3),
         ("CliffWalking-v1", "book", 2),
         ("CliffWalkingSlippery-v1", "solved", 1),
+        ("qtab/DynaMaze-v0", "book", 1),
+        pytest.param("qtab/AccessControlQueue-v0", "book", 1, marks=pytest.mark.slow),
         (TAXI, "solved", 2),
         ("MountainCarContinuous-v0", "solved", 1),
         pytest.param("CartPole-v1", "solved", 1, marks=pytest.mark.slow),
         pytest.param("Acrobot-v1", "solved", 1, marks=pytest.mark.slow),
     ],
 )
-def test_the_presets_that_solve_their_task_have_no_findings(env: str, preset: str, seeds: int) -> None:
+def test_the_presets_that_solve_their_task_have_no_findings(env: str, preset: str | None, seeds: int) -> None:
     for seed in range(seeds):
         diagnosis = qtab.diagnose(qtab.train(env, preset=preset, seed=seed))
         assert diagnosis.solved

@@ -96,7 +96,7 @@ def test_evaluation_uses_the_keyword_arguments_of_the_run():
     run = qtab.train("MountainCar-v0", seed=0, env_kwargs=never, max_episode_steps=300)
     found = qtab.evaluate(run, episodes=5, seed=0)
     assert found.terminated_rate == 0.0
-    assert found.success_rate == 0.0
+    assert found.success_rate is None  # the threshold is for another task
     assert found.lengths.tolist() == [300] * 5
     assert found.lengths.tolist() == rollout(gym.make("MountainCar-v0", max_episode_steps=300, **never), run, 5, 0)[1]
 

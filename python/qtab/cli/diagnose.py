@@ -43,9 +43,9 @@ def run(arguments: list[str]) -> int:
                 saved = load(options.run)
             diagnosis = diagnose(saved)
         report.text(str(diagnosis))
-        facts = ("solved", "findings", "unremarkable", "not_made", "seconds")
+        facts = ("findings", "unremarkable", "not_made", "reasons", "seconds")
         report.add(env=saved.config.env, seed=saved.config.seed, what_if=None)
-        report.add(**{name: getattr(diagnosis, name) for name in facts})
+        report.add(**diagnosis.verdict.numbers(), **{name: getattr(diagnosis, name) for name in facts})
         if options.what_if and any(finding.changes for finding in diagnosis):
             with usage_errors(("seeds",)):
                 tried = diagnosis.what_if(options.seeds, progress=report.progress)

@@ -10,13 +10,14 @@ from qtab.cli.outputs import Outputs, last_episodes
 from qtab.cli.reporting import Report
 from qtab.config import Config
 from qtab.config.presets import presets
-from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, MAX_QUICK_UPDATES, is_usual_mountain_car, reward_threshold
+from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, has_quick_optimum, is_usual_mountain_car
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES, SOLVED_EPISODES, best_mean_returns, default_block, summarize
 from qtab.training.callbacks import Progress
 from qtab.training.options import TrainingOptions
-from qtab.training.resolved_run import NativeEnvironment, ResolvedRun
+from qtab.training.resolved_run import ResolvedRun
 from qtab.training.train import train_resolved
+from qtab.training.verdict import Verdict, judge
 
 if TYPE_CHECKING:
     from qtab.planning import Gap, Optimum
@@ -29,24 +30,14 @@ def backend_words(config: Config) -> str:
 
 def optimum_of(resolved: ResolvedRun, always: bool, progress: bool | None) -> "Optimum | None":
     """Returns the optimum of a run's environment; None if it takes more than a second, unless ``always`` is set."""
-    if not (always or _has_quick_optimum(resolved)):
+    config = resolved.config
+    if not (always or has_quick_optimum(config, resolved.discretizer.n_rows, len(resolved.actions))):
         return None
     from qtab.planning import optimum
 
-    config = resolved.config
     return optimum(
         config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps, progress=progress
     )
-
-
-def _has_quick_optimum(resolved: ResolvedRun) -> bool:
-    environment = resolved.environment
-    if not isinstance(environment, NativeEnvironment) or not environment.entry.knows_transitions:
-        return False
-    rows = resolved.discretizer.n_rows
-    if not resolved.config.time_aware:  # which has rows for each step already
-        rows *= resolved.max_episode_steps
-    return rows * len(resolved.actions) <= MAX_QUICK_UPDATES
 
 
 @dataclass(frozen=True)
@@ -110,9 +101,9 @@ class Training:
             self._report(run)
 
     def _report(self, run: Run) -> None:
-        gap, threshold = None if self.best is None else self.best.gap(run), reward_threshold(run.config.env)
-        self.report.add(**_summary(run, threshold, gap), files=self.outputs.files)
-        for line in (_summary_text(run), _verdict(run, threshold), _gap_text(run, gap), *self.outputs.written):
+        gap, verdict = None if self.best is None else self.best.gap(run), judge(run, self.best)
+        self.report.add(**_summary(run, verdict, gap), files=self.outputs.files)
+        for line in (_summary_text(run), _verdict_text(run, verdict), _gap_text(run, gap), *self.outputs.written):
             if line is not None:
                 self.report.text(line)
 
@@ -151,18 +142,18 @@ def _final_return(run: Run) -> float:
     return float(last.mean()) if len(last) else float("nan")
 
 
-def _verdict(run: Run, threshold: float | None) -> str | None:
+def _verdict_text(run: Run, verdict: Verdict) -> str | None:
     """Returns whether the run solved its task, and which preset does; None if nothing defines that."""
-    best = _best_mean(run)
-    if threshold is None or best is None:
-        return None
-    found = f"the best mean return over {SOLVED_EPISODES} consecutive episodes is {best:.2f}"
-    if _final_return(run) >= threshold:
-        return f"Solved: the last {SOLVED_EPISODES} episodes reach the threshold of {threshold:g}"
-    if best >= threshold:
-        return f"Solved earlier, not at the end: {found}, the threshold {threshold:g}"
-    solving = "solved" in presets(run.config.env) and run.config.preset != "solved"
-    return f"Not solved: {found}, the threshold {threshold:g}" + ("; --preset solved reaches it" if solving else "")
+    if verdict.solved is None:
+        return None if verdict.goal.registered is None else f"Not known whether solved: {verdict.why_unknown}"
+    if verdict.solved:
+        return f"Solved: {verdict}"
+    text, best, goal = f"Not solved: {verdict}", _best_mean(run), verdict.goal
+    if best is not None and goal.least is not None and best >= goal.least:
+        text += f"; the best {SOLVED_EPISODES} consecutive episodes {best:.4g}"
+    is_for_this = goal.threshold is not None or goal.registered is None
+    solving = is_for_this and "solved" in presets(run.config.env) and run.config.preset != "solved"
+    return text + ("; --preset solved reaches it" if solving else "")
 
 
 def _gap_text(run: Run, gap: "Gap[float] | None") -> str | None:
@@ -177,9 +168,9 @@ def _gap_text(run: Run, gap: "Gap[float] | None") -> str | None:
     return f"Best known {BEST_KNOWN_MOUNTAIN_CAR:.4g}, gap {short:.4g} over {last}"
 
 
-def _summary(run: Run, threshold: float | None, gap: "Gap[float] | None") -> dict[str, Any]:
+def _summary(run: Run, verdict: Verdict, gap: "Gap[float] | None") -> dict[str, Any]:
     """Returns what the JSON object says of a run; the page on the command line lists the keys."""
-    finished, best = len(run.episode_returns), _best_mean(run)
+    finished = len(run.episode_returns)
     columns = summarize(run.episode_returns[None], run.episode_lengths[None], run.terminated[None]) if finished else {}
     numbers = {name: column.item() for name, column in columns.items()}
     return {
@@ -194,9 +185,8 @@ def _summary(run: Run, threshold: float | None, gap: "Gap[float] | None") -> dic
         "steps": int(run.episode_lengths.sum()),
         "seconds": run.seconds,
         **{name: numbers.get(name) for name in ("mean_return", "final_return", "best_return", "terminated_rate")},
-        "best_mean_return": best,
-        "threshold": threshold,
-        "solved": None if threshold is None or best is None else _final_return(run) >= threshold,
+        "best_mean_return": _best_mean(run),
+        **verdict.numbers(),
         "gap": _gap_facts(run, gap),
         "versions": run.versions,
     }

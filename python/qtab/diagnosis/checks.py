@@ -6,13 +6,16 @@ from dataclasses import dataclass
 from qtab.diagnosis.coarse_grid import coarse_grid
 from qtab.diagnosis.coverage import coverage
 from qtab.diagnosis.divergence import divergence
-from qtab.diagnosis.exploration import exploration, lasting_exploration
+from qtab.diagnosis.exploration import exploration
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding
+from qtab.diagnosis.finding import Finding, Unchecked
 from qtab.diagnosis.horizon import horizon
 from qtab.diagnosis.initial_values import too_optimistic, too_pessimistic
+from qtab.diagnosis.lasting_exploration import lasting_bonus, lasting_exploration
 from qtab.diagnosis.learning_rate import noisy_values, slow_learning
+from qtab.diagnosis.limits import narrow_limits, wide_limits
 from qtab.diagnosis.not_solved import not_solved
+from qtab.diagnosis.time_limit import time_limit
 from qtab.diagnosis.too_short import too_short
 from qtab.diagnosis.truncation import truncation
 from qtab.diagnosis.unlucky_seed import unlucky_seed
@@ -22,8 +25,8 @@ from qtab.diagnosis.unlucky_seed import unlucky_seed
 class Check:
     """A check, and when it can be made."""
 
-    find: Callable[[Facts], Finding | None]
-    """Returns the finding, or None."""
+    find: Callable[[Facts], Finding | Unchecked | None]
+    """Returns the finding, None if there is nothing to report, or why the check could not be made."""
     repeats: bool = False
     """Whether it repeats the run, for which Rust must step the environment."""
     if_solved: bool = False
@@ -37,10 +40,14 @@ CHECKS: Mapping[str, Check] = {
     "not solved": Check(not_solved),
     "divergence": Check(divergence, if_solved=True, reads_values=True),
     "horizon": Check(horizon),
+    "short time limit": Check(time_limit),
     "grid too coarse": Check(coarse_grid, repeats=True),
+    "limits too narrow": Check(narrow_limits, repeats=True),
+    "limits too wide": Check(wide_limits, repeats=True),
     "coverage": Check(coverage, reads_values=True),
     "exploration": Check(exploration, repeats=True, reads_values=True),
     "lasting exploration": Check(lasting_exploration),
+    "lasting bonus": Check(lasting_bonus),
     "slow learning": Check(slow_learning, reads_values=True),
     "noisy values": Check(noisy_values, repeats=True, reads_values=True),
     "too short": Check(too_short),

@@ -1,25 +1,26 @@
 """Grid too coarse: states that need different actions share a cell."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.config.options import TABLES_ONLY
+from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, percent
+from qtab.diagnosis.finding import Finding, Unchecked, percent
 
 MOST_UNCHANGED = 0.5
 """A larger share of steps that stay in their cell is reported."""
 GRIDS = ("round", "bins", "edges")
 
 
-def coarse_grid(facts: Facts) -> Finding | None:
+def coarse_grid(facts: Facts) -> Finding | Unchecked | None:
     """Finds that most steps do not change the cell, so that an update mostly uses the cell's own value."""
     config, sample = facts.config, facts.sample
-    if config.discretizer not in GRIDS or sample is None or len(sample.rows) == 0:
-        return None
+    if config.discretizer not in GRIDS:
+        return Unchecked("the states are not cells of a grid")
+    if sample is None or len(sample.rows) == 0:
+        return Unchecked("its last steps cannot be replayed")
     unchanged = float(np.mean((sample.rows == sample.next_rows).all(axis=1)))
     if unchanged <= MOST_UNCHANGED:
         return None
@@ -30,14 +31,13 @@ def coarse_grid(facts: Facts) -> Finding | None:
     if mixed is not None:
         evidence["share of states whose best action is not their cell's"] = mixed
         meaning += f" {percent(mixed)} of the states need another action than most states of their cell."
-    changes = (*_finer(facts), *_tiles(facts))
     return Finding(
         name="grid too coarse",
         title="The grid is too coarse.",
         evidence=evidence,
         meaning=meaning,
         advice="use a finer grid, or tile coding, whose tilings overlap: discretizer='tiles'",
-        changes=changes,
+        changes=changes(config, *_finer(facts), *_tiles(facts)),
     )
 
 
@@ -60,25 +60,18 @@ def mixed_cells(facts: Facts) -> float | None:
     return float(1.0 - counts.max(axis=1).sum() / len(rows))
 
 
-def _finer(facts: Facts) -> tuple[Mapping[str, Any], ...]:
+def _finer(facts: Facts) -> tuple[dict[str, Any], ...]:
     config = facts.config
-    if config.discretizer == "round" and config.scale is not None:
+    if config.discretizer == "round" and config.scale:
         return ({"scale": tuple(2 * scale for scale in config.scale)},)
     if config.discretizer == "bins" and config.bins is not None:
         return ({"bins": tuple(2 * count for count in config.bins)},)
     return ()
 
 
-def _tiles(facts: Facts) -> tuple[Mapping[str, Any], ...]:
+def _tiles(facts: Facts) -> tuple[dict[str, Any], ...]:
     discretizer: Any = facts.run.discretizer
-    if (
-        facts.config.algorithm in TABLES_ONLY
-        or facts.config.time_aware
-        or not (np.isfinite(discretizer.low) & np.isfinite(discretizer.high)).all()
-    ):
+    if facts.config.time_aware or not (np.isfinite(discretizer.low) & np.isfinite(discretizer.high)).all():
         return ()
     # The article's grid has 15 to 19 cells along each component; with more components tables become large.
-    change: dict[str, Any] = {"discretizer": "tiles"} | ({"tiles": (16,)} if len(discretizer.low) <= 2 else {})
-    if facts.config.terminal_update == "assign":
-        change["terminal_update"] = "target"
-    return (change,)
+    return ({"discretizer": "tiles"} | ({"tiles": (16,)} if len(discretizer.low) <= 2 else {}),)

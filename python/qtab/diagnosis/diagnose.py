@@ -1,14 +1,16 @@
 """``qtab.diagnose``: looks for reasons why a run did not solve its environment."""
 
 import time
+from collections.abc import Iterable
 
 import numpy as np
 
 from qtab._utils import checks
 from qtab.config.options import PREFERENCES
-from qtab.diagnosis.checks import CHECKS
+from qtab.diagnosis.checks import CHECKS, Check
 from qtab.diagnosis.diagnosis import Diagnosis
 from qtab.diagnosis.facts import Facts
+from qtab.diagnosis.finding import Finding, Unchecked
 from qtab.planning.optimum import Optimum
 from qtab.results.run import Run
 
@@ -43,28 +45,37 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
         raise ValueError("run must have a finished episode, got one that was stopped during its first")
     began = time.perf_counter()
     facts = Facts(run, optimum, seeds)
-    findings, unremarkable, not_made = [], [], []
+    findings, unremarkable = [], []
+    not_made: dict[str, str] = {}
     with np.errstate(all="ignore"):  # values that diverged
         for name, check in CHECKS.items():
             if facts.solved and not check.if_solved:
                 continue
-            without_values = check.reads_values and run.config.algorithm in PREFERENCES
-            if without_values or (check.repeats and not facts.can_repeat):
-                not_made.append(name)
-                continue
-            finding = check.find(facts)
-            if finding is None:
+            found = _unchecked(check, facts, findings) or check.find(facts)
+            if found is None:
                 unremarkable.append(name)
+            elif isinstance(found, Unchecked):
+                not_made[name] = found.reason
             else:
-                findings.append(finding)
-                if name == "divergence":
-                    break  # the other checks would misread such values
+                findings.append(found)
     return Diagnosis(
         run=run,
         solved=facts.solved,
         findings=tuple(findings),
         unremarkable=tuple(unremarkable),
         not_made=tuple(not_made),
+        reasons=not_made,
         facts=facts,
         seconds=time.perf_counter() - began,
     )
+
+
+def _unchecked(check: Check, facts: Facts, findings: Iterable[Finding]) -> Unchecked | None:
+    """Returns why a check cannot be made; None if it can."""
+    if any(finding.name == "divergence" for finding in findings):
+        return Unchecked("the values diverged")  # which the other checks would misread
+    if check.reads_values and facts.config.algorithm in PREFERENCES:
+        return Unchecked("it learned preferences instead of action values")
+    if check.repeats and not facts.can_repeat:
+        return Unchecked("Rust cannot repeat this run")
+    return None

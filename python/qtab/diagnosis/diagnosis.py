@@ -1,14 +1,14 @@
 """``qtab.Diagnosis``: the findings of the checks, and what they advise to try."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from qtab._utils import html
-from qtab.config.options import PREFERENCES
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import COLUMNS, Finding
 from qtab.diagnosis.what_if import WhatIf, try_changes
 from qtab.results.run import Run
+from qtab.training.verdict import Verdict
 
 SEEDS = 20
 
@@ -26,8 +26,9 @@ class Diagnosis:
     unremarkable: tuple[str, ...]
     """The checks that found nothing."""
     not_made: tuple[str, ...]
-    """The checks that could not be made: those that repeat the run, where Rust does not step the environment, and those
-    of action values, for a run that learned preferences."""
+    """The checks that could not be made, such as those that repeat the run where Rust does not step the environment."""
+    reasons: Mapping[str, str]
+    """Why each of these could not be made."""
     facts: Facts = field(repr=False)
     """The run and what follows from it."""
     seconds: float = field(repr=False)
@@ -75,8 +76,13 @@ class Diagnosis:
     @property
     def heading(self) -> str:
         """The run and whether it solved its environment, in one line."""
-        word = {True: "solved", False: "not solved", None: "no threshold or optimum is known"}[self.solved]
+        word = {True: "solved", False: "not solved", None: "not known whether solved"}[self.solved]
         return f"Diagnosis of the run {repr(self.run)[1:-1].removeprefix('Run ')}: {word}"
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether the run solved its environment, and what was measured."""
+        return self.facts.verdict
 
     def what_if(self, seeds: "int | Iterable[int]" = SEEDS, *, progress: bool | None = None) -> WhatIf:
         """Tries the advised changes, one at a time, over the same seeds, and compares each with the run's settings.
@@ -95,14 +101,19 @@ class Diagnosis:
 
     def _footer(self) -> list[str]:
         lines = []
+        if self.solved:
+            lines.append(f"Solved: {self.verdict}.")
+        elif self.solved is None:
+            lines.append(f"Whether it solved its environment is not known: {self.verdict.why_unknown}.")
         if not self.findings:
-            reason = "The run solved its environment" if self.solved else "No check found anything"
-            lines.append(f"{reason}: there is nothing to advise.")
+            lines.append("There is nothing to advise." if self.solved else "No check found anything to advise.")
         elif self.unremarkable:
             lines.append(f"Nothing to report on: {', '.join(self.unremarkable)}.")
-        if self.not_made:
-            reasons = [] if self.facts.can_repeat else ["Rust cannot repeat this run"]
-            if self.run.config.algorithm in PREFERENCES:
-                reasons.append("it learned preferences instead of action values")
-            lines.append(f"Not checked, as {' and '.join(reasons)}: {', '.join(self.not_made)}.")
+        if self.reasons:
+            lines.append("\n".join(self._not_checked()))
         return lines
+
+    def _not_checked(self) -> Iterator[str]:
+        for reason in dict.fromkeys(self.reasons.values()):
+            names = [name for name in self.not_made if self.reasons[name] == reason]
+            yield f"Not checked, as {reason}: {', '.join(names)}."

@@ -3,29 +3,26 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.memory import memory_limit
 from qtab.config import Config
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES
-from qtab.diagnosis.sample import Sample, sample_steps
-from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, MAX_QUICK_UPDATES, is_usual_mountain_car, reward_threshold
-from qtab.envs.registry import entry_for_id
-from qtab.envs.stored import spec_of_run
+from qtab.diagnosis.routes import shortest_best_episode
+from qtab.diagnosis.sample import Sample, repeat, sample_steps
+from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, is_usual_mountain_car
+from qtab.envs.stored import is_registered
 from qtab.planning.optimum import Optimum
-from qtab.planning.solve import optimum as solve
-from qtab.reference.streams import agent_stream
+from qtab.planning.quick import quick_optimum
+from qtab.results.initial_tables import are_finite, initial_tables
 from qtab.results.run import Run
-from qtab.results.summary import FINAL_EPISODES
-from qtab.results.time_steps import at_step
-from qtab.training.evaluate import Evaluation, evaluate
+from qtab.results.runs import Runs
 from qtab.training.extensions import repeatable
 from qtab.training.train import train
 from qtab.training.train_many import seed_sequence, train_many
+from qtab.training.verdict import Verdict, judge
 
-EVALUATION_EPISODES = 100
 RANDOM_EPISODES = 500
 SHORTEST_MOUNTAIN_CAR, LONGEST_MOUNTAIN_CAR = 83, 104
 """The lengths of its routes: from the best and from the worst start."""
@@ -50,30 +47,29 @@ class Facts:
     @cached_property
     def can_repeat(self) -> bool:
         """Whether the whole run can be repeated quickly: Rust steps its environment, which can be made from its id."""
-        try:
-            spec_of_run(self.config.env)
-        except (gym.error.UnregisteredEnv, ModuleNotFoundError):
-            return False
         finished = len(self.run.episode_returns)
-        return self.config.backend == "rust" and repeatable(self.run)[1] == finished > 0
+        in_rust = self.config.backend == "rust" and is_registered(self.config.env)
+        return in_rust and repeatable(self.run)[1] == finished > 0
 
     @cached_property
     def is_finite(self) -> bool:
-        """Whether all values of the tables are finite; those of missing actions are -inf from the start."""
-        return bool((np.isfinite(self.run.tables) | np.isneginf(self.initial_tables)).all())
+        """Whether all values of the tables are finite."""
+        return are_finite(self.run)
 
     @cached_property
-    def final_return(self) -> float:
-        """The mean return of the last 100 training episodes."""
-        last = self.run.episode_returns[-FINAL_EPISODES:]
-        return float(last.mean()) if len(last) else float("nan")
+    def verdict(self) -> Verdict:
+        """Whether the run solved its environment, and what was measured."""
+        return judge(self.run, self.optimum)
 
-    @cached_property
-    def greedy(self) -> Evaluation | None:
-        """Episodes of the greedy policy; None where they cannot be played quickly."""
-        if not (self.can_repeat and self.is_finite):
-            return None
-        return evaluate(self.run, EVALUATION_EPISODES, seed=0, progress=False)
+    @property
+    def solved(self) -> bool | None:
+        """Whether the run solved its environment; None where that is not known."""
+        return self.verdict.solved
+
+    @property
+    def goal_return(self) -> float | None:
+        """The return from which on a run counts as solved; None where none is known."""
+        return self.verdict.goal.least
 
     @cached_property
     def random(self) -> Run | None:
@@ -97,20 +93,11 @@ class Facts:
         )
 
     @cached_property
-    def threshold(self) -> float | None:
-        """The return at which Gymnasium considers the environment solved; None where it gives none."""
-        return reward_threshold(self.config.env)
-
-    @cached_property
     def optimum(self) -> Optimum | None:
         """The optimum that was given, or that of a small table."""
         if self.given_optimum is not None:
             return self.given_optimum
-        entry = entry_for_id(self.config.env)
-        updates = at_step(self.run).discretizer.n_rows * len(self.run.actions) * (self.config.max_episode_steps or 0)
-        if not self.can_repeat or entry is None or not entry.knows_transitions or updates > MAX_QUICK_UPDATES:
-            return None
-        return solve(self.run)
+        return quick_optimum(self.config, self.run.discretizer.n_rows, len(self.run.actions))
 
     @cached_property
     def is_usual_mountain_car(self) -> bool:
@@ -123,41 +110,6 @@ class Facts:
         if self.optimum is not None:
             return self.optimum.expected_return
         return BEST_KNOWN_MOUNTAIN_CAR if self.is_usual_mountain_car else None
-
-    @cached_property
-    def goal_return(self) -> float | None:
-        """The return from which on the run counts as solved: the threshold, or nearly the optimum if that is lower."""
-        if self.best_return is None:
-            return self.threshold
-        nearly = self.best_return - max(0.02 * abs(self.best_return), 0.01)
-        return nearly if self.threshold is None else min(self.threshold, nearly)
-
-    @cached_property
-    def solved(self) -> bool | None:
-        """Whether the greedy policy, or the last episodes of training, reach the goal; None where none is known."""
-        if self.goal_return is None or not self.is_finite:
-            return None if self.is_finite else False
-        if self.greedy_is_exact:
-            return self.greedy_return >= self.goal_return
-        if self.final_return >= self.goal_return:
-            return True
-        return self.greedy is not None and self.greedy_return >= self.goal_return
-
-    @cached_property
-    def greedy_is_exact(self) -> bool:
-        """Whether the return of a greedy policy is computed exactly, from a transition table.
-
-        What counts of preferences is the policy that was trained, their softmax, not the greedy one.
-        """
-        is_softmax = self.config.algorithm in PREFERENCES
-        return self.optimum is not None and self.optimum.exact and self.is_finite and not is_softmax
-
-    @cached_property
-    def greedy_return(self) -> float:
-        """The return of the greedy policy: exact with a transition table; NaN where it is not known."""
-        if self.optimum is not None and self.greedy_is_exact:
-            return float(self.optimum.gap(self.run).greedy_return)
-        return float("nan") if self.greedy is None else self.greedy.mean_return
 
     @cached_property
     def failure_return(self) -> float | None:
@@ -179,18 +131,16 @@ class Facts:
         if self.is_usual_mountain_car:
             return SHORTEST_MOUNTAIN_CAR
         run = self.run
-        if self.reached is None or not (run.terminated & self.reached).any():
-            return None
-        return int(run.episode_lengths[run.terminated & self.reached].min())
+        if self.reached is not None and (run.terminated & self.reached).any():
+            return int(run.episode_lengths[run.terminated & self.reached].min())
+        if self.optimum is not None and self.optimum.exact and self.can_repeat:
+            return shortest_best_episode(self.config, self.optimum)
+        return None
 
     @cached_property
     def initial_tables(self) -> NDArray[np.float64]:
         """(k, rows, actions): the tables before the first episode."""
-        initial, shape = self.config.initial_q, self.run.tables.shape
-        if isinstance(initial, tuple):
-            stream = agent_stream(self.config.seed or 0, self.config.bit_generator)
-            return np.stack([stream.uniform(*initial, size=shape[1:]) for _ in range(shape[0])])
-        return np.broadcast_to(np.asarray(initial, dtype=np.float64).reshape(-1), (int(np.prod(shape)),)).reshape(shape)
+        return initial_tables(self.run)
 
     @cached_property
     def changed(self) -> NDArray[np.bool_]:
@@ -199,12 +149,24 @@ class Facts:
 
     @cached_property
     def tried(self) -> NDArray[np.bool_]:
-        """(rows, actions): whether the action was taken there: by the run's visits, or else whether its value changed.
+        """(rows, actions): whether the action was taken there: by the visits, or else whether its value changed.
 
         Without visits, an update that leaves the value as it was goes unnoticed, such as one of 0 towards 0.
         """
+        return self.changed if self.visits is None else self.visits > 0
+
+    @cached_property
+    def visits(self) -> NDArray[np.int64] | None:
+        """(rows, actions): how often the action was taken there; None where that is not known."""
         visits = self.run.visits
-        return self.changed if visits is None else np.asarray(visits.reshape(self.changed.shape) > 0)
+        if visits is None and self.repeated is not None:
+            visits = self.repeated.visits
+        return None if visits is None else visits.reshape(self.changed.shape)
+
+    @cached_property
+    def repeated(self) -> Run | None:
+        """The run, repeated with its visits and the last episodes recorded; None where that would take long."""
+        return repeat(self.run) if self.can_repeat and self.is_finite else None
 
     @cached_property
     def visited(self) -> NDArray[np.bool_]:
@@ -227,23 +189,17 @@ class Facts:
     @cached_property
     def sample(self) -> Sample | None:
         """The steps of the last episodes; None where they cannot be repeated quickly."""
-        return sample_steps(self.run) if self.can_repeat and self.is_finite else None
+        return None if self.repeated is None else sample_steps(self.repeated)
 
     @cached_property
-    def other_returns(self) -> NDArray[np.float64] | None:
-        """(seeds,): the returns of the same config with other seeds; None where they would take too long.
-
-        They are those of the greedy policies where these are exact, else of the last 100 episodes.
-        """
+    def others(self) -> Runs | None:
+        """The runs of the same config with other seeds; None where they would take too long."""
         count = self._other_seeds()
         if not self.can_repeat or count == 0 or not self.run.completed:
             return None
         numbers = seed_sequence(count + 1, memory_limit(None))  # refuses too many before there is a list of them
         seeds = [seed for seed in numbers if seed != self.config.seed][:count]
-        runs = train_many(config=self.config, seeds=seeds, tables=self.greedy_is_exact)
-        if self.optimum is not None and self.greedy_is_exact:
-            return self.optimum.gap(runs).greedy_return
-        return runs.final_returns()
+        return train_many(config=self.config, seeds=seeds, tables=True)
 
     def _other_seeds(self) -> int:
         if self.given_seeds is not None:

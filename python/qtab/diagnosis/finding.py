@@ -10,6 +10,14 @@ COLUMNS = ("finding", "evidence", "change")
 """The columns of a table of findings."""
 
 
+@dataclass(frozen=True)
+class Unchecked:
+    """A check that could not be made, which is not the same as one that found nothing."""
+
+    reason: str
+    """Why, to follow the word "as"."""
+
+
 @dataclass(frozen=True, repr=False)
 class Finding:
     """A likely reason why a run did not solve its environment."""

@@ -2,33 +2,45 @@
 
 import numpy as np
 
+from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import LONGEST_MOUNTAIN_CAR, Facts
-from qtab.diagnosis.finding import Finding, percent
+from qtab.diagnosis.finding import Finding, Unchecked, percent
 
 LEAST_WEIGHT = 0.05
 """With less of its weight left at the start, a goal is hard to tell from no goal."""
+SHORT_SIGHTED = 0.5
+"""With such a discount the agent looks at most two steps ahead: it is reported in any task of long episodes."""
 
 
-def horizon(facts: Facts) -> Finding | None:
+def horizon(facts: Facts) -> Finding | Unchecked | None:
     """Finds that of the goal's value almost nothing is left after the shortest route to it."""
-    discount, shortest = facts.config.discount, facts.shortest_route
-    if shortest is None or discount >= 1.0 or discount**shortest >= LEAST_WEIGHT:
+    discount = facts.config.discount
+    if discount == 1.0:
+        return None
+    shortest = facts.shortest_route
+    is_known = shortest is not None
+    if shortest is None:
+        if discount > SHORT_SIGHTED:
+            return Unchecked("no way to a goal is known")
+        shortest = int(np.median(facts.run.episode_lengths))
+    if shortest < 2 or discount**shortest >= LEAST_WEIGHT:
         return None
     ahead = 1.0 / (1.0 - discount)
     evidence: dict[str, float] = {
         "discount": discount,
         "steps ahead": ahead,
-        "shortest route": shortest,
-        "weight of the goal at the start": discount**shortest,
+        "shortest route" if is_known else "median episode length": shortest,
+        "weight of the goal at the start" if is_known else "weight of its last reward at the start": discount**shortest,
     }
     route = f"at least {shortest} steps"
     if facts.is_usual_mountain_car:
         evidence["longest shortest route"] = LONGEST_MOUNTAIN_CAR
         route = f"at best {shortest} to {LONGEST_MOUNTAIN_CAR} steps"
     run = facts.run
+    way = f"the goal is {route} away" if is_known else f"half of the episodes have {route}"
     meaning = (
-        f"The agent looks about {ahead:.3g} steps ahead, 1 / (1 - discount), and the goal is {route} away: "
-        f"{percent(discount**shortest)} of its value is left there."
+        f"The agent looks about {ahead:.3g} {'step' if ahead == 1 else 'steps'} ahead, 1 / (1 - discount), and {way}: "
+        f"{percent(discount**shortest)} of {'its value' if is_known else 'the value of their end'} is left there."
     )
     if (run.episode_returns == -run.episode_lengths).all():  # every step costs 1
         values = facts.q_values.max(axis=1)[facts.visited] * run.discretizer.n_active
@@ -44,5 +56,5 @@ def horizon(facts: Facts) -> Finding | None:
         evidence=evidence,
         meaning=meaning,
         advice=f"use discount={better:g}" + (": with a cost for each step the values stay finite" if costs else ""),
-        changes=({"discount": better},),
+        changes=changes(facts.config, {"discount": better}),
     )

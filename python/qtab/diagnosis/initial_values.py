@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, percent
+from qtab.diagnosis.finding import Finding, Unchecked, percent
 from qtab.diagnosis.rates import epsilons
 
 MOST_STATES = 0.3
@@ -11,14 +12,16 @@ MOST_STATES = 0.3
 LITTLE_EPSILON = 0.05
 
 
-def too_optimistic(facts: Facts) -> Finding | None:
+def too_optimistic(facts: Facts) -> Finding | Unchecked | None:
     """Finds visited states whose best value is higher than any return can be."""
     active, visited = facts.run.discretizer.n_active, facts.visited
     initial = facts.initial_tables[np.isfinite(facts.initial_tables)]
     highest = float(initial.max(initial=-np.inf)) * active
     possible = max(0.0, float(facts.run.episode_returns.max(initial=0.0)), _best_value(facts))
-    if highest <= possible + 1e-9 * abs(possible) or not visited.any() or active > 1:
+    if highest <= possible + 1e-9 * abs(possible):
         return None
+    if not visited.any() or active > 1:
+        return Unchecked("a value is a sum over tilings" if active > 1 else "no value changed")
     share = float(np.mean(facts.q_values[visited].max(axis=1) > possible))
     if share <= MOST_STATES:
         return None
@@ -33,15 +36,17 @@ def too_optimistic(facts: Facts) -> Finding | None:
         meaning=f"In {percent(share)} of the visited states the best value is still higher than any return can be: the "
         "agent still tries what looks promising only because it is new.",
         advice=f"use lower initial values, such as initial_q={possible:g}, or train longer",
-        changes=({"initial_q": possible},),
+        changes=changes(facts.config, {"initial_q": possible}),
     )
 
 
-def too_pessimistic(facts: Facts) -> Finding | None:
+def too_pessimistic(facts: Facts) -> Finding | Unchecked | None:
     """Finds visited states whose untried actions look worse than the first one tried, without exploration."""
     config, visited = facts.config, facts.visited
-    if config.exploration != "epsilon_greedy" or not visited.any():
-        return None
+    if config.exploration != "epsilon_greedy":
+        return None  # it tries all actions
+    if not visited.any():
+        return Unchecked("no value changed")
     epsilon = float(epsilons(config, len(facts.run.episode_returns)).mean())
     if epsilon > LITTLE_EPSILON:
         return None
@@ -60,7 +65,7 @@ def too_pessimistic(facts: Facts) -> Finding | None:
         meaning=f"In {percent(share)} of the visited states an action was never tried, because the values of those "
         "that were tried are higher than the initial ones.",
         advice=f"use higher initial values, such as initial_q={best:g}, or a larger epsilon",
-        changes=({"initial_q": best}, {"epsilon": 0.2}),
+        changes=changes(config, {"initial_q": best}, {"epsilon": 0.2}),
     )
 
 

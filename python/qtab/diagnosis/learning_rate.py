@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, percent
+from qtab.diagnosis.finding import Finding, Unchecked, percent
 from qtab.diagnosis.rates import learning_rates
 from qtab.diagnosis.too_short import still_improving
 from qtab.training.train import train
@@ -20,15 +21,19 @@ LEAST_CHANCE = 0.05
 """Where fewer steps than this share have a result that varies, any learning rate is fine."""
 LEAST_RATE = 0.05
 """A smaller learning rate does not cause noise."""
+OVERWRITING_RATE = 0.5
+"""With a larger one, the last few targets make up most of a value."""
 
 
-def slow_learning(facts: Facts) -> Finding | None:
+def slow_learning(facts: Facts) -> Finding | Unchecked | None:
     """Finds that the learning rate is too small for the number of updates."""
     episodes, rates = learning_rates(facts.config, len(facts.run.episode_returns))
-    changed = int(facts.changed.sum())
-    if changed == 0 or facts.config.learning_rate_schedule == "visits":
-        return None
-    updates = float(facts.run.episode_lengths.sum()) * facts.run.discretizer.n_active / changed
+    updated = int(facts.tried.sum())
+    if facts.config.learning_rate_schedule == "visits":
+        return None  # it averages
+    if updated == 0:
+        return Unchecked("no value changed")
+    updates = float(facts.run.episode_lengths.sum()) * facts.run.discretizer.n_active / updated
     rate = float(np.average(rates, weights=facts.run.episode_lengths[episodes]))
     left = (1.0 - min(rate, 1.0)) ** updates
     if left <= MOST_LEFT:
@@ -39,35 +44,44 @@ def slow_learning(facts: Facts) -> Finding | None:
     return Finding(
         name="slow learning",
         title="The learning rate is too small for so few updates.",
-        evidence={"mean learning rate": rate, "updates per changed value": updates, "initial value left": left},
+        evidence={"mean learning rate": rate, "updates per value": updates, "initial value left": left},
         meaning=f"After {updates:,.3g} updates {percent(left)} of the initial value is still in a value.",
         advice=f"use a larger learning rate, such as learning_rate={faster:g}, or train longer",
-        changes=({"learning_rate": faster},) if faster > facts.config.learning_rate else (),
+        changes=changes(facts.config, {"learning_rate": faster}) if faster > facts.config.learning_rate else (),
     )
 
 
-def noisy_values(facts: Facts) -> Finding | None:
+def overwrites(facts: Facts) -> bool:
+    """Returns whether chance decides the values: the last few targets make up most of each, and results vary."""
+    config = facts.config
+    if config.discretizer != "identity" or config.learning_rate_schedule == "visits" or facts.sample is None:
+        return False
+    rate = float(learning_rates(config, len(facts.run.episode_returns))[1][-1])
+    return rate >= OVERWRITING_RATE and facts.sample.mixed_outcomes >= LEAST_CHANCE
+
+
+def noisy_values(facts: Facts) -> Finding | Unchecked | None:
     """Finds that the values still jump up and down, because the learning rate stays high where there is chance."""
     run, config = facts.run, facts.config
     rate = float(learning_rates(config, len(run.episode_returns))[1][-1])
-    before = len(run.episode_returns) * 9 // 10
-    if not facts.can_repeat or not facts.is_finite or rate < LEAST_RATE or before == 0:
+    if rate < LEAST_RATE or config.learning_rate_schedule == "visits":
         return None
-    if config.learning_rate_schedule == "visits" or still_improving(facts):
+    if facts.sample is None or len(run.episode_returns) < 10:
+        return Unchecked("there are too few episodes" if facts.is_finite else "values overflowed")
+    if facts.sample.mixed_outcomes < LEAST_CHANCE:
         return None
-    if facts.sample is None or facts.sample.mixed_outcomes < LEAST_CHANCE:
+    if config.count_bonus > 0.0:
+        return Unchecked("the count bonus moves the values")
+    overwritten = overwrites(facts)
+    if still_improving(facts) and not overwritten:
+        return Unchecked("the returns were still improving")
+    change, spread, drift = _movement(facts)
+    if not overwritten and (spread == 0.0 or change / spread <= MOST_NOISE or drift > MOST_DRIFT * change):
         return None
-    earlier = train(
-        config=config, callback=lambda done: done.episodes < before, callback_every=before, progress=False
-    ).tables.mean(axis=0)
-    differences = facts.q_values - np.where(np.isfinite(earlier), earlier, facts.q_values)
-    moved = facts.changed & (differences != 0.0)
-    if not moved.any():
-        return None
-    spread = _spread(facts.q_values[facts.changed])
-    change, drift = float(np.abs(differences[moved]).mean()), float(np.abs(differences[moved].mean()))
-    if spread == 0.0 or change / spread <= MOST_NOISE or drift > MOST_DRIFT * change:
-        return None
+    targets = max(1.0, 2.0 / rate - 1.0)
+    few = "the last target" if targets < 1.5 else f"about {targets:.2g} targets"
+    share = f"by {percent(change / spread)} of their spread, " if spread > 0.0 else ""
+    lower = config.learning_rate / 10
     return Finding(
         name="noisy values",
         title="The values are still noisy at the end.",
@@ -76,11 +90,26 @@ def noisy_values(facts: Facts) -> Finding | None:
             "mean change in the last tenth of the episodes": change,
             "spread of the values": spread,
         },
-        meaning=f"The values still move by {percent(change / spread)} of their spread, up and down: with a learning "
-        f"rate of {rate:g} a value is an average over about {max(1.0, 2.0 / rate - 1.0):.2g} targets only.",
-        advice="let the learning rate fall: learning_rate_schedule='linear'",
-        changes=({"learning_rate_schedule": "linear"}, {"learning_rate": config.learning_rate / 10}),
+        meaning=f"The values move {share}up and down with chance: with a learning rate of {rate:g} a value is an "
+        f"average over {few} only.",
+        advice=f"use a smaller learning rate, such as learning_rate={lower:g}, or let it fall: "
+        "learning_rate_schedule='linear'",
+        changes=changes(config, {"learning_rate": lower}, {"learning_rate_schedule": "linear"}),
     )
+
+
+def _movement(facts: Facts) -> tuple[float, float, float]:
+    """How far the values moved in the last tenth of the episodes, their spread, and how far they moved on average."""
+    before = len(facts.run.episode_returns) * 9 // 10
+    earlier = train(
+        config=facts.config, callback=lambda done: done.episodes < before, callback_every=before, progress=False
+    ).tables.mean(axis=0)
+    differences = facts.q_values - np.where(np.isfinite(earlier), earlier, facts.q_values)
+    moved = facts.changed & (differences != 0.0)
+    if not moved.any():
+        return 0.0, 0.0, 0.0
+    change, drift = float(np.abs(differences[moved]).mean()), float(np.abs(differences[moved].mean()))
+    return change, _spread(facts.q_values[facts.changed]), drift
 
 
 def _spread(values: NDArray[np.float64]) -> float:

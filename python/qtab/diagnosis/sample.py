@@ -30,6 +30,8 @@ class Sample:
     """(steps,): the reward of each step."""
     observations: NDArray[Any]
     """(steps, ...): the state's observation."""
+    space: Any
+    """The observation space."""
 
     @property
     def mixed_outcomes(self) -> float:
@@ -40,23 +42,28 @@ class Sample:
         return float(np.mean(np.bincount(kinds)[pairs] > 1))
 
 
-def sample_steps(run: Run) -> Sample:
-    """Repeats a run in Rust, keeping its last episodes, and replays those."""
+def repeat(run: Run) -> Run:
+    """Repeats a run in Rust, counting its visits and recording its last episodes."""
     lengths = run.episode_lengths[::-1].cumsum()
     episodes = max(1, int(np.searchsorted(lengths, SAMPLE_STEPS, side="right")))
     finished = len(run.episode_returns)
-    repeated = train(
+    return train(
         config=run.config,
         record=episodes,
+        visits=True,
         progress=False,
         callback=lambda progress: progress.episodes < finished,
         callback_every=finished,
     )
+
+
+def sample_steps(run: Run) -> Sample:
+    """Replays the recordings of a run."""
     env = make_run_env(run.config)
     visited, taken, following, rewards, steps = [], [], [], [], []
     try:
         plain: Any = env.unwrapped
-        for recording in repeated.recordings:
+        for recording in run.recordings:
             bit_generator = np.random.PCG64()
             bit_generator.state = dict(recording.start)  # type: ignore[assignment]
             plain.np_random = np.random.Generator(bit_generator)
@@ -79,4 +86,4 @@ def sample_steps(run: Run) -> Sample:
         .argmax(axis=-1)
     )
     rows, next_rows = rows_of(run, observations, before), rows_of(run, np.array(following), before + 1)
-    return Sample(rows, columns, next_rows, np.array(rewards), observations)
+    return Sample(rows, columns, next_rows, np.array(rewards), observations, env.observation_space)

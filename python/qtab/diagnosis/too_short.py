@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding
+from qtab.diagnosis.finding import Finding, Unchecked
 from qtab.diagnosis.rates import epsilons
 
 PARTS = 3
@@ -12,16 +13,18 @@ PARTS = 3
 LEAST_EPISODES = 20
 STANDARD_ERRORS = 3.0
 LEAST_SHARE = 0.1
-"""An improvement by a smaller share of what is missing would take too long."""
+"""With an improvement by a smaller share of what is missing, training would take too long."""
 MOST_EPSILON = 0.1
 """With more exploration in the last parts, returns also rise because it falls."""
 
 
-def too_short(facts: Facts) -> Finding | None:
+def too_short(facts: Facts) -> Finding | Unchecked | None:
     """Finds that the last returns are clearly higher than those shortly before."""
+    before, last = _parts(facts)
+    if len(last) < LEAST_EPISODES:
+        return Unchecked("there are too few episodes")
     if not still_improving(facts):
         return None
-    before, last = _parts(facts)
     more = 5 * facts.config.episodes
     return Finding(
         name="too short",
@@ -33,7 +36,7 @@ def too_short(facts: Facts) -> Finding | None:
         },
         meaning="The agent was still learning when the training ended.",
         advice=f"train longer, such as episodes={more}",
-        changes=({"episodes": more},),
+        changes=changes(facts.config, {"episodes": more}),
     )
 
 
@@ -48,7 +51,9 @@ def still_improving(facts: Facts) -> bool:
             return False
     error = float(np.sqrt((before.var() + last.var()) / len(last)))
     improvement = float(last.mean() - before.mean())
-    missing = 0.0 if facts.goal_return is None else facts.goal_return - float(before.mean())
+    # Without a goal, it is compared with what the run has gained so far.
+    gained = float(last.mean() - facts.run.episode_returns[: len(last)].mean())
+    missing = gained if facts.goal_return is None else facts.goal_return - float(before.mean())
     return improvement > STANDARD_ERRORS * error and improvement > LEAST_SHARE * missing
 
 

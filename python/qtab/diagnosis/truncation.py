@@ -1,6 +1,7 @@
 """Truncation: time-outs that are treated as terminal states."""
 
 from qtab.config.options import fixed_settings
+from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, percent
 
@@ -20,5 +21,5 @@ def truncation(facts: Facts) -> Finding | None:
         meaning=f"{percent(share)} of the episodes end by the time limit. The state where that happens depends on the "
         "clock, which the agent does not see, and its value is learned as if nothing followed.",
         advice="use on_truncation='bootstrap': the value of the last state then counts",
-        changes=({"on_truncation": "bootstrap"},),
+        changes=changes(facts.config, {"on_truncation": "bootstrap"}),
     )

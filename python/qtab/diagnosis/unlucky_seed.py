@@ -2,20 +2,29 @@
 
 import numpy as np
 
+from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, percent
+from qtab.diagnosis.finding import Finding, Unchecked, percent
+from qtab.training.verdict import judge
 
 MOST_BELOW = 0.2
 """Only a run in the lowest fifth is unlucky."""
 
 
-def unlucky_seed(facts: Facts) -> Finding | None:
+def unlucky_seed(facts: Facts) -> Finding | Unchecked | None:
     """Finds that most other seeds solve the environment with the same settings, and this one is among the worst."""
-    returns, goal = facts.other_returns, facts.goal_return
-    if returns is None or goal is None:
-        return None
-    own = facts.greedy_return if facts.greedy_is_exact else facts.final_return
-    solved, below = float(np.mean(returns >= goal)), float(np.mean(returns < own))
+    if facts.goal_return is None:
+        return Unchecked("no return counts as solved")
+    if facts.others is None:
+        return Unchecked("no other seeds were trained")
+    verdicts = [judge(run, facts.optimum) for run in facts.others]
+    # Training returns include exploration: they only rank the seeds where the greedy policy's is not exact.
+    if facts.verdict.greedy_is_exact:
+        own, returns = facts.verdict.greedy_return, np.array([verdict.greedy_return for verdict in verdicts])
+    else:
+        own, returns = facts.verdict.final_return, np.array([verdict.final_return for verdict in verdicts])
+    solved = float(np.mean([verdict.solved is True for verdict in verdicts]))
+    below = float(np.mean(returns < own))
     if solved <= 0.5 or below > MOST_BELOW:
         return None
     rank = len(returns) + 1 - int(np.sum(returns < own))
@@ -30,5 +39,5 @@ def unlucky_seed(facts: Facts) -> Finding | None:
         },
         meaning=f"With the same settings {percent(solved)} of {len(returns)} other seeds solve the environment.",
         advice="use another seed, and settings with which all seeds succeed, such as more episodes",
-        changes=({"episodes": 2 * facts.config.episodes},),
+        changes=changes(facts.config, {"episodes": 2 * facts.config.episodes}),
     )

@@ -16,6 +16,7 @@ from qtab.diagnosis.finding import Finding, as_keywords, shown
 from qtab.envs.registry import spec_of
 from qtab.results.runs import Runs
 from qtab.training.train_many import seed_numbers, train_many
+from qtab.training.verdict import judge
 
 if TYPE_CHECKING:
     from qtab.stats.comparisons import Comparison
@@ -131,29 +132,31 @@ def try_changes(facts: Facts, findings: Sequence[Finding], seeds: int | Iterable
     results, failed = [], {}
     with ProgressBar((1 + len(changes)) * len(numbers), "run", progress, "what if") as bar:
         try:
-            before = _train(config, {}, numbers, bar, 0).final_returns()
+            runs = _train(facts, {}, numbers, bar, 0)
+            before, solved = runs.final_returns(), _solved(facts, runs)
         except OverflowError:
-            before = np.full(len(numbers), np.nan)
+            before, solved = np.full(len(numbers), np.nan), None if facts.goal_return is None else 0
         for done, (text, (name, change)) in enumerate(changes.items(), 1):
             try:
-                runs = _train(config, change, numbers, bar, done)
+                runs = _train(facts, change, numbers, bar, done)
             except (OverflowError, ValueError) as error:
                 failed[text] = str(error)
                 bar.move_to((done + 1) * len(numbers))
                 continue
             returns = runs.final_returns()
             comparison = None if np.isnan(before).any() else compare(returns, before)
-            results.append(Trial(change, name, returns, comparison, _solved(facts, returns)))
+            results.append(Trial(change, name, returns, comparison, _solved(facts, runs)))
     results.sort(key=lambda trial: -float(trial.returns.mean()))
-    return WhatIf(config, numbers, before, _solved(facts, before), tuple(results), failed)
+    return WhatIf(config, numbers, before, solved, tuple(results), failed)
 
 
-def _train(config: Config, change: Mapping[str, Any], seeds: Sequence[int], bar: ProgressBar, done: int) -> Runs:
+def _train(facts: Facts, change: Mapping[str, Any], seeds: Sequence[int], bar: ProgressBar, done: int) -> Runs:
     """Trains with a change, and moves the bar, on which the runs of some changes are done.
 
     A preset replaces all settings except for those of the environment.
     """
-    watched: dict[str, Any] = {"progress": False}
+    config = facts.config
+    watched: dict[str, Any] = {"progress": False, "tables": facts.goal_return is not None and facts.can_repeat}
     if bar.is_shown:
         watched["callback"] = lambda progress: bar.move_to(done * len(seeds) + progress.runs)
     if "preset" in change:
@@ -167,5 +170,8 @@ def _interval(comparison: "Comparison") -> str:
     return f"{found.estimate:+.4g} [{found.low:+.4g}, {found.high:+.4g}]"
 
 
-def _solved(facts: Facts, returns: NDArray[np.float64]) -> int | None:
-    return None if facts.goal_return is None else int(np.sum(returns >= facts.goal_return))
+def _solved(facts: Facts, runs: Runs) -> int | None:
+    """The number of runs that solved the environment, as :func:`qtab.training.verdict.judge` decides it."""
+    if facts.goal_return is None or runs.tables is None:
+        return None
+    return sum(judge(run, facts.optimum).solved is True for run in runs)

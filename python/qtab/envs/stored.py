@@ -1,5 +1,6 @@
 """Environments that a file names: they are used if they are registered, and never imported."""
 
+from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
@@ -45,6 +46,13 @@ def spec_of_run(env: str) -> EnvSpec:
     if spec is None:
         raise unregistered(env)
     return spec
+
+
+def is_registered(env: str) -> bool:
+    """Returns whether the environment of a run can be made from its id."""
+    with suppress(gym.error.UnregisteredEnv, ModuleNotFoundError):
+        return bool(spec_of_run(env))
+    return False
 
 
 def unregistered(env: str) -> gym.error.UnregisteredEnv:

@@ -75,7 +75,8 @@ class Optimum:
     """The undiscounted expected return of the policy from the environment's first states under the time limit: the
     number to compare a run's returns with."""
     reward_threshold: float | None
-    """The return at which Gymnasium considers the environment solved; None where Gymnasium does not define it."""
+    """The return at which Gymnasium considers the environment solved; None where it defines none, or only for another
+    time limit or other keyword arguments."""
     seconds: float
     """The wall-clock time of the computation."""
     search: Search | None = field(repr=False)

@@ -17,6 +17,7 @@ from qtab._utils.shown import shown
 from qtab.config.unknown import suggesting
 from qtab.discretizers import Identity
 from qtab.discretizers.actions import choose_actions
+from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS, reward_threshold
 from qtab.envs.matching import time_limit, unknown_wrapper
 from qtab.envs.native import table_env
 from qtab.envs.registry import make_env, spec_of, versioned
@@ -29,7 +30,6 @@ from qtab.planning.table import has_transition_table
 from qtab.planning.tabular import METHODS, TabularSolver, solve_table
 from qtab.results.run import Run
 from qtab.results.runs import Runs
-from qtab.training.resolve import UNLIMITED_MAX_EPISODE_STEPS
 
 SEARCH = "search"
 SEARCH_STAGES = 2
@@ -164,7 +164,7 @@ def _optimum_for_env(
         q_values=best.q_values,
         policy=best.policy,
         expected_return=best.expected_return,
-        reward_threshold=None if env.spec is None else env.spec.reward_threshold,
+        reward_threshold=None if env.spec is None else reward_threshold(name, env.spec.kwargs, steps),
         seconds=time.perf_counter() - started,
         search=best.search,
         solver=best.solver,

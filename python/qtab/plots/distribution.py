@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab.plots.axes import axes_or_new, check_axes
 from qtab.plots.colors import line_style, palette
-from qtab.plots.inputs import color_keys, entries, only_env
+from qtab.plots.inputs import color_keys, entries, only_threshold
 from qtab.plots.labels import finish
 from qtab.plots.marks import check_threshold, mark_threshold
 
@@ -71,7 +71,7 @@ def distribution(
         style: Any = line_style(index)
         ax.hist(entry.values, edges, color=hue, histtype="step", linewidth=1.4, linestyle=style)
         ax.axvline(middle, color=hue, linewidth=2, linestyle=style)
-    mark_threshold(ax, threshold, only_env(drawn), "x")
+    mark_threshold(ax, threshold, only_threshold(drawn), "x")
     ax.locator_params(axis="y", integer=True)
     return finish(ax, "Final return", "Runs", title, legend_title=note)
 

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import arrays, checks
+from qtab.envs.goals import threshold_of
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.sweeps.results import Sweep
+from qtab.sweeps.thresholds import sweep_threshold
 
 BEST_SETTINGS = 8
 """Of a sweep with more settings than this, plots show those with the best mean final return, and report it."""
@@ -28,8 +30,8 @@ class Entry:
     """(runs, points) for learning curves, else (runs,)."""
     unit: int = 1
     """The number of episodes that a point of a learning curve averages; more than 1 for a sweep."""
-    env: str | None = None
-    """The environment's id, where it is known."""
+    threshold: float | None = None
+    """The return at which Gymnasium considers its environment solved, where one holds."""
     color_key: Any = None
     """The algorithm or the number that determines the color."""
 
@@ -67,10 +69,10 @@ def entries(name: str, data: Any, kind: Kind, settings: Sequence[int] | None = N
     return found, "; ".join(notes)
 
 
-def only_env(drawn: Sequence[Entry]) -> str | None:
-    """Returns the environment of all entries, or None if they have different or unknown ones."""
-    names = {entry.env for entry in drawn}
-    return names.pop() if len(names) == 1 else None
+def only_threshold(drawn: Sequence[Entry]) -> float | None:
+    """Returns the threshold of all entries, or None if they have different or unknown ones."""
+    thresholds = {entry.threshold for entry in drawn}
+    return thresholds.pop() if len(thresholds) == 1 else None
 
 
 def color_keys(drawn: Sequence[Entry]) -> list[Any]:
@@ -111,9 +113,9 @@ def _entry(argument: str, key: Any, value: Any, kind: Kind) -> Entry:
         values = np.atleast_2d(value.episode_returns)
     else:
         values = arrays.curves(argument, value)
-    env = value.config.env if is_result else None
+    threshold = threshold_of(value.config) if is_result else None
     color_key = value.config.algorithm if is_result else key if isinstance(key, int | float) else None
-    return Entry(str(key), values, 1, env, color_key)
+    return Entry(str(key), values, 1, threshold, color_key)
 
 
 def _require_episodes(argument: str, value: Run | Runs) -> None:
@@ -155,7 +157,7 @@ def _of_sweep(key: str, sweep: Sweep, kind: Kind, chosen: list[int]) -> Iterator
                 ": ".join(part for part in (key, text) if part),
                 arrays.numbers("the sweep's returns", curves),
                 sweep.block,
-                sweep.env,
+                sweep_threshold(sweep, setting),
                 color_key if is_key else None,
             )
 

@@ -10,7 +10,7 @@ from qtab._utils import checks
 from qtab.plots.axes import axes_or_new, check_axes
 from qtab.plots.blocks import common_block, counted_episodes
 from qtab.plots.colors import line_style, palette
-from qtab.plots.inputs import Entry, color_keys, entries, only_env
+from qtab.plots.inputs import Entry, color_keys, entries, only_threshold
 from qtab.plots.labels import episode_ticks, finish, joined
 from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
 
@@ -103,7 +103,7 @@ def learning_curves(
             ax.plot(x, runs[:MAX_SINGLE_RUNS].T, rasterized=True, zorder=1, **faint)
         _draw_curve(ax, x, runs, curve, hue, name, line_style((index or 0) + position))
     mark_optimum(ax, optimum)
-    mark_threshold(ax, threshold, only_env(drawn))
+    mark_threshold(ax, threshold, only_threshold(drawn))
     episode_ticks(ax)
     return finish(
         ax, "Episode", f"Return, mean of {counted_episodes(block)}", title, legend_title=joined(note, heading)

@@ -2,8 +2,6 @@
 
 from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
-import gymnasium as gym
-
 from qtab._utils import checks
 from qtab.plots.colors import readable, text_color
 
@@ -54,27 +52,24 @@ def mark_optimum(ax: "Axes", optimum: "Optimum | float | None") -> None:
 
 
 def mark_threshold(
-    ax: "Axes", threshold: float | Literal[False] | None, env: str | None = None, axis: Literal["x", "y"] = "y"
+    ax: "Axes", threshold: float | Literal[False] | None, known: float | None = None, axis: Literal["x", "y"] = "y"
 ) -> None:
     """Draws a dotted line at a threshold, with the number in the legend.
 
     Args:
         ax: The axes, with all data drawn.
-        threshold: The return to mark. None means that of the environment where Gymnasium's registry has one and it is
-            not far from the data; False means none.
-        env: The id of the environment, or None.
+        threshold: The return to mark. None means the known one, if it is not far from the data; False means none.
+        known: The threshold that holds for the data, if there is one.
         axis: The axis that shows returns.
     """
     if threshold is False:
         return
     if threshold is None:
-        known = None if env is None else gym.registry.get(env.rpartition(":")[2])
-        value = None if known is None else known.reward_threshold
         low, high = sorted(ax.get_ylim() if axis == "y" else ax.get_xlim())
-        if value is None or max(high, value) - min(low, value) > MAX_STRETCH * (high - low):
+        if known is None or max(high, known) - min(low, known) > MAX_STRETCH * (high - low):
             return
-    else:
-        value = float(threshold)
+        threshold = known
+    value = float(threshold)
     style: dict[str, Any] = {"color": text_color(), "alpha": 0.7, "linestyle": (0, (1, 1.5)), "linewidth": 1.5}
     _line(ax, axis, value, f"threshold {value:g}", style)
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
+from qtab.envs.goals import threshold_of
 from qtab.plots.axes import axes_or_new, check_axes, new_figure, save_figure
 from qtab.plots.blocks import counted_episodes, fitting_block
 from qtab.plots.colors import palette
@@ -86,7 +87,7 @@ def plot(
     _draw_means(ax, run.mean_returns(block), block, hue)
     set_x_limits(ax, 0, max(finished, 1), earlier)
     mark_optimum(ax, optimum)
-    mark_threshold(ax, threshold, run.config.env)
+    mark_threshold(ax, threshold, threshold_of(run.config))
     episode_ticks(ax)
     return finish(ax, "Episode", "Return", run.config.env, note=_settings_note(run))
 

@@ -13,6 +13,7 @@ from qtab.plots.labels import category_ticks, finish, joined
 from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
 from qtab.plots.slices import Point, slice_of
 from qtab.sweeps.results import Sweep
+from qtab.sweeps.thresholds import sweep_threshold
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -94,7 +95,7 @@ def sensitivity(
     if not is_numeric:
         category_ticks(ax, [short(value) for value in values])
     mark_optimum(ax, optimum)
-    mark_threshold(ax, threshold, sweep.env if column == "final_return" else None)
+    mark_threshold(ax, threshold, sweep_threshold(sweep) if column == "final_return" else None)
     shown = f"{100 * confidence:.4g}% intervals over seeds"
     return finish(ax, parameter, f"{statistic} {column}", title, legend_title=joined(note, shown))
 

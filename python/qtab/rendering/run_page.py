@@ -18,6 +18,7 @@ from qtab.config import Config
 from qtab.config.choices import ALGORITHM_NAMES
 from qtab.diagnosis.diagnose import diagnose
 from qtab.diagnosis.diagnosis import Diagnosis
+from qtab.envs.goals import threshold_of
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.axes import new_figure
@@ -95,9 +96,9 @@ def _summary(run: Run) -> list[tuple[str, Any]]:
         last = returns[-FINAL_EPISODES:]
         rows.append((f"mean return of the last {len(last)} episodes", f"{last.mean():.2f}"))
         rows.append(("best return", f"{returns.max():.6g}"))
-    spec = gym.registry.get(run.config.env.rpartition(":")[2])
-    if spec is not None and spec.reward_threshold is not None:
-        rows.append(("threshold", f"{spec.reward_threshold:g}"))
+    threshold = threshold_of(run.config)
+    if threshold is not None:
+        rows.append(("threshold", f"{threshold:g}"))
     return rows
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import gymnasium as gym
 
 from qtab.sweeps.results import Sweep
+from qtab.sweeps.thresholds import sweep_threshold
 
 if TYPE_CHECKING:
     from qtab.planning import Optimum
@@ -35,7 +36,7 @@ def draw(sweep: Sweep) -> dict[str, Picture]:
         if len(best) < len(sweep.settings)
         else (f"all {len(best)} settings" if len(best) > 1 else "the setting")
     )
-    threshold, optimum = _threshold(sweep), _optimum(sweep)
+    threshold, optimum = sweep_threshold(sweep), _optimum(sweep)
     marked = False if threshold is None else threshold
     means = ", ".join(
         f"{_label(sweep, setting)}: mean {sweep.values('final_return', setting).mean():.4g}" for setting in best
@@ -76,11 +77,6 @@ def _label(sweep: Sweep, setting: int) -> str:
 def _spec(sweep: Sweep) -> Any:
     """Returns the spec of the environment if it is registered. A store must not choose a module to import."""
     return gym.registry.get(sweep.env.rpartition(":")[2])
-
-
-def _threshold(sweep: Sweep) -> float | None:
-    spec = _spec(sweep)
-    return None if spec is None else spec.reward_threshold
 
 
 def _optimum(sweep: Sweep) -> "Optimum | None":

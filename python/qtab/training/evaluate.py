@@ -20,6 +20,7 @@ from qtab.config import Config
 from qtab.config.options import OPTIONS
 from qtab.config.unknown import suggesting
 from qtab.discretizers import Sparse
+from qtab.envs.goals import threshold_of
 from qtab.envs.matching import time_limit
 from qtab.envs.registry import make_env, spec_of
 from qtab.envs.stored import spec_of_run
@@ -57,7 +58,8 @@ class Evaluation:
     seed: int
     """The seed of the environment."""
     reward_threshold: float | None
-    """The return at which Gymnasium considers the environment solved; None where it gives none."""
+    """The return at which Gymnasium considers the environment solved; None where it gives none, or only for another
+    time limit or other keyword arguments."""
 
     def __repr__(self) -> str:
         return f"<Evaluation of {self._episodes}: mean return {self._mean}, seed {self.seed}>"
@@ -159,9 +161,8 @@ def evaluate(
             f"that of its time limit, got {shown(max_episode_steps)}"
         )
     if env is None:
-        spec: EnvSpec | None = spec_of_run(config.env)
+        spec_of_run(config.env)
     elif isinstance(env, gym.Env):
-        spec = env.spec
         check_spaces(run, env)
         limit = time_limit(env)
         if config.time_aware and limit is not None and limit < required("max_episode_steps", config.max_episode_steps):
@@ -199,7 +200,7 @@ def evaluate(
         played.episode_lengths,
         played.terminated,
         resolved.seed,
-        None if spec is None else spec.reward_threshold,
+        threshold_of(resolved.config),
     )
 
 

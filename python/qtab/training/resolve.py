@@ -22,6 +22,7 @@ from qtab.config.presets import preset
 from qtab.config.schedules import learning_rate
 from qtab.discretizers import Discretizer, Sparse
 from qtab.discretizers.actions import Actions, choose_actions
+from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.envs.known_tables import KnownTable, known_table
 from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import native_env
@@ -35,8 +36,6 @@ _logged: set[str] = set()
 """The environments whose default time limit was logged in this process, and the messages that were."""
 READ_IN_PYTHON = "a function as the discretizer, or max_rows, reads each observation in Python"
 MASKS_BY_STEP = "its action masks are known only from step to step"
-UNLIMITED_MAX_EPISODE_STEPS = 10_000
-"""The time limit in training for environments that have none."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,127 @@
+"""Limits: bins or tiles that do not cover the states, or that hardly tell them apart."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.diagnosis.changes import changes
+from qtab.diagnosis.facts import Facts
+from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, percent
+
+MOST_OUTSIDE = 0.2
+"""A larger share of steps outside the limits is reported."""
+ROOM_OUTSIDE = 0.25
+"""How far outside the limits, as a fraction of their distance, values of a component without bounds may lie."""
+FEWEST_CELLS = 2.0
+"""Where fewer bins or tiles cover the range of a component, they hardly tell its values apart."""
+UNBOUNDED = 1e30
+"""Spaces of float32 without bounds have infinity, or the largest number of the dtype."""
+ROOM = 2.0
+"""Of a component without bounds, values are expected within so many times the range that was seen."""
+
+
+def narrow_limits(facts: Facts) -> Finding | Unchecked | None:
+    """Finds that many states lie outside the limits, where the outermost bin or tile holds them all."""
+    found = _limits(facts)
+    if isinstance(found, Unchecked):
+        return found
+    low, high, observed = found
+    # Outermost bins of a component without bounds are meant to hold some more.
+    room = np.where(_bounds(facts)[2], 0.0, ROOM_OUTSIDE * (high - low))
+    outside = (observed < low - room) | (observed > high + room)
+    share = float(outside.any(axis=1).mean())
+    if share <= MOST_OUTSIDE:
+        return None
+    component = int(outside.mean(axis=0).argmax())
+    wide = _covering(facts, observed)
+    return Finding(
+        name="limits too narrow",
+        title="Many states lie outside the limits of the discretizer.",
+        evidence={
+            "share of the last steps outside": share,
+            f"lower limit of component {component}": float(low[component]),
+            f"upper limit of component {component}": float(high[component]),
+            "lowest value seen": float(observed[:, component].min()),
+            "highest value seen": float(observed[:, component].max()),
+        },
+        meaning=f"In {percent(share)} of the last steps the outermost bin or tile holds the state: there the agent "
+        "cannot tell one from another.",
+        advice=f"use wider limits: {as_keywords(wide)}",
+        changes=changes(facts.config, wide),
+    )
+
+
+def wide_limits(facts: Facts) -> Finding | Unchecked | None:
+    """Finds limits so wide that the states share hardly more than one bin or tile."""
+    found = _limits(facts)
+    if isinstance(found, Unchecked):
+        return found
+    low, high, observed = found
+    counts = np.broadcast_to(_counts(facts), low.shape)
+    covered = counts * _range(facts, observed) / (high - low)
+    coarse = (covered < FEWEST_CELLS) & (counts > FEWEST_CELLS)
+    if not coarse.any():
+        return None
+    component = int(np.where(coarse, covered, np.inf).argmin())
+    close = _covering(facts, observed)
+    return Finding(
+        name="limits too wide",
+        title="The limits of the discretizer are too wide to tell states apart.",
+        evidence={
+            f"bins or tiles of component {component}": int(counts[component]),
+            "of which its values cover": float(covered[component]),
+        },
+        meaning=f"The values of component {component} lie within {covered[component]:.2g} of its {counts[component]} "
+        "bins or tiles, so that states which need different actions share them.",
+        advice=f"use closer limits: {as_keywords(close)}",
+        changes=changes(facts.config, close),
+    )
+
+
+def _limits(facts: Facts) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] | Unchecked:
+    """The limits of each component, and (steps, components): the observations."""
+    config, sample = facts.config, facts.sample
+    if config.discretizer not in ("bins", "tiles") or config.low is None or config.high is None:
+        return Unchecked("the discretizer has no limits")
+    if sample is None or len(sample.observations) == 0:
+        return Unchecked("its last steps cannot be replayed")
+    observed = np.asarray(sample.observations, dtype=np.float64).reshape(len(sample.observations), -1)
+    return np.array(config.low), np.array(config.high), observed
+
+
+def _counts(facts: Facts) -> Sequence[int]:
+    counts = facts.config.bins if facts.config.discretizer == "bins" else facts.config.tiles
+    return counts or (1,)
+
+
+def _bounds(facts: Facts) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """The bounds of the observation space, and which components have them."""
+    space: Any = None if facts.sample is None else facts.sample.space
+    low, high = (np.array([float(str(bound)) for bound in np.ravel(limit)]) for limit in (space.low, space.high))
+    return low, high, (np.abs(low) < UNBOUNDED) & (np.abs(high) < UNBOUNDED)
+
+
+def _range(facts: Facts, observed: NDArray[np.float64]) -> NDArray[np.float64]:
+    low, high, bounded = _bounds(facts)
+    seen: NDArray[np.float64] = ROOM * (observed.max(axis=0) - observed.min(axis=0))
+    return np.where(bounded, np.where(bounded, high, 0.0) - np.where(bounded, low, 0.0), seen)
+
+
+def _covering(facts: Facts, observed: NDArray[np.float64]) -> dict[str, Any]:
+    """Limits that hold all states: the bounds of the space, or what was seen with some room."""
+    low, high, bounded = _bounds(facts)
+    least, most = observed.min(axis=0), observed.max(axis=0)
+    room = (most - least) / 10
+    return {
+        "low": tuple(np.where(bounded, low, _rounded(least - room, np.floor)).tolist()),
+        "high": tuple(np.where(bounded, high, _rounded(most + room, np.ceil)).tolist()),
+    }
+
+
+def _rounded(limits: NDArray[np.float64], outwards: Any) -> NDArray[np.float64]:
+    """Limits rounded outwards to two digits."""
+    exponents = np.floor(np.log10(np.maximum(np.abs(limits), 1e-12))).astype(int) - 1
+    scaled = outwards(limits / 10.0**exponents)
+    return np.array([float(f"{value:.0f}e{exponent}") for value, exponent in zip(scaled, exponents, strict=True)])
