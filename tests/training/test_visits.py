@@ -122,7 +122,17 @@ def test_snapshots_are_the_tables_of_shorter_runs() -> None:
 
 
 @pytest.mark.parametrize(
-    ("snapshots", "episodes"), [(1, [10]), (4, [2, 5, 7, 10]), (99, list(range(1, 11))), (0, None), ([10], [10])]
+    ("snapshots", "episodes"),
+    [
+        (1, [10]),
+        (4, [2, 5, 7, 10]),
+        (99, list(range(1, 11))),
+        (0, None),
+        ([10], [10]),
+        (np.array([0, 2, 10]), [0, 2, 10]),
+        (np.array([3]), [3]),
+        (np.array(2), [5, 10]),
+    ],
 )
 def test_a_number_of_snapshots_is_spread_over_the_run(snapshots: Any, episodes: list[int] | None) -> None:
     kept = qtab.train("FrozenLake-v1", episodes=10, seed=0, snapshots=snapshots).snapshots
@@ -137,6 +147,8 @@ def test_a_number_of_snapshots_is_spread_over_the_run(snapshots: Any, episodes: 
         ({"snapshots": True}, TypeError, "snapshots must be an integer or a sequence of episode numbers, got True"),
         ({"snapshots": "3"}, TypeError, "snapshots must be an integer or a sequence of episode numbers, got '3'"),
         ({"snapshots": []}, ValueError, "snapshots must be how many, or hold at least one episode number"),
+        ({"snapshots": np.array([2.5])}, TypeError, r"^snapshots\[0\] must be an integer from 0 to 10, got .*2\.5"),
+        ({"snapshots": np.array([[1, 2]])}, TypeError, r"^snapshots\[0\] must be an integer from 0 to 10, got "),
         ({"snapshots": [11]}, ValueError, r"^snapshots\[0\] must be an integer from 0 to 10, got 11$"),
         ({"visits": 1}, TypeError, "visits must be True or False, got 1"),
     ],

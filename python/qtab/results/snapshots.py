@@ -44,7 +44,7 @@ def snapshot_episodes(wanted: int | Sequence[int] | None, total: int) -> tuple[i
     """
     if wanted is None:
         return ()
-    if hasattr(wanted, "__index__") or isinstance(wanted, bool | str | bytes) or not np.iterable(wanted):
+    if isinstance(wanted, bool | str | bytes) or not np.iterable(wanted):  # an array of several has an __index__ too
         count = min(_count(wanted), total)
         return tuple(total * (index + 1) // count for index in range(count))
     numbers = {
