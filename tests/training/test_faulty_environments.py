@@ -190,6 +190,45 @@ def test_a_step_of_four_values_is_refused():
         train(Old([ONE]))
 
 
+class Nested(gym.Env):
+    """Its observations leave their space, or its step fails."""
+
+    observation_space = gym.spaces.Dict({"gear": gym.spaces.Discrete(3), "side": gym.spaces.Discrete(2)})
+    action_space = gym.spaces.Discrete(2)
+
+    def __init__(self, error: Exception | None) -> None:
+        self.error = error
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        return {"gear": 1, "side": 0}, {}
+
+    def step(self, action):
+        if self.error is not None:
+            raise self.error
+        return {"gear": 7, "side": 0}, 0.0, False, False, {}
+
+
+def test_only_the_extensions_messages_are_put_in_terms_of_the_space():
+    with pytest.raises(ValueError, match=r"^observation\['gear'\] is 7,"):
+        qtab.train(Nested(None), seed=0, episodes=3)
+    arguments = "observation[0] is 7, says the motor", 5
+    error = ValueError(*arguments)
+    with pytest.raises(ValueError, match="says the motor") as caught:
+        qtab.train(Nested(error), seed=0, episodes=3)
+    assert caught.value is error
+    assert error.args == arguments
+    assert run_of(error).completed is False
+
+
+@pytest.mark.parametrize("argument", [{"reason": "motor"}, 3, None])
+def test_the_arguments_of_an_environments_error_stay_what_they_are(argument):
+    error = ValueError(argument)
+    with pytest.raises(ValueError) as caught:
+        qtab.train(Nested(error), seed=0, episodes=3)
+    assert caught.value.args == (argument,)
+
+
 def test_an_environment_can_be_trained_on_again_after_it_failed():
     env = Calls(ScriptedEnv([ONE]), raising_at(3, BrokenError()))
     with pytest.raises(BrokenError):

@@ -13,7 +13,7 @@ from typing_extensions import Unpack
 
 from qtab import _core
 from qtab._utils import checks
-from qtab._utils.attach import attach
+from qtab._utils.attach import attach, is_raised_in
 from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
@@ -164,7 +164,8 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
                     break
         trainer.check_tables()
     except BaseException as error:
-        if isinstance(error, ValueError) and error.args:
+        if isinstance(error, ValueError) and error.args and is_raised_in(error, train_resolved):
+            # One of the extension, about an observation: those of an environment or a callback are left alone.
             error.args = (resolved.discretizer.in_terms_of_space(str(error)), *error.args[1:])
         with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
             attach(error, run=_run(resolved, trainer, began, collector))
