@@ -151,6 +151,54 @@ def test_the_version_is_that_of_the_distribution():
     assert qtab.__version__ == version("qtab")
 
 
+@pytest.mark.parametrize(
+    ("cargo", "metadata"),
+    [
+        ("1.2.3", "1.2.3"),
+        ("1.2.3-rc.1", "1.2.3rc1"),
+        ("1.2.3-beta.12", "1.2.3b12"),
+        ("1.2.3-alpha.2", "1.2.3a2"),
+    ],
+)
+def test_the_version_of_a_candidate_is_spelled_as_in_the_metadata(cargo, metadata):
+    from packaging.version import Version
+
+    from qtab._utils.versions import distribution_version
+
+    assert distribution_version(cargo) == metadata == str(Version(cargo))
+
+
+def test_what_training_imports_is_declared():
+    tomllib = pytest.importorskip("tomllib")  # of Python 3.11
+    tables = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    declared = {re.split(r"[^\w-]", one)[0].replace("-", "_") for one in tables["dependencies"]}
+    code = """
+import sys
+import qtab
+run = qtab.train("FrozenLake-v1", seed=0, episodes=3)
+qtab.diagnose(run), qtab.optimum(run), qtab.sweep("FrozenLake-v1", {"epsilon": [0.1]}, seeds=1, episodes=3)
+print(*(name for name, module in sys.modules.items() if name.startswith("qtab") and getattr(module, "__file__", None)))
+"""
+    imported = set()
+    for name in in_a_process(code).split():
+        path = Path(sys.modules["qtab"].__path__[0]).parent.joinpath(*name.split("."))
+        source = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+        if source.exists():  # not the extension
+            imported |= imported_at_once(ast.parse(source.read_text(encoding="utf-8")))
+    assert imported - sys.stdlib_module_names - {"qtab"} == declared
+
+
+def imported_at_once(module):
+    """The packages that a module imports when it is imported itself."""
+    found = set()
+    for statement in module.body:
+        if isinstance(statement, ast.ImportFrom):
+            found.add((statement.module or "").partition(".")[0])
+        elif isinstance(statement, ast.Import):
+            found |= {alias.name.partition(".")[0] for alias in statement.names}
+    return found
+
+
 def test_the_extension_tells_its_build_profile():
     assert _core.BUILD_PROFILE in ("debug", "release")
 

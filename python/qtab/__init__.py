@@ -129,9 +129,9 @@ else:
 
     def __getattr__(name):
         if name == "__version__":
-            from qtab._core import VERSION
+            from qtab._utils.versions import distribution_version
 
-            return VERSION
+            return distribution_version()
         if name not in _MODULES:
             from qtab._utils.suggestions import did_you_mean
 

@@ -1,6 +1,7 @@
 """The versions that a result was computed with, to explain differences between machines."""
 
 import platform
+import re
 from functools import cache
 
 import gymnasium as gym
@@ -14,11 +15,16 @@ def versions() -> dict[str, str]:
     return dict(_versions())
 
 
+def distribution_version(version: str = VERSION) -> str:
+    """Returns the version of this package as its metadata spell it: ``1.2.3rc1``, which Cargo spells ``1.2.3-rc.1``."""
+    return re.sub(r"-(?:(a)lpha|(b)eta|(rc))\.?(\d+)$", r"\1\2\3\4", version)
+
+
 @cache
 def _versions() -> dict[str, str]:
     libc = " ".join(platform.libc_ver()).strip()
     return {
-        "qtab": VERSION,
+        "qtab": distribution_version(),
         "gymnasium": gym.__version__,
         "numpy": np.__version__,
         "python": platform.python_version(),
