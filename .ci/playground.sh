@@ -8,13 +8,14 @@ skipped() {
 }
 
 # Whether Rust compiles for WebAssembly here, after rustup was asked for it. (Debian's rustc-web 1.85 with rust-web-src
-# does not: the crates need 1.89.)
+# does not: Cargo.toml's rust-version is newer.)
 wasm_target() {
     local folder
     folder=$(rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null) || return 1
     [ -d "$folder" ] || rustup target add wasm32-unknown-unknown
 }
-no_wasm="Rust's target wasm32-unknown-unknown is missing, rustup cannot add it, and Debian's rustc-web 1.85 is older than 1.88"
+no_wasm="Rust's target wasm32-unknown-unknown is missing, rustup cannot add it, and Debian's rustc-web 1.85 is older than \
+$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)"
 
 # Builds qtab.wasm where that is possible; the wheel then holds the playground.
 wasm_module() {

@@ -127,3 +127,20 @@ def test_the_links_of_the_readme_become_absolute_for_pypi(tmp_path: Path) -> Non
         [*command[:2], "x; y", "v3.4.5"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
     assert "the repository must be like" in refused.stderr
+
+
+def test_the_scripts_find_programs_where_windows_has_them_too() -> None:
+    for path in sorted((ROOT / ".ci").iterdir()):
+        if path.suffix in ("", ".sh"):
+            text = path.read_text(encoding="utf-8").replace("${line//.venv\\/bin\\//.venv/$bin/}", "")
+            assert not re.findall(r"venv\S*/bin\b", text), path.name
+
+
+def test_the_scripts_name_no_version_of_rust_of_their_own() -> None:
+    manifest = (ROOT / "Cargo.toml").read_text(encoding="utf-8")
+    (lowest,) = re.findall(r'^rust-version = "(.+)"', manifest, re.MULTILINE)
+    texts = [path.read_text(encoding="utf-8") for path in (ROOT / ".ci").iterdir() if path.is_file()]
+    assert not [text for text in texts if re.search(r"\b1\.(8[89]|9\d)\b", text)]
+    workflow = (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
+    for rust in re.findall(r'^\s*rust: "([\d.]+)"', workflow, re.MULTILINE):
+        assert rust.startswith(f"{lowest}.")
