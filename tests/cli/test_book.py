@@ -38,10 +38,15 @@ def test_a_complete_figure_prints_its_number_of_runs(tmp_path):
     assert "FEWER" not in done.stdout
 
 
+CHAPTER_6 = "example-6.2, figure-6.2, example-6.5, example-6.6, figure-6.3, figure-6.5 for chapter 6"
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (["99"], "qtab book: error: NAME must be one of figure-2.1, figure-2.2"),
+        (["6.9"], f"qtab book: error: NAME must be one of {CHAPTER_6}, got '6.9'"),
+        (["figure-6.9"], f"qtab book: error: NAME must be one of {CHAPTER_6}, got 'figure-6.9'"),
         (["6.5"], "qtab book: error: NAME must be example-6.5 or figure-6.5, got '6.5', which is both"),
         (["8.2", "--runs", "0"], "qtab book: error: --runs must be an integer of at least 1, got 0"),
         (["8.2", "--runs", "many"], "many"),

@@ -1,5 +1,6 @@
 """All experiments of the book, by name and by number."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -68,8 +69,19 @@ def find(name: str) -> Experiment:
         raise ValueError(f"name must be {' or '.join(match.name for match in matches)}, got {name!r}, which is both")
     if not matches:
         suggestion = did_you_mean(wanted, EXPERIMENTS)
-        raise ValueError(f"name must be one of {', '.join(EXPERIMENTS)}, got {name!r}{suggestion}")
+        raise ValueError(f"name must be one of {_choices(wanted)}, got {name!r}{suggestion}")
     return matches[0]
+
+
+def _choices(wanted: str) -> str:
+    """Returns the names to choose from: those of the chapter, where the name has its number, or all."""
+    number = re.search(r"(?:^|-)(\d+)\b", wanted)
+    of_chapter = [chapter for chapter in CHAPTERS if number is not None and chapter.number == int(number[1])]
+    if not of_chapter:
+        return ", ".join(EXPERIMENTS)
+    (chapter,) = of_chapter
+    names = ", ".join(experiment.name for experiment in chapter.experiments)
+    return f"{names} for chapter {chapter.number}"
 
 
 def run(
