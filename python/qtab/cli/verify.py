@@ -1,5 +1,8 @@
 """``qtab verify``."""
 
+import logging
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -17,6 +20,8 @@ from qtab.results.storage import load
 from qtab.training.verify import verify
 
 COMMAND = "qtab verify"
+SILENT_SECONDS = 2.0
+"""After this time without a progress bar, a message reports how long it will take."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +47,8 @@ def run(arguments: list[str]) -> int:
                 _import_environment(saved, options.env)
             total = options.episodes if options.episodes is not None else len(saved.episode_returns)
             with ProgressBar(total, "episode", report.progress, "Gymnasium") as bar:
-                verification = verify(saved, options.episodes, progress=lambda done, _: bar.move_to(done))
+                announce = _announcer(saved.config.env, bar)
+                verification = verify(saved, options.episodes, progress=announce)
         report.text(str(verification))
         report.add(**vars(verification), equal=verification.equal)
     return 0 if verification.equal else 1
@@ -56,3 +62,21 @@ def _import_environment(saved: Run, env: str) -> None:
     """
     if spec_of(env).id != saved.config.env.rpartition(":")[2]:
         raise ValueError(f"env must be that of the run, {str(saved.config.env)!r}, got {env!r}")
+
+
+def _announcer(env: str, bar: ProgressBar) -> Callable[[int, int], None]:
+    """Returns the callback of :func:`qtab.verify` that moves a bar; where none is shown, it reports once."""
+    began, announced = time.monotonic(), bar.is_shown
+
+    def callback(done: int, total: int) -> None:
+        nonlocal announced
+        bar.move_to(done)
+        seconds = time.monotonic() - began
+        if not announced and done and seconds > SILENT_SECONDS:
+            announced = True
+            logging.getLogger("qtab").warning(
+                "%s is stepped in Python to verify the run: %s of %s episodes took %.2g s, all will take about %.2g s",
+                *(env, f"{done:,}", f"{total:,}", seconds, seconds / done * total),
+            )
+
+    return callback
