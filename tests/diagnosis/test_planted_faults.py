@@ -83,8 +83,10 @@ def test_a_planted_fault_is_found_alone(fault: Fault) -> None:
         assert finding.changes
 
 
-MENDED_AT_ONCE = "exploration", "lasting bonus", "slow learning", "too optimistic", "time-outs treated as terminal"
-MENDED_AT_ONCE += "limits too narrow", "limits too wide"
+MENDED_AT_ONCE = (
+    *("exploration", "lasting bonus", "limits too narrow", "limits too wide", "slow learning", "too optimistic"),
+    "time-outs treated as terminal",
+)
 
 
 @pytest.mark.slow

@@ -45,7 +45,8 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
         raise ValueError("run must have a finished episode, got one that was stopped during its first")
     began = time.perf_counter()
     facts = Facts(run, optimum, seeds)
-    findings, unremarkable = [], []
+    findings: list[Finding] = []
+    unremarkable: list[str] = []
     not_made: dict[str, str] = {}
     with np.errstate(all="ignore"):  # values that diverged
         for name, check in CHECKS.items():
