@@ -10,7 +10,10 @@ from qtab.config.options import OPTIONS, is_set, mismatch
 
 _LOWEST = {"min_epsilon": "epsilon", "min_learning_rate": "learning_rate"}
 """The lower limits of rates that fall."""
-_OF_TABLES = ("discretizer", *(name for name, option in OPTIONS.items() if option.choice == "discretizer"))
+_OF_SHAPES = {"discretizer", *(name for name, option in OPTIONS.items() if option.choice == "discretizer")} - {
+    *("low", "high")
+}
+"""The settings on which the shape of a table depends."""
 
 
 def change(config: Config, **settings: Any) -> Mapping[str, Any] | None:
@@ -31,8 +34,8 @@ def change(config: Config, **settings: Any) -> Mapping[str, Any] | None:
     for name in (*OPTIONS, "terminal_update"):
         if name not in settings and is_set(fields[name]) and mismatch(name, fields[name], fields):
             given[name] = fields[name] = DEFAULTS[name]
-    if isinstance(config.initial_q, np.ndarray) and not given.keys().isdisjoint(_OF_TABLES):
-        return None  # its shape is that of the other table
+    if isinstance(config.initial_q, np.ndarray) and not given.keys().isdisjoint(_OF_SHAPES):
+        return None  # the initial table has the shape of the last one
     try:
         changed = config.replace(**given)
     except (TypeError, ValueError):

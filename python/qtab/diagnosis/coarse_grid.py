@@ -31,13 +31,14 @@ def coarse_grid(facts: Facts) -> Finding | Unchecked | None:
     if mixed is not None:
         evidence["share of states whose best action is not their cell's"] = mixed
         meaning += f" {percent(mixed)} of the states need another action than most states of their cell."
+    tiles = changes(config, *_tiles(facts))
     return Finding(
         name="grid too coarse",
         title="The grid is too coarse.",
         evidence=evidence,
         meaning=meaning,
-        advice="use a finer grid, or tile coding, whose tilings overlap: discretizer='tiles'",
-        changes=changes(config, *_finer(facts), *_tiles(facts)),
+        advice="use a finer grid" + (", or tile coding, whose tilings overlap: discretizer='tiles'" if tiles else ""),
+        changes=changes(config, *_finer(facts)) + tiles,
     )
 
 

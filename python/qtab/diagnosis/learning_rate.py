@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, Unchecked, percent
+from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, percent
 from qtab.diagnosis.rates import learning_rates
 from qtab.diagnosis.too_short import still_improving
 from qtab.training.train import train
@@ -41,13 +41,15 @@ def slow_learning(facts: Facts) -> Finding | Unchecked | None:
     # So large that little of the initial value is left, at the same schedule.
     needed = (1.0 - ENOUGH_LEFT ** (1.0 / updates)) * facts.config.learning_rate / rate if rate > 0 else 1.0
     faster = min(float(f"{1.2 * needed:.1g}"), 1.0)
+    is_faster = faster > facts.config.learning_rate
     return Finding(
         name="slow learning",
         title="The learning rate is too small for so few updates.",
         evidence={"mean learning rate": rate, "updates per value": updates, "initial value left": left},
         meaning=f"After {updates:,.3g} updates {percent(left)} of the initial value is still in a value.",
-        advice=f"use a larger learning rate, such as learning_rate={faster:g}, or train longer",
-        changes=changes(facts.config, {"learning_rate": faster}) if faster > facts.config.learning_rate else (),
+        advice=(f"use a larger learning rate, such as learning_rate={faster:g}, or " if is_faster else "")
+        + "train longer",
+        changes=changes(facts.config, {"learning_rate": faster}) if is_faster else (),
     )
 
 
@@ -81,7 +83,9 @@ def noisy_values(facts: Facts) -> Finding | Unchecked | None:
     targets = max(1.0, 2.0 / rate - 1.0)
     few = "the last target" if targets < 1.5 else f"about {targets:.2g} targets"
     share = f"by {percent(change / spread)} of their spread, " if spread > 0.0 else ""
-    lower = config.learning_rate / 10
+    advised = changes(
+        config, {"learning_rate": float(f"{config.learning_rate / 10:.4g}")}, {"learning_rate_schedule": "linear"}
+    )
     return Finding(
         name="noisy values",
         title="The values are still noisy at the end.",
@@ -92,9 +96,8 @@ def noisy_values(facts: Facts) -> Finding | Unchecked | None:
         },
         meaning=f"The values move {share}up and down with chance: with a learning rate of {rate:g} a value is an "
         f"average over {few} only.",
-        advice=f"use a smaller learning rate, such as learning_rate={lower:g}, or let it fall: "
-        "learning_rate_schedule='linear'",
-        changes=changes(config, {"learning_rate": lower}, {"learning_rate_schedule": "linear"}),
+        advice=f"use a smaller learning rate, or let it fall: {', or '.join(map(as_keywords, advised))}",
+        changes=advised,
     )
 
 
