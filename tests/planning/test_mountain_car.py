@@ -220,7 +220,7 @@ def test_the_command_prints_a_small_table(tmp_path: Path):
     assert lines[0] == "FrozenLake-v1"
     assert [line.split("  ")[-1].strip() for line in lines[1:5]] == [
         "1 within 100 steps",
-        "0.7",
+        "none",  # Gymnasium's is for slippery ice
         "finite_horizon, discount 1: exact",
         "16, 4 actions",
     ]
