@@ -47,7 +47,7 @@ def lasting_bonus(facts: Facts) -> Finding | Unchecked | None:
         evidence={
             "bonus of a step at the end": bonus,
             "bonus of an episode": bonus * length,
-            "median return but 0": paid,
+            "median of the returns other than 0": paid,
         },
         meaning="The values are mostly those of the bonus, so that the greedy policy looks for what is rarely visited.",
         advice=f"use a smaller bonus, such as count_bonus={lower:g}",
@@ -83,7 +83,8 @@ def _of_values(facts: Facts) -> Finding | Unchecked | None:
     differs = (spread > 0) & (possible > 1)
     if not differs.any():
         return Unchecked("all actions look the same")
-    random = float(worse[differs].mean() / (1.0 - 1.0 / possible[differs]).mean())
+    share_worse = float(worse[differs].mean())
+    random = share_worse / float((1.0 - 1.0 / possible[differs]).mean())
     if random <= MOST_RANDOM:
         return None
     typical = float(np.median(spread[differs]))
@@ -97,12 +98,13 @@ def _of_values(facts: Facts) -> Finding | Unchecked | None:
         name="lasting exploration",
         title="The agent still explores a lot at the end.",
         evidence={
-            "share of the last steps with a worse action": float(worse[differs].mean()),
+            "share of the last steps with a worse action": share_worse,
             setting: float(getattr(config, setting)),
             "typical difference between the actions of a state": typical,
         },
-        meaning=f"{percent(random)} as many of its last actions are worse than the greedy one as of a random policy's: "
-        f"a {setting} of {getattr(config, setting):g} is large beside the differences between the values.",
+        meaning=f"Of its last actions {percent(share_worse)} are worse than the greedy one, of random actions "
+        f"{percent(share_worse / random)} would be: a {setting} of {getattr(config, setting):g} is large beside the "
+        "differences between the values.",
         advice="explore less: " + ", or ".join(map(as_keywords, advised)),
         changes=advised,
     )
