@@ -43,6 +43,86 @@ def test_the_address_follows_the_settings(playground: Playground) -> None:
     playground.page.wait_for_function("() => location.hash.includes('learning_rate=0.25')")
 
 
+def test_an_address_without_seeds_has_the_first_one_alone(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&seed=7&seeds=16")
+    playground.page.evaluate("() => { location.hash = '#env=CliffWalking-v1'; }")
+    playground.page.wait_for_function("() => playground.store.state.seed === 0")
+    assert playground.settled().result()["seeds"] == [0]
+
+
+@pytest.mark.parametrize(
+    ("fragment", "settings", "note"),
+    [
+        ("#env=MountainCar-v0&scale=10", {"scale": [10, 10]}, ""),
+        ("#env=CartPole-v1&discretizer=bins&low=-1&high=1&bins=3", {"low": [-1] * 4, "high": [1] * 4, "bins": 3}, ""),
+        ("#env=MountainCar-v0&scale=10,20,30", {"scale": [10, 100]}, "scale"),
+        ("#env=MountainCar-v0&learning_rate=1.5", {"learning_rate": 1}, "learning_rate"),
+        ("#env=MountainCar-v0&epsilon=0.3&min_epsilon=0.4", {"min_epsilon": 0.3}, "min_epsilon"),
+        (
+            "#env=MountainCar-v0&epsilon_warm_up=500&episodes=30",
+            {"epsilon_warm_up": 29, "episodes": 30},
+            "epsilon_warm_up",
+        ),
+        (
+            "#env=MountainCar-v0&discretizer=bins&low=1,1&high=0,0",
+            {"low": [-1.2000000476837158, -0.07000000029802322]},
+            "low",
+        ),
+        ("#env=MountainCar-v0&algorithm=dyna_q&discretizer=tiles", {"algorithm": "q_learning"}, "algorithm"),
+        ("#env=MountainCar-v0&algorithm=sarsa&n_steps=3", {"algorithm": "sarsa"}, "n_steps"),
+        ("#env=MountainCar-v0&scael=10", {}, "scael"),
+        ("#env=MountainCar-v0&example=2&wnid=1", {"tilings": 32}, "wnid"),
+    ],
+)
+def test_what_does_not_fit_is_cut_or_left_out_and_named(
+    playground: Playground, fragment: str, settings: dict[str, object], note: str
+) -> None:
+    given = "" if "example" in fragment else "&max_episode_steps=30" if "warm_up" in fragment else "&episodes=20"
+    playground.open(fragment + given)
+    assert settings.items() <= playground.state()["settings"].items()
+    assert playground.result()["state"] == "finished"
+    problem = playground.page.locator("#problem")
+    assert problem.is_visible() == bool(note)
+    if note:
+        assert f"left out or changed: {note}" in problem.inner_text()
+
+
+def test_a_table_that_is_too_large_is_refused_in_a_sentence(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1")
+    wanted = "env=CartPole-v1&discretizer=bins&bins=60,60,60,60&seeds=16&algorithm=dyna_q"
+    playground.page.evaluate("wanted => playground.restore(playground.store, wanted)", wanted)
+    playground.page.wait_for_function("() => playground.training.state === 'refused'")
+    problem = playground.text("problem")
+    assert problem.startswith("16 runs with a table of 12960000 rows and 2 actions would take 18")
+    assert problem.endswith("MiB, and the page has 512 MiB for them: choose fewer cells, or fewer seeds")
+    playground.page.evaluate("() => playground.restore(playground.store, 'env=CliffWalking-v1')")
+    assert playground.settled().result()["state"] == "finished"
+
+
+def test_examples_and_presets_need_no_cut(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1")
+    changed = playground.page.evaluate(
+        """() => {
+          const { store, EXAMPLES } = playground;
+          const { environments } = store.definitions;
+          const changed = [];
+          for (const [environment, { presets }] of Object.entries(environments)) {
+            const ofExample = ({ preset, settings }) => ({ ...presets[preset], ...settings });
+            const given = [...Object.values(presets), ...EXAMPLES[environment].map(ofExample)];
+            for (const settings of given) {
+              const fitted = playground.fit(store.definitions, environment, settings);
+              for (const [name, value] of Object.entries(settings)) {
+                const cut = name in fitted && String(fitted[name]) !== String(value);
+                if (cut) changed.push([environment, name, value, fitted[name]]);
+              }
+            }
+          }
+          return changed;
+        }"""
+    )
+    assert changed == []
+
+
 HOSTILE = (
     "#env=__proto__",
     "#env=constructor&learning_rate=1e999&discount=NaN&epsilon=-1",
@@ -90,8 +170,12 @@ def test_any_address_only_sets_controls(playground: Playground, parts: list[tupl
     if not playground.requests:
         playground.open("#env=CliffWalking-v1")
     text = playground.page.evaluate("parts => new URLSearchParams(parts).toString()", parts)
-    playground.page.evaluate("text => { playground.restore(playground.store, text + '&episodes=3'); }", text)
+    short = "&episodes=3&max_episode_steps=20"
+    playground.page.evaluate("text => { playground.restore(playground.store, text); }", text + short)
     _assert_allowed(playground)
+    playground.page.wait_for_function("() => !['training', 'loading'].includes(playground.training.state)")
+    if playground.page.evaluate("() => playground.training.state") == "refused":
+        assert "MiB" in playground.text("problem") or "rows" in playground.text("problem")
 
 
 def _assert_allowed(playground: Playground) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import qtab
 import qtab.playground.assemble
 from qtab import playground
 from qtab.cli import main
@@ -60,6 +61,24 @@ def test_without_the_module_the_error_says_how_to_build_it(tmp_path, opened, cap
     assert "rustup target add wasm32-unknown-unknown && python rust/web/build_backend.py" in message
     assert message.count("\n") == 1
     assert not (tmp_path / "page.html").exists()
+
+
+@needs_module
+@pytest.mark.browser
+def test_a_module_of_another_version_is_refused(tmp_path, chromium):
+    path = tmp_path / "page.html"
+    html = playground.page()
+    version = f'"version":"{qtab.__version__}"'
+    assert html.count(version) == 1
+    path.write_text(html.replace(version, '"version":"9.9.9"'), encoding="utf-8")
+    page = chromium.new_page()
+    page.goto(path.as_uri())
+    problem = page.locator("#problem")
+    problem.wait_for()
+    assert problem.inner_text() == (
+        f"qtab.wasm is {qtab.__version__}, and the page 9.9.9: build it anew with python rust/web/build_backend.py"
+    )
+    page.close()
 
 
 @needs_module

@@ -79,6 +79,64 @@ def test_sixteen_seeds_are_sixteen_runs(playground: Playground) -> None:
     assert many["values"] == one["values"]
 
 
+def test_a_paused_episode_names_the_next_action(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0")
+    playground.page.locator("#reset").click()
+    playground.settled()
+    for _ in range(3):
+        current = playground.page.evaluate("() => playground.view.result.current")
+        actions = definitions()["environments"]["CliffWalking-v1"]["actions"]
+        if current:
+            assert f"next action: {actions[current['nextAction']]}." in playground.text("motion-caption")
+            expected = current["nextAction"]
+        playground.page.locator("#step").click()
+        playground.settled()
+        if current:
+            first = playground.page.evaluate("() => playground.view.result.inspection.updates.at(-1)")
+            assert first["action"] == expected
+
+
+def test_a_long_greedy_episode_is_not_said_to_end(playground: Playground) -> None:
+    stuck = "#env=FrozenLake-v1%20(not%20slippery)&initial_q=0&epsilon=0&episodes=2"
+    playground.open(f"{stuck}&max_episode_steps=2500")
+    caption = playground.text("motion-caption")
+    assert caption == "Greedy episode: return 0 in its first 2,000 steps; the rest is not shown."
+    playground.open(f"{stuck}&max_episode_steps=1500")
+    assert playground.text("motion-caption").endswith("in 1,500 steps; the time limit ends it.")
+
+
+@pytest.mark.parametrize(
+    ("limit", "names", "shows_best"),
+    [(200, ["threshold", "best known"], True), (300, [], True), (100, [], False)],
+)
+def test_marks_belong_to_the_time_limit(playground: Playground, limit: int, names: list[str], shows_best: bool) -> None:
+    playground.open(f"#env=MountainCar-v0&episodes=20&max_episode_steps={limit}")
+    marks = "() => playground.view.marks.of(playground.store, playground.view.result).map(({ name }) => name)"
+    assert playground.page.evaluate(marks) == names
+    assert playground.page.locator("#best-panel").is_visible() == shows_best
+    if shows_best:
+        assert ("Its expected return is" in playground.text("best-caption")) == bool(names)
+
+
+def test_two_tables_are_shown_beside_the_optimum(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&algorithm=double_q_learning&learning_rate=1&epsilon=1&episodes=300&seed=1")
+    values, best = playground.page.evaluate(
+        "() => [Array.from(playground.view.result.map.values), Array.from(playground.view.result.best.values)]"
+    )
+    assert values[35] == best[35] == -1
+    assert "means of both tables" in playground.text("inspection")
+
+
+def test_a_selected_state_is_watched_in_the_next_run(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0")
+    playground.page.evaluate("() => playground.training.inspect(25)")
+    playground.settled()
+    assert playground.page.evaluate("() => playground.training.watched()") == {"cell": 25, "columns": 12, "rows": 4}
+    playground.type_number("learning_rate", "0.4")
+    playground.settled()
+    assert playground.page.evaluate("() => playground.view.result.inspection.cell") == 25
+
+
 def test_divergence_is_said(playground: Playground) -> None:
     playground.open(
         "#env=MountainCar-v0&algorithm=sarsa_lambda&discretizer=tiles&learning_rate=2&trace_decay=1&discount=1"

@@ -46,12 +46,12 @@ always has at their defaults."""
 # Types and ranges of the controls. A range is inside the one that the config allows, which a test checks.
 _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
     "max_episode_steps": ("integer", 1, 10_000, True),
-    "episodes": ("integer", 1, 50_000, True),
+    "episodes": ("integer", 1, 100_000, True),
     "learning_rate": ("number", 0, 1, False),  # up to 2 with tile coding
     "discount": ("number", 0, 1, False),
     "min_learning_rate": ("number", 0, 1, False),
     "learning_rate_decay": ("number", 0, 1, False),
-    "learning_rate_warm_up": ("integer", 0, 50_000, False),
+    "learning_rate_warm_up": ("integer", 0, 99_999, False),
     "trace_decay": ("number", 0, 1, False),
     "trace_cutoff": ("number", 0, 1, False),
     "n_steps": ("integer", 1, 256, True),
@@ -61,7 +61,7 @@ _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
     "epsilon": ("number", 0, 1, False),
     "min_epsilon": ("number", 0, 1, False),
     "epsilon_decay": ("number", 0, 1, False),
-    "epsilon_warm_up": ("integer", 0, 50_000, False),
+    "epsilon_warm_up": ("integer", 0, 99_999, False),
     "temperature": ("number", 0.01, 100, True),
     "scale": ("numbers", 0.1, 1000, True),
     "tilings": ("integer", 1, 32, False),

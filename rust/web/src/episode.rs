@@ -34,6 +34,11 @@ pub(crate) fn action_value(tables: &[&[f64]], rows: &[u32], num_actions: usize, 
     Some(sum)
 }
 
+/// The mean of the value over the tables: of the scale of a return, unlike the sum.
+pub(crate) fn mean_action_value(tables: &[&[f64]], rows: &[u32], num_actions: usize, action: usize) -> Option<f64> {
+    action_value(tables, rows, num_actions, action).map(|sum| sum / tables.len() as f64)
+}
+
 /// The first action of the greatest value.
 pub(crate) fn greedy_action(tables: &[&[f64]], rows: &[u32], num_actions: usize) -> Option<usize> {
     let mut best = (0, f64::NEG_INFINITY);

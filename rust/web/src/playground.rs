@@ -21,11 +21,13 @@ pub struct Playground {
 impl Playground {
     /// Answers a request, a JSON object whose member `call` says what to do:
     ///
-    /// - `start` makes new runs of an `environment`, `settings` and `seeds`;
+    /// - `start` makes new runs of an `environment`, `settings` and `seeds`; the first one watches the updates of the cell
+    ///   in `inspect`, or of its first state;
     /// - `advance` trains them until `work` is done or `episodes` are finished, `step` by one step each;
     /// - `report` returns what was learned, with `returns`, `map`, `episode` and `best` where these are true;
     /// - `inspect` returns the last updates of a `cell`, or that it has not found them yet with so much `work`;
-    /// - `table` returns the action values of the run of index `seed`.
+    /// - `table` returns the action values of the run of index `seed`;
+    /// - `version` returns the version of the package that the module was built from.
     ///
     /// The response is a JSON object. It has a member `error` where the request was refused.
     pub fn call(&mut self, request: &[u8]) -> String {
@@ -62,6 +64,7 @@ impl Playground {
                 let training = self.training.insert(Training::new(&request)?);
                 return Ok(training.described());
             }
+            "version" => return Ok(concat!("{\"version\":\"", env!("CARGO_PKG_VERSION"), "\"}").into()),
             "advance" => {
                 let (work, episodes) = (integer("work", 10_000, MAX_WORK)?, integer("episodes", u32::MAX, u32::MAX)?);
                 self.started()?.advance(episodes as usize, work.into())?;

@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 use crate::best::Best;
-use crate::episode::{Episode, action_value};
-use crate::json::{write_number, write_text};
+use crate::episode::{Episode, mean_action_value};
+use crate::json::write_number;
 use crate::training::Training;
-use crate::updates::{Update, UpdateKind, Watch};
+use crate::updates::{StepEnd, Update, UpdateKind, Watch};
 
 /// The longest greedy episode that a page shows, in steps.
 const MAX_SHOWN_STEPS: u64 = 2000;
@@ -95,7 +95,8 @@ fn add_returns(training: &Training, done: usize, arrays: &mut Arrays) {
     arrays.add("terminated", Array::U8(terminated));
 }
 
-/// The action values, visits and greedy actions of the cells, by the first run.
+/// The action values, visits and greedy actions of the cells, by the first run. Of two tables it is the mean, which has
+/// the scale of a return and the same greedy actions as their sum.
 fn add_map(training: &Training, arrays: &mut Arrays) {
     let run = &training.runs[0].run;
     let (tables, num_actions) = (run.tables(), training.subject.num_actions());
@@ -106,7 +107,7 @@ fn add_map(training: &Training, arrays: &mut Arrays) {
         let rows = rows.unwrap_or_default();
         let mut best = (NO_ACTION, f64::NAN);
         for action in 0..num_actions {
-            let value = action_value(&tables, &rows, num_actions, action).filter(|_| !rows.is_empty());
+            let value = mean_action_value(&tables, &rows, num_actions, action).filter(|_| !rows.is_empty());
             action_values.push(value.unwrap_or(f64::NAN));
             if let Some(value) = value
                 && (best.0 == NO_ACTION || value > best.1)
@@ -163,7 +164,9 @@ fn write_current(training: &Training, arrays: &mut Arrays, out: &mut String) {
     let started = &training.runs[0];
     let (Some(progress), Some(observation)) = (started.run.progress(), (started.observation)()) else { return };
     let cell = training.cells.cell(&observation);
-    let _ = write!(out, "\"current\":{{\"cell\":{cell},\"action\":{},\"step\":{},", progress.action, progress.steps);
+    let next_action = progress.next_action.map_or_else(|| "null".to_string(), |action| action.to_string());
+    let steps = progress.steps;
+    let _ = write!(out, "\"current\":{{\"cell\":{cell},\"nextAction\":{next_action},\"step\":{steps},");
     out.push_str("\"episodeReturn\":");
     write_number(out, progress.episode_return);
     out.push_str("},");
@@ -177,7 +180,7 @@ pub(crate) fn inspection(training: &Training, cell: usize, arrays: &mut Arrays) 
     let observation = training.cells.observation(cell).unwrap_or_default();
     let rows = training.subject.active_rows(&observation).unwrap_or_default();
     let tables = run.tables();
-    let value = |action| action_value(&tables, &rows, num_actions, action).unwrap_or(f64::NAN);
+    let value = |action| mean_action_value(&tables, &rows, num_actions, action).unwrap_or(f64::NAN);
     arrays.add("actionValues", Array::F64((0..num_actions).map(value).collect()));
     let visits = run.visits().map(|counts| count_of(counts, &rows, num_actions)).unwrap_or_default();
     arrays.add("visits", Array::F64(visits));
@@ -198,47 +201,37 @@ pub(crate) fn inspection(training: &Training, cell: usize, arrays: &mut Arrays) 
 fn write_update(training: &Training, update: &Update, out: &mut String) {
     let kind = match update.kind {
         UpdateKind::Target => "target",
-        UpdateKind::Assign => "assign",
         UpdateKind::Trace => "trace",
+        UpdateKind::DutchTrace => "dutch_trace",
         UpdateKind::NStep => "n_step",
         UpdateKind::Planning => "planning",
     };
-    let next = match (update.reward, update.truncated, update.next_rows.is_empty()) {
-        (None, ..) => "other",
-        (_, true, _) => "truncated",
-        (_, _, true) => "terminal",
-        _ => "continues",
+    let end = match update.end {
+        StepEnd::Continues => "continues",
+        StepEnd::Terminal => "terminal",
+        StepEnd::Truncated => "truncated",
+        StepEnd::TruncatedAsTerminal => "truncated_as_terminal",
+        StepEnd::Other => "other",
     };
-    let _ = write!(out, "{{\"kind\":\"{kind}\",\"next\":");
-    write_text(out, next);
+    let _ = write!(out, "{{\"kind\":\"{kind}\",\"end\":\"{end}\"");
     let (episode, step, action, table) = (update.episode, update.step, update.action, update.table);
     let _ = write!(out, ",\"episode\":{episode},\"step\":{step},\"action\":{action},\"table\":{table}");
-    let next_cell = next_cell(training, update);
     let numbers = [
         ("old", Some(update.old)),
         ("new", Some(update.new)),
-        ("learningRate", Some(update.learning_rate)),
+        ("target", Some(update.target)),
+        ("learningRate", update.learning_rate),
         ("discount", Some(training.settings.discount)),
         ("reward", update.reward),
         ("nextValue", update.next_value),
-        ("target", update.target),
-        ("nextCell", next_cell.map(|cell| cell as f64)),
+        ("trace", update.trace),
+        ("qOld", update.q_old),
     ];
     for (name, number) in numbers {
         let _ = write!(out, ",\"{name}\":");
         write_number(out, number.unwrap_or(f64::NAN));
     }
     out.push('}');
-}
-
-/// The cell that has the next state's row; `None` where several rows are active, or no cell of the map has it.
-fn next_cell(training: &Training, update: &Update) -> Option<usize> {
-    let &[row] = update.next_rows.as_slice() else { return None };
-    let row_of = |cell: &usize| {
-        let observation = training.cells.observation(*cell)?;
-        training.subject.active_rows(&observation)?.first().copied()
-    };
-    (0..training.cells.count()).find(|cell| row_of(cell) == Some(row))
 }
 
 /// The action values of a run: of each table, row by row.

@@ -14,8 +14,8 @@ use crate::updates::Watch;
 pub(crate) struct Progress {
     pub(crate) episode_return: f64,
     pub(crate) steps: i64,
-    /// The action to take next.
-    pub(crate) action: usize,
+    /// The action to take next; `None` while the learner still learns from the last step.
+    pub(crate) next_action: Option<usize>,
 }
 
 pub(crate) trait Run {
@@ -37,11 +37,7 @@ pub(crate) trait Run {
     fn watch(&self) -> Option<&Watch>;
 }
 
-impl<R, L> Run for Trainer<BoxedTask<R, Failure>, UpdateRecorder<L>, AgentRng>
-where
-    R: ActiveRows,
-    L: Learner<R>,
-{
+impl<R: ActiveRows> Run for Trainer<BoxedTask<R, Failure>, UpdateRecorder<R>, AgentRng> {
     fn advance(&mut self, episodes: usize, work: u64) -> Result<(), Failure> {
         Trainer::advance(self, Budget { episodes, work }).map_err(Failure::from)
     }
@@ -64,7 +60,8 @@ where
 
     fn progress(&self) -> Option<Progress> {
         let (episode_return, steps, action) = self.unfinished_episode()?;
-        Some(Progress { episode_return, steps, action })
+        let next_action = (!self.learner().is_unfinished()).then_some(action);
+        Some(Progress { episode_return, steps, next_action })
     }
 
     fn watch(&self) -> Option<&Watch> {

@@ -87,6 +87,9 @@ pub(crate) trait Subject {
     /// A run with a seed. With `shown`, its visits are counted, and `watch` sees its updates.
     fn run(&self, settings: &Settings, seed: u32, shown: bool, watch: Option<Watch>) -> Result<StartedRun, Failure>;
 
+    /// The observation of the first state of a run with a seed.
+    fn first_observation(&self, seed: u32) -> Vec<f64>;
+
     /// The active rows of an observation; `None` if it is outside the table.
     fn active_rows(&self, observation: &[f64]) -> Option<Vec<u32>>;
 
@@ -161,6 +164,11 @@ where
             state.map(|state| env.observe(&state).numbers())
         };
         Ok(StartedRun { run, observation: Box::new(observation) })
+    }
+
+    fn first_observation(&self, seed: u32) -> Vec<f64> {
+        let state = self.env.reset(&mut Pcg64::new(&SeedSequence::new(&[seed])));
+        self.env.observe(&state).numbers()
     }
 
     fn active_rows(&self, observation: &[f64]) -> Option<Vec<u32>> {

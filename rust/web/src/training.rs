@@ -2,6 +2,7 @@
 
 use crate::environment::Environment;
 use crate::json::Json;
+use crate::memory;
 use crate::plane::Cells;
 use crate::run::Run;
 use crate::settings::{SettingError, Settings};
@@ -13,6 +14,8 @@ const MAX_SEEDS: usize = 64;
 const MAX_TOTAL_EPISODES: usize = 4_000_000;
 /// The parts into which a run is divided, so that its seeds take turns.
 const TURNS: usize = 100;
+/// The first run is watched in one of so many parts, the last one.
+const LAST_PART: usize = 10;
 /// The most work before another run has its turn.
 const WORK_OF_A_TURN: u64 = 20_000;
 
@@ -24,7 +27,7 @@ pub(crate) struct Training {
     pub(crate) cells: Cells,
     pub(crate) seeds: Vec<u32>,
     pub(crate) runs: Vec<StartedRun>,
-    /// The cell whose updates the first run watches.
+    /// The cell whose updates the first run watches; `None` if no cell of the map has its first state.
     watched: Option<usize>,
     /// The first run once more, on its way to the same step while it watches another cell.
     replay: Option<Replay>,
@@ -79,11 +82,38 @@ impl Training {
         }
         let subject = subject(&environment, &settings.discretizer);
         let subject = subject.ok_or_else(|| "the discretizer does not fit the environment".to_string())?;
+        memory::check(&settings, (subject.n_rows(), subject.num_actions()), seeds.len())?;
         let cells = Cells::new(&environment, &settings.discretizer, request.get("map"))?;
-        let runs: Result<Vec<StartedRun>, Failure> =
-            seeds.iter().enumerate().map(|(index, &seed)| subject.run(&settings, seed, index == 0, None)).collect();
-        let runs = runs?;
-        Ok(Self { environment, settings, subject, cells, seeds, runs, watched: None, replay: None })
+        let mut training =
+            Self { environment, settings, subject, cells, seeds, runs: Vec::new(), watched: None, replay: None };
+        training.start(request.get("inspect"))?;
+        Ok(training)
+    }
+
+    /// Starts the runs. The first one watches the cell to inspect, or that of its first state, in its last episodes: they
+    /// usually have as many updates as an inspection shows, and watching more of them would slow the run down.
+    fn start(&mut self, inspect: Option<&Json>) -> Result<(), SettingError> {
+        let first = self.cells.cell(&self.subject.first_observation(self.seeds[0]));
+        let cell = inspect.and_then(|inspect| self.cell_of(inspect)).unwrap_or(first);
+        let mut watch = self.watch(cell, self.settings.episodes - self.settings.episodes / LAST_PART);
+        self.watched = watch.as_ref().map(|_| cell);
+        for (index, &seed) in self.seeds.iter().enumerate() {
+            self.runs.push(self.subject.run(&self.settings, seed, index == 0, watch.take())?);
+        }
+        Ok(())
+    }
+
+    /// The cell of `{cell, columns, rows}`, which came from an earlier map; `None` if this one differs.
+    fn cell_of(&self, inspect: &Json) -> Option<usize> {
+        let integer = |name: &str| inspect.get(name)?.integer(u32::MAX).map(|integer| integer as usize);
+        let same = integer("columns") == Some(self.cells.columns()) && integer("rows") == Some(self.cells.rows());
+        integer("cell").filter(|&cell| same && self.watch(cell, 0).is_some())
+    }
+
+    /// A watch of a cell from an episode on; `None` if it is not one with action values.
+    fn watch(&self, cell: usize, from: usize) -> Option<Watch> {
+        let observation = self.cells.observation(cell)?;
+        self.subject.active_rows(&observation).map(|rows| Watch::new(rows, from))
     }
 
     /// What does not change during the run.
@@ -147,16 +177,14 @@ impl Training {
         Ok(())
     }
 
-    /// Makes the first run watch a cell, by repeating it up to its last step. Nothing that is learned changes.
+    /// Makes the first run watch a cell, by repeating it up to its last step if it has watched another one, or too short a
+    /// time. Nothing that is learned changes.
     pub(crate) fn inspect(&mut self, cell: usize, work: u64) -> Result<Position, Failure> {
-        if self.watched == Some(cell) {
+        if self.watched == Some(cell) && self.runs[0].run.watch().is_some_and(Watch::is_complete) {
             return Ok(Position::Reached);
         }
         if self.replay.as_ref().is_none_or(|replay| replay.cell != cell) {
-            let observation = self.cells.observation(cell);
-            let rows = observation.and_then(|observation| self.subject.active_rows(&observation));
-            let rows = rows.ok_or_else(|| Failure("cell must be one with action values".into()))?;
-            let watch = Watch::new(rows, self.subject.num_actions(), &self.settings);
+            let watch = self.watch(cell, 0).ok_or_else(|| Failure("cell must be one with action values".into()))?;
             let run = self.subject.run(&self.settings, self.seeds[0], true, Some(watch))?;
             self.replay = Some(Replay { cell, run });
         }
@@ -191,8 +219,9 @@ fn steps(run: &dyn Run, from: usize) -> u64 {
 /// One step of a run. The learner may do it in parts.
 fn step(run: &mut dyn Run, episodes: usize) -> Result<(), Failure> {
     let position = |run: &dyn Run| (run.episodes().returns.len(), run.progress().map(|progress| progress.steps));
+    let is_unfinished = |run: &dyn Run| run.progress().is_some_and(|progress| progress.next_action.is_none());
     let before = position(run);
-    while before.0 < episodes && position(run) == before && !run.diverged() {
+    while before.0 < episodes && (position(run) == before || is_unfinished(run)) && !run.diverged() {
         run.advance(episodes, 1)?;
     }
     Ok(())

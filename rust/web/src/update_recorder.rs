@@ -1,53 +1,108 @@
-//! A learner whose updates are seen from outside, so that it stays the same.
+//! A learner whose updates of a state are watched. It learns the same.
 
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
+use qtab_core::features::ActiveRows;
+use qtab_core::learners::TruncationHandling;
 use qtab_core::random::Rng;
+use qtab_core::schedules::LoggedUpdate;
 use qtab_core::tasks::Next;
 use qtab_core::{Learner, delegate_learner};
 
-use crate::updates::{ObservedStep, Watch};
+use crate::any_learner::AnyLearner;
+use crate::step_terms::StepTerms;
+use crate::updates::{Update, UpdateKind, Watch};
 
-/// A learner whose updates of a state are watched, if one is.
-pub(crate) struct UpdateRecorder<L> {
-    learner: L,
+/// A learner, and the state whose updates are watched, if one is.
+pub(crate) struct UpdateRecorder<R: ActiveRows> {
+    learner: TruncationHandling<AnyLearner<R>>,
     watch: Option<Box<Watch>>,
 }
 
-impl<L> UpdateRecorder<L> {
-    pub(crate) fn new(learner: L, watch: Option<Watch>) -> Self {
+impl<R: ActiveRows> UpdateRecorder<R> {
+    pub(crate) fn new(learner: TruncationHandling<AnyLearner<R>>, watch: Option<Watch>) -> Self {
         Self { learner, watch: watch.map(Box::new) }
     }
 
     pub(crate) fn watch(&self) -> Option<&Watch> {
         self.watch.as_deref()
     }
+
+    /// Learns from a step, and keeps its updates of the state.
+    #[cold]
+    #[inline(never)]
+    fn learn_watched(&mut self, step: (R, usize, f64), next: Next<R>, rng: &mut impl Rng) -> usize {
+        let (state, action, reward) = step;
+        let near = self.watch.as_ref().is_some_and(|watch| watch.is_near(state.as_ref()));
+        if !near && !self.learner.learner.updates_other_states() {
+            return self.learner.learn(state, action, reward, next, rng);
+        }
+        // Traces keep values outside the tables.
+        self.learner.complete_tables();
+        let terminate = self.learner.terminate;
+        let terms = near.then(|| StepTerms::new(&mut self.learner.learner, step, &next, terminate));
+        let traces = self.learner.learner.has_traces();
+        self.learner.learner.set_logging(!traces);
+        let next_action = self.learner.learn(state, action, reward, next, rng);
+        if traces {
+            self.learner.complete_tables();
+            let update = terms.and_then(|terms| terms.with_traces(&mut self.learner.learner, next_action));
+            if let (Some(watch), Some(update)) = (&mut self.watch, update) {
+                watch.push(update);
+            }
+            return next_action;
+        }
+        self.learner.learner.set_logging(false);
+        self.keep_logged(terms.as_ref().map(|terms| (terms, next_action)), true);
+        next_action
+    }
+
+    /// Keeps the logged updates of the state. The first one is that of a step, if there was one.
+    fn keep_logged(&mut self, step: Option<(&StepTerms<R>, usize)>, from_step: bool) {
+        let Some(watch) = &mut self.watch else { return };
+        let learner = &mut self.learner.learner;
+        let several = matches!(learner, AnyLearner::NStepSarsa(_));
+        for (table, rate) in learner.learning_rates().enumerate() {
+            for (index, (rows, logged)) in rate.logged().iter().enumerate() {
+                if !watch.is_near(rows) {
+                    continue;
+                }
+                let is_own = from_step && index == 0 && !several;
+                let kind = match (several, is_own) {
+                    (true, _) => UpdateKind::NStep,
+                    (false, true) => UpdateKind::Target,
+                    (false, false) => UpdateKind::Planning,
+                };
+                let LoggedUpdate { action, old, new, target, learning_rate } = *logged;
+                let update = Update { table, ..Update::new(kind, action, (old, new, target), learning_rate) };
+                watch.push(match step.filter(|_| is_own) {
+                    Some((terms, next_action)) => terms.explain(update, next_action),
+                    None => update,
+                });
+            }
+            rate.logged().clear();
+        }
+    }
 }
 
-impl<R: Copy + AsRef<[u32]>, L: Learner<R>> Learner<R> for UpdateRecorder<L> {
+impl<R: ActiveRows> Learner<R> for UpdateRecorder<R> {
     delegate_learner!(rest R, learner in Self { learner, .. });
 
     #[inline]
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
-        let begun = self.watch.as_mut().map(|watch| (watch.begin_step(state.as_ref()), watch));
-        let Some((true, watch)) = begun else { return self.learner.learn(state, action, reward, next, rng) };
-        // Traces keep values outside the tables.
-        self.learner.complete_tables();
-        let (next_rows, truncated) = match &next {
-            Next::NonTerminal(rows) => (rows.as_ref(), false),
-            Next::Truncated(rows) => (rows.as_ref(), true),
-            Next::Terminal => (&[][..], false),
-        };
-        let before = watch.before(&self.learner.tables(), state.as_ref(), action, next_rows);
-        let next_action = self.learner.learn(state, action, reward, next, rng);
-        self.learner.complete_tables();
-        let chosen = matches!(next, Next::NonTerminal(_)).then_some(next_action);
-        let step = ObservedStep { state: state.as_ref(), action, reward, next_rows, truncated, next_action: chosen };
-        watch.observe(&step, &before, &self.learner.tables());
-        next_action
+        let watches = self.watch.as_mut().is_some_and(|watch| watch.begin_step());
+        if watches {
+            self.learn_watched((state, action, reward), next, rng)
+        } else {
+            self.learner.learn(state, action, reward, next, rng)
+        }
     }
 
     fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
-        self.learner.resume(next, rng)
+        self.learner.learner.set_logging(self.watch.as_ref().is_some_and(|watch| watch.is_watching()));
+        let next_action = self.learner.resume(next, rng);
+        self.learner.learner.set_logging(false);
+        self.keep_logged(None, false);
+        next_action
     }
 
     fn end_episode(&mut self) {
@@ -82,8 +137,10 @@ mod tests {
             terminal_update: TerminalUpdate::Target,
             masks: Some(Box::new(ActionMasks::known(vec![true; 4], 2))),
         };
-        let mut recorder = UpdateRecorder::new(TdLearner { agent, rule: Sarsa }, None);
+        let learner = AnyLearner::Sarsa(TdLearner { agent, rule: Sarsa });
+        let learner = TruncationHandling { learner, terminate: false, bonus: None };
+        let mut recorder = UpdateRecorder::<[u32; 1]>::new(learner, None);
         recorder.set_action_mask([1], &[false, true]);
-        assert_eq!(Learner::<[u32; 1]>::action_masks(&recorder), Some([true, true, false, true].as_slice()));
+        assert_eq!(recorder.action_masks(), Some([true, true, false, true].as_slice()));
     }
 }

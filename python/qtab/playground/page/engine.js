@@ -64,9 +64,9 @@ export class Engine {
     this.#worker.onerror = (event) => onMessage({ type: "error", id: this.#id, message: event.message, setting: null });
     if (DATA.wasm) {
       const bytes = bytesOf(DATA.wasm);
-      this.#worker.postMessage({ type: "load", bytes }, [bytes.buffer]);
+      this.#worker.postMessage({ type: "load", bytes, version: definitions.version }, [bytes.buffer]);
     } else {
-      this.#worker.postMessage({ type: "load", url: new URL("qtab.wasm", document.baseURI).href });
+      this.#worker.postMessage({ type: "load", url: new URL("qtab.wasm", document.baseURI).href, version: definitions.version });
     }
   }
 
@@ -139,9 +139,7 @@ export class Engine {
     if (message.type === "result") {
       const { hasBest, ...result } = message;
       if (hasBest) this.#best = result.best;
-      const known = definitions.environments[this.#request.environment.id];
-      const best = this.#best && { ...this.#best, return: this.#best.return ?? known.best_known };
-      this.#onMessage({ ...result, best, inspection: this.#inspection });
+      this.#onMessage({ ...result, best: this.#best, inspection: this.#inspection });
       return;
     }
     this.#onMessage(message);

@@ -7,7 +7,11 @@ const SHOWN_UPDATES = 5;
 const HINT =
   "Select a cell of the first map, with the pointer or with the arrow keys and Enter. Here you then see how much each " +
   "action is worth, how often it was taken, and the last updates with their numbers.";
-const ENDS = { terminal: "a terminal state follows", truncated: "the time limit ends the episode", continues: "" };
+const ENDS = {
+  terminal: "a terminal state follows",
+  truncated: "the time limit ends the episode",
+  truncated_as_terminal: "the time limit ends the episode, and the next state counts as terminal",
+};
 
 function make(tag, properties = {}, ...children) {
   const element = Object.assign(document.createElement(tag), properties);
@@ -23,7 +27,7 @@ export function showInspection(title, place, inspection, { actions, bootstraps, 
     return;
   }
   title.textContent = `State: ${inspection.state}`;
-  const values = make("div", {}, make("h4", { textContent: "Action values Q(s, a) and visits" }), valueTable(inspection, actions));
+  const values = make("div", {}, make("h4", { textContent: bootstraps.length > 1 ? "Action values Q(s, a), means of both tables, and visits" : "Action values Q(s, a) and visits" }), valueTable(inspection, actions));
   const updates = make("div", {}, make("h4", { textContent: "Last updates, newest first" }));
   const newest = [...inspection.updates].reverse().slice(0, SHOWN_UPDATES);
   if (newest.length) {
@@ -54,13 +58,14 @@ function valueTable({ actionValues, visits }, actions) {
 }
 
 function updateItem(update, actions, first, bootstraps) {
-  const end = ENDS[update.next];
+  const end = ENDS[update.end];
   const reward = update.reward === null ? "" : `, reward ${number(update.reward)}`;
   const when = `Episode ${count(update.episode + 1)}, step ${count(update.step + 1)}: ${actions[update.action]}${reward}`;
-  const parts = numberEquation(update);
+  const parts = numberEquation(update, bootstraps);
   const equation = make("p", { className: "equation" }, parts[0], make("b", { textContent: parts[1] }));
   const item = make("li", {}, make("p", { className: "when", textContent: end ? `${when}; ${end}` : when }));
-  if (update.kind !== first.kind || update.table !== first.table) item.append(make("p", { className: "equation symbols", textContent: symbolEquation(update, bootstraps) }));
+  const symbols = symbolEquation(update, bootstraps);
+  if (symbols !== symbolEquation(first, bootstraps)) item.append(make("p", { className: "equation symbols", textContent: symbols }));
   item.append(equation);
   return item;
 }

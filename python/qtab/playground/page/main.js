@@ -4,6 +4,7 @@ import { Controls } from "./controls.js";
 import { definitions, Engine } from "./engine.js";
 import { setUpEnvironments } from "./environments.js";
 import { EXAMPLES, exampleState, setUpExamples } from "./examples.js";
+import { fit } from "./fit.js";
 import { setUpDialog, setUpShortcuts } from "./shortcuts.js";
 import { copyText, pythonProgram } from "./python_code.js";
 import { fragment, restore } from "./share.js";
@@ -45,12 +46,12 @@ function start() {
   store.subscribe(() => training.start());
   training.start();
   const note = (names) => {
-    if (names.length) view.showNote(`Parts of the address do not fit and were left out: ${[...new Set(names)].join(", ")}.`);
+    if (names.length) view.showNote(`Parts of the address do not fit and were left out or changed: ${names.slice(0, 8).join(", ")}.`);
   };
   note(left);
   addEventListener("hashchange", () => note(restore(store, location.hash.slice(1))));
   if (matchMedia("(max-width: 860px)").matches) element("settings-fold").open = false;
-  globalThis.playground = { engine: training.engine, store, training, view, fragment, restore, pythonProgram, EXAMPLES };
+  globalThis.playground = { engine: training.engine, store, training, view, fragment, restore, fit, pythonProgram, EXAMPLES, exampleState };
 }
 
 function setUpPage(store, training, view, announce) {
@@ -62,7 +63,7 @@ function setUpPage(store, training, view, announce) {
     reset: () => training.reset(),
   };
   for (const [id, action] of Object.entries(press)) element(id).addEventListener("click", action);
-  const program = () => { element("python-code").textContent = pythonProgram(store); };
+  const program = () => { element("python-code").textContent = pythonProgram(store, view.shownMeasure); };
   const openPython = setUpDialog(element("python-dialog"), element("python-open"), program);
   const openShortcuts = setUpDialog(element("shortcuts-dialog"), element("shortcuts-open"));
   const copied = async (text, button, what) => {
@@ -73,7 +74,7 @@ function setUpPage(store, training, view, announce) {
     setTimeout(() => { button.textContent = label; }, 1600);
     announce(done ? `${what} copied.` : "The browser does not allow copying.");
   };
-  element("python-copy").addEventListener("click", () => copied(pythonProgram(store), element("python-copy"), "Program"));
+  element("python-copy").addEventListener("click", () => copied(pythonProgram(store, view.shownMeasure), element("python-copy"), "Program"));
   const address = () => `${location.href.split(/[?#]/)[0]}#${fragment(store)}`;
   element("copy-link").addEventListener("click", () => copied(address(), element("copy-link"), "Link"));
   let waiting = 0;

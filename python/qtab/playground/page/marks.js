@@ -3,6 +3,16 @@
 import { windowOf } from "./statistics.js";
 import { counted } from "./format.js";
 
+/** The expected return of the best policy, or of the best known one for the environment's own time limit; null if unknown. */
+export function bestReturn(entry, settings, best) {
+  return best?.return ?? (hasOwnLimit(entry, settings) ? entry.best_known : null);
+}
+
+/** Whether a run has the time limit for which the environment's threshold is made. */
+function hasOwnLimit(entry, settings) {
+  return settings.max_episode_steps === entry.max_episode_steps;
+}
+
 /** The threshold and the optimum as lines of the learning curve, and the key below it. */
 export class Marks {
   constructor(list) {
@@ -11,11 +21,11 @@ export class Marks {
   }
 
   /** {name, value, dash} of each line to compare with. */
-  of({ entry }, { best }) {
+  of({ entry, state: { settings } }, { best }) {
     const marks = [];
-    if (entry.threshold !== null) marks.push({ name: "threshold", value: entry.threshold, dash: [2, 4] });
-    if (best && best.return !== null) marks.push({ name: best.kind, value: best.return, dash: [8, 5] });
-    else if (entry.best_known !== null) marks.push({ name: "best known", value: entry.best_known, dash: [8, 5] });
+    if (entry.threshold !== null && hasOwnLimit(entry, settings)) marks.push({ name: "threshold", value: entry.threshold, dash: [2, 4] });
+    const value = bestReturn(entry, settings, best);
+    if (value !== null) marks.push({ name: best?.kind ?? "best known", value, dash: [8, 5] });
     return marks;
   }
 

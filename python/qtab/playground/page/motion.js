@@ -51,16 +51,18 @@ export class Motion {
     if (!same) this.time = 0;
     const steps = counted(episode.actions.length, "step");
     const end = episode.terminated ? "it ends in a terminal state" : "the time limit ends it";
-    this.caption.textContent = `Greedy episode: return ${number(episode.return)} in ${steps}; ${end}.`;
+    this.caption.textContent = episode.terminated || episode.truncated
+      ? `Greedy episode: return ${number(episode.return)} in ${steps}; ${end}.`
+      : `Greedy episode: return ${number(episode.return)} in its first ${steps}; the rest is not shown.`;
     this.draw();
   }
 
   /** Shows a single moment of the episode in training. */
   showCurrent(current, text) {
-    const { observation, cell, action } = current;
+    const { observation, cell, nextAction } = current;
     this.described = null;
     this.episode = { current: true, observations: observation, components: observation.length, cells: [cell] };
-    this.episode.actions = action === null ? [] : [action];
+    this.episode.actions = nextAction === null ? [] : [nextAction];
     this.time = 0;
     this.slider.max = 0;
     this.slider.disabled = true;

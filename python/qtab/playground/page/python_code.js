@@ -1,5 +1,8 @@
 // The run as a Python program, which gives the same table.
 
+import { counted } from "./format.js";
+import { windowOf } from "./statistics.js";
+
 const INDENT = "    ";
 
 /** Python's literal of a value. */
@@ -9,18 +12,6 @@ export function literal(value) {
   if (Array.isArray(value)) return `(${value.map(literal).join(", ")}${value.length === 1 ? "," : ""})`;
   if (typeof value === "object") return `{${Object.entries(value).map(([name, part]) => `${literal(name)}: ${literal(part)}`).join(", ")}}`;
   return typeof value === "string" ? JSON.stringify(value) : String(value);
-}
-
-/** The settings that Python would otherwise choose differently: all but the defaults that no preset changes. */
-function neededSettings({ state, entry, definitions }) {
-  const [preset] = Object.values(entry.presets);
-  const byPreset = entry.python ? preset : {};
-  return Object.entries(state.settings).filter(([name, value]) => {
-    if (name === "discretizer") return entry.states === null;
-    if (name === "max_episode_steps" && entry.python) return value !== entry.max_episode_steps;
-    if (name in byPreset || name in (entry.options ?? {})) return true;
-    return literal(value) !== literal(definitions.settings[name].default);
-  });
 }
 
 function gridLines(grid, asFunction) {
@@ -36,22 +27,32 @@ function gridLines(grid, asFunction) {
   return ["layout = (", ...rows, ")", ...made];
 }
 
-/** The program of a store's state. */
-export function pythonProgram(store) {
+/** The figure below the learning curve: the mean of the last episodes. */
+function printedMean({ settings, seeds }, measure) {
+  const width = windowOf(settings.episodes);
+  const [array, words] = measure === "lengths" ? ["episode_lengths", "number of steps"] : ["episode_returns", "return"];
+  const [mean, of] = seeds > 1 ? [`runs.${array}[:, -${width}:]`, ` of ${seeds} seeds`] : [`run.${array}[-${width}:]`, ""];
+  return `print(${mean}.mean())  # the mean ${words} of the last ${counted(width, "episode")}${of}`;
+}
+
+/**
+ * The program of a store's state. It names every setting, so that no default or preset of Python decides. `measure` is
+ * what the learning curve shows, "returns" or "lengths".
+ */
+export function pythonProgram(store, measure = "returns") {
   const { state, entry } = store;
   const many = state.seeds > 1;
   const settings = [
     many ? `seeds=range(${state.seed}, ${state.seed + state.seeds})` : `seed=${state.seed}`,
     ...(Object.keys(entry.env_kwargs).length ? [`env_kwargs=${literal(entry.env_kwargs)}`] : []),
-    ...neededSettings(store).map(([name, value]) => `${name}=${literal(value)}`),
+    ...Object.entries(state.settings).map(([name, value]) => `${name}=${literal(value)}`),
     ...(many ? ["tables=True"] : []),
   ];
   const lines = ["import qtab"];
   if (!entry.python) lines.push("from qtab.envs.grid_worlds import grid_world", "", ...gridLines(gridOf(store), many));
   const env = entry.python ? literal(entry.python) : many ? "make_env" : "env";
   lines.push("", many ? "runs = qtab.train_many(" : "run = qtab.train(", ...[env, ...settings].map((each) => `${INDENT}${each},`), ")");
-  if (many) lines.push("print(runs.final_returns())  # the mean return of the last 100 episodes of each seed", "run = runs[0]");
-  else lines.push("print(run.episode_returns[-100:].mean())  # the mean return of the last 100 episodes");
+  lines.push(printedMean(state, measure), ...(many ? ["run = runs[0]"] : []));
   lines.push(state.settings.discretizer === "tiles" ? "print(run.tables)" : "print(run.q_table)");
   return `${lines.join("\n")}\n`;
 }

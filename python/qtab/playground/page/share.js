@@ -7,6 +7,8 @@ import { MANY_SEEDS, PAINTED } from "./store.js";
 const MAX_SIDE = 20;
 const MAX_LENGTH = 8000;
 const LARGEST_SEED = 2 ** 32 - 1 - MANY_SEEDS;
+/** What an address holds besides settings. */
+const NAMES = new Set(["env", "example", "seed", "seeds", "layout", "wind", "step_reward", "goal_reward", "rewards"]);
 
 /** The fragment of a state, without "#". */
 export function fragment({ state, definitions }) {
@@ -27,11 +29,12 @@ export function fragment({ state, definitions }) {
   return base.toString();
 }
 
-/** Sets a store to what an address holds; returns the names of the parts that were left out because they do not fit. */
+/** Sets a store to what an address holds; returns the names of the parts that do not fit: they are left out or cut. */
 export function restore(store, text) {
   const given = new URLSearchParams(text.length > MAX_LENGTH ? "" : text);
   const left = text.length > MAX_LENGTH ? ["the whole address, which is too long"] : [];
-  const { environments } = store.definitions;
+  const { environments, settings: known } = store.definitions;
+  left.push(...[...given.keys()].filter((name) => !NAMES.has(name) && !Object.hasOwn(known, name)).map((name) => name.slice(0, 40)));
   let environment = store.state.environment;
   const asked = given.get("env");
   if (asked !== null && Object.hasOwn(environments, asked)) environment = asked;
@@ -40,60 +43,43 @@ export function restore(store, text) {
   const { value: example } = whole(given.get("example") ?? "", 0, (EXAMPLES[environment]?.length ?? 0) - 1);
   if (example !== undefined) state = exampleState(store, environment, example);
   else if (given.has("example")) left.push("example");
-  else if (![...given.keys()].some((name) => Object.hasOwn(store.definitions.settings, name))) state = exampleState(store, environment, 0);
-  readSeeds(given, state, left);
-  readSettings(store, given, state, left);
+  else if (![...given.keys()].some((name) => Object.hasOwn(known, name))) state = exampleState(store, environment, 0);
+  Object.assign(state, readSeeds(given, left));
+  const asks = readSettings(store, given, state, left);
   if (environment === PAINTED && given.has("layout")) readGrid(given, state, left);
   store.update(state);
-  return left;
+  for (const [name, value] of asks) if (String(store.state.settings[name]) !== String(value)) left.push(name);
+  return [...new Set(left)];
 }
 
 function whole(text, low, high) {
   return readNumber("", text, { low, high, integer: true });
 }
 
-function readSeeds(given, state, left) {
-  if (given.has("seed")) {
-    const { value } = whole(given.get("seed"), 0, LARGEST_SEED);
-    if (value === undefined) left.push("seed");
-    else state.seed = value;
-  }
-  if (given.has("seeds")) {
-    if (given.get("seeds") === String(MANY_SEEDS)) state.seeds = MANY_SEEDS;
-    else if (given.get("seeds") !== "1") left.push("seeds");
-    else state.seeds = 1;
-  }
+/** The seeds of an address: the first one alone where it names none. */
+function readSeeds(given, left) {
+  const { value: seed } = whole(given.get("seed") ?? "0", 0, LARGEST_SEED);
+  const seeds = [1, MANY_SEEDS].find((count) => (given.get("seeds") ?? "1") === String(count));
+  if (seed === undefined) left.push("seed");
+  if (seeds === undefined) left.push("seeds");
+  return { seed: seed ?? 0, seeds: seeds ?? 1 };
 }
 
+/** Puts the settings of an address into a state; returns their names and values. */
 function readSettings(store, given, state, left) {
-  const { settings: known, rules } = store.definitions;
-  const { discretizers, observations } = store.definitions.environments[state.environment];
-  const settings = { ...state.settings };
+  const { settings: known, environments } = store.definitions;
+  const { discretizers, observations } = environments[state.environment];
+  const asks = new Map();
   for (const [name, text] of given) {
     if (!Object.hasOwn(known, name)) continue;
     const value = readSetting(name, text, known[name], observations?.length ?? 1);
     const impossible = value === undefined || (name === "discretizer" && !discretizers.includes(value));
     if (impossible) left.push(name);
-    else {
-      settings[name] = value;
-      state.example = null;
-    }
+    else asks.set(name, value);
   }
-  for (const { setting, value, unless } of rules) {
-    const [[other, chosen]] = Object.entries(unless);
-    if (settings[setting] === value && settings[other] === chosen) settings[setting] = known[setting].default;
-  }
-  if (settings.discretizer !== "tiles") settings.learning_rate = Math.min(settings.learning_rate, 1);
-  for (const rate of ["epsilon", "learning_rate"]) {
-    settings[`min_${rate}`] = Math.min(settings[`min_${rate}`] ?? 0, settings[rate] ?? 0);
-    settings[`${rate}_warm_up`] = Math.min(settings[`${rate}_warm_up`] ?? 0, settings.episodes - 1);
-  }
-  if (settings.low?.some((low, index) => low >= settings.high?.[index])) {
-    left.push("low");
-    settings.low = state.settings.low;
-    settings.high = state.settings.high;
-  }
-  state.settings = settings;
+  if (asks.size) state.example = null;
+  state.settings = { ...state.settings, ...Object.fromEntries(asks) };
+  return asks;
 }
 
 /** The value of a setting; undefined for one that does not fit. */
@@ -109,7 +95,10 @@ function readSetting(name, text, definition, components) {
     if (parts.length === 1) return parts[0];
     return parts.length === 2 && parts[0] <= parts[1] ? parts : undefined;
   }
-  return parts.length === components || parts.length === 1 ? parts : undefined;
+  if (parts.length === components) return parts;
+  if (parts.length > 1) return undefined;
+  // One for all components: the package takes a single integer for bins and tiles, and limits and scales one by one.
+  return integer ? parts[0] : Array(components).fill(parts[0]);
 }
 
 function readGrid(given, state, left) {

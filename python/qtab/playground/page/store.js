@@ -1,6 +1,7 @@
 // What the reader chose: environment, settings, seeds, the painted grid. Everything else follows from it.
 
 import { complete } from "./engine.js";
+import { fit } from "./fit.js";
 
 export const MANY_SEEDS = 16;
 export const PAINTED = "grid";
@@ -38,36 +39,17 @@ export class Store {
     this.listeners.add(listener);
   }
 
-  /** Changes parts of the state. Settings are completed: what no longer applies is dropped. */
+  /** Changes parts of the state. Settings are made to go together: what no longer applies is dropped. */
   update(changes) {
     const state = { ...this.state, ...changes };
-    if (changes.settings) state.settings = complete(state.environment, changes.settings);
+    if (changes.settings) state.settings = fit(this.definitions, state.environment, changes.settings);
     this.state = state;
     for (const listener of this.listeners) listener(state, Object.keys(changes));
   }
 
   /** Changes one setting. */
   set(name, value) {
-    this.update({ settings: this.withChoice(name, value), example: null });
-  }
-
-  /** The settings with one changed; those that the change makes impossible go back to their defaults. */
-  withChoice(name, value) {
-    const settings = { ...this.state.settings, [name]: value };
-    for (const rule of this.definitions.rules) {
-      const [[other, chosen]] = Object.entries(rule.unless);
-      if (settings[rule.setting] === rule.value && settings[other] === chosen) {
-        settings[rule.setting] = this.definitions.settings[rule.setting].default;
-      }
-    }
-    if (name === "discretizer" && value !== "tiles") settings.learning_rate = Math.min(settings.learning_rate, 1);
-    for (const low of ["epsilon", "learning_rate"]) {
-      const least = `min_${low}`;
-      if (settings[least] > settings[low]) settings[least] = settings[low];
-      const warmUp = `${low}_warm_up`;
-      if (settings[warmUp] >= settings.episodes) settings[warmUp] = settings.episodes - 1;
-    }
-    return settings;
+    this.update({ settings: { ...this.state.settings, [name]: value }, example: null });
   }
 
   /** Why a choice is impossible beside the others; null if it is possible. */

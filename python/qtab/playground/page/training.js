@@ -8,19 +8,18 @@ export class Training {
     this.id = null;
     this.cell = null;
     this.at = null;
-    this.shape = null;
+    this.map = null;
     this.inspectedRun = null;
     this.engine = new Engine({ onMessage: (message) => this.receive(message) });
   }
 
   /** Trains with the store's settings from the start; the newest request wins. */
   start(run = true) {
-    // The map may have other cells; what to inspect is decided with its first result.
     this.engine.inspect(null);
     this.state = run ? "training" : "paused";
     this.at = null;
     this.onStart();
-    this.id = this.engine.start({ ...this.store.request(), run });
+    this.id = this.engine.start({ ...this.store.request(), run, inspect: this.watched() });
   }
 
   receive(message) {
@@ -70,7 +69,13 @@ export class Training {
     this.engine.inspect(cell);
   }
 
-  /** Inspects a result after it was drawn: the engine repeats the run for it, which would slow the drawing down. */
+  /** The cell to watch in the next run, with the size of its map; null for that of the first state. */
+  watched() {
+    const { map, cell } = this;
+    return cell !== null && map?.environment === this.store.state.environment ? { cell, columns: map.columns, rows: map.rows } : null;
+  }
+
+  /** Inspects a result after it was drawn: the engine repeats the run for a cell that it did not watch. */
   inspectSoon(result) {
     const { id } = this;
     requestAnimationFrame(() => setTimeout(() => id === this.id && this.keepInspecting(result)));
@@ -78,9 +83,11 @@ export class Training {
 
   /** Inspects the cell that was chosen in a new run, too, if its map has it; else the start of the greedy episode. */
   keepInspecting({ map, episode }) {
-    const shape = `${this.store.state.environment} ${map.columns} ${map.rows}`;
-    if (shape !== this.shape) this.cell = null;
-    this.shape = shape;
+    const { environment } = this.store.state;
+    const { columns, rows } = map;
+    const same = this.map && this.map.environment === environment && this.map.columns === columns && this.map.rows === rows;
+    if (!same) this.cell = null;
+    this.map = { environment, columns, rows };
     if (this.inspectedRun === this.id) return;
     const hasValues = this.cell !== null && !Number.isNaN(map.values[this.cell]);
     const cell = hasValues ? this.cell : episode?.cells[0];

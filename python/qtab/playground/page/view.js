@@ -12,7 +12,7 @@ import { PAINTED } from "./store.js";
 import { forgetSizes } from "./surface.js";
 import { onThemeChange } from "./theme.js";
 import { StateMap } from "./value_map.js";
-import { Marks } from "./marks.js";
+import { bestReturn, Marks } from "./marks.js";
 
 const element = (id) => document.getElementById(id);
 
@@ -25,6 +25,7 @@ export class View {
     this.waiting = false;
     this.world = "";
     this.isStale = true;
+    this.note = null;
     this.curve = new LearningCurve(element("curve"), element("curve-summary"));
     this.motion = new Motion({
       canvas: element("motion"),
@@ -48,6 +49,7 @@ export class View {
   /** Keeps what is shown, but draws none of it again: it belongs to choices that have changed since. */
   expectAnother() {
     this.isStale = true;
+    this.note = null;
   }
 
   /** Shows a result, or an inspection alone. */
@@ -74,16 +76,23 @@ export class View {
     });
   }
 
+  /** Shows a message above the results; null shows none. */
+  showMessage(message) {
+    const place = element("problem");
+    place.hidden = message === null;
+    // A text that is set again would be read aloud again.
+    if (place.textContent !== (message ?? "")) place.textContent = message ?? "";
+  }
+
   showProblem(message) {
-    element("problem").hidden = false;
-    element("problem").textContent = message;
+    this.showMessage(message);
     element("status").textContent = "Not trained: see the message below.";
   }
 
+  /** Shows a message until another run begins. */
   showNote(message) {
-    element("problem").hidden = false;
-    element("problem").textContent = message;
-    this.keepNote = true;
+    this.note = message;
+    this.showMessage(message);
   }
 
   spoken(result) {
@@ -104,11 +113,16 @@ export class View {
     this.showState();
   }
 
-  showCurve(result) {
-    const { seeds, done, episodes } = result;
+  /** What the learning curve shows: "returns", or "lengths" for the numbers of steps. */
+  get shownMeasure() {
     const { environment, grid } = this.store.state;
     // Where steps cost nothing, their number shows how good the agent is.
-    const measure = this.measure ?? (environment === PAINTED && grid.step_reward === 0 ? "lengths" : "returns");
+    return this.measure ?? (environment === PAINTED && grid.step_reward === 0 ? "lengths" : "returns");
+  }
+
+  showCurve(result) {
+    const { seeds, done, episodes } = result;
+    const measure = this.shownMeasure;
     for (const button of element("measure").children) {
       const chosen = button.dataset.measure === measure;
       button.setAttribute("aria-checked", chosen);
@@ -138,11 +152,7 @@ export class View {
     element("stop").disabled = state !== "training";
     element("run").textContent = state === "finished" || state === "diverged" ? "Run again" : state === "paused" && done ? "Continue" : "Run";
     element("run").disabled = state === "training";
-    if (state === "diverged") {
-      element("problem").hidden = false;
-      element("problem").textContent = DIVERGED;
-    } else if (!this.keepNote) element("problem").hidden = true;
-    this.keepNote = false;
+    this.showMessage(state === "diverged" ? DIVERGED : this.note);
   }
 
   showMotion(result) {
@@ -163,9 +173,9 @@ export class View {
   }
 
   currentText({ current, done }) {
-    const action = current.action === null || current.action === undefined ? "" : `, last action: ${this.store.entry.actions[current.action]}`;
-    const so = current.step ? `; return so far ${number(current.episodeReturn)}` : "";
-    return `Training, episode ${count(done + 1)}, after ${counted(current.step, "step")}${action}${so}. Training explores: it is not the greedy policy alone.`;
+    const action = current.nextAction === null ? "" : `; next action: ${this.store.entry.actions[current.nextAction]}`;
+    const so = current.step ? `, return so far ${number(current.episodeReturn)}` : "";
+    return `Training, episode ${count(done + 1)}, after ${counted(current.step, "step")}${so}${action}. Training explores: it is not the greedy policy alone.`;
   }
 
   /** The plane, the layout and the names that all maps share. */
@@ -203,13 +213,15 @@ export class View {
 
   showBest(result, frame, low, high) {
     const { best } = result;
-    const { discount } = this.store.state.settings;
+    const { entry, state } = this.store;
+    const { discount } = state.settings;
     element("best-title").textContent = best?.kind === "optimal" ? "The optimum" : "The best known";
     if (!best) return;
     this.best.show(bestContent(result, frame));
     showLegend(element("best-legend"), "values", low, high);
     const word = best.kind === "optimal" ? "optimal" : "best known";
-    const expected = best.return === null ? "" : ` Its expected return is ${number(best.return)}.`;
+    const value = bestReturn(entry, state.settings, best);
+    const expected = value === null ? "" : ` Its expected return is ${number(value)}.`;
     element("best-caption").textContent = `The ${word} values for γ = ${number(discount)} and an ${word} policy, in the same colors.${expected}`.replace("an best", "the best");
   }
 

@@ -6,6 +6,7 @@ const REPORT_EVERY = 45; // milliseconds between two results while training
 const EPISODE_EVERY = 250; // milliseconds between two greedy episodes while training
 
 let source = null; // the bytes of the module, or its address
+let version = null; // that of the page, which the module must share
 let wasm = null; // its exports
 let pending = null; // the newest request that was not begun
 let run = null; // what is trained
@@ -25,6 +26,15 @@ async function load() {
   const module = typeof source === "string" ? await fetch(source).then((answer) => answer.arrayBuffer()) : source;
   const { instance } = await WebAssembly.instantiate(module, imports);
   wasm = instance.exports;
+  let built = "of an earlier version";
+  try {
+    built = call({ call: "version" }).version;
+  } catch {
+    // It does not know the call.
+  }
+  if (built === version) return;
+  wasm = null;
+  throw new Error(`qtab.wasm is ${built}, and the page ${version}: build it anew with python rust/web/build_backend.py`);
 }
 
 /** Calls the module. Throws an Error with `setting` where it refuses the request. */
@@ -63,8 +73,8 @@ function send(message) {
 /** Begins the newest request. */
 function begin({ id, request, inspected, later }) {
   run = null;
-  const { environment, settings, seeds, map } = request;
-  const described = call({ call: "start", environment, settings, seeds, ...(map ? { map } : {}) });
+  const { environment, settings, seeds, map, inspect } = request;
+  const described = call({ call: "start", environment, settings, seeds, ...(map ? { map } : {}), ...(inspect ? { inspect } : {}) });
   const now = performance.now();
   run = {
     ...described, id, seeds, episodes: settings.episodes, goal: request.run === false ? 0 : Infinity,
@@ -165,6 +175,8 @@ async function work() {
       }
     } catch (error) {
       run = null;
+      // Without the module no request can be answered.
+      if (!wasm) pending = null;
       // A fault of the module leaves it in no state to go on.
       if (error instanceof WebAssembly.RuntimeError) wasm = null;
       fail(id, error instanceof WebAssembly.RuntimeError ? new Error(`training stopped: ${error.message}`) : error);
@@ -176,6 +188,7 @@ async function work() {
 const handlers = {
   load(message) {
     source = message.bytes ?? message.url;
+    version = message.version;
   },
   start(message) {
     pending = { ...message, later: [] };

@@ -30,6 +30,11 @@ impl TrueOnlineSarsaLambda {
     pub fn new(traces: Traces, trace_decay: f64) -> Self {
         Self { traces, trace_decay, q_old: 0.0 }
     }
+
+    /// Qₒ: Q′ of the step before.
+    pub fn q_old(&self) -> f64 {
+        self.q_old
+    }
 }
 
 impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {

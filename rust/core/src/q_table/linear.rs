@@ -2,7 +2,7 @@
 //! right (Sutton & Barto, equation 9.8). With one active row, as on a grid, it is the value of that row.
 
 use super::{QTable, TerminalUpdate, sum_rows, sum_values};
-use crate::schedules::StepSize;
+use crate::schedules::{LoggedUpdate, StepSize};
 
 impl<const N: usize> QTable<N> {
     /// The action values of an observation with these active rows.
@@ -66,7 +66,8 @@ impl<const N: usize> QTable<N> {
         target: f64,
         step_size: &mut impl StepSize,
     ) {
-        let error = target - self.value(rows, action);
+        let old = self.value(rows, action);
+        let error = target - old;
         let rows = rows.as_ref();
         if rows.len() != 1 {
             self.check_finite(error);
@@ -82,6 +83,24 @@ impl<const N: usize> QTable<N> {
             step_size.visit(weight_index);
             let step = step_size.at(weight_index);
             *self.value_mut(row, action) += step * error;
+        }
+        if step_size.log().is_some() {
+            let learning_rate = rows.iter().map(|&row| step_size.at(self.weight_index(row, action))).sum();
+            self.log(rows, action, (old, target, Some(learning_rate)), step_size);
+        }
+    }
+
+    #[cold]
+    fn log(
+        &self,
+        rows: &[u32],
+        action: usize,
+        (old, target, learning_rate): (f64, f64, Option<f64>),
+        step_size: &mut impl StepSize,
+    ) {
+        if let Some(log) = step_size.log() {
+            let new = self.value(rows, action);
+            log.push(rows, LoggedUpdate { action, old, new, target, learning_rate });
         }
     }
 
@@ -103,7 +122,10 @@ impl<const N: usize> QTable<N> {
             TerminalUpdate::Target => self.update(rows, action, reward, step_size),
             TerminalUpdate::Assign => {
                 assert!(rows.len() == 1, "TerminalUpdate::Assign needs exactly one active row");
-                *self.value_mut(rows[0], action) = reward;
+                let old = std::mem::replace(self.value_mut(rows[0], action), reward);
+                if step_size.log().is_some() {
+                    self.log(rows, action, (old, reward, None), step_size);
+                }
             }
         }
     }
@@ -127,6 +149,8 @@ impl<const N: usize> QTable<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::StopFlag;
+    use crate::schedules::{LearningRate, Schedule};
 
     #[test]
     fn a_value_is_the_sum_over_the_active_rows() {
@@ -142,6 +166,46 @@ mod tests {
         assert_eq!(table.action_values(&[0, 0]), [6.0]);
         table.update(&[0, 0], 0, 7.0, &mut 0.5);
         assert_eq!(table.values(), [4.0]);
+    }
+
+    #[test]
+    fn logging_changes_no_update() {
+        let by_visits = LearningRate::by_visit_count(1.0, 0.0, 3, 2, &StopFlag::new()).expect("three weights");
+        for learning_rate in [LearningRate::scheduled(Schedule::constant(0.3), 2), by_visits] {
+            let mut table = QTable::<1>::new(vec![0.1, 0.7, -3.0], 1);
+            let mut expected = table.clone();
+            let (mut logged, mut rate) = (learning_rate.clone(), learning_rate);
+            logged.set_logging(true);
+            let mut updates = Vec::new();
+            for (rows, target) in [([0, 1], 5.0), ([1, 2], -0.3), ([0, 1], 1.9)] {
+                expected.update(&rows, 0, target, &mut rate);
+                table.update(&rows, 0, target, &mut logged);
+                updates.push((rows.to_vec(), target));
+            }
+            assert_eq!(table.values(), expected.values());
+            let found: Vec<_> = logged.logged().iter().map(|(rows, update)| (rows.to_vec(), update.target)).collect();
+            assert_eq!(found, updates);
+        }
+    }
+
+    #[test]
+    fn a_logged_update_is_its_equation() {
+        let mut rate = LearningRate::by_visit_count(1.0, 0.0, 2, 1, &StopFlag::new()).expect("two weights");
+        rate.set_logging(true);
+        let mut table = QTable::<2>::new(vec![0.5, 2.0], 2);
+        table.update(&[0], 1, 4.0, &mut rate);
+        table.update(&[0], 1, 7.0, &mut rate);
+        table.update_terminal(&[0], 0, -3.0, TerminalUpdate::Assign, &mut rate);
+        let updates: Vec<_> = rate.logged().iter().map(|(_, update)| *update).collect();
+        let update = |action, old, new, target, learning_rate| LoggedUpdate { action, old, new, target, learning_rate };
+        let expected = [
+            update(1, 2.0, 4.0, 4.0, Some(1.0)),
+            update(1, 4.0, 5.5, 7.0, Some(0.5)),
+            update(0, 0.5, -3.0, -3.0, None),
+        ];
+        assert_eq!(updates, expected);
+        rate.logged().clear();
+        assert_eq!(rate.logged().iter().count(), 0);
     }
 
     #[test]

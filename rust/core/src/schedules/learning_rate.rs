@@ -1,6 +1,6 @@
 //! The learning rate α, chosen at run time.
 
-use super::{Schedule, StepSize};
+use super::{Schedule, StepSize, UpdateLog};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled};
@@ -15,13 +15,26 @@ pub struct LearningRate {
     /// The number of visits of each weight; empty if the learning rate does not depend on it.
     visits: Vec<u32>,
     min: f64,
+    /// Whether `step_size` is that of every weight, and updates are not logged.
+    uniform: bool,
+    log: UpdateLog,
+    logs: bool,
 }
 
 impl LearningRate {
     /// A learning rate that is the same for every weight. The `n_active` rows of an observation share it equally.
     pub fn scheduled(schedule: Schedule, n_active: usize) -> Self {
         let n_active = n_active as f64;
-        Self { schedule, n_active, step_size: schedule.value() / n_active, visits: Vec::new(), min: 0.0 }
+        Self {
+            schedule,
+            n_active,
+            step_size: schedule.value() / n_active,
+            visits: Vec::new(),
+            min: 0.0,
+            uniform: true,
+            log: UpdateLog::default(),
+            logs: false,
+        }
     }
 
     /// `initial / n` at the n-th visit of a weight, but at least `min`. With `initial = 1` and `min = 0` a value is the
@@ -37,7 +50,7 @@ impl LearningRate {
         stop: &StopFlag<'_>,
     ) -> Result<Self, AllocationError> {
         let visits = filled(&0, weights, stop)?;
-        Ok(Self { visits, min, ..Self::scheduled(Schedule::constant(initial), n_active) })
+        Ok(Self { visits, min, uniform: false, ..Self::scheduled(Schedule::constant(initial), n_active) })
     }
 }
 
@@ -45,6 +58,18 @@ impl LearningRate {
     /// The number of active rows of an observation, which share the learning rate.
     pub fn n_active(&self) -> f64 {
         self.n_active
+    }
+
+    /// Starts or ends logging of the updates with this learning rate. It changes none of them. Those of traces are not
+    /// logged.
+    pub fn set_logging(&mut self, logs: bool) {
+        self.logs = logs;
+        self.uniform = self.visits.is_empty() && !logs;
+    }
+
+    /// The updates that were logged.
+    pub fn logged(&mut self) -> &mut UpdateLog {
+        &mut self.log
     }
 }
 
@@ -58,7 +83,7 @@ impl StepSize for LearningRate {
 
     #[inline]
     fn uniform(&self) -> Option<f64> {
-        self.visits.is_empty().then_some(self.step_size)
+        self.uniform.then_some(self.step_size)
     }
 
     #[inline]
@@ -74,6 +99,11 @@ impl StepSize for LearningRate {
             self.schedule.end_episode();
             self.step_size = self.schedule.value() / self.n_active;
         }
+    }
+
+    #[inline]
+    fn log(&mut self) -> Option<&mut UpdateLog> {
+        self.logs.then_some(&mut self.log)
     }
 
     fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {

@@ -1,6 +1,6 @@
 //! The trait of all step sizes.
 
-use super::Schedule;
+use super::{Schedule, UpdateLog};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 
 /// The step size of each weight of a Q table: the learning rate divided by the number of active rows. The index of a
@@ -9,7 +9,7 @@ pub trait StepSize {
     /// Counts a visit of a weight, before its update.
     fn visit(&mut self, weight_index: usize);
 
-    /// The step size, if it is the same for every weight and visits are not counted.
+    /// The step size, if it is the same for every weight, visits are not counted, and updates are not logged.
     fn uniform(&self) -> Option<f64>;
 
     /// The step size of a weight.
@@ -17,6 +17,12 @@ pub trait StepSize {
 
     /// Called after every episode.
     fn end_episode(&mut self);
+
+    /// Where updates are logged; `None` if they are not.
+    #[inline]
+    fn log(&mut self) -> Option<&mut UpdateLog> {
+        None
+    }
 
     /// Saves or restores what it has counted; the episode that it is in is not part of it.
     ///

@@ -1,5 +1,6 @@
 //! Requests as the page makes them, and what must hold for all of them.
 
+mod maps;
 mod parity;
 mod refusals;
 mod updates;
@@ -51,6 +52,14 @@ fn call(playground: &mut Playground, request: &str) -> Json {
 fn start(playground: &mut Playground, environment: &str, settings: &str, seeds: &str) {
     let request =
         format!(r#"{{"call": "start", "environment": {environment}, "settings": {settings}, "seeds": {seeds}}}"#);
+    assert_eq!(call(playground, &request).get("error"), None);
+}
+
+/// Starts a run of seed 1 whose first run watches a cell, given as `inspect` in JSON.
+fn start_inspecting(playground: &mut Playground, environment: &str, settings: &str, inspect: &str) {
+    let request = format!(
+        r#"{{"call": "start", "environment": {environment}, "settings": {settings}, "seeds": [1], "inspect": {inspect}}}"#
+    );
     assert_eq!(call(playground, &request).get("error"), None);
 }
 

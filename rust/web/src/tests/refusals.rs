@@ -46,6 +46,35 @@ fn tables_too_large_are_refused() {
 }
 
 #[test]
+fn runs_too_large_together_are_refused_before_they_are_made() {
+    let bins = r#""discretizer": "bins", "bins": [2000, 2000]"#;
+    for (algorithm, seeds, mib) in
+        [(r#""q_learning""#, 16, 1739), (r#""dyna_q_plus", "planning_steps": 1, "time_weight": 0"#, 4, 3158)]
+    {
+        let settings = ARTICLE
+            .replace(r#""discretizer": "round", "scale": [10, 100]"#, bins)
+            .replace(r#""q_learning""#, algorithm);
+        let seeds: Vec<String> = (0..seeds).map(|seed: u32| seed.to_string()).collect();
+        let request = format!(
+            r#"{{"call": "start", "environment": {MOUNTAIN_CAR}, "settings": {settings}, "seeds": [{}]}}"#,
+            seeds.join(",")
+        );
+        let response = call(&mut Playground::default(), &request);
+        let expected = format!(
+            "{} runs with a table of 4000000 rows and 3 actions would take {mib} MiB, and the page has 512 MiB for them: choose fewer cells, or fewer seeds",
+            seeds.len()
+        );
+        assert_eq!(response.get("error").and_then(Json::text), Some(expected.as_str()));
+    }
+}
+
+#[test]
+fn the_module_has_the_version_of_the_package() {
+    let response = call(&mut Playground::default(), r#"{"call": "version"}"#);
+    assert_eq!(response.get("version").and_then(Json::text), Some(env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
 fn calls_before_a_start_are_refused() {
     for name in ["advance", "step", "report", "inspect", "table"] {
         let response = call(&mut Playground::default(), &format!(r#"{{"call": "{name}"}}"#));

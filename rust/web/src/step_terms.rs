@@ -1,0 +1,175 @@
+//! What the target of a step is made of, as each algorithm takes it.
+
+use qtab_core::features::ActiveRows;
+use qtab_core::learners::{Agent, TraceKind, Traces};
+use qtab_core::schedules::{LearningRate, StepSize};
+use qtab_core::tasks::Next;
+
+use crate::any_learner::AnyLearner;
+use crate::episode::{action_value, greedy_action};
+use crate::updates::{StepEnd, Update, UpdateKind};
+
+/// The value of the next state, before the step.
+enum NextValue {
+    /// The next state is terminal for the learner, or the target is made of more than this step.
+    None,
+    One(f64),
+    /// Of the action that is chosen next.
+    OfAction(Vec<f64>),
+    /// Of the table that is updated.
+    OfTable([f64; 2]),
+}
+
+/// The numbers of a step before the learner learns from it.
+pub(crate) struct StepTerms<R> {
+    state: R,
+    action: usize,
+    reward: f64,
+    end: StepEnd,
+    next: NextValue,
+    old: f64,
+    /// With traces: those of the active rows after this visit. Dutch ones are known after the step only.
+    traces: Vec<f64>,
+    q_old: Option<f64>,
+}
+
+impl<R: ActiveRows> StepTerms<R> {
+    /// Reads them from a learner, whose tables are complete.
+    pub(crate) fn new(
+        learner: &mut AnyLearner<R>,
+        (state, action, reward): (R, usize, f64),
+        next: &Next<R>,
+        terminate: bool,
+    ) -> Self {
+        let (end, next) = match *next {
+            Next::NonTerminal(next) => (StepEnd::Continues, learner.next_value(next)),
+            Next::Truncated(_) if terminate => (StepEnd::TruncatedAsTerminal, NextValue::None),
+            Next::Truncated(next) => (StepEnd::Truncated, learner.next_value(next)),
+            Next::Terminal => (StepEnd::Terminal, NextValue::None),
+        };
+        let (traces, q_old) = learner.traces_of_visit(state.as_ref(), action);
+        let old = learner.agent().value(state, action);
+        Self { state, action, reward, end, next, old, traces, q_old }
+    }
+
+    /// The update of a table by this step, as the learner logged it.
+    pub(crate) fn explain(&self, update: Update, next_action: usize) -> Update {
+        let next_value = match &self.next {
+            NextValue::None => None,
+            NextValue::One(value) => Some(*value),
+            NextValue::OfAction(values) => values.get(next_action).copied(),
+            NextValue::OfTable(values) => values.get(update.table).copied(),
+        };
+        Update { end: self.end, reward: Some(self.reward), next_value, ..update }
+    }
+
+    /// The update of (S, A) by a learner with traces, whose tables are complete again; `None` without traces.
+    pub(crate) fn with_traces(&self, learner: &mut AnyLearner<R>, next_action: usize) -> Option<Update> {
+        let rows = self.state.as_ref();
+        let dutch = learner.dutch_traces(rows, self.action);
+        let traces = dutch.as_ref().unwrap_or(&self.traces);
+        let Agent { table, learning_rate, discount, .. } = learner.agent();
+        let sizes = rows.iter().map(|&row| learning_rate.at(table.weight_index(row, self.action)));
+        let learning_rate: f64 = sizes.clone().sum();
+        let gain: f64 = sizes.zip(traces).map(|(size, trace)| size * trace).sum();
+        // With several active rows the mean that changes the value as they do.
+        let trace = if learning_rate > 0.0 { gain / learning_rate } else { *traces.first()? };
+        let kind = if dutch.is_some() { UpdateKind::DutchTrace } else { UpdateKind::Trace };
+        let new = table.value(rows, self.action);
+        let update = Update::new(kind, self.action, (self.old, new, f64::NAN), Some(learning_rate));
+        let update = self.explain(update, next_action);
+        let target = update.next_value.map_or(self.reward, |value| self.reward + *discount * value);
+        Some(Update { target, trace: Some(trace), q_old: self.q_old, ..update })
+    }
+}
+
+impl<R: ActiveRows> AnyLearner<R> {
+    /// Whether a step can update a state that the agent was in before.
+    pub(crate) fn updates_other_states(&self) -> bool {
+        matches!(self, Self::NStepSarsa(_) | Self::DynaQ(_) | Self::DynaQPlus(_))
+    }
+
+    pub(crate) fn has_traces(&self) -> bool {
+        matches!(self, Self::SarsaLambda(_) | Self::TrueOnlineSarsaLambda(_) | Self::WatkinsQLambda(_))
+    }
+
+    /// Starts or ends the log of the updates of each table.
+    pub(crate) fn set_logging(&mut self, logs: bool) {
+        self.learning_rates().for_each(|rate| rate.set_logging(logs));
+    }
+
+    /// The learning rate of each table, which logs its updates.
+    pub(crate) fn learning_rates(&mut self) -> impl Iterator<Item = &mut LearningRate> {
+        let (first, second) = match self {
+            Self::DoubleQLearning(learner) => {
+                (&mut learner.agent.learning_rate, Some(&mut learner.second_learning_rate))
+            }
+            other => (&mut other.agent().learning_rate, None),
+        };
+        std::iter::once(first).chain(second)
+    }
+
+    /// The agent, with the first table.
+    fn agent(&mut self) -> &mut Agent {
+        match self {
+            Self::QLearning(learner) => &mut learner.agent,
+            Self::Sarsa(learner) => &mut learner.agent,
+            Self::ExpectedSarsa(learner) => &mut learner.agent,
+            Self::DoubleQLearning(learner) => &mut learner.agent,
+            Self::NStepSarsa(learner) => &mut learner.agent,
+            Self::SarsaLambda(learner) => &mut learner.agent,
+            Self::TrueOnlineSarsaLambda(learner) => &mut learner.agent,
+            Self::WatkinsQLambda(learner) => &mut learner.agent,
+            Self::DynaQ(learner) => &mut learner.agent,
+            Self::DynaQPlus(learner) => &mut learner.agent,
+        }
+    }
+
+    /// The value of a next state that is not terminal, as the target takes it.
+    fn next_value(&mut self, next: R) -> NextValue {
+        match self {
+            Self::NStepSarsa(_) => NextValue::None,
+            Self::Sarsa(_) | Self::SarsaLambda(_) | Self::TrueOnlineSarsaLambda(_) => {
+                NextValue::OfAction(self.agent().action_values(next).to_vec())
+            }
+            Self::ExpectedSarsa(learner) => NextValue::One(learner.agent.expected_value(next)),
+            Self::DoubleQLearning(learner) => {
+                let (rows, num_actions) = (next.as_ref(), learner.second_table.num_actions());
+                let tables = [learner.agent.table.values(), learner.second_table.values()];
+                let of = |updated: usize| {
+                    let greedy = greedy_action(&tables[updated..=updated], rows, num_actions).unwrap_or(0);
+                    action_value(&[tables[1 - updated]], rows, num_actions, greedy).unwrap_or(f64::NAN)
+                };
+                NextValue::OfTable([of(0), of(1)])
+            }
+            Self::QLearning(_) | Self::WatkinsQLambda(_) | Self::DynaQ(_) | Self::DynaQPlus(_) => {
+                let values = self.agent().action_values(next).iter().copied();
+                NextValue::One(values.reduce(f64::max).unwrap_or(f64::NAN))
+            }
+        }
+    }
+
+    /// The traces of a pair after a visit, and Qₒ of true online Sarsa(λ).
+    fn traces_of_visit(&self, rows: &[u32], action: usize) -> (Vec<f64>, Option<f64>) {
+        let visited = |agent: &Agent, traces: &Traces, kind: TraceKind| {
+            let visited = |&row: &u32| match kind {
+                TraceKind::Accumulating => traces.get(agent.table.weight_index(row, action)) + 1.0,
+                TraceKind::Replacing | TraceKind::Clearing => 1.0,
+            };
+            (rows.iter().map(visited).collect(), None)
+        };
+        match self {
+            Self::SarsaLambda(learner) => visited(&learner.agent, &learner.rule.traces, learner.rule.kind),
+            Self::WatkinsQLambda(learner) => visited(&learner.agent, &learner.rule.traces, learner.rule.kind),
+            Self::TrueOnlineSarsaLambda(learner) => (Vec::new(), Some(learner.rule.q_old())),
+            _ => (Vec::new(), None),
+        }
+    }
+
+    /// The dutch traces of a pair as the step has left them; `None` with others.
+    fn dutch_traces(&self, rows: &[u32], action: usize) -> Option<Vec<f64>> {
+        let Self::TrueOnlineSarsaLambda(learner) = self else { return None };
+        let trace = |&row: &u32| learner.rule.traces.get(learner.agent.table.weight_index(row, action));
+        Some(rows.iter().map(trace).collect())
+    }
+}
