@@ -1,5 +1,6 @@
 // Examples: settings that fail and settings that learn, each with a sentence that says what to look at.
 
+import { fit } from "./fit.js";
 import { copyGrid } from "./store.js";
 
 /**
@@ -17,7 +18,7 @@ export const EXAMPLES = {
       preset: "article",
       settings: { scale: [20, 200], discount: 1, initial_q: 0, epsilon: 0, learning_rate: 0.5, learning_rate_schedule: "linear" },
       title: "Optimistic: better",
-      look: "Still Q-learning on a grid, now with γ = 1, smaller cells, a falling α, and initial values of 0. As each step costs 1, these are optimistic: the agent explores without ε. It begins to reach the flag after some hundred episodes and ends far above the article, but the threshold stays out of reach.",
+      look: "Still Q-learning on a grid, now with γ = 1, smaller cells, a falling α, and initial values of 0. As each step costs 1, these are optimistic: the agent explores without ε. It begins to reach the flag after a few hundred episodes and ends well above the article, but the threshold stays out of reach.",
     },
     {
       preset: "solved",
@@ -53,12 +54,12 @@ export const EXAMPLES = {
     {
       preset: "solved",
       title: "Optimistic: solved",
-      look: "The only change: initial values of 1. Whatever has been tried looks worse than what has not, so the agent tries everything. Compare its policy with the optimal one.",
+      look: "The only change: initial values of 1. Whatever has been tried looks worse than what has not, so the agent tries everything. It then reaches the goal in about three of four episodes, as often as an optimal policy does. On slippery ice both fall into a hole at times: the agent above does so with seed 0.",
     },
     {
       preset: "tuned",
       title: "Exploring with ε",
-      look: "Here ε falls from 1 to 0. Returns stay low while the agent explores, and rise at the end; the greedy agent was good long before.",
+      look: "Here ε falls from 1 to 0. Returns stay low while the agent explores, and rise at the end; halfway through, the greedy agent was already as good.",
     },
   ],
   "FrozenLake-v1 (not slippery)": [
@@ -73,7 +74,7 @@ export const EXAMPLES = {
       title: "Optimistic: solved",
       look: "With initial values of 1 the agent tries everything. Without slipping, the values fall by γ with each step from the goal.",
     },
-    { preset: "tuned", title: "Exploring with ε", look: "Values spread backwards from the goal, one step in each episode that reaches it." },
+    { preset: "tuned", title: "Exploring with ε", look: "All values stay 0 until an episode reaches the goal. From then on they spread backwards from it: a state has a value once a state after it has one." },
   ],
   "FrozenLake8x8-v1": [
     {
@@ -82,8 +83,8 @@ export const EXAMPLES = {
       title: "No exploration: fails",
       look: "Without exploration or optimism the goal is never reached, and all values stay 0.",
     },
-    { preset: "solved", title: "Optimistic: solved", look: "The arrows often point away from a hole rather than to the goal: on slippery ice the safe move matters more." },
-    { preset: "tuned", title: "Exploring with ε", look: "The larger the lake, the longer it takes until chance finds the goal. Look at the visits." },
+    { preset: "solved", title: "Optimistic: solved", look: "Beside a hole most arrows point straight away from it rather than to the goal: on slippery ice this is the only move that cannot end in the hole." },
+    { preset: "tuned", title: "Exploring with ε", look: "The larger the lake, the longer it takes until chance finds the goal: several hundred episodes, where the small lake takes about a hundred. Look at the visits." },
   ],
   "FrozenLake8x8-v1 (not slippery)": [
     {
@@ -92,41 +93,41 @@ export const EXAMPLES = {
       title: "No exploration: fails",
       look: "Without exploration or optimism the goal is never reached, and all values stay 0.",
     },
-    { preset: "solved", title: "Optimistic: solved", look: "The agent tries everything once, then takes a shortest path around the holes." },
-    { preset: "tuned", title: "Exploring with ε", look: "The visits show where a random walk goes: most of the time it stays near the start." },
+    { preset: "solved", title: "Optimistic: solved", look: "The agent tries nearly everything, then takes a shortest path around the holes." },
+    { preset: "tuned", title: "Exploring with ε", look: "Nearly half of the visits fall on the ten cells nearest to the start: a random walk rarely gets far." },
   ],
   "CliffWalking-v1": [
     {
       preset: "book",
       title: "Q-learning on the edge",
-      look: "Example 6.6 of Sutton & Barto. Q-learning learns the shortest path, along the edge; but while it explores, it often falls. Compare the mean return with Sarsa's.",
+      look: "Example 6.6 of Sutton & Barto. Q-learning learns the shortest path, along the edge; but while it explores, it falls in about one of four episodes. Compare its mean return with Sarsa's, over 16 seeds.",
     },
     {
       preset: "book",
       settings: { algorithm: "sarsa" },
       title: "Sarsa keeps away",
-      look: "Sarsa learns the values of the policy that it follows, exploration included, and so takes the safer path higher up. Its mean return is better, although its path is longer.",
+      look: "Sarsa learns the values of the policy that it follows, exploration included, and so keeps away from the edge: its greedy path is longer, but it falls less often. Over 16 seeds the mean return is about −24, and Q-learning's −45. The last episodes of a single seed can say the opposite: seed 0 does.",
     },
     {
       preset: "solved",
       title: "Solved",
       look: "Nothing here is random, so α = 1 and no exploration are enough: the greedy path takes 13 steps.",
     },
-    { preset: "tuned", title: "ε falls to 0", look: "As ε falls, the falls from the cliff cease, and the return rises towards the optimum." },
+    { preset: "tuned", title: "ε falls to 0", look: "As ε falls, falls from the cliff become rare, and the return of most episodes reaches the optimum of −13." },
   ],
   WindyGridWorld: [
     {
       preset: "learns",
       settings: { algorithm: "sarsa" },
       title: "Sarsa",
-      look: "Example 6.5 of Sutton & Barto. The wind carries the agent to the top row and past the goal; it goes down in the calm columns on the right, and returns from there.",
+      look: "Example 6.5 of Sutton & Barto. The wind carries the agent to the top row and past the goal; it goes down in the calm column on the right, and returns from there.",
     },
     { preset: "learns", title: "Q-learning", look: "The values fall by 1 with each step from the goal, and the greedy path takes 15 steps." },
     {
       preset: "learns",
-      settings: { exploration: "softmax", temperature: 20 },
+      settings: { exploration: "softmax", temperature: 5 },
       title: "Too random: slow",
-      look: "With a high temperature all actions are nearly equally likely. The agent learns the values all the same, but its own returns stay low.",
+      look: "With a high temperature all actions are nearly equally likely. Q-learning learns the shortest path all the same, of 15 steps, but its own returns stay low.",
     },
   ],
   grid: [
@@ -148,7 +149,7 @@ export const EXAMPLES = {
       grid: "Dyna maze",
       settings: { algorithm: "dyna_q", planning_steps: 50, discount: 0.95, learning_rate: 0.1, episodes: 30, ties: "random" },
       title: "Maze, Dyna-Q",
-      look: "The same 30 episodes, with 50 updates from a learned model after each step: the whole maze has values after a few episodes.",
+      look: "The same 30 episodes, with 50 updates from a learned model after each step: after a few episodes most of the maze has values, and an episode takes few steps.",
     },
     {
       preset: "learns",
@@ -165,7 +166,7 @@ export function exampleState(store, environment, index) {
   const state = store.initial(environment, preset);
   const entry = store.definitions.environments[environment];
   if (grid) state.grid = copyGrid(entry.grids[grid]);
-  return { ...state, settings: { ...state.settings, ...settings }, example: index, seed: store.state.seed, seeds: store.state.seeds };
+  return { ...state, settings: fit(store.definitions, environment, { ...state.settings, ...settings }), example: index, seed: store.state.seed, seeds: store.state.seeds };
 }
 
 /** Shows the examples of the environment as buttons, and the sentence of the one that is chosen. */

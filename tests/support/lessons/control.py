@@ -1,0 +1,57 @@
+"""What the page says of MountainCar and CartPole."""
+
+import numpy as np
+
+from support.lessons import Claims, Lesson, Lessons, last
+
+
+def article(lesson: Lesson, _: Lessons) -> None:
+    runs = lesson.runs()
+    first_half = runs.episode_lengths[:, : lesson.settings["episodes"] // 2]
+    assert ((first_half == 200).mean(axis=1) > 0.99).all()
+    assert (last(runs) < -155).all()
+
+
+def optimistic_car(lesson: Lesson, others: Lessons) -> None:
+    runs = lesson.runs()
+    first_flag = (runs.episode_returns > -200).argmax(axis=1)
+    assert ((first_flag > 200) & (first_flag < 500)).all()
+    assert (last(runs) > last(others["MountainCar-v0", "The article: fails"].runs()) + 15).all()
+    assert (last(runs) < -110).all()
+
+
+def solved_car(lesson: Lesson, _: Lessons) -> None:
+    runs = lesson.runs()
+    sums = np.cumsum(runs.episode_returns, axis=1)
+    means = (sums[:, 100:] - sums[:, :-100]) / 100
+    assert ((means >= -110).argmax(axis=1) < 300).all()
+    assert (last(runs) >= -110).all()
+    assert all(episode.terminated for episode in lesson.greedy_of_all(runs))
+
+
+def coarse_pole(lesson: Lesson, _: Lessons) -> None:
+    assert (last(lesson.runs()) < 50).all()
+
+
+def pole_in_bins(lesson: Lesson, _: Lessons) -> None:
+    table = lesson.train(0).q_table
+    pushes = table[table.shape[0] // 2, table.shape[1] // 2].argmax(axis=-1)
+    assert (pushes[0] == 0).mean() > 0.7, "leaning to the left, it pushes left"
+    assert (pushes[-1] == 1).mean() > 0.6
+    assert lesson.greedy(lesson.train(0), 0).steps == 500
+
+
+def solved_pole(lesson: Lesson, _: Lessons) -> None:
+    runs = lesson.runs(seeds=2, episodes=1000)
+    assert (last(runs) > 495).all()
+    assert all(episode.total == 500 for episode in lesson.greedy_of_all(runs))
+
+
+CLAIMS: Claims = {
+    ("MountainCar-v0", "The article: fails"): article,
+    ("MountainCar-v0", "Optimistic: better"): optimistic_car,
+    ("MountainCar-v0", "Solved: tile coding"): solved_car,
+    ("CartPole-v1", "Too coarse: fails"): coarse_pole,
+    ("CartPole-v1", "Bins"): pole_in_bins,
+    ("CartPole-v1", "Solved: tile coding"): solved_pole,
+}
