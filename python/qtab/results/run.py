@@ -202,10 +202,8 @@ class Run(WithPage):
     ) -> tuple[Any, Any]:
         """Returns the action of an observation as ``env.step`` takes it, and the state of the policy, as SB3 does.
 
-        The action has the type of the action space's samples, which no annotation can name: an integer, an array, or a
-        tuple or a dict of these.
-
-        For n observations, batched as Gymnasium's vector environments do, it returns an array of n actions. The policy
+        The action has the type of the action space's samples: an integer, an array, or a tuple or a dict of these. For
+        n observations, batched as Gymnasium's vector environments do, it returns an array of n actions. The policy
         of a run with ``time_aware=True`` has a state, the number of steps taken in the episode, which the next call
         takes; from the time limit on it acts as in the last step. Any other run returns None as the state.
 
