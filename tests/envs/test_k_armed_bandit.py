@@ -98,6 +98,8 @@ def test_bad_arguments_are_refused(kwargs: dict[str, Any], error: type[Exception
         {"time_aware": True},
         {"time_aware": True, "exploration": "ucb", "count_bonus": 1.0},
         {"on_truncation": "terminate", "algorithm": "sarsa"},
+        {"on_truncation": "terminate"},
+        {"algorithm": "gradient_bandit", "learning_rate": 0.3, "learning_rate_schedule": "linear"},
         {"action_mask": lambda _: np.arange(10) % 2 == 0, "bit_generator": "MT19937"},
     ],
     ids=lambda chosen: "-".join(chosen),

@@ -1,15 +1,16 @@
-//! Runs of action-value methods on a bandit, compiled for their policy and learning rate where that is possible.
+//! Runs on a bandit, compiled for their policy and learning rate where that is possible.
 
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::learners::{Agent, AnyAlgorithm, QLearning, TdLearner};
+use qtab_core::learners::{Agent, AnyAlgorithm, GradientBandit, QLearning, TdLearner, UpdateRule};
 use qtab_core::policies::{Policy, SingleStateEpsilonGreedy, SingleStateUcb, Ucb};
 use qtab_core::random::Pcg64;
-use qtab_core::schedules::{StepSize, VisitRate};
+use qtab_core::schedules::{LearningRate, StepSize, VisitRate};
 use qtab_core::tasks::{KArmedBandit, Testbed};
 use qtab_core::{QTable, StopFlag, Trainer};
 
+use super::agent::policy;
 use super::factory::{Batching, Factory};
 use super::generic::boxed_run;
 use super::path::{PlainSpec, RunPath};
@@ -53,19 +54,15 @@ pub(crate) fn testbed_runs(testbed: Testbed, spec: &Arc<RunSpec>) -> Box<dyn Run
 /// The spec, if [`compiled_run`] has the runs that it describes.
 fn compiled(spec: &RunSpec) -> Option<PlainSpec> {
     let RunPath::Plain(plain) = RunPath::of(spec) else { return None };
-    let policy = match plain.policy {
-        PolicySpec::EpsilonGreedy { .. } => true,
-        PolicySpec::Ucb { confidence, .. } => confidence >= 0.0,
-        PolicySpec::Softmax { .. } => false,
+    let is_compiled = match (plain.algorithm, plain.policy) {
+        (AnyAlgorithm::QLearning, PolicySpec::EpsilonGreedy { .. }) | (AnyAlgorithm::GradientBandit { .. }, _) => true,
+        (AnyAlgorithm::QLearning, PolicySpec::Ucb { confidence, .. }) => confidence >= 0.0,
+        _ => false,
     };
-    let is_compiled = policy
-        && matches!(plain.algorithm, AnyAlgorithm::QLearning)
-        && !plain.initial_q.has_masked_actions()
-        && !plain.count_visits;
-    is_compiled.then_some(plain)
+    (is_compiled && !plain.initial_q.has_masked_actions() && !plain.count_visits).then_some(plain)
 }
 
-/// A run of Q-learning, in which each episode is a step in the same state.
+/// A run in which each episode is a step in the same state.
 fn compiled_run<const RECORDS: bool>(
     task: KArmedBandit<RECORDS>,
     spec: &PlainSpec,
@@ -74,6 +71,15 @@ fn compiled_run<const RECORDS: bool>(
 ) -> PyResult<Box<dyn Run>> {
     let mut rng = agent_pcg64(seed);
     let shape = (1, spec.num_actions);
+    if let (AnyAlgorithm::GradientBandit { baseline }, LearningRateSpec::Schedule(schedule)) =
+        (spec.algorithm, spec.learning_rate)
+    {
+        let table = spec.initial_q.table::<0>((0, 1), shape, &mut rng, stop)?;
+        let policy = policy(spec.policy, spec.episodes, spec.num_actions, false);
+        let learning_rate = LearningRate::scheduled(schedule.build(spec.episodes), 1);
+        let rule = GradientBandit::new(baseline, 1, stop).map_err(allocation)?;
+        return Ok(with_rule(task, table, policy, learning_rate, rule, (rng, spec)));
+    }
     if spec.num_actions == BOOK_ACTIONS {
         let table = spec.initial_q.table::<BOOK_ACTIONS>((0, 1), shape, &mut rng, stop)?;
         with_table(task, table, rng, spec, stop)
@@ -113,26 +119,27 @@ fn with_policy<P: Policy + Send + 'static, const RECORDS: bool, const N: usize>(
 ) -> PyResult<Box<dyn Run>> {
     match spec.learning_rate {
         LearningRateSpec::Schedule(schedule) => {
-            Ok(with_learning_rate(task, table, policy, schedule.build(spec.episodes), rng, spec))
+            Ok(with_rule(task, table, policy, schedule.build(spec.episodes), QLearning, (rng, spec)))
         }
         LearningRateSpec::Visits { value, minimum } => {
             let rate = VisitRate::new(value, minimum, spec.num_actions, stop).map_err(allocation)?;
-            Ok(with_learning_rate(task, table, policy, rate, rng, spec))
+            Ok(with_rule(task, table, policy, rate, QLearning, (rng, spec)))
         }
     }
 }
 
-fn with_learning_rate<P, A, const RECORDS: bool, const N: usize>(
+fn with_rule<P, A, U, const RECORDS: bool, const N: usize>(
     task: KArmedBandit<RECORDS>,
     table: QTable<N>,
     policy: P,
     learning_rate: A,
-    rng: Pcg64,
-    spec: &PlainSpec,
+    rule: U,
+    (rng, spec): (Pcg64, &PlainSpec),
 ) -> Box<dyn Run>
 where
     P: Policy + Send + 'static,
     A: StepSize + Send + 'static,
+    U: UpdateRule<[u32; 1], Agent<N, P, A>> + Send + 'static,
 {
     let PlainSpec {
         discount,
@@ -144,10 +151,12 @@ where
         learning_rate: _,
         initial_q: _,
         episodes: _,
-        // An episode is a single step, whatever its limit, and `compiled` leaves out runs that count visits.
+        // An episode is a single step, which ends it whatever its limit.
         max_episode_steps: _,
+        terminate_on_truncation: _,
+        // `compiled` leaves out the runs that count visits.
         count_visits: _,
     } = *spec;
     let agent = Agent { table, policy, learning_rate, discount, terminal_update, masks: None };
-    Box::new(Trainer::new(task, TdLearner { agent, rule: QLearning }, rng))
+    Box::new(Trainer::new(task, TdLearner { agent, rule }, rng))
 }

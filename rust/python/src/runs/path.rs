@@ -13,7 +13,7 @@ use crate::spec::{ActionMasksSpec, InitialQSpec, LearningRateSpec, PolicySpec, R
 pub(super) enum RunPath {
     /// A learner that asks for nothing beyond a [`PlainSpec`]. Code that is compiled for its types may take it over.
     Plain(PlainSpec),
-    /// The values of a policy over numbered states, with the common generator and without anything at the time limit.
+    /// The values of a policy over numbered states, with the common generator, which bootstraps at the time limit.
     PlainPrediction(Arc<PredictionSpec>),
     /// The values of a policy that reads the observations of a Box.
     ObservedPrediction(Arc<PredictionSpec>),
@@ -35,6 +35,7 @@ pub(super) struct PlainSpec {
     pub(super) discount: f64,
     pub(super) initial_q: InitialQSpec,
     pub(super) terminal_update: TerminalUpdate,
+    pub(super) terminate_on_truncation: bool,
     pub(super) episodes: u64,
     pub(super) count_visits: bool,
 }
@@ -63,12 +64,12 @@ impl RunPath {
             count_visits,
             prediction,
         } = spec;
-        let is_common = *bit_generator == BitGenerator::Pcg64 && !terminate_on_truncation;
+        let is_common = *bit_generator == BitGenerator::Pcg64;
         if let Some(prediction) = prediction {
             // `RunSpec::predicting` has refused all that only a learner of actions has.
             return if prediction.reads_observations() {
                 Self::ObservedPrediction(Arc::clone(prediction))
-            } else if is_common {
+            } else if is_common && !terminate_on_truncation {
                 Self::PlainPrediction(Arc::clone(prediction))
             } else {
                 Self::Generic
@@ -87,6 +88,7 @@ impl RunPath {
                 discount: *discount,
                 initial_q: initial_q.clone(),
                 terminal_update: *terminal_update,
+                terminate_on_truncation: *terminate_on_truncation,
                 episodes: *episodes,
                 count_visits: *count_visits,
             });

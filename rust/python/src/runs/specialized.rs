@@ -90,7 +90,7 @@ where
 {
     let plain = match RunPath::of(spec) {
         RunPath::PlainPrediction(prediction) => return Ok(predicting(env, features, spec, &prediction)),
-        RunPath::Plain(plain) if has_actions(&env, &plain, N) => plain,
+        RunPath::Plain(plain) if fits(&env, &plain, N) => plain,
         _ => return generic(env, features, spec),
     };
     let LearningRateSpec::Schedule(learning_rate) = plain.learning_rate else {
@@ -110,9 +110,9 @@ where
     })
 }
 
-/// Whether a spec and its environment have so many actions.
-pub(super) fn has_actions(env: &impl Env, spec: &PlainSpec, num_actions: usize) -> bool {
-    spec.num_actions == num_actions && env.num_actions() == num_actions
+/// Whether a spec and its environment have so many actions, and updates bootstrap where the time limit ends an episode.
+pub(super) fn fits(env: &impl Env, spec: &PlainSpec, num_actions: usize) -> bool {
+    spec.num_actions == num_actions && env.num_actions() == num_actions && !spec.terminate_on_truncation
 }
 
 /// The policy of a spec, if it is ε-greedy as in the article, or with a constant ε.
@@ -183,6 +183,8 @@ where
             initial_q,
             terminal_update,
             count_visits,
+            // `fits` leaves out the runs that do not bootstrap.
+            terminate_on_truncation: _,
             // The arguments and `N` are made of these.
             num_actions: _,
             algorithm: _,

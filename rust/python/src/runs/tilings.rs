@@ -11,7 +11,7 @@ use qtab_core::schedules::LearningRate;
 
 use super::factory::Batching;
 use super::path::{PlainSpec, RunPath};
-use super::specialized::{Builder, has_actions, plain_epsilon_greedy};
+use super::specialized::{Builder, fits, plain_epsilon_greedy};
 use super::{RunFactory, generic_box};
 use crate::spec::{DiscretizerSpec, LearningRateSpec, RunSpec, TilesSpec};
 
@@ -43,7 +43,7 @@ fn of_tilings<E, const M: usize, const N: usize, const TILINGS: usize>(
 where
     E: SimdEnv<M> + Env<Observation = [f32; M], State: Send> + Send + Sync + 'static,
 {
-    if spec.count_visits || !has_actions(env, &spec, N) {
+    if spec.count_visits || !fits(env, &spec, N) {
         return None;
     }
     let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else { return None };
