@@ -217,8 +217,7 @@ class Run(WithPage):
                 action from the behaviour policy, with the ε or the temperature that the last episode of the training
                 left: an ε that fell to 0 leaves the greedy action, as does exploration "ucb". The draws come from a
                 generator of this run, seeded by the run's seed, with other numbers than those of the training.
-            action_masks: (actions,) or (n, actions): which actions may be taken or drawn. None: by the run's
-                ``action_mask``.
+            action_masks: (actions,) or (n, actions): which actions are allowed. None: by the run's ``action_mask``.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space), or ``deterministic`` is
