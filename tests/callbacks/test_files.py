@@ -5,6 +5,7 @@ import struct
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import qtab
@@ -13,6 +14,8 @@ from support.parity import assert_same_run
 
 CAR = "MountainCar-v0"
 SHORT: dict[str, Any] = {"seed": 6, "episodes": 10, "max_episode_steps": 30}
+VARIED: dict[str, Any] = {"seed": 6, "episodes": 10, "env_kwargs": {"goal_velocity": -1.0}, "initial_q": 0.0}
+"""Episodes with different returns."""
 
 
 def names(folder: Path) -> list[str]:
@@ -101,6 +104,90 @@ def test_a_log_has_the_metrics_that_were_asked_for_and_the_evaluations(tmp_path)
     assert [row["evaluation_return"] for row in rows] == ["", "", "-30.0", "", "-30.0"]
 
 
+KILLED_AFTER = 7
+
+
+def killed_then_resumed(folder: Path, make: Any, **config: Any) -> qtab.Run:
+    """A run that dies after 7 episodes, three after its last checkpoint, and is resumed from there."""
+
+    def kill(progress: qtab.Progress) -> None:
+        if progress.episodes == KILLED_AFTER:
+            raise KeyboardInterrupt
+
+    path = folder / "state.npz"
+    with pytest.raises(KeyboardInterrupt):
+        qtab.train(CAR, callback=[make(), Checkpoint(path, every=4), kill], callback_every=1, **config)
+    return qtab.resume(path, callback=make(), callback_every=1)
+
+
+def test_a_log_is_continued_where_a_run_is_resumed(tmp_path):
+    metrics = ["steps", "mean_return", "mean_length", "epsilon"]
+    qtab.train(CAR, callback=CSVLogger(tmp_path / "whole.csv", every=3, metrics=metrics), **VARIED)
+    for every in (2, 3):
+        qtab.train(CAR, callback=CSVLogger(tmp_path / "whole.csv", every=every, metrics=metrics), **VARIED)
+        killed_then_resumed(
+            tmp_path, lambda every=every: CSVLogger(tmp_path / "log.csv", every, metrics=metrics), **VARIED
+        )
+        assert (tmp_path / "log.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+
+
+def test_a_log_that_begins_with_the_resumed_part_does_not_count_the_earlier_one(tmp_path):
+    part = qtab.train(CAR, callback=stop_after(4), callback_every=4, **VARIED)
+    run = qtab.resume(part, callback=CSVLogger(tmp_path / "log.csv", every=3))
+    rows = lines(tmp_path / "log.csv")
+    assert [int(row["episodes"]) for row in rows] == [6, 9, 10]
+    assert float(rows[0]["mean_return"]) == run.episode_returns[4:6].mean()
+    assert int(rows[0]["steps"]) == run.episode_lengths[:6].sum()
+
+
+def test_a_log_of_a_killed_process_may_end_within_a_line(tmp_path):
+    path = tmp_path / "log.csv"
+    part = qtab.train(CAR, callback=[CSVLogger(path, every=2), stop_after(4)], callback_every=4, **VARIED)
+    path.write_bytes(path.read_bytes()[:-4])
+    run = qtab.resume(part, callback=CSVLogger(path, every=2))
+    rows = lines(path)
+    assert [int(row["episodes"]) for row in rows] == [2, 6, 8, 10]
+    assert float(rows[1]["mean_return"]) == run.episode_returns[2:6].mean()
+
+
+def test_another_log_is_not_continued(tmp_path):
+    path = tmp_path / "log.csv"
+    part = qtab.train(CAR, callback=[CSVLogger(path), stop_after(4)], callback_every=4, **VARIED)
+    before = path.read_bytes()
+    with pytest.raises(
+        ValueError, match=r"^path must be the log of the earlier part, with the columns episodes, steps, got"
+    ):
+        qtab.resume(part, callback=CSVLogger(path, metrics=["steps"]))
+    assert path.read_bytes() == before
+
+
+def test_tensorboard_continues_the_curves_of_a_resumed_run(tmp_path):
+    folder = tmp_path / "curves"
+    run = killed_then_resumed(tmp_path, lambda: TensorBoardLogger(folder, every=2, metrics=["mean_return"]), **VARIED)
+    first, second = sorted(folder.iterdir())
+    (tmp_path / "first").mkdir()
+    first.rename(tmp_path / "first" / first.name)
+    assert [step for step, _ in curves(tmp_path / "first")["mean_return"]] == [2, 4, 6]
+    resumed = curves(folder)["mean_return"]
+    assert [step for step, _ in resumed] == [6, 8, 10]
+    assert resumed[0][1] == np.float32(run.episode_returns[4:6].mean())
+    assert purged_from(second) == 5  # TensorBoard drops the first file's point at 6
+
+
+def test_checkpoints_of_the_earlier_part_count(tmp_path):
+    path = tmp_path / "run.npz"
+    (tmp_path / "run-notes.npz").write_bytes(b"")
+    qtab.train(CAR, seed=1, episodes=1, max_episode_steps=9).save(tmp_path / "run-01.npz")  # of another run
+    make = lambda: Checkpoint(path, every=2, numbered=True, keep=2)  # noqa: E731
+    qtab.train(CAR, callback=[make(), stop_after(6)], callback_every=2, **VARIED)
+    kept = ["run-01.npz", "run-04.npz", "run-06.npz", "run-notes.npz"]
+    assert names(tmp_path) == kept
+    again = make()
+    qtab.resume(tmp_path / "run-06.npz", callback=again)
+    assert names(tmp_path) == ["run-01.npz", "run-08.npz", "run-10.npz", "run-notes.npz"]
+    assert [saved.name for saved in again.saved] == ["run-08.npz", "run-10.npz"]
+
+
 def test_a_log_of_an_interrupted_run_is_closed(tmp_path):
     log = CSVLogger(tmp_path / "log.csv")
 
@@ -127,6 +214,20 @@ def curves(folder: Path) -> dict[str, list[tuple[int, float]]]:
             found.setdefault(value.tag, []).append((event.step, value.simple_value))
         at += 16 + length
     return found
+
+
+def purged_from(path: Path) -> int | None:
+    """The step from which on a file of TensorBoard replaces earlier ones."""
+    from tensorboardX.proto.event_pb2 import Event, SessionLog
+
+    content, at = path.read_bytes(), 0
+    while at < len(content):
+        (length,) = struct.unpack_from("<Q", content, at)
+        event = Event.FromString(content[at + 12 : at + 12 + length])
+        if event.session_log.status == SessionLog.START:
+            return event.step
+        at += 16 + length
+    return None
 
 
 def test_tensorboard_gets_the_curves(tmp_path):

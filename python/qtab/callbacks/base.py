@@ -3,7 +3,7 @@
 import inspect
 from abc import ABC, abstractmethod
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 
@@ -12,12 +12,15 @@ from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.training.callbacks import Progress
 
+if TYPE_CHECKING:
+    from qtab.results.run import Run
+
 
 class BaseCallback(ABC):
     """A callback that is told when training begins and ends, and that may have its own interval.
 
     Any callable can be a callback; this class is for those that open files or keep a state. One object can serve
-    several runs one after the other: :meth:`on_start` begins anew.
+    several runs one after the other: :meth:`on_start` begins anew, and :meth:`on_resume` continues.
 
     Args:
         every: The number of episodes between two calls; None takes ``callback_every``.
@@ -45,6 +48,16 @@ class BaseCallback(ABC):
             config: The complete config of the run.
             env: The environment that Python steps, which belongs to the run; None if Rust steps it.
         """
+
+    def on_resume(self, config: Config, env: gym.Env | None, earlier: "Run") -> None:  # noqa: ARG002
+        """Called instead of :meth:`on_start` where a run is resumed. Without a change it begins anew as well.
+
+        Args:
+            config: The complete config of the whole run.
+            env: As for :meth:`on_start`.
+            earlier: The run that is resumed: its first episodes.
+        """
+        self.on_start(config, env)
 
     @abstractmethod
     def __call__(self, progress: Progress) -> bool | None:

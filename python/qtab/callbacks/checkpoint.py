@@ -1,7 +1,11 @@
 """``Checkpoint``: saves a run while it is in progress."""
 
+import glob
 import os
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import gymnasium as gym
 
@@ -10,6 +14,9 @@ from qtab._utils.files import check_writable
 from qtab.callbacks.base import BaseCallback
 from qtab.config import Config
 from qtab.training.callbacks import Progress
+
+if TYPE_CHECKING:
+    from qtab.results.run import Run
 
 
 class Checkpoint(BaseCallback):
@@ -22,7 +29,8 @@ class Checkpoint(BaseCallback):
         every: The number of episodes between two checkpoints; None takes ``callback_every``.
         numbered: Whether to keep the earlier ones too, with the number of episodes in the name:
             ``run-1000.npz``, ``run-2000.npz``.
-        keep: How many of the numbered files to keep, the last ones; None keeps all.
+        keep: How many of the numbered files to keep, the last ones; None keeps all. Those of the earlier part of a
+            resumed run count.
 
     Attributes:
         saved: The files of this run that are there, oldest first.
@@ -58,6 +66,29 @@ class Checkpoint(BaseCallback):
         """
         check_writable("path", self.path)
         self.saved = []
+
+    def on_resume(self, config: Config, env: gym.Env | None, earlier: "Run") -> None:
+        """Finds the numbered files of the earlier part.
+
+        Raises:
+            OSError: if the file cannot be written.
+        """
+        self.on_start(config, env)
+        if self.numbered:
+            self.saved = [path for _, path in sorted(self._saved_of(earlier))]
+
+    def _saved_of(self, earlier: "Run") -> Iterator[tuple[int, Path]]:
+        """Each numbered file that holds the first episodes of a run, after their number."""
+        from qtab.results.storage import load
+
+        for path in self.path.parent.glob(f"{glob.escape(self.path.stem)}-*{glob.escape(self.path.suffix)}"):
+            number = path.stem.removeprefix(f"{self.path.stem}-")
+            if not number.isdecimal() or int(number) > len(earlier.episode_returns):
+                continue
+            with suppress(OSError, ValueError):  # not the file of a run
+                returns = load(path).episode_returns
+                if returns.tobytes() == earlier.episode_returns[: int(number)].tobytes():
+                    yield int(number), path
 
     def __call__(self, progress: Progress) -> None:
         """Saves the run, and removes the files that are too many."""

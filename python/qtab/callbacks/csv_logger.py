@@ -5,8 +5,6 @@ import os
 from collections.abc import Iterable
 from typing import TextIO
 
-import gymnasium as gym
-
 from qtab._utils.files import check_writable
 from qtab.callbacks.checkpoint import file_path
 from qtab.callbacks.evaluate_every import EvaluateEvery
@@ -19,7 +17,8 @@ class CSVLogger(MetricsLogger):
     """Writes a line of numbers at intervals and at the end, each of which can be read at once.
 
     The first line has the names: ``episodes``, the number of finished ones, and the metrics. Numbers have all their
-    digits; a cell without a value is empty. A file that is there already is replaced.
+    digits; a cell without a value is empty. A file that is there already is replaced; where a run is resumed, it is
+    continued after the episodes that the run had finished.
 
     Args:
         path: The file, such as ``"log.csv"``.
@@ -47,16 +46,13 @@ class CSVLogger(MetricsLogger):
         self.path = file_path("path", path)
         self._file: TextIO | None = None
 
-    def on_start(self, config: Config, env: gym.Env | None) -> None:
-        """Creates the file, with the line of names.
-
-        Raises:
-            OSError: if the file cannot be written.
-        """
-        super().on_start(config, env)
+    def _start(self, config: Config, finished: int) -> None:
+        lines = self._lines(finished) if finished else []
+        super()._start(config, int(lines[-1][0]) if lines else finished)
         check_writable("path", self.path)
         self._file = self.path.open("w", encoding="utf-8", newline="")
-        self._write("episodes", *self.metrics, *([EVALUATION] if self.evaluation else []))
+        for line in (self._names, *lines):
+            self._write(*line)
 
     def __call__(self, progress: Progress) -> None:
         """Writes a line."""
@@ -67,6 +63,24 @@ class CSVLogger(MetricsLogger):
         if self._file is not None:
             self._file.close()
             self._file = None
+
+    @property
+    def _names(self) -> list[str]:
+        return ["episodes", *self.metrics, *([EVALUATION] if self.evaluation else [])]
+
+    def _lines(self, finished: int) -> list[list[str]]:
+        """The lines of the file up to a number of finished episodes, without the names; none if there is no file."""
+        if not self.path.is_file():
+            return []
+        # The last line may have been cut off when the process was killed.
+        whole, _, _ = self.path.read_text(encoding="utf-8").rpartition("\n")
+        names, *lines = csv.reader(whole.splitlines() or [",".join(self._names)])
+        if names != self._names:
+            raise ValueError(
+                f"path must be the log of the earlier part, with the columns {', '.join(self._names)}, got "
+                f"{str(self.path)!r} with {', '.join(names)}"
+            )
+        return [line for line in lines if int(line[0]) <= finished]
 
     def _write(self, *cells: str | float | None) -> None:
         if self._file is not None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import gymnasium as gym
 import numpy as np
@@ -12,6 +13,9 @@ from qtab.callbacks.base import BaseCallback
 from qtab.callbacks.evaluate_every import EvaluateEvery
 from qtab.config import Config
 from qtab.training.callbacks import Progress
+
+if TYPE_CHECKING:
+    from qtab.results.run import Run
 
 
 @dataclass(frozen=True)
@@ -61,8 +65,27 @@ class MetricsLogger(BaseCallback):
         self._episodes = self._evaluations = 0
 
     def on_start(self, config: Config, env: gym.Env | None) -> None:  # noqa: ARG002
-        """Begins anew."""
-        self._episodes = self._evaluations = 0
+        """Begins a log.
+
+        Raises:
+            ModuleNotFoundError: without the library that writes it; the message names the ``pip install``.
+            OSError: if it cannot be written.
+        """
+        self._start(config, 0)
+
+    def on_resume(self, config: Config, env: gym.Env | None, earlier: "Run") -> None:  # noqa: ARG002
+        """Continues the log of the earlier part, without what it has of episodes that this part has not finished.
+
+        Raises:
+            ModuleNotFoundError: as for :meth:`on_start`.
+            OSError: if it cannot be read or written.
+            ValueError: if it is the log of other metrics.
+        """
+        self._start(config, len(earlier.episode_returns))
+
+    def _start(self, config: Config, finished: int) -> None:  # noqa: ARG002
+        """Begins a log, or continues that of so many finished episodes."""
+        self._episodes, self._evaluations = finished, 0
 
     def measure(self, progress: Progress) -> dict[str, float | int | None]:
         """Returns the metrics of the episodes since the last call; None where there is no value."""

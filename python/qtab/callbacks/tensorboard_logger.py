@@ -4,8 +4,6 @@ import os
 from collections.abc import Iterable
 from typing import Any
 
-import gymnasium as gym
-
 from qtab._utils import checks
 from qtab._utils.extras import missing
 from qtab.callbacks.evaluate_every import EvaluateEvery
@@ -17,7 +15,8 @@ from qtab.training.callbacks import Progress
 class TensorBoardLogger(MetricsLogger):
     """Writes the metrics of a run to a folder that ``tensorboard --logdir`` shows, over the number of episodes.
 
-    It needs tensorboardX, which writes TensorBoard's files without TensorBoard.
+    It needs tensorboardX, which writes TensorBoard's files without TensorBoard. Where a run is resumed, the curves of
+    its earlier part continue.
 
     Args:
         folder: The folder, created if it is missing. A run adds a file; give each run a folder to tell them apart.
@@ -43,14 +42,8 @@ class TensorBoardLogger(MetricsLogger):
         self.folder = checks.path("folder", folder)
         self._writer: Any = None
 
-    def on_start(self, config: Config, env: gym.Env | None) -> None:
-        """Creates the file, with the settings of the run as a text.
-
-        Raises:
-            ModuleNotFoundError: without tensorboardX; the message names the ``pip install``.
-            OSError: if the folder cannot be created.
-        """
-        super().on_start(config, env)
+    def _start(self, config: Config, finished: int) -> None:
+        super()._start(config, finished)
         try:
             from tensorboardX import SummaryWriter
         except ModuleNotFoundError as error:
@@ -59,9 +52,11 @@ class TensorBoardLogger(MetricsLogger):
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise type(error)(f"folder must be a folder, got {str(self.folder)!r}: {error.strerror}") from None
-        self._writer = SummaryWriter(str(self.folder))
+        # TensorBoard drops the points of earlier files from `purge_step` on. The name of a file is the second of its making.
+        again = {"purge_step": finished + 1, "filename_suffix": f".{finished}"} if finished else {}
+        self._writer = SummaryWriter(str(self.folder), **again)
         settings = "\n".join(f"    {name} = {value!r}" for name, value in vars(config).items() if value is not None)
-        self._writer.add_text("settings", settings, 0)
+        self._writer.add_text("settings", settings, finished)
 
     def __call__(self, progress: Progress) -> None:
         """Adds a point to each curve."""

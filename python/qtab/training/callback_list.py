@@ -2,11 +2,14 @@
 
 from collections.abc import Sequence
 from contextlib import ExitStack
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from qtab.callbacks.base import BaseCallback
 from qtab.training.callbacks import Callback, Progress
 from qtab.training.resolved_run import PythonEnvironment, ResolvedRun
+
+if TYPE_CHECKING:
+    from qtab.results.run import Run
 
 Callbacks: TypeAlias = Callback | Sequence[Callback]
 
@@ -24,14 +27,21 @@ class CallbackList:
     def __bool__(self) -> bool:
         return bool(self._callbacks)
 
-    def start(self, resolved: ResolvedRun) -> ExitStack:
-        """Starts the callbacks; returns the context at whose end those that were started end."""
+    def start(self, resolved: ResolvedRun, earlier: "Run | None" = None) -> ExitStack:
+        """Starts the callbacks of a new run, or of one that continues ``earlier``.
+
+        Returns:
+            The context at whose end those that were started end.
+        """
         environment = resolved.environment
         env = environment.env if isinstance(environment, PythonEnvironment) else None
         with ExitStack() as on_exit:
             for callback, _ in self._callbacks:
                 if isinstance(callback, BaseCallback):
-                    callback.on_start(resolved.config, env)
+                    if earlier is None:
+                        callback.on_start(resolved.config, env)
+                    else:
+                        callback.on_resume(resolved.config, env, earlier)
                     on_exit.callback(callback.on_end)
             return on_exit.pop_all()
 

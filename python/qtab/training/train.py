@@ -149,7 +149,7 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
         with (
             resolved.environment.exclusively(),
             reader,
-            callbacks.start(resolved),
+            callbacks.start(resolved, earlier),
             ProgressBar(total, "episode", options.progress) as bar,
         ):
             bar.move_to(done)
