@@ -2,6 +2,7 @@
 
 import copy
 import multiprocessing
+import threading
 from typing import Any
 
 import gymnasium as gym
@@ -129,17 +130,40 @@ def test_threads_draw_from_accessed_generators():
     vectors.same_streams()
 
 
+ENOUGH_FOR_TWO_THREADS = {"Acrobot-v1": 1025, "Pendulum-v1": 4097, "MountainCar-v0": 65_537}
+"""Sub-environments for two threads; those of other ids are at most 16,384 a thread."""
+
+
+@pytest.mark.parametrize(("count", "is_other"), [(1023, False), (1024, True)])
+def test_a_thread_starts_only_where_it_has_enough_to_do(count, is_other):
+    env = ours("Acrobot-v1", count, threads=2, max_episode_steps=1).unwrapped
+    env.reset(seed=0)
+    threads = set()
+
+    class Watching(np.random.Generator):
+        def random(self, *arguments: Any) -> Any:  # type: ignore[override]
+            threads.add(threading.get_ident())
+            return super().random(*arguments)
+
+    env.set_rng(count - 1, Watching(np.random.PCG64(0)))
+    for _ in range(2):
+        env.step(np.zeros(count, np.int64))
+    assert len(threads) == 1
+    assert (threads != {threading.get_ident()}) == is_other
+
+
 @pytest.mark.parametrize("name", IDS)
 def test_any_number_of_threads_gives_the_same(name):
     rng = np.random.default_rng(0)
-    envs = [ours(name, 11, threads=threads, max_episode_steps=9) for threads in (1, 2, 4, 50)]
+    count = ENOUGH_FOR_TWO_THREADS.get(name, 32_769)
+    envs = [ours(name, count, threads=threads, max_episode_steps=5) for threads in (1, 50)]
     resets = [env.reset(seed=1) for env in envs]
     space = envs[0].single_action_space
-    for _ in range(30):
+    for _ in range(8):
         if isinstance(space, gym.spaces.Discrete):
-            actions = rng.integers(0, space.n, 11)
+            actions = rng.integers(0, space.n, count)
         else:
-            actions = rng.uniform(space.low, space.high, (11, 1)).astype(np.float32)
+            actions = rng.uniform(space.low, space.high, (count, 1)).astype(np.float32)
         steps = [env.step(actions) for env in envs]
         assert all(data_equivalence(step, steps[0], exact=True) for step in steps)
     assert all(data_equivalence(reset, resets[0], exact=True) for reset in resets)

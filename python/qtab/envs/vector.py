@@ -47,7 +47,9 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         max_episode_steps: A time limit other than the spec's, as in ``gymnasium.make`` (-1: no limit).
         copy: Whether each step returns new arrays of observations. If False, it returns the same arrays each time.
         autoreset_mode: What happens after the end of an episode: an ``AutoresetMode`` or its value.
-        threads: The number of threads; None chooses automatically. It does not change the results.
+        threads: The most threads to step on; None means as many as there are cores. They start at each step, so that
+            where each would have fewer than some hundreds to thousands of sub-environments, fewer threads are used. The
+            number does not change the results.
         kwargs: Further arguments of ``gymnasium.make``.
 
     It deep-copies and pickles: the copy continues the episodes with the same numbers.

@@ -1,6 +1,7 @@
 //! The maximum of some values, and its index.
 
-/// The index of the maximum, the first one of several: `np.argmax`.
+/// The index of the maximum, the first one of several: `np.argmax` of values without NaN. With NaN it is unspecified which
+/// index is returned: a table that holds one has diverged, and its run ends.
 #[inline]
 pub(crate) fn argmax(values: &[f64]) -> usize {
     // The pairs carry the value along: looking it up by index would add a load to the chain of comparisons.
@@ -21,7 +22,7 @@ pub(crate) fn argmax(values: &[f64]) -> usize {
     best.0
 }
 
-/// The maximum: `np.max`.
+/// The maximum: `np.max` of values without NaN. With NaN it is unspecified.
 #[inline]
 pub(crate) fn maximum(values: &[f64]) -> f64 {
     values[1..].iter().fold(values[0], |largest, &value| if value > largest { value } else { largest })

@@ -21,13 +21,6 @@ pub trait Rng {
     fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.random()
     }
-
-    /// The next number from a normal distribution, from two draws u, v of `random()`: √(-2 ln(1 - u)) cos 2πv
-    /// (G. Box and M. Muller, 1958). `NumPy`'s `rng.normal` uses a different method and gives other numbers.
-    fn normal(&mut self, mean: f64, standard_deviation: f64) -> f64 {
-        let (u, v) = (self.random(), self.random());
-        mean + standard_deviation * ((-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos())
-    }
 }
 
 /// A generator for code that draws nothing: every draw is 0.

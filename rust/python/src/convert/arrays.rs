@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use numpy::ndarray::Dimension;
+use numpy::ndarray::{Dimension, aview2};
 use numpy::{
-    PyArray1, PyArrayDescrMethods, PyReadonlyArray, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
+    PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
@@ -56,7 +57,33 @@ pub(crate) fn in_c_order<T: numpy::Element + Copy, D: Dimension>(
     collect(array.as_array().iter().copied()).map(Arc::from).map_err(allocation)
 }
 
-/// A new array of these values. `PyArray1::from_slice` would panic where memory runs out.
+/// An array of up to this many bytes is made by `NumPy`, in a fraction of the time: where there is no memory for it, there is
+/// none for the interpreter either.
+const SMALL: usize = 1 << 14;
+
+/// A new array that is a copy of these values. `PyArray1::from_slice` would panic where memory runs out.
+pub(crate) fn array_from<'py, T: numpy::Element + Copy>(
+    py: Python<'py>,
+    values: &[T],
+) -> PyResult<Bound<'py, PyArray1<T>>> {
+    if size_of_val(values) <= SMALL {
+        return Ok(PyArray1::from_slice(py, values));
+    }
+    array_of(py, values.iter().copied())
+}
+
+/// The same of rows: an array of shape `(rows.len(), N)`.
+pub(crate) fn rows_array<'py, T: numpy::Element + Copy, const N: usize>(
+    py: Python<'py>,
+    rows: &[[T; N]],
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    if size_of_val(rows) <= SMALL {
+        return Ok(PyArray2::from_array(py, &aview2(rows)));
+    }
+    array_of(py, rows.as_flattened().iter().copied())?.reshape([rows.len(), N])
+}
+
+/// A new array of these values. `PyArray1::from_iter` would panic where memory runs out.
 pub(crate) fn array_of<T: numpy::Element + Copy>(
     py: Python<'_>,
     values: impl ExactSizeIterator<Item = T>,

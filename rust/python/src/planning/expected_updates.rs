@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use qtab_core::planning::{ExpectedUpdates, UpdateDistribution};
 
 use super::to_py_err;
-use crate::convert::Seed;
+use crate::convert::{Seed, array_from};
 use crate::envs::PyNativeEnv;
 use crate::interrupt::run_interruptible;
 use crate::rng::environment_rng;
@@ -39,8 +39,8 @@ impl PyExpectedUpdates {
     }
 
     /// The action values, the actions of state 0 first.
-    fn q_values<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.planning.q_values())
+    fn q_values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        array_from(py, self.planning.q_values())
     }
 
     /// The expected return of the greedy policy from the initial states.

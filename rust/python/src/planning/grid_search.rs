@@ -4,10 +4,12 @@ use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use qtab_core::envs::Parameters;
 use qtab_core::envs::classic_control::{Acrobot, CartPole, MountainCar, Pendulum};
+use qtab_core::memory::collect;
 use qtab_core::planning::grid::{GridTask, GridValues, PendulumTask, Rollout, beam_search, replay, rollouts};
 
 use super::to_py_err;
-use crate::error::invalid;
+use crate::convert::{array_from, array_of};
+use crate::error::{allocation, invalid};
 use crate::interrupt::run_interruptible;
 
 type Array<'py, T> = Bound<'py, PyArray1<T>>;
@@ -81,10 +83,8 @@ impl PyGridSearch {
     }
 
     /// The values at every point of the grid, and of every action there, both in C order.
-    fn values<'py>(&self, py: Python<'py>) -> (Array<'py, f64>, Array<'py, f64>) {
-        on_grid!(&self.grid, values => {
-            (PyArray1::from_slice(py, values.grid()), PyArray1::from_slice(py, values.action_grid()))
-        })
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py, f64>, Array<'py, f64>)> {
+        on_grid!(&self.grid, values => Ok((array_from(py, values.grid())?, array_from(py, values.action_grid())?)))
     }
 
     /// The torque of each action of a pendulum; empty for the other environments.
@@ -107,7 +107,7 @@ impl PyGridSearch {
         on_grid!(&self.grid, values => {
             let starts = states(&starts)?;
             let found = run_interruptible(py, |stop| rollouts(values, &starts, self.max_steps, stop))?;
-            Ok(episodes(py, &found.map_err(|error| to_py_err(error, 1.0))?))
+            episodes(py, &found.map_err(|error| to_py_err(error, 1.0))?)
         })
     }
 
@@ -134,15 +134,14 @@ impl PyGridSearch {
             })?;
             let (routes, found): (Vec<_>, Vec<_>) = found.map_err(|error| to_py_err(error, 1.0))?.into_iter().unzip();
             let routes = routes.into_iter().map(|route| route.map(|actions| PyArray1::from_vec(py, actions)));
-            Ok((routes.collect(), episodes(py, &found)))
+            Ok((routes.collect(), episodes(py, &found)?))
         })
     }
 }
 
-fn episodes<'py>(py: Python<'py>, rollouts: &[Rollout]) -> Episodes<'py> {
-    let returns = rollouts.iter().map(|rollout| rollout.total).collect();
-    let lengths = rollouts.iter().map(|rollout| rollout.steps.cast_signed()).collect();
-    (PyArray1::from_vec(py, returns), PyArray1::from_vec(py, lengths))
+fn episodes<'py>(py: Python<'py>, rollouts: &[Rollout]) -> PyResult<Episodes<'py>> {
+    let returns = array_of(py, rollouts.iter().map(|rollout| rollout.total))?;
+    Ok((returns, array_of(py, rollouts.iter().map(|rollout| rollout.steps.cast_signed()))?))
 }
 
 /// An environment with the given constants.
@@ -171,7 +170,7 @@ fn states<const D: usize>(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<[f64
         return Err(invalid("starts", format!("states of {D} numbers"), rows.shape()[1]));
     }
     let rows = rows.as_array();
-    Ok(rows.rows().into_iter().map(|row| std::array::from_fn(|axis| row[axis])).collect())
+    collect(rows.rows().into_iter().map(|row| std::array::from_fn(|axis| row[axis]))).map_err(allocation)
 }
 
 /// The numbers of a state.

@@ -4,6 +4,7 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::envs::tabular::TabularMdp;
+use qtab_core::memory::collect;
 use qtab_core::planning::{
     FiniteHorizon, Mdp, PlanningError, PolicyEvaluation, Solution, expected_visits, finite_horizon, policy_evaluation,
     policy_iteration, policy_return, sweep, value_iteration,
@@ -11,7 +12,9 @@ use qtab_core::planning::{
 use qtab_core::{Env, StopFlag};
 
 use super::to_py_err;
+use crate::convert::{array_from, array_of};
 use crate::envs::PyNativeEnv;
+use crate::error::allocation;
 use crate::interrupt::run_interruptible;
 
 type Array<'py, T> = Bound<'py, PyArray1<T>>;
@@ -38,8 +41,8 @@ impl PyMdpSolver {
 
     /// For each state the row of an agent's table. Several states may share a row, where the observation hides the rest.
     #[getter]
-    fn rows<'py>(&self, py: Python<'py>) -> Array<'py, i64> {
-        indices(py, &self.0.rows)
+    fn rows<'py>(&self, py: Python<'py>) -> PyResult<Array<'py, i64>> {
+        indices(py, self.0.rows.iter())
     }
 
     /// The number of actions.
@@ -50,8 +53,8 @@ impl PyMdpSolver {
 
     /// The probability that an episode starts in each state.
     #[getter]
-    fn initial_distribution<'py>(&self, py: Python<'py>) -> Array<'py, f64> {
-        PyArray1::from_slice(py, self.0.table.initial_distribution())
+    fn initial_distribution<'py>(&self, py: Python<'py>) -> PyResult<Array<'py, f64>> {
+        array_from(py, self.0.table.initial_distribution())
     }
 
     /// The outcomes of each state-action pair, the actions of state 0 first, as `P` lists them: probability, next state,
@@ -85,11 +88,11 @@ impl PyMdpSolver {
         let FiniteHorizon { values, q_values, policy, changes, expected_return, .. } =
             horizon.map_err(|error| to_py_err(error, discount))?;
         let changes = (
-            PyArray1::from_iter(py, changes.iter().map(|change| change.steps_to_go.cast_signed())),
-            indices(py, changes.iter().map(|change| &change.state)),
-            indices(py, changes.iter().map(|change| &change.action)),
+            array_of(py, changes.iter().map(|change| change.steps_to_go.cast_signed()))?,
+            indices(py, changes.iter().map(|change| &change.state))?,
+            indices(py, changes.iter().map(|change| &change.action))?,
         );
-        Ok((to_python(py, values, q_values, &policy), changes, expected_return))
+        Ok((to_python(py, values, q_values, &policy)?, changes, expected_return))
     }
 
     /// The expected return of a policy within `steps` steps. The policy has an action for each state, or for each row.
@@ -129,7 +132,7 @@ impl PyMdpSolver {
         policy: Option<PyReadonlyArray1<'py, f64>>,
         in_place: bool,
     ) -> PyResult<Array<'py, f64>> {
-        let mut values = values.as_slice()?.to_vec();
+        let mut values = collect(values.as_slice()?.iter().copied()).map_err(allocation)?;
         if values.len() != self.0.table.num_states() {
             return Err(PyValueError::new_err("values must have a number for each state"));
         }
@@ -162,7 +165,7 @@ impl PyMdpSolver {
     fn solve<'py>(&self, py: Python<'py>, discount: f64, method: Method) -> PyResult<PySolution<'py>> {
         let solution = run_interruptible(py, |stop| method(&self.0.table, discount, stop))?;
         let Solution { values, q_values, policy, .. } = solution.map_err(|error| to_py_err(error, discount))?;
-        Ok(to_python(py, values, q_values, &policy))
+        to_python(py, values, q_values, &policy)
     }
 }
 
@@ -176,10 +179,15 @@ fn endless(error: PlanningError) -> PyErr {
     }
 }
 
-fn to_python<'py>(py: Python<'py>, values: Vec<f64>, q_values: Vec<f64>, policy: &[usize]) -> PySolution<'py> {
-    (PyArray1::from_vec(py, values), PyArray1::from_vec(py, q_values), indices(py, policy))
+fn to_python<'py>(
+    py: Python<'py>,
+    values: Vec<f64>,
+    q_values: Vec<f64>,
+    policy: &[usize],
+) -> PyResult<PySolution<'py>> {
+    Ok((PyArray1::from_vec(py, values), PyArray1::from_vec(py, q_values), indices(py, policy.iter())?))
 }
 
-fn indices<'a, 'py>(py: Python<'py>, indices: impl IntoIterator<Item = &'a usize>) -> Array<'py, i64> {
-    PyArray1::from_vec(py, indices.into_iter().map(|&index| (index as u64).cast_signed()).collect())
+fn indices<'a, 'py>(py: Python<'py>, indices: impl ExactSizeIterator<Item = &'a usize>) -> PyResult<Array<'py, i64>> {
+    array_of(py, indices.map(|&index| (index as u64).cast_signed()))
 }

@@ -1,15 +1,17 @@
 //! The infos of sub-environments, batched as `VectorEnv._add_info` batches them: for each name an array, and under the
 //! name with an underscore a mask of the sub-environments that have it.
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use qtab_core::Env;
-use qtab_core::VectorEnv;
+use qtab_core::memory::{self, collect};
 use qtab_core::vector::States;
+use qtab_core::{Env, StopFlag, VectorEnv};
 
 use super::BatchObservation;
+use crate::convert::{array_of, rows_array};
+use crate::error::allocation;
 
 /// What a vector environment needs to know of an environment type besides its dynamics.
 pub(crate) struct EnvInfo<E: Env> {
@@ -82,7 +84,7 @@ impl<'py> Infos<'py> {
             return Ok(());
         }
         let py = self.py;
-        let observations = PyArray1::<Py<PyAny>>::from_iter(py, (0..self.num_envs).map(|_| py.None()));
+        let observations = PyArray1::from_vec(py, collect((0..self.num_envs).map(|_| py.None())).map_err(allocation)?);
         for (index, state) in envs.final_states() {
             observations.try_readwrite()?.as_slice_mut()?[index] = envs.env().observe(state).single(py)?.unbind();
         }
@@ -92,9 +94,9 @@ impl<'py> Infos<'py> {
             self.add_transition(&infos, transition, states, false)?;
         }
         self.dict.set_item(intern!(py, "final_obs"), observations)?;
-        self.dict.set_item(intern!(py, "_final_obs"), self.mask(envs.final_states().map(|(index, _)| index)))?;
+        self.dict.set_item(intern!(py, "_final_obs"), self.mask(envs.final_states().map(|(index, _)| index))?)?;
         self.dict.set_item(intern!(py, "final_info"), infos)?;
-        self.dict.set_item(intern!(py, "_final_info"), self.mask(envs.final_states().map(|(index, _)| index)))
+        self.dict.set_item(intern!(py, "_final_info"), self.mask(envs.final_states().map(|(index, _)| index))?)
     }
 
     fn add_transition<S>(
@@ -106,31 +108,31 @@ impl<'py> Infos<'py> {
     ) -> PyResult<()> {
         let (py, num_envs) = (self.py, self.num_envs);
         let mask = || self.mask(states.clone().map(|(index, _)| index));
-        let mut probabilities = vec![0.0; num_envs];
+        let mut probabilities = filled(0.0, num_envs)?;
         states.clone().for_each(|(index, state)| probabilities[index] = (info.probability)(&state));
         let name = intern!(py, "prob");
         if as_integers {
-            dict.set_item(name, PyArray1::from_iter(py, probabilities.into_iter().map(|number| number as i64)))?;
+            dict.set_item(name, array_of(py, probabilities.into_iter().map(|number| number as i64))?)?;
         } else {
             dict.set_item(name, PyArray1::from_vec(py, probabilities))?;
         }
-        dict.set_item(intern!(py, "_prob"), mask())?;
+        dict.set_item(intern!(py, "_prob"), mask()?)?;
         if let Some(ActionMasks { masks, index: index_of }) = &info.action_masks {
-            let array = PyArray2::<i8>::zeros(py, [num_envs, 6], false);
-            {
-                let mut rows = array.try_readwrite()?;
-                let (rows, _) = rows.as_slice_mut()?.as_chunks_mut::<6>();
-                states.clone().for_each(|(index, state)| rows[index] = masks[index_of(&state)]);
-            }
-            dict.set_item(intern!(py, "action_mask"), array)?;
-            dict.set_item(intern!(py, "_action_mask"), mask())?;
+            let mut rows = filled([0_i8; 6], num_envs)?;
+            states.clone().for_each(|(index, state)| rows[index] = masks[index_of(&state)]);
+            dict.set_item(intern!(py, "action_mask"), rows_array(py, &rows)?)?;
+            dict.set_item(intern!(py, "_action_mask"), mask()?)?;
         }
         Ok(())
     }
 
-    fn mask(&self, indices: impl Iterator<Item = usize>) -> Bound<'py, PyArray1<bool>> {
-        let mut mask = vec![false; self.num_envs];
+    fn mask(&self, indices: impl Iterator<Item = usize>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let mut mask = filled(false, self.num_envs)?;
         indices.for_each(|index| mask[index] = true);
-        PyArray1::from_vec(self.py, mask)
+        Ok(PyArray1::from_vec(self.py, mask))
     }
+}
+
+fn filled<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
+    memory::filled(&value, count, &StopFlag::new()).map_err(allocation)
 }

@@ -1,6 +1,5 @@
 //! The sub-environments of one type, and their interface to Python whatever the type is.
 
-use numpy::PyArray1;
 use pyo3::exceptions::PyAssertionError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,6 +10,7 @@ use qtab_core::{Env, StopFlag, VectorEnv};
 
 use super::infos::{EnvInfo, Infos};
 use super::{BatchAction, BatchObservation, SubEnvRng};
+use crate::convert::array_from;
 use crate::error::allocation;
 
 /// How sub-environments are to be stepped.
@@ -21,7 +21,7 @@ pub(crate) struct VectorOptions {
     pub(crate) autoreset: Autoreset,
     /// Whether observations are returned in new arrays each time.
     pub(crate) copy: bool,
-    /// None chooses the number of threads by the number of sub-environments.
+    /// The most threads; None means as many as there are cores.
     pub(crate) threads: Option<usize>,
 }
 
@@ -91,10 +91,9 @@ where
 {
     fn new(py: Python<'_>, env: E, info: EnvInfo<E>, options: VectorOptions) -> PyResult<Self> {
         let VectorOptions { num_envs, max_episode_steps, autoreset, copy, threads } = options;
-        let threads = threads.unwrap_or_else(|| {
-            let cores = std::thread::available_parallelism().map_or(1, usize::from);
-            cores.min(num_envs / info.envs_per_thread)
-        });
+        // Threads start at each step: with fewer sub-environments each of them would make the step slower.
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = threads.unwrap_or_else(cores).min(num_envs / info.envs_per_thread);
         let envs = VectorEnv::new(env, num_envs, max_episode_steps, autoreset, threads).map_err(allocation)?;
         let mut observations = with_capacity(num_envs).map_err(allocation)?;
         observations.extend(envs.states().map(|state| envs.env().observe(&state)));
@@ -157,9 +156,9 @@ where
         infos.add_step(envs, info)?;
         Ok((
             self.batched_observations(py)?,
-            PyArray1::from_slice(py, &self.rewards).into_any(),
-            PyArray1::from_slice(py, &self.terminated).into_any(),
-            PyArray1::from_slice(py, &self.truncated).into_any(),
+            array_from(py, &self.rewards)?.into_any(),
+            array_from(py, &self.terminated)?.into_any(),
+            array_from(py, &self.truncated)?.into_any(),
             infos.dict,
         ))
     }

@@ -1,10 +1,11 @@
 //! The observations of all sub-environments, batched as Gymnasium batches them.
 
-use numpy::ndarray::aview2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+
+use crate::convert::{array_from, array_of, rows_array};
 
 /// A type of observations that are handed to Python in batches.
 pub(crate) trait BatchObservation: Copy + Send + 'static {
@@ -21,7 +22,7 @@ pub(crate) trait BatchObservation: Copy + Send + 'static {
 /// A float32 array of shape `(num_envs, N)`.
 impl<const N: usize> BatchObservation for [f32; N] {
     fn batched<'py>(py: Python<'py>, all: &[Self]) -> PyResult<Bound<'py, PyAny>> {
-        Ok(PyArray2::from_array(py, &aview2(all)).into_any())
+        Ok(rows_array(py, all)?.into_any())
     }
 
     fn write(all: &[Self], out: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -36,14 +37,14 @@ impl<const N: usize> BatchObservation for [f32; N] {
     }
 
     fn single<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(PyArray1::from_slice(py, self).into_any())
+        Ok(array_from(py, self)?.into_any())
     }
 }
 
 /// An int64 array of shape `(num_envs,)`.
 impl BatchObservation for u32 {
     fn batched<'py>(py: Python<'py>, all: &[Self]) -> PyResult<Bound<'py, PyAny>> {
-        Ok(PyArray1::from_iter(py, all.iter().map(|&number| i64::from(number))).into_any())
+        Ok(array_of(py, all.iter().map(|&number| i64::from(number)))?.into_any())
     }
 
     fn write(all: &[Self], out: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -58,8 +59,8 @@ impl BatchObservation for u32 {
 /// A tuple of `N` int64 arrays of shape `(num_envs,)`.
 impl<const N: usize> BatchObservation for [u32; N] {
     fn batched<'py>(py: Python<'py>, all: &[Self]) -> PyResult<Bound<'py, PyAny>> {
-        let column = |index: usize| PyArray1::from_iter(py, all.iter().map(|numbers| i64::from(numbers[index])));
-        Ok(PyTuple::new(py, (0..N).map(column).collect::<Vec<_>>())?.into_any())
+        let column = |index: usize| array_of(py, all.iter().map(|numbers| i64::from(numbers[index])));
+        Ok(PyTuple::new(py, (0..N).map(column).collect::<PyResult<Vec<_>>>()?)?.into_any())
     }
 
     fn write(all: &[Self], out: &Bound<'_, PyAny>) -> PyResult<()> {

@@ -26,6 +26,15 @@ pub struct MaximizationBias {
     pub standard_deviation: f64,
 }
 
+impl MaximizationBias {
+    /// A normally distributed reward, from two draws u, v of `random()`: √(-2 ln(1 - u)) cos 2πv (G. Box and M. Muller,
+    /// 1958). Any generator can draw it; `NumPy`'s `normal` uses another method and gives other numbers.
+    fn reward(&self, rng: &mut impl Rng) -> f64 {
+        let (u, v) = (rng.random(), rng.random());
+        self.mean + self.standard_deviation * ((-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos())
+    }
+}
+
 impl Env for MaximizationBias {
     type State = u32;
     type Action = usize;
@@ -46,7 +55,7 @@ impl Env for MaximizationBias {
         match state {
             A if action == RIGHT => Step { state: END, reward: 0.0, terminated: true },
             A => Step { state: B, reward: 0.0, terminated: false },
-            _ => Step { state: END, reward: rng.normal(self.mean, self.standard_deviation), terminated: true },
+            _ => Step { state: END, reward: self.reward(rng), terminated: true },
         }
     }
 

@@ -3,7 +3,7 @@
 //!
 //! Interpolation blurs the edges of values, so the result is a heuristic, not exact.
 
-use super::super::PlanningError;
+use super::super::{MAX_SWEEPS, PlanningError};
 use super::GridTask;
 use crate::StopFlag;
 use crate::memory::{collect, reserve};
@@ -44,7 +44,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
     /// stride of 1 is the task's full grid; a larger one takes a fraction of the time, and is off by more at the edges.
     ///
     /// # Errors
-    /// `Stopped` after `stop` was set; `OutOfMemory`.
+    /// `Stopped` after `stop` was set; `OutOfMemory`; `NotConverged` if the values of a grid do not settle.
     ///
     /// # Panics
     /// If the stride is not a power of two up to the task's coarsest one.
@@ -101,7 +101,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
     fn converge(&mut self, successors: &[Successor<D>], stop: &StopFlag<'_>) -> Result<(), PlanningError> {
         let num_actions = self.task.num_actions();
         let last = self.values.len() - 1;
-        loop {
+        for _ in 0..MAX_SWEEPS {
             let mut change = 0.0_f64;
             // Forwards and backwards, so that changes spread in both directions.
             for point in (0..=last).chain((0..=last).rev()) {
@@ -120,6 +120,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
                 return Err(PlanningError::Stopped);
             }
         }
+        Err(PlanningError::NotConverged)
     }
 
     /// The environment.
@@ -236,4 +237,46 @@ fn corners<const D: usize>(points: [usize; D]) -> [usize; MAX_CORNERS] {
             distance + step
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::envs::Step;
+
+    /// Each step is worth 1 and leads back: without an end the values grow forever.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    struct Endless;
+
+    impl GridTask<1> for Endless {
+        const POINTS: [usize; 1] = [2];
+        const COARSEST_STRIDE: usize = 1;
+        const CONVERGED: f64 = 1e-2;
+
+        fn bounds(&self) -> [(f64, f64); 1] {
+            [(0.0, 1.0)]
+        }
+
+        fn num_actions(&self) -> usize {
+            1
+        }
+
+        fn transition(&self, state: [f64; 1], _action: usize) -> Step<[f64; 1]> {
+            Step { state, reward: 1.0, terminated: false }
+        }
+
+        fn observed(&self, state: [f64; 1]) -> [f64; 1] {
+            state
+        }
+
+        fn lowest_value(&self, _max_steps: u64) -> f64 {
+            0.0
+        }
+    }
+
+    #[test]
+    fn values_that_never_settle_are_an_error() {
+        let values = GridValues::new(Endless, 10, 1, &StopFlag::new());
+        assert_eq!(values, Err(PlanningError::NotConverged));
+    }
 }

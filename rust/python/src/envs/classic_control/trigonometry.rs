@@ -13,6 +13,8 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use qtab_core::numeric::numpy_f32_cos_sin;
 
+use crate::convert::array_from;
+
 /// How many angles are compared. That finds code that rounds one call in ten thousand differently; vector code does so far
 /// more often. It takes a few milliseconds, once.
 const POINTS: u32 = 100_000;
@@ -80,7 +82,7 @@ fn spread(width: f64) -> impl Iterator<Item = f64> {
 /// `NumPy`'s cosines and sines.
 fn numpy_cos_sin<T: numpy::Element + Copy>(py: Python<'_>, angles: &[T]) -> PyResult<Vec<[T; 2]>> {
     let numpy = py.import(intern!(py, "numpy"))?;
-    let points = PyArray1::from_slice(py, angles);
+    let points = array_from(py, angles)?;
     let call = |name: &str| -> PyResult<Vec<T>> {
         Ok(numpy.getattr(name)?.call1((&points,))?.cast::<PyArray1<T>>()?.to_vec()?)
     };
