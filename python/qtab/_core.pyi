@@ -51,6 +51,7 @@ def estimate_values(
     weights: NDArray[np.float64],
     threads: int,
     report: Callable[[int], object] | None,
+    memory: tuple[int, int] | None = None,
 ) -> list[tuple[int, Exception]]: ...
 def matches_numpy(name: str) -> bool: ...
 def numpy_uses_libm() -> bool: ...
@@ -62,7 +63,12 @@ def step_cart_poles(
     env: Any, state: Any, actions: Any, done: Any
 ) -> tuple[NDArray[np.float64], NDArray[np.float32], NDArray[np.bool_], NDArray[np.int64]] | None: ...
 def train_many(
-    spec: RunSpec, seeds: Sequence[int], results: Results, threads: int, keep_going: bool
+    spec: RunSpec,
+    seeds: Sequence[int],
+    results: Results,
+    threads: int,
+    keep_going: bool,
+    memory: tuple[int, int] | None = None,
 ) -> list[tuple[int, Exception]]: ...
 
 @final
@@ -155,7 +161,7 @@ class ToyText:
 @final
 class Trainer:
     def __new__(
-        cls, spec: RunSpec, seed: int, record: int = 0, max_recorded_actions: int = ..., visits: bool = False
+        cls, spec: RunSpec, seed: int, record: int = 0, memory: tuple[int, int] | None = None, visits: bool = False
     ) -> Trainer: ...
     def advance(self, episodes: int) -> None: ...
     def check_tables(self) -> None: ...
@@ -173,7 +179,7 @@ class Trainer:
         checkpoint: bytes,
         tables: list[NDArray[np.float64]],
         episodes: tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]],
-    ) -> None: ...
+    ) -> bool: ...
 
 @final
 class TransitionTable:

@@ -90,6 +90,13 @@ def test_a_stochastic_model_plans_with_all_that_followed() -> None:
     assert errors["stochastic"] < 0.2 < errors["deterministic"]
 
 
+@pytest.mark.parametrize("env", ["qtab/MaximizationBias-v0", "qtab/KArmedBandit-v0", "Blackjack-v1"])
+def test_a_stochastic_model_of_many_outcomes_draws_those_of_the_reference(env: str) -> None:
+    settings: dict[str, Any] = {"algorithm": "dyna_q", "model": "stochastic", "episodes": 150, "planning_steps": 4}
+    run = qtab.train(env, seed=3, epsilon=0.5, **settings)
+    assert qtab.verify(run).equal
+
+
 def test_a_count_bonus_falls_with_the_visits_and_is_no_part_of_the_returns() -> None:
     table = {state: {action: [(1.0, 1, float(action), True)] for action in range(2)} for state in range(2)}
     env = qtab.TabularEnv(table, [1.0, 0.0])

@@ -47,12 +47,59 @@ def test_a_memory_limit_is_a_positive_integer(limit, error):
 
 def test_recordings_stop_at_the_memory_limit():
     limits: dict[str, Any] = {"env_kwargs": {"goal_velocity": 1.0}, "max_episode_steps": 1000, "episodes": 50}
-    with pytest.raises(MemoryError) as caught:
+    message = r"^the recordings would exceed memory_limit=500000 \(488 KiB\); record fewer episodes with record=, or"
+    with pytest.raises(MemoryError, match=message) as caught:
         qtab.train(CAR, record=50, memory_limit=500_000, seed=0, **limits)
     run = run_of(caught.value)
     assert 10 < len(run.episode_returns) == len(run.recordings) < 50
     # Those that are not kept make room for later ones.
     assert qtab.train(CAR, record=2, memory_limit=500_000, seed=0, **limits).completed
+
+
+ENDLESS: dict[str, Any] = {"env_kwargs": {"goal_velocity": 1.0}, "episodes": 1, "max_episode_steps": 10**7, "seed": 0}
+GROWING: dict[str, dict[str, Any]] = {
+    "monte_carlo": {},
+    "monte_carlo_es": {},
+    "off_policy_monte_carlo": {},
+    "reinforce": {},
+    "reinforce_with_baseline": {},
+    "n_step_sarsa": {"n_steps": 10**6},
+    "n_step_tree_backup": {"n_steps": 10**6},
+    "n_step_q_sigma": {"n_steps": 10**6},
+}
+"""The algorithms that store an episode, in settings where all of it is stored."""
+
+
+@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
+@pytest.mark.parametrize("algorithm", GROWING)
+def test_what_an_algorithm_stores_of_an_episode_stops_at_the_memory_limit(algorithm, backend):
+    settings = {**ENDLESS, "algorithm": algorithm, **GROWING[algorithm], "bins": 2, "discretizer": "bins"}
+    message = r"^what the algorithm stores during the run .* would exceed memory_limit=300000 .* max_episode_steps="
+    with pytest.raises(MemoryError, match=message) as caught:
+        qtab.train(CAR, memory_limit=300_000, backend=backend, **settings)
+    run = run_of(caught.value)
+    assert not run.completed
+    if backend == "rust":  # with more memory it continues within the episode
+        with pytest.raises(MemoryError, match="memory_limit=3000000"):
+            qtab.resume(run, memory_limit=3_000_000)
+        with pytest.raises(MemoryError, match="would exceed memory_limit=300000"):
+            qtab.train_many(
+                CAR, [0], memory_limit=300_000, **{name: settings[name] for name in settings if name != "seed"}
+            )
+
+
+@pytest.mark.parametrize("env", ["qtab/KArmedBandit-v0"])
+def test_the_outcomes_of_a_stochastic_model_stop_at_the_memory_limit(env):
+    settings: dict[str, Any] = {"algorithm": "dyna_q", "model": "stochastic", "planning_steps": 1, "seed": 0}
+    with pytest.raises(MemoryError, match=r"the outcomes of its model.* would exceed memory_limit=2000000"):
+        qtab.train(env, episodes=50_000, memory_limit=2_000_000, **settings)
+    assert qtab.train(env, episodes=50_000, memory_limit=20_000_000, **settings).completed
+
+
+def test_runs_of_one_call_give_back_the_memory_of_their_episodes():
+    settings: dict[str, Any] = {"algorithm": "monte_carlo", "episodes": 1, "max_episode_steps": 5000}
+    settings["env_kwargs"] = {"goal_velocity": 1.0}
+    assert qtab.train_many(CAR, 20, threads=1, memory_limit=800_000, **settings).completed
 
 
 @pytest.mark.parametrize("seeds", [10**9, 10**12, 10**30])

@@ -17,7 +17,7 @@ from qtab.callbacks import Checkpoint
 from qtab.config.choices import Algorithm
 from support.gridworld import Room
 from support.learner_settings import run_settings
-from support.parity import assert_same_run
+from support.parity import assert_same_run, run_of
 from support.posix import posix_only
 
 
@@ -113,6 +113,106 @@ def test_a_run_stopped_in_the_middle_of_an_episode_resumes_exactly(env, bit_gene
     assert part.snapshots is not None
     assert whole.snapshots is not None
     assert part.snapshots.tables.tobytes() == whole.snapshots.tables.tobytes()
+
+
+STEPS = [one for one in get_args(Algorithm) if one != "gradient_bandit"]
+"""The algorithms whose episodes have several steps."""
+
+
+def check_within(env: str, seconds: float, **config: Any) -> None:
+    """Stops a run after so much time, and compares it some episodes later with an uninterrupted one."""
+    part = stopped_by_a_timer(seconds, env, **config)
+    finished = len(part.episode_returns) + 2
+    resumed = qtab.resume(part, callback=until(finished), callback_every=finished)
+    assert_same_run(resumed, stopped(env, finished, **config))
+
+
+@posix_only
+@pytest.mark.parametrize("time_aware", [False, True])
+@pytest.mark.parametrize("algorithm", STEPS)
+def test_every_learner_resumes_within_an_episode(algorithm, time_aware, caplog):
+    config = {"algorithm": algorithm, "time_aware": time_aware, "discretizer": "bins", "bins": 4, "seed": 5}
+    check_within("MountainCar-v0", 0.005, episodes=2_000_000, max_episode_steps=50, **config)
+    assert "stopped within" not in caplog.text
+
+
+@posix_only
+@pytest.mark.parametrize("seconds", [0.002, 0.01, 0.03])
+@pytest.mark.parametrize(
+    "config",
+    [
+        {"algorithm": "n_step_sarsa", "n_steps": 4000, "max_episode_steps": 4100},
+        {"algorithm": "monte_carlo", "max_episode_steps": 20_000},
+        {"algorithm": "reinforce", "max_episode_steps": 20_000},
+    ],
+    ids=lambda config: config["algorithm"],
+)
+def test_a_run_that_learns_from_an_episode_at_its_time_limit_resumes_exactly(config, seconds):
+    space: dict[str, Any] = {"discretizer": "bins", "bins": 2, "env_kwargs": {"goal_velocity": 1.0}}
+    check_within("MountainCar-v0", seconds, episodes=10**6, time_aware=True, seed=3, **space, **config)
+
+
+class StoppingRoom(Room):
+    """Fails at one of its steps, or at one of its resets, as an environment that Ctrl-C interrupts does."""
+
+    def __init__(self, steps: int = 10**6, resets: int = 10**6) -> None:
+        super().__init__()
+        self.steps_left, self.resets_left = steps, resets
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        self.resets_left -= 1
+        if not self.resets_left:
+            raise StoppedError
+        return super().reset(seed=seed, options=options)
+
+    def step(self, action: int) -> Any:
+        self.steps_left -= 1
+        if not self.steps_left:
+            raise StoppedError
+        return super().step(action)
+
+
+@pytest.mark.parametrize("algorithm", STEPS)
+def test_an_environment_stepped_in_python_resumes_with_its_next_episode_and_says_so(algorithm, caplog):
+    config: dict[str, Any] = {"algorithm": algorithm, "seed": 4, "episodes": 8, "max_episode_steps": 20}
+    whole = qtab.train(StoppingRoom(), **config)
+    finished = 3
+    steps = int(whole.episode_lengths[:finished].sum())
+    for stopping in (StoppingRoom(steps + 1), StoppingRoom(steps + 5), StoppingRoom(resets=finished + 1)):
+        with pytest.raises(StoppedError) as caught:
+            qtab.train(stopping, **config)
+        part = run_of(caught.value)
+        assert len(part.episode_returns) == finished
+        assert "stopped within" not in caplog.text
+        resumed = qtab.resume(part, env=StoppingRoom())
+        assert resumed.completed
+        assert resumed.episode_returns[:finished].tobytes() == whole.episode_returns[:finished].tobytes()
+        assert f"the run was stopped within episode {finished} (counted from 0)" in caplog.text
+        caplog.clear()
+    assert_resumed(qtab.resume(stopped(StoppingRoom(), finished, **config), env=StoppingRoom()), whole)
+    assert "stopped within" not in caplog.text
+
+
+def test_whatever_the_state_raises_the_exception_of_the_user_carries_the_run(caplog, monkeypatch):
+    class Broken(StoppingRoom):
+        @property
+        def np_random(self) -> Any:
+            if self.steps_left <= 0:
+                raise ZeroDivisionError("no generator")
+            return super().np_random
+
+        @np_random.setter
+        def np_random(self, generator: Any) -> None:
+            self._np_random = generator
+
+    with pytest.raises(StoppedError) as caught:
+        qtab.train(Broken(60), seed=4, episodes=40, max_episode_steps=20)
+    run = run_of(caught.value)
+    assert len(run.episode_returns) >= 2
+    assert run.state is None
+    assert "cannot be resumed: its state could not be read (ZeroDivisionError: no generator)" in caplog.text
+    with pytest.raises(ValueError, match="run must have the state of its training"):
+        qtab.resume(run, env=Broken())
 
 
 def test_more_episodes_spread_the_schedules_over_all_of_them(caplog):

@@ -86,6 +86,16 @@ def check_memory(what: str, needed: int, limit: int, instead: str = "") -> None:
         )
 
 
+def memory_left(needed: int, limit: int) -> tuple[int, int]:
+    """Returns what the extension takes as the memory for what grows during runs: the limit, and what is left of it.
+
+    Args:
+        needed: The bytes that the runs need in any case.
+        limit: The limit in bytes.
+    """
+    return min(limit, checks.LARGEST_COUNT), min(max(limit - needed, 0), checks.LARGEST_COUNT)
+
+
 def readable(count: int) -> str:
     """Returns a number of bytes in the unit that suits it."""
     power = min(int(math.log2(max(count, 1))) // 10, 4)

@@ -35,11 +35,11 @@ def train_runs(env: str | MakeEnv, config: Mapping[str, Any], seeds: Sequence[in
     """
     resolved = resolve_template(env, {**config, "seed": seeds[0]})
     max_steps = resolved.max_episode_steps
-    results = allocate_results(
+    results, memory = allocate_results(
         resolved, len(seeds), min(threads, len(seeds)), keep_tables=False, limit=memory_limit(None)
     )
     diverged = np.zeros(len(seeds), np.bool_)
-    for index, error in train_in_threads(resolved, seeds, results, threads, keep_going=True):
+    for index, error in train_in_threads(resolved, seeds, results, threads, memory, keep_going=True):
         if not isinstance(error, OverflowError):
             raise error
         diverged[index] = True

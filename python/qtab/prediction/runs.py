@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
 from qtab._utils import checks
-from qtab._utils.memory import check_memory, memory_limit
+from qtab._utils.memory import check_memory, memory_left, memory_limit
 from qtab._utils.progress import ProgressBar
 from qtab._utils.shown import shown
 from qtab.discretizers import Discretizer
@@ -73,7 +73,9 @@ def run_prediction(
     bar = ProgressBar(len(seeds) * settings.episodes, "episode", progress)
     with resolved.environment.exclusively(), bar:
         report = bar.move_to if bar.is_shown else None
-        failed = _core.estimate_values(spec, prediction, seeds, points, weights, threads, report)
+        failed = _core.estimate_values(
+            spec, prediction, seeds, points, weights, threads, report, memory_left(size, limit)
+        )
         if not failed:
             bar.move_to(len(seeds) * settings.episodes)
     return ValueEstimates(

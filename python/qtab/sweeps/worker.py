@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from qtab import _core
+from qtab._utils.memory import memory_left, memory_limit
 from qtab.results.summary import block_means, summarize
 from qtab.sweeps.database import RunRecord
 from qtab.sweeps.pace import CHUNK_SECONDS, Pace
@@ -80,8 +81,9 @@ def train_setting(
     """Trains one setting with each seed. The error of a run that fails is recorded, and the other runs continue."""
     if not resolved.is_native:
         return [_train_in_python(env, overrides, seed, block) for seed in seeds]
-    results = allocate_results(resolved, len(seeds), threads, keep_tables=False, limit=2**63)
-    failed = dict(train_in_threads(resolved, seeds, results, threads, keep_going=True))
+    results, _ = allocate_results(resolved, len(seeds), threads, keep_tables=False, limit=2**63)
+    memory = memory_left(0, memory_limit(None))
+    failed = dict(train_in_threads(resolved, seeds, results, threads, memory, keep_going=True))
     records = _records(seeds, block, results["returns"], results["lengths"], results["terminated"])
     return [_failure(record.seed, failed[index]) if index in failed else record for index, record in enumerate(records)]
 
@@ -90,7 +92,8 @@ def _train_in_python(env: Any, overrides: Mapping[str, Any], seed: int, block: i
     try:
         resolved = resolve(env() if callable(env) else env, {**overrides, "seed": seed}, owns_env=True)
         try:
-            trainer = _core.Trainer(resolved.spec(), resolved.seed)
+            memory = memory_left(0, memory_limit(None))
+            trainer = _core.Trainer(resolved.spec(), resolved.seed, memory=memory)
             train_unless_stopped(trainer, resolved.config.episodes)
             returns, lengths, terminated = (column[np.newaxis] for column in trainer.episodes())
             return _records([seed], block, returns, lengths, terminated)[0]

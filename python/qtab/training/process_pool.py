@@ -33,6 +33,7 @@ def train_in_processes(
     seeds: Sequence[int],
     results: Results,
     workers: int,
+    memory: tuple[int, int],
     report: Callable[[], bool],
 ) -> list[tuple[int, Exception]]:
     """Trains each seed in a worker process and fills in the results; returns the runs that failed first, if any.
@@ -40,7 +41,8 @@ def train_in_processes(
     After some more runs it calls ``report``, which stops the others by returning False.
     """
     # cloudpickle also takes functions of the main script, as in Gymnasium's vector environments.
-    task = cloudpickle.dumps((_env_to_send(env), dict(settings)))
+    limit, left = memory
+    task = cloudpickle.dumps((_env_to_send(env), dict(settings), (limit, left // workers)))
     keep = results["tables"].shape[1] > 0
     with process_pool(min(workers, len(seeds)), task) as executor:
         pending = {executor.submit(_train, seed, keep): index for index, seed in enumerate(seeds)}
@@ -136,6 +138,7 @@ class _Worker:
     """Whether a run is under way, which the pool's end interrupts."""
     env: Any
     settings: Mapping[str, Any]
+    memory: tuple[int, int]
 
 
 def _start_worker(stop: Any, task: bytes | None) -> None:
@@ -146,7 +149,7 @@ def _start_worker(stop: Any, task: bytes | None) -> None:
     threading.Thread(target=_interrupt_after, args=(stop,), daemon=True).start()
     _Worker.stop = stop
     if task is not None:
-        _Worker.env, _Worker.settings = pickle.loads(task)  # noqa: S301 - from the parent process
+        _Worker.env, _Worker.settings, _Worker.memory = pickle.loads(task)  # noqa: S301 - from the parent process
 
 
 def _end_with(parent: Any) -> None:
@@ -177,7 +180,7 @@ def _train(seed: int, keep_tables: bool) -> Any:
         env = _Worker.env() if callable(_Worker.env) else _Worker.env
         resolved = resolve(env, {**_Worker.settings, "seed": seed}, owns_env=True)
         try:
-            trainer = _core.Trainer(resolved.spec(), resolved.seed)
+            trainer = _core.Trainer(resolved.spec(), resolved.seed, memory=_Worker.memory)
             train_unless_stopped(trainer, resolved.config.episodes)
             tables = trainer.tables() if keep_tables else None
             masks = masks_of(trainer, resolved) if keep_tables else None

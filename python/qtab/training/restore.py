@@ -17,7 +17,7 @@ _LOGGER = logging.getLogger("qtab")
 
 
 def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None:
-    """Makes a new trainer the one that an earlier run had.
+    """Makes a new trainer the one that an earlier run had, and logs where the episode that it stopped in is lost.
 
     Raises:
         ValueError: if the state of the earlier run does not fit.
@@ -30,7 +30,12 @@ def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None
         raise ValueError("run must be resumed with env=, an environment stepped in Python as the run was trained on")
     tables = [table.ravel() for table in earlier.tables]
     episodes = earlier.episode_returns, earlier.episode_lengths, earlier.terminated
-    trainer.restore(state.checkpoint, tables, episodes)
+    if trainer.restore(state.checkpoint, tables, episodes):
+        _LOGGER.warning(
+            "the run was stopped within episode %s (counted from 0), which cannot be continued: another one begins, "
+            "and from there on the results differ from those of an uninterrupted run",
+            f"{len(earlier.episode_returns):,}",
+        )
 
 
 def _restore_generator(env: gym.Env, seed: int, state: RunState) -> None:
@@ -51,7 +56,7 @@ def _with_arrays(state: Any) -> Any:
 
 
 def state_of(trainer: _core.Trainer, resolved: ResolvedRun, snapshots: tuple[int, ...]) -> RunState | None:
-    """Returns what :func:`restore` will need; None if there is no memory for it.
+    """Returns what :func:`restore` will need; None, and a warning, if that fails: what was learned is worth more.
 
     Args:
         trainer: The trainer.
@@ -60,9 +65,10 @@ def state_of(trainer: _core.Trainer, resolved: ResolvedRun, snapshots: tuple[int
     """
     environment = resolved.environment
     generator = None
-    if isinstance(environment, PythonEnvironment):
-        generator = generator_state(environment.env.unwrapped.np_random)
     try:
+        if isinstance(environment, PythonEnvironment):
+            generator = generator_state(environment.env.unwrapped.np_random)
         return RunState(trainer.checkpoint(), generator, snapshots, resolved.extensions)
-    except MemoryError:
-        return None  # what was learned is worth more
+    except Exception as error:  # whatever it is, such as an environment that fails
+        _LOGGER.warning("the run cannot be resumed: its state could not be read (%s: %s)", type(error).__name__, error)
+        return None

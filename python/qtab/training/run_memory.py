@@ -2,10 +2,11 @@
 
 import math
 
-from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
+from qtab._utils.memory import BYTES_PER_EPISODE, check_memory, memory_left
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import shown
 from qtab.config.options import n_tables
+from qtab.results.run import Run
 from qtab.training.action_masks import mask_bytes
 from qtab.training.options import TrainingOptions
 from qtab.training.resolved_run import PythonEnvironment, ResolvedRun
@@ -27,8 +28,8 @@ BYTES_PER_VALUE = {
 BYTES_PER_VISIT_COUNT = 4
 BYTES_PER_RECORDING = 512
 """About the size of a recorded episode without its actions: the state of a generator, as Python keeps it."""
-BYTES_PER_RECORDED_ACTION = 4 + 8 + 8
-"""An action in Rust, in the list that Python reads, and in the recording."""
+RESTORED = 3
+"""How many times as much memory as its bytes the state of a resumed run takes, about."""
 
 
 def tables_shape(resolved: ResolvedRun, runs: int) -> tuple[int, int, int, int]:
@@ -65,16 +66,20 @@ def table_words(resolved: ResolvedRun, needed: int) -> tuple[str, str]:
     return f" with a table of {rows:,} rows of {actions} actions{space}", instead
 
 
-def check_run(resolved: ResolvedRun, options: TrainingOptions, snapshots: int) -> int:
+def check_run(
+    resolved: ResolvedRun, options: TrainingOptions, snapshots: int, earlier: Run | None = None
+) -> tuple[int, int]:
     """Checks that one run fits into the memory limit.
 
     Args:
         resolved: The run.
         options: What else is asked for: the limit, recordings, visits.
         snapshots: How many copies of the tables it keeps.
+        earlier: The run that it continues, if it does.
 
     Returns:
-        How many actions its recordings may have together.
+        The limit in bytes, and how many of them are left for what grows during the run: recordings, and what its
+        algorithm stores of an episode or of its model.
 
     Raises:
         MemoryError: if the run does not fit.
@@ -83,9 +88,10 @@ def check_run(resolved: ResolvedRun, options: TrainingOptions, snapshots: int) -
     limit = bytes_limit(options.memory_limit)
     copies = 8 * math.prod(tables_shape(resolved, 1 + snapshots + 2 * bool(options.visits)))
     recordings = min(int(options.record), episodes)
-    needed = bytes_in_progress(resolved) + copies + recordings * BYTES_PER_RECORDING
+    state = 0 if earlier is None or earlier.state is None else RESTORED * len(earlier.state.checkpoint)
+    needed = bytes_in_progress(resolved) + copies + recordings * BYTES_PER_RECORDING + state
     extras = [f"{recordings} recordings"] * bool(recordings) + [f"{snapshots} snapshots"] * bool(snapshots)
     what = f"{episodes} episodes" + (f" with {' and '.join(extras)}" if extras else "")
     table, instead = table_words(resolved, needed)
     check_memory(what + table, needed, limit, instead)
-    return (limit - needed) // BYTES_PER_RECORDED_ACTION
+    return memory_left(needed, limit)

@@ -122,7 +122,12 @@ class RunsReporter:
 
 
 def train_in_parts(
-    resolved: ResolvedRun, seeds: Sequence[int], results: Results, threads: int, reporter: RunsReporter
+    resolved: ResolvedRun,
+    seeds: Sequence[int],
+    results: Results,
+    threads: int,
+    memory: tuple[int, int],
+    reporter: RunsReporter,
 ) -> list[tuple[int, Exception]]:
     """Trains a native environment with many seeds, some of them at a time, and reports after each part.
 
@@ -133,7 +138,7 @@ def train_in_parts(
         part = slice(done, done + size)
         rows: Any = {name: array[part] for name, array in results.items()}  # type: ignore[index]
         began = time.perf_counter()
-        failed = _core.train_many(spec, seeds[part], rows, threads, False)
+        failed = _core.train_many(spec, seeds[part], rows, threads, False, memory)
         if failed:
             return [(done + index, error) for index, error in failed]
         done += len(seeds[part])

@@ -12,7 +12,6 @@ from gymnasium.envs.registration import EnvSpec
 from typing_extensions import Unpack
 
 from qtab import _core
-from qtab._utils import checks
 from qtab._utils.attach import attach, is_raised_in
 from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
@@ -94,7 +93,8 @@ def train(
     Raises:
         gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
         MemoryError: before the first episode, if the run would take more than ``memory_limit``; during the run, if its
-            recordings do, or if there is not that much memory.
+            recordings do, or what its algorithm stores of an episode or of its model, or if there is not that much
+            memory.
         TypeError: for an argument of the wrong type, or an unknown one.
         ValueError: for an argument out of range, spaces that do not fit, or a run that cannot be resumed.
         OverflowError: if the values diverge; it names the episode and the likely cause.
@@ -129,13 +129,11 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
     options = TrainingOptions() if options is None else options
     total, record = resolved.config.episodes, int(options.record)
     copied_at = snapshots_of(options, total, earlier)
-    room = check_run(resolved, options, len(copied_at))
+    memory = check_run(resolved, options, len(copied_at), earlier)
     if earlier is not None:
         log_what_differs(earlier, resolved.config)
     began = time.perf_counter()
-    trainer = _core.Trainer(
-        resolved.spec(), resolved.seed, record, min(room, checks.LARGEST_COUNT), bool(options.visits)
-    )
+    trainer = _core.Trainer(resolved.spec(), resolved.seed, record, memory, bool(options.visits))
     taken = None if earlier is None else earlier.snapshots
     collector = SnapshotCollector(trainer, copied_at, tables_shape(resolved, 1)[1:], taken)
     callbacks = options.callbacks()

@@ -17,7 +17,7 @@ from qtab import _core
 from qtab._spec import Results
 from qtab._utils import checks
 from qtab._utils.attach import attach
-from qtab._utils.memory import BYTES_PER_EPISODE, BYTES_PER_RUN, check_memory
+from qtab._utils.memory import BYTES_PER_EPISODE, BYTES_PER_RUN, check_memory, memory_left
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import shown
 from qtab._utils.versions import versions
@@ -77,7 +77,8 @@ def train_many(
 
     Raises:
         gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
-        MemoryError: before the first run, if they would take more than ``memory_limit``.
+        MemoryError: before the first run, if they would take more than ``memory_limit``; during the runs, if what their
+            algorithm stores of episodes or of its model does.
         TypeError: for an argument of the wrong type, an unknown one, or an environment instead of a function.
         ValueError: for an argument out of range, or a repeated seed.
         OverflowError: if the values of a run diverge.
@@ -102,17 +103,17 @@ def train_many(
     def make_runs(finished: NDArray[np.bool_]) -> Runs:
         return _runs(resolved, numbers, results, finished, tables, began)
 
-    results = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
+    results, memory = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
     try:
         with reporter.start(numbers, results, make_runs):
             if not resolved.is_native:
                 from qtab.training.process_pool import train_in_processes
 
-                failed = train_in_processes(env, overrides, numbers, results, workers, reporter.report)
+                failed = train_in_processes(env, overrides, numbers, results, workers, memory, reporter.report)
             elif reporter.is_used:
-                failed = train_in_parts(resolved, numbers, results, workers, reporter)
+                failed = train_in_parts(resolved, numbers, results, workers, memory, reporter)
             else:
-                failed = train_in_threads(resolved, numbers, results, workers, keep_going=False)
+                failed = train_in_threads(resolved, numbers, results, workers, memory, keep_going=False)
         for index, error in failed:
             if hasattr(error, "add_note"):
                 error.add_note(f"in the run with seed {numbers[index]}")
@@ -205,8 +206,10 @@ def _makes_equals(make_env: MakeEnv, made: gym.Env) -> bool:
         return equal_environments(made, another)
 
 
-def allocate_results(resolved: ResolvedRun, runs: int, at_once: int, keep_tables: bool, limit: int) -> Results:
-    """Returns arrays for the results of many runs.
+def allocate_results(
+    resolved: ResolvedRun, runs: int, at_once: int, keep_tables: bool, limit: int
+) -> tuple[Results, tuple[int, int]]:
+    """Returns arrays for the results of many runs, and the limit with what it leaves for what grows during the runs.
 
     Args:
         resolved: One of the runs.
@@ -225,7 +228,7 @@ def allocate_results(resolved: ResolvedRun, runs: int, at_once: int, keep_tables
     stored = BYTES_PER_RUN + episodes * BYTES_PER_EPISODE + (8 * values if keep_tables else 0) + masks
     needed = runs * stored + at_once * bytes_in_progress(resolved)
     check_memory(f"{runs} runs of {episodes} episodes", needed, limit)
-    return {
+    results: Results = {
         "returns": np.zeros((runs, episodes)),
         "lengths": np.zeros((runs, episodes), dtype=np.int64),
         "terminated": np.empty((runs, episodes), dtype=np.bool_),
@@ -233,16 +236,23 @@ def allocate_results(resolved: ResolvedRun, runs: int, at_once: int, keep_tables
         "finished": np.zeros(runs, dtype=np.bool_),
         "masks": np.ones((runs, masks), dtype=np.bool_),
     }
+    return results, memory_left(needed, limit)
 
 
 def train_in_threads(
-    resolved: ResolvedRun, seeds: Sequence[int], results: Results, threads: int, *, keep_going: bool
+    resolved: ResolvedRun,
+    seeds: Sequence[int],
+    results: Results,
+    threads: int,
+    memory: tuple[int, int],
+    *,
+    keep_going: bool,
 ) -> list[tuple[int, Exception]]:
     """Trains a native environment with many seeds; returns the index of each run that failed, and its error.
 
     Unless ``keep_going`` is set, the first failure ends all runs.
     """
-    return _core.train_many(resolved.spec(), seeds, results, threads, keep_going)
+    return _core.train_many(resolved.spec(), seeds, results, threads, keep_going, memory)
 
 
 def _runs(

@@ -7,7 +7,7 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError, PyOverflowError, PyVa
 use qtab_core::TrainingError;
 use qtab_core::checkpoint::CheckpointError;
 use qtab_core::features::OutOfBounds;
-use qtab_core::memory::AllocationError;
+use qtab_core::memory::{AllocationError, Growing};
 
 /// Why a run ended before its last episode.
 pub(crate) enum RunError {
@@ -60,6 +60,11 @@ impl From<RunError> for PyErr {
             RunError::Python(error) => error,
             RunError::Allocation(AllocationError::Stopped) => PyKeyboardInterrupt::new_err(()),
             RunError::Allocation(AllocationError::OutOfMemory { bytes }) => out_of_memory(bytes),
+            RunError::Allocation(AllocationError::LimitReached { limit, growing }) => limit_reached(limit, growing),
+            RunError::Allocation(AllocationError::TooManyEntries) => PyMemoryError::new_err(
+                "this algorithm numbers state-action pairs in 32 bits and the outcomes of its model in 31 bits, and there \
+                 are more of them; a table of fewer cells or a shorter run has fewer",
+            ),
             RunError::Diverged { episode } => PyOverflowError::new_err(format!(
                 "the action values overflowed in episode {episode} (counted from 0): the updates grow instead of \
                  settling; most likely learning_rate is too large, or trace_decay or discount with these traces"
@@ -74,13 +79,32 @@ impl From<RunError> for PyErr {
 
 /// A `MemoryError`: so many bytes more could not be had.
 pub(crate) fn out_of_memory(bytes: usize) -> PyErr {
-    let size = match bytes {
+    let size = readable(bytes as u64);
+    PyMemoryError::new_err(format!("out of memory: {size} more are needed, and there is no room for them"))
+}
+
+/// A `MemoryError`: what grows during a run would take more than the user permits.
+fn limit_reached(limit: u64, growing: Growing) -> PyErr {
+    let (what, instead) = match growing {
+        Growing::Recordings => ("the recordings", "record fewer episodes with record="),
+        Growing::Learner => (
+            "what the algorithm stores during the run (the steps of an episode, or the outcomes of its model)",
+            "shorten the episodes with max_episode_steps=",
+        ),
+    };
+    let size = readable(limit);
+    PyMemoryError::new_err(format!(
+        "{what} would exceed memory_limit={limit} ({size}); {instead}, or increase memory_limit"
+    ))
+}
+
+fn readable(bytes: u64) -> String {
+    match bytes {
         0..1024 => format!("{bytes} bytes"),
         1024..1_048_576 => format!("{} KiB", bytes >> 10),
         1_048_576..1_073_741_824 => format!("{} MiB", bytes >> 20),
         _ => format!("{} GiB", bytes >> 30),
-    };
-    PyMemoryError::new_err(format!("out of memory: {size} more are needed, and there is no room for them"))
+    }
 }
 
 /// A failed allocation as a Python exception.

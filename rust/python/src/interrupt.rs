@@ -76,15 +76,38 @@ pub(crate) fn run_polled<T: Send>(
     })?;
     match (finished, take()) {
         (Some(result), _) => Ok(result),
-        (None, Some(work)) => run_polling(|stop| py.detach(|| work(stop))),
+        (None, Some(work)) => run_detached(py, work),
         (None, None) => unreachable!("the work is either done or still to do"),
     }
 }
 
 /// Runs `work` on this thread. The flag asks for signals whenever `work` looks at it.
 pub(crate) fn run_polling<T>(work: impl FnOnce(&StopFlag<'_>) -> T) -> PyResult<T> {
+    run_polling_when(|| true, work)
+}
+
+/// Runs `work` on this thread, while other Python threads run. The flag asks for signals now and then: each time it may wait
+/// for those threads.
+pub(crate) fn run_detached<T: Send>(py: Python<'_>, work: impl FnOnce(&StopFlag<'_>) -> T + Send) -> PyResult<T> {
+    let asked = Mutex::new(Instant::now());
+    let is_due = || {
+        let mut asked = asked.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_due = asked.elapsed() >= POLL;
+        if is_due {
+            *asked = Instant::now();
+        }
+        is_due
+    };
+    py.detach(|| run_polling_when(is_due, work))
+}
+
+/// The same on this thread as it is. The flag asks for signals when `is_due` returns true.
+fn run_polling_when<T>(is_due: impl Fn() -> bool + Sync, work: impl FnOnce(&StopFlag<'_>) -> T) -> PyResult<T> {
     let raised = Mutex::new(None);
     let poll = || {
+        if !is_due() {
+            return false;
+        }
         #[expect(
             clippy::redundant_closure_for_method_calls,
             reason = "the method is not general enough in its lifetime"

@@ -76,7 +76,9 @@ impl<'a> Checkpoint<'a> {
     /// [`CheckpointError::Invalid`] with `what`, or as for any value.
     pub fn index(&mut self, value: &mut usize, below: usize, what: &'static str) -> Result<(), CheckpointError> {
         let number = u64::from_le_bytes(self.bytes((*value as u64).to_le_bytes())?);
-        *value = usize::try_from(number).ok().filter(|&index| index < below).ok_or(CheckpointError::Invalid(what))?;
+        let index = usize::try_from(number).unwrap_or(usize::MAX);
+        self.check(index < below, what)?;
+        *value = index;
         Ok(())
     }
 
@@ -86,11 +88,18 @@ impl<'a> Checkpoint<'a> {
     /// As for `index`.
     pub fn index_u32(&mut self, value: &mut u32, below: usize, what: &'static str) -> Result<(), CheckpointError> {
         let number = u32::from_le_bytes(self.bytes(value.to_le_bytes())?);
-        if number as usize >= below {
-            return Err(CheckpointError::Invalid(what));
-        }
+        self.check((number as usize) < below, what)?;
         *value = number;
         Ok(())
+    }
+
+    /// Refuses values that were read and cannot be right: `what` is wrong with them. What a run saves is never refused,
+    /// since nothing but memory may keep a run from being saved.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Invalid`] with `what`.
+    pub fn check(&self, is_valid: bool, what: &'static str) -> Result<(), CheckpointError> {
+        if is_valid || !self.is_restoring() { Ok(()) } else { Err(CheckpointError::Invalid(what)) }
     }
 
     /// Ends the checkpoint.
@@ -121,6 +130,15 @@ mod tests {
         checkpoint.finish().expect("all bytes were read");
         assert_eq!(restored, saved);
         assert!(restored.1.is_sign_negative());
+    }
+
+    #[test]
+    fn nothing_that_is_saved_is_refused() {
+        let (mut bytes, mut index, mut index_32) = (Vec::new(), 9, 9);
+        let mut checkpoint = Checkpoint::save(&mut bytes);
+        assert_eq!(checkpoint.index(&mut index, 4, "row"), Ok(()));
+        assert_eq!(checkpoint.index_u32(&mut index_32, 4, "row"), Ok(()));
+        assert_eq!(checkpoint.check(false, "row"), Ok(()));
     }
 
     #[test]

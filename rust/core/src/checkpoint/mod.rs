@@ -8,3 +8,4 @@ mod trainer;
 
 pub use bytes::{Checkpoint, CheckpointError};
 pub use persist::{Persist, persist_rows};
+pub use trainer::EpisodeProgress;

@@ -29,34 +29,60 @@ fn persist_next<R: ActiveRows>(
     })
 }
 
-/// How a checkpoint describes an unfinished episode.
-const BETWEEN_EPISODES: u8 = 0;
-const IN_EPISODE: u8 = 1;
-/// The task cannot restore the state of an episode: the run is resumed with the next one.
-const ABANDONED: u8 = 2;
+/// Where in an episode a checkpoint was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EpisodeProgress {
+    /// Between two episodes.
+    Between,
+    /// Within an episode, which is resumed.
+    Within,
+    /// Within an episode that is given up, because the task cannot restore its state, or because it failed. The run is
+    /// resumed with the next episode, and differs from an uninterrupted one from then on.
+    Abandoned,
+}
+
+impl EpisodeProgress {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        let mut number = *self as u8;
+        number.persist(checkpoint)?;
+        *self = match number {
+            0 => Self::Between,
+            1 => Self::Within,
+            2 => Self::Abandoned,
+            _ => return Err(CheckpointError::Invalid("progress of an episode")),
+        };
+        Ok(())
+    }
+}
 
 impl<T: Task, L: Learner<T::Active>, R: Persist> Trainer<T, L, R> {
     /// Saves or restores the run, except for its tables and its finished episodes. A checkpoint is restored into a new run
-    /// of the same task, learner and seed.
+    /// of the same task, learner and seed. Returns where in an episode the checkpoint was made.
     ///
     /// # Errors
     /// The bytes are damaged, or belong to another run. The run is then useless.
-    pub fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+    pub fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<EpisodeProgress, CheckpointError> {
         self.rng.persist(checkpoint)?;
         self.learner.persist(checkpoint)?;
         let mut progress = match self.episode {
-            None => BETWEEN_EPISODES,
-            Some(_) if self.task.resumes_episodes() => IN_EPISODE,
-            Some(_) => ABANDONED,
+            Some(_) if self.task.resumes_episodes() => EpisodeProgress::Within,
+            Some(_) => EpisodeProgress::Abandoned,
+            None if self.abandoned => EpisodeProgress::Abandoned,
+            None => EpisodeProgress::Between,
         };
         progress.persist(checkpoint)?;
-        match progress {
-            IN_EPISODE => return self.persist_episode(checkpoint),
-            ABANDONED if checkpoint.is_restoring() => self.learner.abandon_episode(),
-            BETWEEN_EPISODES | ABANDONED => {}
-            _ => return Err(CheckpointError::Invalid("progress of an episode")),
+        if progress == EpisodeProgress::Within {
+            checkpoint.check(self.task.resumes_episodes(), "progress of an episode")?;
+            self.persist_episode(checkpoint)?;
+        } else {
+            if checkpoint.is_restoring() && progress == EpisodeProgress::Abandoned {
+                self.learner.abandon_episode();
+            }
+            self.task.persist(None, checkpoint)?;
         }
-        self.task.persist(None, checkpoint)
+        let is_unfinished = self.episode.as_ref().is_some_and(|episode| episode.unfinished.is_some());
+        checkpoint.check(self.learner.is_unfinished() == is_unfinished, "unfinished step")?;
+        Ok(progress)
     }
 
     fn persist_episode(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
@@ -72,6 +98,7 @@ impl<T: Task, L: Learner<T::Active>, R: Persist> Trainer<T, L, R> {
         self.task.persist(Some(&mut episode.state), checkpoint)?;
         checkpoint.index(&mut episode.action, num_actions, "action")?;
         (&mut episode.episode_return, &mut episode.length).persist(checkpoint)?;
+        checkpoint.check(episode.length >= 0, "number of steps taken")?;
         if checkpoint.is_restoring() {
             episode.active = self.task.active_rows(&episode.state).map_err(|_| INVALID)?;
         }

@@ -4,7 +4,7 @@ use super::actor_critic::td_error;
 use super::common::{Agent, Critic, PolicyGradientRule, VALUES_PER_WORK};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::memory::{AllocationError, filled, reserve};
+use crate::memory::{AllocationError, RunMemory, filled, reserve};
 use crate::tasks::Next;
 
 /// The mark of a row without traces.
@@ -58,6 +58,14 @@ impl ActorCriticLambda {
         }
         *position as usize
     }
+
+    /// Makes room for the traces of all rows.
+    fn make_room(&mut self, n_rows: usize, num_actions: usize) -> Result<(), AllocationError> {
+        let missing = n_rows - self.visited.len();
+        reserve(&mut self.visited, missing)?;
+        reserve(&mut self.value_traces, missing)?;
+        reserve(&mut self.preference_traces, missing * num_actions)
+    }
 }
 
 impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCriticLambda {
@@ -105,12 +113,9 @@ impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCriticLambda {
         agent.work() + (self.value_traces.len() + self.preference_traces.len()) as u64 / VALUES_PER_WORK
     }
 
-    /// There are as many traces as rows at most.
-    fn reserve(&mut self, (n_rows, num_actions): (usize, usize), _work: u64) -> Result<(), AllocationError> {
-        let missing = n_rows - self.visited.len();
-        reserve(&mut self.visited, missing)?;
-        reserve(&mut self.value_traces, missing)?;
-        reserve(&mut self.preference_traces, missing * num_actions)
+    /// The caller knows of these bytes: they are those of a table.
+    fn reserve(&mut self, shape: (usize, usize), _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.make_room(shape.0, shape.1)
     }
 
     fn end_episode(&mut self) {
@@ -132,15 +137,12 @@ impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCriticLambda {
         checkpoint.index(&mut count, num_rows + 1, "number of rows")?;
         if checkpoint.is_restoring() {
             PolicyGradientRule::<[u32; 1]>::end_episode(self);
-            PolicyGradientRule::<[u32; 1]>::reserve(self, (num_rows, num_actions), 0)
-                .map_err(|_| CheckpointError::OutOfMemory)?;
+            self.make_room(num_rows, num_actions).map_err(|_| CheckpointError::OutOfMemory)?;
         }
         for index in 0..count {
             let mut row = self.visited.get(index).copied().unwrap_or_default();
             checkpoint.index_u32(&mut row, num_rows, "row")?;
-            if self.position(row, num_actions) != index {
-                return Err(CheckpointError::Invalid("row"));
-            }
+            checkpoint.check(self.position(row, num_actions) == index, "row")?;
         }
         self.power.persist(checkpoint)?;
         self.value_traces.persist(checkpoint)?;
@@ -162,7 +164,7 @@ mod tests {
         let critic = Critic { table: QTable::new(vec![1.0, 1.0, 4.0, 4.0], 2), step_size: 0.25 };
         let rule = ActorCriticLambda::new(0.5, 2, &StopFlag::new()).expect("two rows");
         let mut learner = PolicyGradientLearner { agent, critic: Some(critic), rule };
-        Learner::<[u32; 1]>::reserve(&mut learner, 1).expect("two rows");
+        learner.rule.make_room(2, 2).expect("two rows");
         // δ = 3 + 0.5 · 4 - 1
         learner.learn([0], 0, 3.0, Next::NonTerminal([1]), &mut rng());
         assert_eq!(learner.agent.table.values(), [1.0, -1.0, 0.0, 0.0]);

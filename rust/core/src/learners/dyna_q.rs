@@ -2,7 +2,7 @@
 
 use super::common::{Agent, DynaModel, Model, ModelEntry, PlanningProgress, UpdateRule, single_row};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -54,8 +54,8 @@ impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
         self.progress.work()
     }
 
-    fn reserve(&mut self, _agent: &mut Agent, work: u64) -> Result<(), AllocationError> {
-        self.model.reserve(work)
+    fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.model.reserve(work, memory)
     }
 
     #[inline]
@@ -65,7 +65,7 @@ impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
 
     #[inline]
     fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
-        for _ in 0..self.progress.take() {
+        for _ in 0..self.progress.take(self.model.work()) {
             let row = self.model.sample_state(rng);
             let action = self.model.sample_action(row, rng);
             if let Some(entry) = self.model.sample(row, action, rng) {
@@ -78,7 +78,7 @@ impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.model.persist(checkpoint)?;
         self.progress.persist(checkpoint)?;
-        self.model.check_planning(&self.progress)
+        self.model.check_planning(&self.progress, checkpoint)
     }
 
     fn abandon_episode(&mut self, _agent: &mut Agent) {
@@ -91,7 +91,22 @@ mod tests {
     use super::*;
     use crate::StopFlag;
     use crate::learners::common::test_support::{agent, rng};
-    use crate::learners::common::{Learner, TdLearner};
+    use crate::learners::common::{Learner, StochasticModel, TdLearner};
+    use crate::memory::{MemoryRoom, RunMemory};
+
+    #[test]
+    fn the_work_of_planning_grows_with_the_logarithm_of_the_outcomes() {
+        let rule = DynaQ::new(StochasticModel::new(1, 2, &StopFlag::new()).expect("two pairs"), 10);
+        let mut learner = TdLearner { agent: agent(&[0.0; 2]), rule };
+        let mut memory = RunMemory::new(MemoryRoom::unlimited());
+        Learner::<[u32; 1]>::reserve(&mut learner, 1024, &mut memory).expect("a few outcomes");
+        let mut work = Vec::new();
+        for step in 1..=1024 {
+            learner.learn([0], 0, f64::from(step), Next::Terminal, &mut rng());
+            work.push(Learner::<[u32; 1]>::work(&learner));
+        }
+        assert_eq!([work[0], work[1], work[1023]], [11, 22, 121]);
+    }
 
     #[test]
     fn planning_repeats_the_only_transition() {

@@ -75,7 +75,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
 
     #[inline]
     fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
-        for _ in 0..self.progress.take() {
+        for _ in 0..self.progress.take(0) {
             let row = self.model.sample_state(rng);
             let action = agent.sample_action([row], rng);
             let ModelEntry { reward, next } =
@@ -90,13 +90,10 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.model.persist(checkpoint)?;
         self.progress.persist(checkpoint)?;
-        self.model.check_planning(&self.progress)?;
+        self.model.check_planning(&self.progress, checkpoint)?;
         self.now.persist(checkpoint)?;
         self.last_tried.persist(checkpoint)?;
-        if self.last_tried.iter().any(|&step| step > self.now) {
-            return Err(CheckpointError::Invalid("step of a visit"));
-        }
-        Ok(())
+        checkpoint.check(self.last_tried.iter().all(|&step| step <= self.now), "step of a visit")
     }
 
     fn abandon_episode(&mut self, _agent: &mut Agent) {

@@ -3,7 +3,7 @@
 use super::common::{Agent, FirstVisits, UpdateRule, step_of};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -61,8 +61,8 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarloControl {
         self.visits.steps().work()
     }
 
-    fn reserve(&mut self, _agent: &mut Agent, work: u64) -> Result<(), AllocationError> {
-        self.visits.reserve(work)
+    fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.visits.reserve(work, memory)
     }
 
     #[inline]

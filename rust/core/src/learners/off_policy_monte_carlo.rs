@@ -3,7 +3,7 @@
 use super::common::{Agent, EpisodeSteps, UpdateRule, row_work, single_row};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::memory::{AllocationError, filled};
+use crate::memory::{AllocationError, RunMemory, filled};
 use crate::numeric::{argmax, maximum};
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -103,8 +103,8 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for OffPolicyMonteCarlo {
         self.steps.work()
     }
 
-    fn reserve(&mut self, _agent: &mut Agent, work: u64) -> Result<(), AllocationError> {
-        self.steps.reserve(work)
+    fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.steps.reserve(work, memory)
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 use super::common::{Agent, Critic, MAX_WORK_PER_CALL, PolicyGradientRule, VALUES_PER_WORK};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
 use crate::features::ActiveRows;
-use crate::memory::{AllocationError, reserve};
+use crate::memory::{AllocationError, RunMemory, reserve};
 use crate::tasks::Next;
 
 /// A state-action pair, and the reward that followed; at the end of the episode its return.
@@ -94,8 +94,8 @@ impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
     }
 
     /// An episode has as many steps as there is work for them.
-    fn reserve(&mut self, _shape: (usize, usize), work: u64) -> Result<(), AllocationError> {
-        reserve(&mut self.steps, usize::try_from(work).unwrap_or(usize::MAX).min(1 << 20))
+    fn reserve(&mut self, _shape: (usize, usize), work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        memory.reserve(&mut self.steps, usize::try_from(work).unwrap_or(usize::MAX).min(1 << 20))
     }
 
     #[inline]

@@ -4,7 +4,7 @@
 
 use super::common::{Agent, Traces, UpdateRule, VALUES_PER_WORK};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
@@ -84,7 +84,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
         self.traces.complete_table(&mut agent.table);
     }
 
-    fn reserve(&mut self, agent: &mut Agent, _work: u64) -> Result<(), AllocationError> {
+    fn reserve(&mut self, agent: &mut Agent, _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
         self.traces.reserve(&mut agent.table)
     }
 

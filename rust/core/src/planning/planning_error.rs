@@ -45,6 +45,10 @@ impl From<AllocationError> for PlanningError {
         match error {
             AllocationError::OutOfMemory { bytes } => Self::OutOfMemory { bytes },
             AllocationError::Stopped => Self::Stopped,
+            // Planning limits nothing, and what it numbers fits into its memory.
+            AllocationError::LimitReached { .. } | AllocationError::TooManyEntries => {
+                Self::OutOfMemory { bytes: usize::MAX }
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
+use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
 /// The values have settled when a presentation changes none by more than this fraction of the largest value or reward so far.
@@ -117,6 +118,13 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
         self.work
     }
 
+    /// With continuous rewards each step is a transition of its own.
+    fn reserve(&mut self, steps: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        let steps = usize::try_from(steps).unwrap_or(usize::MAX);
+        memory.reserve(&mut self.transitions, steps)?;
+        memory.reserve(&mut self.places, steps)
+    }
+
     fn is_unfinished(&self) -> bool {
         self.unfinished
     }
@@ -143,6 +151,8 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::memory::{Growing, MemoryRoom};
+    use crate::prediction::StateRows;
     use crate::prediction::test_support::{last, predictor, step};
 
     #[test]
@@ -156,6 +166,25 @@ mod tests {
             assert!(!learner.rule.unfinished);
             assert_eq!(learner.values.diverged(), diverged);
         }
+    }
+
+    #[test]
+    fn continuous_rewards_stop_at_the_memory_limit() {
+        let (mut learner, mut memory) =
+            (predictor(&[0.0, 0.0], BatchTd::new(2)), RunMemory::new(MemoryRoom::new(100_000, 100_000)));
+        let mut stored = 0;
+        let refused = loop {
+            let reserved = PredictionRule::<StateRows>::reserve(&mut learner.rule, 100, &mut memory);
+            if let Err(refused) = reserved {
+                break refused;
+            }
+            for _ in 0..100 {
+                stored += 1;
+                learner.rule.learn(&mut learner.values, step(0, f64::from(stored), 1));
+            }
+        };
+        assert_eq!(refused, AllocationError::LimitReached { limit: 100_000, growing: Growing::Learner });
+        assert!((300..3000).contains(&stored), "{stored}");
     }
 
     /// Example 6.4: eight episodes. Batch TD finds V(A) = 3/4, where the average of the returns is 0.

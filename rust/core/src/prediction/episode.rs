@@ -1,7 +1,7 @@
 //! The steps of an episode, for methods that learn at its end.
 
 use super::{LinearValues, PredictionStep, RowSets};
-use crate::memory::{AllocationError, reserve};
+use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
 /// A step of an episode.
@@ -78,10 +78,10 @@ impl Episode {
     }
 
     /// Makes room for so many more steps.
-    pub(super) fn reserve(&mut self, steps: u64) -> Result<(), AllocationError> {
+    pub(super) fn reserve(&mut self, steps: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         let (steps, count) = (usize::try_from(steps).unwrap_or(usize::MAX), self.visits.len());
-        reserve(&mut self.visits, steps)?;
+        memory.reserve(&mut self.visits, steps)?;
         let missing = (count + steps).saturating_sub(self.returns.len());
-        reserve(&mut self.returns, missing)
+        memory.reserve(&mut self.returns, missing)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::episode::Episode;
 use super::{FixedPolicy, LinearValues, PredictionRule, PredictionStep, RowSets};
-use crate::memory::{AllocationError, reserve};
+use crate::memory::{AllocationError, RunMemory};
 
 /// π(A|S) / b(A|S) of the steps of an episode.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,11 +90,11 @@ impl<S: RowSets> PredictionRule<S> for ImportanceSampling {
         self.episode.work()
     }
 
-    fn reserve(&mut self, steps: u64) -> Result<(), AllocationError> {
+    fn reserve(&mut self, steps: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         if let Ratios::Given(ratios) = &mut self.ratios {
-            reserve(ratios, usize::try_from(steps).unwrap_or(usize::MAX))?;
+            memory.reserve(ratios, usize::try_from(steps).unwrap_or(usize::MAX))?;
         }
-        self.episode.reserve(steps)
+        self.episode.reserve(steps, memory)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::episode::Episode;
 use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 
 /// w ← w + α [Gₜ - v(Sₜ)] ∇v(Sₜ) at the end of an episode, for its steps from the first to the last. With a learning rate
 /// of 1 / n at the n-th visit, the values of a table are the averages of the returns.
@@ -39,8 +39,8 @@ impl<S: RowSets> PredictionRule<S> for MonteCarloPrediction {
         self.episode.work()
     }
 
-    fn reserve(&mut self, steps: u64) -> Result<(), AllocationError> {
-        self.episode.reserve(steps)
+    fn reserve(&mut self, steps: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.episode.reserve(steps, memory)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
-use crate::memory::{AllocationError, out_of_memory};
+use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
 /// w ← w + α [G - v(Sₜ)] ∇v(Sₜ) with the n-step return G = Rₜ₊₁ + γ Rₜ₊₂ + … + γⁿ⁻¹ Rₜ₊ₙ + γⁿ v(Sₜ₊ₙ).
@@ -73,9 +73,9 @@ impl<S: RowSets> PredictionRule<S> for NStepTd {
     }
 
     /// At most n states wait.
-    fn reserve(&mut self, steps: u64) -> Result<(), AllocationError> {
+    fn reserve(&mut self, steps: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         let count = ((self.n - self.visits.len()) as u64).min(steps) as usize;
-        self.visits.try_reserve(count).map_err(out_of_memory::<(u32, f64)>(count))
+        memory.reserve(&mut self.visits, count)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The trait of all prediction methods.
 
 use super::{LinearValues, StateRows};
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
 /// A step: the state, the action taken in it, the reward and what followed.
@@ -57,8 +57,8 @@ pub trait PredictionRule<S = StateRows> {
     /// Makes room for what so many steps store.
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    fn reserve(&mut self, _steps: u64) -> Result<(), AllocationError> {
+    /// `OutOfMemory`, `LimitReached`.
+    fn reserve(&mut self, _steps: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
         Ok(())
     }
 }
@@ -92,7 +92,7 @@ impl<S> PredictionRule<S> for Box<dyn PredictionRule<S> + Send> {
         (**self).end_episode(values);
     }
 
-    fn reserve(&mut self, steps: u64) -> Result<(), AllocationError> {
-        (**self).reserve(steps)
+    fn reserve(&mut self, steps: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        (**self).reserve(steps, memory)
     }
 }

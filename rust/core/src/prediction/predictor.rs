@@ -3,7 +3,7 @@
 use super::{Behavior, FixedPolicy, LinearValues, PredictionRule, PredictionStep, RowSets, StateRows};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::learners::Learner;
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
@@ -56,9 +56,9 @@ where
         self.rule.work()
     }
 
-    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
-        self.values.rows.reserve(work)?;
-        self.rule.reserve(work)
+    fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.values.rows.reserve(work, memory)?;
+        self.rule.reserve(work, memory)
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! The trait of the features of states.
 
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 
 /// The active rows of states, which are numbered: by the task, or in the order of the visits.
 pub trait RowSets {
@@ -31,8 +31,8 @@ pub trait RowSets {
     /// Makes room for so many more states.
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    fn reserve(&mut self, _states: u64) -> Result<(), AllocationError> {
+    /// `OutOfMemory`, `LimitReached`.
+    fn reserve(&mut self, _states: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! The features of states that have no numbers: those of the observations of an episode.
 
 use super::RowSets;
-use crate::memory::{AllocationError, reserve};
+use crate::memory::{AllocationError, RunMemory, reserve};
 
 /// A method that looks back further than this keeps the rows of the whole episode.
 const MOST_KEPT: usize = 1024;
@@ -77,13 +77,13 @@ impl RowSets for VisitRows {
         self.store(self.last.wrapping_add(1), active)
     }
 
-    fn reserve(&mut self, states: u64) -> Result<(), AllocationError> {
+    fn reserve(&mut self, states: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         if self.mask.is_some() {
             return Ok(());
         }
         // Each call of the trainer may begin an episode.
         let states = usize::try_from(states).unwrap_or(usize::MAX).saturating_add(1);
-        reserve(&mut self.rows, states.saturating_mul(self.n_active))
+        memory.reserve(&mut self.rows, states.saturating_mul(self.n_active))
     }
 }
 

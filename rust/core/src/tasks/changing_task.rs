@@ -73,7 +73,8 @@ impl Task for ChangingTask {
         (&mut self.rng, &mut self.total_steps).persist(checkpoint)?;
         let Some(TimedState { state, elapsed }) = state else { return Ok(()) };
         checkpoint.index_u32(state, self.tables[0].num_states(), "state of the environment")?;
-        elapsed.persist(checkpoint)
+        elapsed.persist(checkpoint)?;
+        checkpoint.check(*elapsed <= self.max_episode_steps, "number of steps taken")
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Next, RngSnapshot, Task, Transition};
 use crate::TrainingError;
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::memory::{AllocationError, out_of_memory, reserve};
+use crate::memory::{AllocationError, Growing, MemoryRoom, out_of_memory, reserve};
 
 /// A finished episode that can be replayed.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,23 +25,24 @@ pub type Recordings<S> = Arc<Mutex<VecDeque<Recording<S>>>>;
 pub struct EpisodeRecorder<T: RngSnapshot> {
     task: T,
     capacity: usize,
-    /// How many more actions may be recorded.
-    room: u64,
+    room: MemoryRoom,
+    /// How many bytes of the room a recorded action takes, in the copies that are made of it, too.
+    action_bytes: u64,
     current: Option<Recording<T::Snapshot>>,
     finished: Recordings<T::Snapshot>,
 }
 
 impl<T: RngSnapshot> EpisodeRecorder<T> {
-    /// Records the last `capacity` finished episodes of `task`, as long as they and the unfinished one have at most
-    /// `max_actions` actions. Returns the recorder and the recordings.
-    pub fn new(task: T, capacity: usize, max_actions: u64) -> (Self, Recordings<T::Snapshot>) {
+    /// Records the last `capacity` finished episodes of `task`, as long as there is room for them and for the unfinished
+    /// one, with `action_bytes` for each action. Returns the recorder and the recordings.
+    pub fn new(task: T, capacity: usize, (room, action_bytes): (MemoryRoom, u64)) -> (Self, Recordings<T::Snapshot>) {
         let finished = Arc::default();
-        (Self { task, capacity, room: max_actions, current: None, finished: Arc::clone(&finished) }, finished)
+        (Self { task, capacity, room, action_bytes, current: None, finished: Arc::clone(&finished) }, finished)
     }
 
     fn record(&mut self, action: usize) -> Result<(), AllocationError> {
         let Some(recording) = &mut self.current else { return Ok(()) };
-        self.room = self.room.checked_sub(1).ok_or(AllocationError::OutOfMemory { bytes: size_of::<u32>() })?;
+        self.room.take(self.action_bytes, Growing::Recordings)?;
         reserve(&mut recording.actions, 1)?;
         recording.actions.push(action as u32);
         Ok(())
@@ -53,7 +54,8 @@ impl<T: RngSnapshot> EpisodeRecorder<T> {
             finished.try_reserve(1).map_err(out_of_memory::<Recording<T::Snapshot>>(1))?;
             finished.push_back(recording);
             while finished.len() > self.capacity {
-                self.room += finished.pop_front().map_or(0, |oldest| oldest.actions.len() as u64);
+                let actions = finished.pop_front().map_or(0, |oldest| oldest.actions.len() as u64);
+                self.room.give_back(actions * self.action_bytes);
             }
         }
         Ok(())

@@ -99,10 +99,9 @@ where
         checkpoint: &mut Checkpoint<'_>,
     ) -> Result<(), CheckpointError> {
         self.rng.persist(checkpoint)?;
-        match state {
-            Some(TimedState { state, elapsed }) => (state, elapsed).persist(checkpoint),
-            None => Ok(()),
-        }
+        let Some(TimedState { state, elapsed }) = state else { return Ok(()) };
+        (state, &mut *elapsed).persist(checkpoint)?;
+        checkpoint.check(*elapsed <= self.max_episode_steps, "number of steps taken")
     }
 }
 

@@ -89,10 +89,9 @@ impl<T: Task> Task for TimeAware<T> {
         let Some(timed) = timed else { return self.task.persist(None, checkpoint) };
         self.task.persist(Some(&mut timed.state), checkpoint)?;
         timed.elapsed.persist(checkpoint)?;
-        if timed.elapsed >= self.max_episode_steps {
-            return Err(CheckpointError::Invalid("number of steps taken"));
-        }
-        Ok(())
+        // The limit is reached while the learner still learns from the last step.
+        self.at_limit = timed.elapsed >= self.max_episode_steps;
+        checkpoint.check(timed.elapsed <= self.max_episode_steps, "number of steps taken")
     }
 }
 

@@ -8,7 +8,7 @@ mod single_step;
 use self::advance_loop::AdvanceLoop;
 pub use self::episode_log::EpisodeLog;
 use crate::learners::Learner;
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, MemoryRoom, RunMemory};
 use crate::random::Rng;
 use crate::tasks::{Next, Task, Transition};
 use crate::training_error::TrainingError;
@@ -45,12 +45,22 @@ pub struct Trainer<T: Task, L, R> {
     pub(crate) rng: R,
     pub(crate) episodes: EpisodeLog,
     pub(crate) episode: Option<EpisodeState<T::State, T::Active>>,
+    /// Whether the last episode failed and was given up.
+    pub(crate) abandoned: bool,
+    /// The memory that the learner may still take while it trains.
+    memory: RunMemory,
 }
 
 impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
     /// A run before its first step.
     pub fn new(task: T, learner: L, rng: R) -> Self {
-        Self { task, learner, rng, episodes: EpisodeLog::default(), episode: None }
+        let memory = RunMemory::new(MemoryRoom::unlimited());
+        Self { task, learner, rng, episodes: EpisodeLog::default(), episode: None, abandoned: false, memory }
+    }
+
+    /// Limits the memory that the learner takes from now on.
+    pub fn limit_memory(&mut self, room: MemoryRoom) {
+        self.memory = RunMemory::new(room);
     }
 
     /// The task.
@@ -88,15 +98,16 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
     /// diverged stops after that episode.
     ///
     /// # Errors
-    /// The task's error; `Allocation` if the results do not fit into memory. What was learned before is kept; the episode
-    /// in which it happened is abandoned and not counted.
+    /// The task's error; `Allocation` if what the run stores does not fit into memory or its limit. What was learned before
+    /// is kept. An episode in which the task fails is abandoned and not counted.
     pub fn advance(&mut self, budget: Budget) -> Result<(), TrainingError<T::Error>> {
         self.reserve(budget)?;
         // The generator and the episode are local variables: behind `self` each step would load and store them.
         let mut rng = self.rng.clone();
         let result = AdvanceLoop { trainer: self, rng: &mut rng, budget }.dispatch();
         self.rng = rng;
-        if result.is_err() {
+        self.abandoned = result.is_err();
+        if self.abandoned {
             // Its steps must not be learned from again with the next episode's.
             self.learner.abandon_episode();
         }
@@ -107,7 +118,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
     /// Makes room for what the run stores within a budget.
     pub(crate) fn reserve(&mut self, budget: Budget) -> Result<(), AllocationError> {
         self.episodes.reserve(budget)?;
-        self.learner.reserve(budget.work)
+        self.learner.reserve(budget.work, &mut self.memory)
     }
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]

@@ -7,15 +7,16 @@ use std::thread;
 use numpy::{PyReadonlyArray1, PyReadwriteArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
+use qtab_core::memory::MemoryRoom;
 use qtab_core::{Budget, StopFlag};
 
 use super::PredictionSpec;
 use crate::convert::{Seed, Seeds};
 use crate::error::{RunError, invalid};
 use crate::interrupt::run_polled;
-use crate::runs::{Run, RunFactory, python_run};
+use crate::runs::{Run, RunFactory, python_task};
 use crate::spec::{Fields, RunSpec};
-use crate::training::{EnvironmentSpec, WORK_BETWEEN_CHECKS};
+use crate::training::{EnvironmentSpec, Memory, WORK_BETWEEN_CHECKS, room_of};
 
 /// How many episodes are logged at once. Their returns are of no further use.
 const EPISODES_AT_ONCE: u64 = 1 << 16;
@@ -30,6 +31,7 @@ type Rows<'a> = std::iter::Enumerate<std::slice::ChunksMut<'a, f64>>;
 /// numbers of `episodes` into `weights`, (seeds, episodes, weights). `report` is called now and then with the number of
 /// episodes that all runs have finished. Returns the runs that failed; what they had not reached is left as it was.
 #[pyfunction]
+#[pyo3(signature = (spec, prediction, seeds, episodes, weights, threads, report, memory = None))]
 #[expect(clippy::too_many_arguments, reason = "they are Python's")]
 pub(crate) fn estimate_values(
     py: Python<'_>,
@@ -40,6 +42,7 @@ pub(crate) fn estimate_values(
     mut weights: PyReadwriteArray3<'_, f64>,
     threads: usize,
     report: Option<Bound<'_, PyAny>>,
+    memory: Option<Memory>,
 ) -> PyResult<Vec<FailedRun>> {
     let finished = AtomicU64::new(0);
     let report = || match &report {
@@ -55,25 +58,19 @@ pub(crate) fn estimate_values(
         let got = format!("{:?}", weights.shape());
         return Err(invalid("weights", format!("an array of shape {expected:?}, none of them 0"), got));
     }
-    let size = expected[1] * expected[2];
+    let (size, room) = (expected[1] * expected[2], room_of(memory));
     let calls_python = prediction.calls_python();
     let run_spec = Arc::new(run_spec.predicting(prediction)?);
     let mut rows = weights.as_slice_mut()?.chunks_mut(size.max(1)).enumerate();
     match EnvironmentSpec::parse(&fields.nested("env")?)? {
         EnvironmentSpec::Native(env) => {
             let factory = env.runs(&run_spec)?;
+            let shared = Shared { factory: &*factory, seeds: &seeds, episodes, finished: &finished, room };
             if calls_python {
                 let check = || py.check_signals().and_then(|()| report());
-                return Ok(run_attached(py, &*factory, &seeds, episodes, rows, &finished, check));
+                return Ok(run_attached(py, &shared, rows, check));
             }
-            let work = PredictionQueue {
-                factory: &*factory,
-                seeds: &seeds,
-                episodes,
-                rows: Mutex::new(rows),
-                failed: Mutex::default(),
-                finished: &finished,
-            };
+            let work = PredictionQueue { shared, rows: Mutex::new(rows), failed: Mutex::default() };
             run_polled(
                 py,
                 |_| report(),
@@ -96,7 +93,8 @@ pub(crate) fn estimate_values(
         }
         EnvironmentSpec::Python(env) => {
             let [seed] = &seeds[..] else { return Err(invalid("seeds", "one, where Python steps", seeds.len())) };
-            let mut run = python_run(py, env, &run_spec, seed, &StopFlag::new())?.run;
+            let mut run = python_task(py, env, &run_spec, seed)?.build(&StopFlag::new())?.run;
+            run.limit_memory(room);
             let Some((_, row)) = rows.next() else { return Ok(Vec::new()) };
             let check = || Ok(py.check_signals().and_then(|()| report())?);
             advance(&mut *run, episodes, row, &finished, check).map_err(as_python)?;
@@ -109,18 +107,13 @@ pub(crate) fn estimate_values(
 /// longer than the step. Returns the runs that failed; an exception of Python code ends them all.
 fn run_attached(
     py: Python<'_>,
-    factory: &dyn RunFactory,
-    seeds: &[Seed],
-    episodes: &[u64],
+    shared: &Shared<'_>,
     rows: Rows<'_>,
-    finished: &AtomicU64,
     check: impl Fn() -> PyResult<()>,
 ) -> Vec<FailedRun> {
     let mut failed = Vec::new();
-    for (seed, (index, row)) in seeds.iter().zip(rows) {
-        let done = factory.build(seed, &StopFlag::new()).and_then(|mut built| {
-            advance(&mut *built.run, episodes, row, finished, || Ok(check()?)).map_err(as_python)
-        });
+    for (index, row) in rows {
+        let done = shared.run(index, row, &StopFlag::new(), || Ok(check()?));
         if let Err(error) = done {
             let diverged = error.is_instance_of::<PyOverflowError>(py);
             failed.push((index, error));
@@ -132,14 +125,35 @@ fn run_attached(
     failed
 }
 
-/// What the threads of one call share.
-struct PredictionQueue<'a> {
+/// What all runs of one call share.
+struct Shared<'a> {
     factory: &'a dyn RunFactory,
     seeds: &'a [Seed],
     episodes: &'a [u64],
+    finished: &'a AtomicU64,
+    room: MemoryRoom,
+}
+
+impl Shared<'_> {
+    /// Does a run and writes its row.
+    fn run(
+        &self,
+        index: usize,
+        row: &mut [f64],
+        stop: &StopFlag<'_>,
+        check: impl Fn() -> Result<(), RunError>,
+    ) -> PyResult<()> {
+        let mut run = self.factory.build(&self.seeds[index], stop)?.run;
+        run.limit_memory(self.room.clone());
+        advance(&mut *run, self.episodes, row, self.finished, check).map_err(as_python)
+    }
+}
+
+/// What the threads of one call share.
+struct PredictionQueue<'a> {
+    shared: Shared<'a>,
     rows: Mutex<Rows<'a>>,
     failed: Mutex<Vec<FailedRun>>,
-    finished: &'a AtomicU64,
 }
 
 impl PredictionQueue<'_> {
@@ -148,10 +162,7 @@ impl PredictionQueue<'_> {
         while !stop.is_set() {
             let Some((index, row)) = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
             let check = || if stop.is_set() { Err(RunError::Allocation(STOPPED)) } else { Ok(()) };
-            let done = self.factory.build(&self.seeds[index], stop).and_then(|mut built| {
-                advance(&mut *built.run, self.episodes, row, self.finished, check).map_err(as_python)
-            });
-            if let Err(error) = done {
+            if let Err(error) = self.shared.run(index, row, stop, check) {
                 self.failed.lock().unwrap_or_else(PoisonError::into_inner).push((index, error));
             }
         }

@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 use qtab_core::batch::{BatchedRun, LANES};
+use qtab_core::memory::MemoryRoom;
 use qtab_core::{Budget, StopFlag};
 
 use super::{AnyRecordings, BuiltRun, Run};
@@ -16,8 +17,8 @@ pub(crate) trait RunFactory: Send + Sync {
     /// Builds a run. What takes long stops when `stop` is set.
     fn build(&self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<BuiltRun>;
 
-    /// A batch without runs.
-    fn batch(&self) -> Box<dyn RunBatch + '_>;
+    /// A batch without runs, whose learners take their memory from this room.
+    fn batch(&self, room: &MemoryRoom) -> Box<dyn RunBatch + '_>;
 }
 
 /// Runs of one type that advance together.
@@ -95,14 +96,15 @@ where
         Ok(BuiltRun { run: Box::new(run), recordings, steps_python: false })
     }
 
-    fn batch(&self) -> Box<dyn RunBatch + '_> {
-        Box::new(TypedBatch { factory: self, runs: Vec::with_capacity(self.batching.lanes) })
+    fn batch(&self, room: &MemoryRoom) -> Box<dyn RunBatch + '_> {
+        Box::new(TypedBatch { factory: self, runs: Vec::with_capacity(self.batching.lanes), room: room.clone() })
     }
 }
 
 struct TypedBatch<'a, R, B> {
     factory: &'a Factory<R, B>,
     runs: Vec<R>,
+    room: MemoryRoom,
 }
 
 impl<R, B> RunBatch for TypedBatch<'_, R, B>
@@ -115,7 +117,8 @@ where
     }
 
     fn push(&mut self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<()> {
-        let (run, _) = (self.factory.build)(seed, stop)?;
+        let (mut run, _) = (self.factory.build)(seed, stop)?;
+        run.limit_memory(self.room.clone());
         self.runs.push(run);
         Ok(())
     }

@@ -19,6 +19,9 @@ use crate::error::{RunError, allocation, invalid};
 use crate::rng::environment_rng;
 use crate::spec::{DiscretizerSpec, RunSpec, TilesSpec};
 
+/// What a recorded action takes: here, in the list that Python reads, and in Python's recording.
+const RECORDED_ACTION_BYTES: u64 = 4 + 8 + 8;
+
 /// Runs in an environment whose observations are `M` float32 numbers, with any discretizer of a Box.
 pub(crate) fn generic_box<E, const M: usize>(env: E, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
 where
@@ -125,7 +128,7 @@ where
     if spec.record == 0 {
         return Ok((run_of(task, shape, seed, spec, stop)?, AnyRecordings::None));
     }
-    let (task, recordings) = EpisodeRecorder::new(task, spec.record, spec.max_recorded_actions);
+    let (task, recordings) = EpisodeRecorder::new(task, spec.record, (spec.room.clone(), RECORDED_ACTION_BYTES));
     Ok((run_of(task, shape, seed, spec, stop)?, keep(recordings)))
 }
 

@@ -19,7 +19,7 @@ pub(crate) use bandit::{bandit_runs, testbed_runs};
 pub(crate) use factory::{RunBatch, RunFactory};
 pub(crate) use generic::{boxed_factory, generic, generic_box};
 pub(crate) use python_env::PythonEnv;
-pub(crate) use python_task::python_run;
+pub(crate) use python_task::python_task;
 pub(crate) use run::{AnyRecordings, BuiltRun, Run, check_tables};
 pub(crate) use specialized::{OneStepBatching, specialized};
 pub(crate) use tilings::tiled_box;

@@ -60,7 +60,7 @@ impl RunPath {
             episodes,
             bit_generator,
             record,
-            max_recorded_actions: _, // It only matters to runs that record.
+            room: _, // It only matters to runs that record.
             count_visits,
             prediction,
         } = spec;

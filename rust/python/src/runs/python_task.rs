@@ -22,54 +22,57 @@ use crate::spec::{DiscretizerSpec, FloatType, RunSpec};
 /// How many steps of Q-learning on a grid a step in Python counts as. It may take a millisecond.
 const STEP_WORK: u64 = 127;
 
-/// A run that steps a Python environment.
-pub(crate) fn python_run(
+/// What a run that steps a Python environment is built from. Only this needs the interpreter.
+pub(crate) fn python_task<'a>(
     py: Python<'_>,
     mut env: PythonEnv,
-    spec: &RunSpec,
-    seed: &Seed,
-    stop: &StopFlag<'_>,
-) -> PyResult<BuiltRun> {
+    spec: &'a RunSpec,
+    seed: &'a Seed,
+) -> PyResult<PythonTaskBuilder<'a>> {
     env.keep_actions(py, spec.num_actions)?;
-    let task = TaskBuilder { env, first_seed: seed.to_python(py)?.unbind(), spec, seed, stop };
-    if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
-        return task.run(reader.clone(), reader.n_rows());
-    }
-    if let DiscretizerSpec::Product(product) = &spec.discretizer {
-        let reader = BoxReader::<f64, _>::new(product.features.clone(), product.dimensions);
-        return task.run(reader, product.n_rows());
-    }
-    match spec.discretizer.box_space()? {
-        (FloatType::F32, dimensions) => task.box_run(|bound| bound as f32, dimensions),
-        (FloatType::F64, dimensions) => task.box_run(|bound| bound, dimensions),
-    }
+    Ok(PythonTaskBuilder { env, first_seed: seed.to_python(py)?.unbind(), spec, seed })
 }
 
-struct TaskBuilder<'a> {
+pub(crate) struct PythonTaskBuilder<'a> {
     env: PythonEnv,
     first_seed: Py<PyAny>,
     spec: &'a RunSpec,
     seed: &'a Seed,
-    stop: &'a StopFlag<'a>,
 }
 
-impl TaskBuilder<'_> {
+impl PythonTaskBuilder<'_> {
+    /// Builds the run. What takes long stops when `stop` is set.
+    pub(crate) fn build(self, stop: &StopFlag<'_>) -> PyResult<BuiltRun> {
+        let spec = self.spec;
+        if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
+            return self.run(reader.clone(), reader.n_rows(), stop);
+        }
+        if let DiscretizerSpec::Product(product) = &spec.discretizer {
+            let reader = BoxReader::<f64, _>::new(product.features.clone(), product.dimensions);
+            return self.run(reader, product.n_rows(), stop);
+        }
+        match spec.discretizer.box_space()? {
+            (FloatType::F32, dimensions) => self.box_run(|bound| bound as f32, dimensions, stop),
+            (FloatType::F64, dimensions) => self.box_run(|bound| bound, dimensions, stop),
+        }
+    }
+
     /// With the observations of a Box of dtype `T`.
-    fn box_run<T>(self, to_dtype: impl Fn(f64) -> T, dimensions: usize) -> PyResult<BuiltRun>
+    fn box_run<T>(self, to_dtype: impl Fn(f64) -> T, dimensions: usize, stop: &StopFlag<'_>) -> PyResult<BuiltRun>
     where
         T: Float + Default + numpy::Element + 'static,
     {
         if let Some(prediction) = self.spec.prediction_by_observation() {
-            return self.observed_run(prediction, to_dtype, dimensions);
+            return self.observed_run(prediction, to_dtype, dimensions, stop);
         }
         if let DiscretizerSpec::Tiles(tiles) = &self.spec.discretizer {
             let tiles = tiles.tile_coding::<T, MAX_TILINGS>();
             let n_rows = Features::<[T]>::len(&tiles);
-            return self.run(BoxReader::new(tiles, dimensions), n_rows);
+            return self.run(BoxReader::new(tiles, dimensions), n_rows, stop);
         }
         let grid = self.spec.discretizer.grid(to_dtype)?;
         let n_rows = Features::<[T]>::len(&grid);
-        self.run(BoxReader::new(grid, dimensions), n_rows)
+        self.run(BoxReader::new(grid, dimensions), n_rows, stop)
     }
 
     /// The values of a policy that reads the observations.
@@ -78,11 +81,12 @@ impl TaskBuilder<'_> {
         prediction: &PredictionSpec,
         to_dtype: impl Fn(f64) -> T,
         dimensions: usize,
+        stop: &StopFlag<'_>,
     ) -> PyResult<BuiltRun>
     where
         T: Float + Default + numpy::Element + 'static,
     {
-        let (spec, seed, stop) = (self.spec, self.seed, self.stop);
+        let (spec, seed) = (self.spec, self.seed);
         let reader = |discretizer: &DiscretizerSpec| {
             PyResult::Ok(BoxReader::new(BoxFeatures::new(discretizer, &to_dtype)?, dimensions))
         };
@@ -107,11 +111,11 @@ impl TaskBuilder<'_> {
         }
     }
 
-    fn run<R>(self, reader: R, n_rows: usize) -> PyResult<BuiltRun>
+    fn run<R>(self, reader: R, n_rows: usize, stop: &StopFlag<'_>) -> PyResult<BuiltRun>
     where
         R: ObservationReader<Active: Send> + Send + 'static,
     {
-        let Self { spec, seed, stop, .. } = self;
+        let Self { spec, seed, .. } = self;
         let shape = (n_rows, spec.discretizer.n_active());
         let task = self.task(reader);
         let (run, recordings) = boxed_run(task, shape, seed, spec, stop, AnyRecordings::Python)?;
@@ -197,7 +201,7 @@ impl<R: ObservationReader> Task for PythonTask<R> {
     }
 
     fn active_rows(&self, _elapsed: &u64) -> Result<R::Active, RunError> {
-        unreachable!("an episode of a Python environment is never resumed in the middle")
+        unreachable!("a checkpoint within an episode of a Python environment is refused before this")
     }
 
     fn resumes_episodes(&self) -> bool {

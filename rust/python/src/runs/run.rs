@@ -1,7 +1,8 @@
 //! A training run of any type.
 
 use pyo3::prelude::*;
-use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, EpisodeProgress, Persist};
+use qtab_core::memory::MemoryRoom;
 use qtab_core::random::Rng;
 use qtab_core::tasks::{OptimalActions, Recordings};
 use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer, TrainingError};
@@ -35,8 +36,11 @@ pub(crate) trait Run: Send {
     /// The estimate of the average reward; None where none is learned.
     fn average_reward(&self) -> Option<f64>;
 
-    /// Saves or restores all but the tables and the finished episodes.
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
+    /// Limits the memory that the learner takes from now on.
+    fn limit_memory(&mut self, room: MemoryRoom);
+
+    /// Saves or restores all but the tables and the finished episodes. Returns where in an episode the checkpoint was made.
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<EpisodeProgress, CheckpointError>;
 
     /// Takes over the tables and the finished episodes of a run that is resumed.
     fn restore(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError>;
@@ -95,7 +99,11 @@ where
         self.learner().average_reward()
     }
 
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+    fn limit_memory(&mut self, room: MemoryRoom) {
+        Trainer::limit_memory(self, room);
+    }
+
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<EpisodeProgress, CheckpointError> {
         Trainer::persist(self, checkpoint)
     }
 
@@ -141,7 +149,11 @@ impl Run for Box<dyn Run> {
         (**self).average_reward()
     }
 
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+    fn limit_memory(&mut self, room: MemoryRoom) {
+        (**self).limit_memory(room);
+    }
+
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<EpisodeProgress, CheckpointError> {
         (**self).persist(checkpoint)
     }
 

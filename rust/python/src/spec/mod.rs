@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::learners::AnyAlgorithm;
+use qtab_core::memory::MemoryRoom;
 use qtab_core::q_table::TerminalUpdate;
 
 pub(crate) use action_masks::ActionMasksSpec;
@@ -50,8 +51,8 @@ pub(crate) struct RunSpec {
     pub(crate) bit_generator: BitGenerator,
     /// How many of the last episodes to record. Like the next two, not part of what is learned, so not of Python's spec.
     pub(crate) record: usize,
-    /// How many actions all recordings together may hold.
-    pub(crate) max_recorded_actions: u64,
+    /// The memory for recordings.
+    pub(crate) room: MemoryRoom,
     /// Whether to count the visits of each state-action pair.
     pub(crate) count_visits: bool,
     /// What is estimated instead of learning to act. It has a spec of its own in Python.
@@ -86,7 +87,7 @@ impl RunSpec {
             action_masks,
             terminal_update,
             record,
-            max_recorded_actions: _, // It only matters to runs that record.
+            room: _, // It only matters to runs that record.
             count_visits,
         } = &self;
         let refused = [
@@ -134,7 +135,7 @@ impl RunSpec {
             episodes,
             bit_generator: fields.word("bit_generator", BitGenerator::WORDS)?,
             record: 0,
-            max_recorded_actions: u64::MAX,
+            room: MemoryRoom::unlimited(),
             count_visits: false,
             prediction: None,
         };

@@ -5,10 +5,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use pyo3::prelude::*;
+use qtab_core::memory::MemoryRoom;
 use qtab_core::{Budget, StopFlag};
 
 use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
+use super::memory::{Memory, room_of};
 use super::results::{Results, Row, Rows};
 use crate::convert::{Seed, Seeds};
 use crate::error::invalid;
@@ -22,8 +24,9 @@ type FailedRun = (usize, PyErr);
 /// Trains one run for each seed, in an environment that Rust steps, on `threads` threads, and writes the runs into
 /// `results`. Returns the runs that failed; unless `keep_going` is set, the first failure ends all runs.
 ///
-/// A run starts when a thread is free for it, so that few more tables are alive than threads are at work.
+/// The learners of all runs share `memory`. A run starts when a thread is free for it, so that few more tables are alive than threads are at work.
 #[pyfunction]
+#[pyo3(signature = (spec, seeds, results, threads, keep_going, memory = None))]
 pub(crate) fn train_many(
     py: Python<'_>,
     spec: &Bound<'_, PyAny>,
@@ -31,6 +34,7 @@ pub(crate) fn train_many(
     mut results: Results<'_>,
     threads: usize,
     keep_going: bool,
+    memory: Option<Memory>,
 ) -> PyResult<Vec<FailedRun>> {
     let fields = Fields::new(spec)?;
     let EnvironmentSpec::Native(env) = EnvironmentSpec::parse(&fields.nested("env")?)? else {
@@ -50,6 +54,7 @@ pub(crate) fn train_many(
         rows: Mutex::new(rows),
         failed: Mutex::default(),
         keep_going,
+        room: room_of(memory),
         cancelled: AtomicBool::new(false),
     };
     run_interruptible(py, |stop| {
@@ -77,13 +82,14 @@ struct WorkQueue<'a> {
     rows: Mutex<Rows<'a>>,
     failed: Mutex<Vec<FailedRun>>,
     keep_going: bool,
+    room: MemoryRoom,
     cancelled: AtomicBool,
 }
 
 impl<'a> WorkQueue<'a> {
     /// What one thread does: it keeps a batch of up to `share` runs full until no run is left.
     fn run_worker(&self, share: usize, stop: &StopFlag<'_>) {
-        let mut batch = self.factory.batch();
+        let mut batch = self.factory.batch(&self.room);
         let mut rows = Vec::new();
         let lanes = batch.lanes().min(share);
         loop {

@@ -2,12 +2,14 @@
 
 mod env_spec;
 mod many;
+mod memory;
 mod results;
 mod testbed;
 mod trainer;
 
 pub(crate) use env_spec::EnvironmentSpec;
 pub(crate) use many::train_many;
+pub(crate) use memory::{Memory, room_of};
 pub(crate) use testbed::run_testbeds;
 pub(crate) use trainer::PyTrainer;
 

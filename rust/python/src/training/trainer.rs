@@ -8,17 +8,18 @@ use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use qtab_core::checkpoint::{Checkpoint, CheckpointError};
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, EpisodeProgress};
 use qtab_core::memory::with_capacity;
 use qtab_core::tasks::{Recording, Recordings};
 use qtab_core::{Budget, EpisodeLog};
 
 use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
+use super::memory::{Memory, room_of};
 use crate::convert::{Seed, array_of};
 use crate::error::{RunError, allocation, invalid, unusable_checkpoint};
-use crate::interrupt::{run_polling, run_resumable};
-use crate::runs::{AnyRecordings, BuiltRun, Run, check_tables, python_run};
+use crate::interrupt::{run_detached, run_polling, run_resumable};
+use crate::runs::{AnyRecordings, BuiltRun, Run, check_tables, python_task};
 use crate::spec::{Fields, InitialQSpec, RunSpec};
 
 /// Returns, lengths, and whether each episode ended in a terminal state.
@@ -31,7 +32,8 @@ type Episodes<'py> = (PyReadonlyArray1<'py, f64>, PyReadonlyArray1<'py, i64>, Py
 type PyRecording<'py> = (Py<PyAny>, Bound<'py, PyArray1<u32>>);
 
 /// A training run: the spec of `qtab/_spec.py`, a seed (a non-negative integer of any size), how many of the last
-/// episodes to record, how many actions they may have together, and whether to count the visits of each state-action pair.
+/// episodes to record, how many bytes the user permits and how many of them are left for what grows during the run, and
+/// whether to count the visits of each state-action pair.
 #[pyclass(frozen, name = "Trainer", module = "qtab._core")]
 pub(crate) struct PyTrainer {
     run: Mutex<BuiltRun>,
@@ -43,24 +45,23 @@ pub(crate) struct PyTrainer {
 #[pymethods]
 impl PyTrainer {
     #[new]
-    #[pyo3(signature = (spec, seed, record = 0, max_recorded_actions = u64::MAX, visits = false))]
-    fn new(
-        spec: &Bound<'_, PyAny>,
-        seed: Seed,
-        record: usize,
-        max_recorded_actions: u64,
-        visits: bool,
-    ) -> PyResult<Self> {
-        let fields = Fields::new(spec)?;
-        let run_spec = RunSpec { record, max_recorded_actions, count_visits: visits, ..RunSpec::parse(&fields)? };
+    #[pyo3(signature = (spec, seed, record = 0, memory = None, visits = false))]
+    fn new(spec: &Bound<'_, PyAny>, seed: Seed, record: usize, memory: Option<Memory>, visits: bool) -> PyResult<Self> {
+        let (py, fields, room) = (spec.py(), Fields::new(spec)?, room_of(memory));
+        let run_spec = RunSpec { record, room: room.clone(), count_visits: visits, ..RunSpec::parse(&fields)? };
         let environment = EnvironmentSpec::parse(&fields.nested("env")?)?;
         let initial_q = run_spec.initial_q.clone();
         // A large table takes seconds to fill.
-        let built = run_polling(|stop| match environment {
-            EnvironmentSpec::Native(env) => env.runs(&Arc::new(run_spec))?.build(&seed, stop),
-            EnvironmentSpec::Python(env) => python_run(spec.py(), env, &run_spec, &seed, stop),
-        })?;
-        Ok(Self { run: Mutex::new(built?), initial_q, over: AtomicBool::new(false) })
+        let built = match environment {
+            EnvironmentSpec::Native(env) => run_detached(py, |stop| env.runs(&Arc::new(run_spec))?.build(&seed, stop))?,
+            EnvironmentSpec::Python(env) => {
+                let task = python_task(py, env, &run_spec, &seed)?;
+                run_detached(py, |stop| task.build(stop))?
+            }
+        };
+        let mut built = built?;
+        built.run.limit_memory(room);
+        Ok(Self { run: Mutex::new(built), initial_q, over: AtomicBool::new(false) })
     }
 
     /// Trains until `episodes` episodes are finished, counted from the start of the run. If it is interrupted, what was
@@ -80,8 +81,8 @@ impl PyTrainer {
     }
 
     /// Raises `OverflowError` if the values of the tables have overflowed.
-    fn check_tables(&self) -> PyResult<()> {
-        Ok(check_tables(&*self.lock()?.run, &self.initial_q)?)
+    fn check_tables(&self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| Ok(check_tables(&*self.lock()?.run, &self.initial_q)?))
     }
 
     /// The finished episodes from number `since` on: returns, lengths, whether each ended in a terminal state.
@@ -107,32 +108,44 @@ impl PyTrainer {
 
     /// The values of all tables, one table after the other, rows first.
     fn tables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let built = self.lock()?;
-        let tables = built.run.tables();
-        let size = tables.iter().map(|table| table.len()).sum();
-        let mut values = with_capacity(size).map_err(allocation)?;
-        for table in tables {
-            values.extend_from_slice(table);
-        }
-        Ok(PyArray1::from_vec(py, values))
+        let copy = || {
+            let built = self.lock()?;
+            let tables = built.run.tables();
+            let size = tables.iter().map(|table| table.len()).sum();
+            let mut values = with_capacity(size).map_err(allocation)?;
+            for table in tables {
+                values.extend_from_slice(table);
+            }
+            PyResult::Ok(values)
+        };
+        Ok(PyArray1::from_vec(py, py.detach(copy)?))
     }
 
     /// All that is needed beside the tables and the finished episodes to resume the run exactly. Of an environment stepped
     /// in Python the generator is not part of it, and an unfinished episode is left out.
     fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let mut bytes = Vec::new();
-        self.lock()?.run.persist(&mut Checkpoint::save(&mut bytes)).map_err(unusable)?;
-        Ok(PyBytes::new(py, &bytes))
+        let save = || {
+            let mut bytes = Vec::new();
+            self.lock()?.run.persist(&mut Checkpoint::save(&mut bytes)).map_err(unusable)?;
+            PyResult::Ok(bytes)
+        };
+        let bytes = py.detach(save)?;
+        PyBytes::new_with(py, bytes.len(), |copy| {
+            copy.copy_from_slice(&bytes);
+            Ok(())
+        })
     }
 
     /// Makes a new trainer of the same spec and seed (but for the number of episodes) the one that had these tables, these
-    /// finished episodes and this checkpoint.
+    /// finished episodes and this checkpoint. Returns whether the checkpoint was made within an episode that cannot be
+    /// continued: the next one follows.
     fn restore(
         &self,
+        py: Python<'_>,
         checkpoint: &[u8],
         tables: Vec<PyReadonlyArray1<'_, f64>>,
         episodes: Episodes<'_>,
-    ) -> PyResult<()> {
+    ) -> PyResult<bool> {
         let (returns, lengths, terminated) = episodes;
         let log =
             EpisodeLog { returns: returns.to_vec()?, lengths: lengths.to_vec()?, terminated: terminated.to_vec()? };
@@ -140,10 +153,15 @@ impl PyTrainer {
             return Err(invalid("episodes", "three arrays of the same length", "others"));
         }
         let tables = tables.iter().map(PyReadonlyArray1::as_slice).collect::<Result<Vec<_>, _>>()?;
-        let mut built = self.lock()?;
-        built.run.restore(log, &tables).map_err(unusable)?;
-        let mut checkpoint = Checkpoint::restore(checkpoint);
-        built.run.persist(&mut checkpoint).and_then(|()| checkpoint.finish()).map_err(unusable)
+        let restore = || {
+            let mut built = self.lock()?;
+            built.run.restore(log, &tables).map_err(unusable)?;
+            let mut checkpoint = Checkpoint::restore(checkpoint);
+            let progress = built.run.persist(&mut checkpoint).map_err(unusable)?;
+            checkpoint.finish().map_err(unusable)?;
+            Ok(progress == EpisodeProgress::Abandoned)
+        };
+        py.detach(restore)
     }
 
     /// How often each action was taken in each row, rows first; None where visits are not counted.

@@ -40,8 +40,8 @@ macro_rules! delegate_learner {
             match self { $($pattern => $crate::Learner::<$active>::work($learner)),+ }
         }
 
-        fn reserve(&mut self, work: u64) -> Result<(), $crate::memory::AllocationError> {
-            match self { $($pattern => $crate::Learner::<$active>::reserve($learner, work)),+ }
+        fn reserve(&mut self, work: u64, memory: &mut $crate::memory::RunMemory) -> Result<(), $crate::memory::AllocationError> {
+            match self { $($pattern => $crate::Learner::<$active>::reserve($learner, work, memory)),+ }
         }
 
         #[inline]

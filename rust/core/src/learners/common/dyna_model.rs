@@ -1,8 +1,8 @@
 //! The trait of the models that Dyna-Q plans with.
 
 use super::{Model, ModelEntry, PlanningProgress};
-use crate::checkpoint::{CheckpointError, Persist};
-use crate::memory::AllocationError;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 
 /// A model of the environment, learned from its transitions.
@@ -22,12 +22,18 @@ pub trait DynaModel: Persist {
     /// What follows a pair according to the model; `None` if it was never tried.
     fn sample(&self, row: u32, action: usize, rng: &mut impl Rng) -> Option<ModelEntry>;
 
+    /// The work of recording or sampling a transition, beside that of its row; 0 where it is one look.
+    #[inline]
+    fn work(&self) -> u64 {
+        0
+    }
+
     /// Makes room for so many transitions more.
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    fn reserve(&mut self, transitions: u64) -> Result<(), AllocationError> {
-        let _ = transitions;
+    /// `OutOfMemory`, `LimitReached`; `TooManyEntries` if they could not be told apart.
+    fn reserve(&mut self, transitions: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        let (_, _) = (transitions, memory);
         Ok(())
     }
 
@@ -35,7 +41,7 @@ pub trait DynaModel: Persist {
     ///
     /// # Errors
     /// `Invalid`.
-    fn check_planning(&self, progress: &PlanningProgress) -> Result<(), CheckpointError>;
+    fn check_planning(&self, progress: &PlanningProgress, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
 
 impl DynaModel for Model {
@@ -63,7 +69,7 @@ impl DynaModel for Model {
         self.entry(row, action)
     }
 
-    fn check_planning(&self, progress: &PlanningProgress) -> Result<(), CheckpointError> {
-        Self::check_planning(self, progress)
+    fn check_planning(&self, progress: &PlanningProgress, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointError> {
+        Self::check_planning(self, progress, checkpoint)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::agent::MAX_WORK_PER_CALL;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::memory::{AllocationError, reserve};
+use crate::memory::{AllocationError, RunMemory};
 
 /// A step of an episode, on a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,9 +38,9 @@ impl<M: Copy + Default + Persist> EpisodeSteps<M> {
     }
 
     /// Makes room for so many steps more.
-    pub(in crate::learners) fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
+    pub(in crate::learners) fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         let left = self.limit.saturating_sub(self.steps.len() as u64);
-        reserve(&mut self.steps, left.min(work) as usize)
+        memory.reserve(&mut self.steps, left.min(work) as usize)
     }
 
     #[inline]
@@ -118,9 +118,8 @@ impl<M: Copy + Default + Persist> EpisodeSteps<M> {
             (reward, memo).persist(checkpoint)?;
         }
         (&mut self.following, &mut self.finishing).persist(checkpoint)?;
-        if self.finishing && self.steps.is_empty() {
-            return Err(CheckpointError::Invalid("number of steps"));
-        }
-        Ok(())
+        // An episode that has reached the limit is learned from.
+        let is_valid = if self.finishing { !self.steps.is_empty() } else { (self.steps.len() as u64) < self.limit };
+        checkpoint.check(is_valid || self.steps.is_empty() && !self.finishing, "number of steps")
     }
 }

@@ -3,7 +3,7 @@
 use super::{Agent, EpisodeSteps, row_work, single_row};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::memory::{AllocationError, filled};
+use crate::memory::{AllocationError, RunMemory, filled};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -59,8 +59,8 @@ impl FirstVisits {
         &self.steps
     }
 
-    pub(in crate::learners) fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
-        self.steps.reserve(work)
+    pub(in crate::learners) fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.steps.reserve(work, memory)
     }
 
     /// Forgets the steps of an episode that is given up.

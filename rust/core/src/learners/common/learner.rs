@@ -1,7 +1,7 @@
 //! The trait of all learners.
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -37,9 +37,9 @@ pub trait Learner<R> {
     /// Makes room for what so much work can store.
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
-        let _ = work;
+    /// `OutOfMemory`, `LimitReached`.
+    fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        let (_, _) = (work, memory);
         Ok(())
     }
 

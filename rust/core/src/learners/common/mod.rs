@@ -14,6 +14,9 @@ mod first_visits;
 mod learner;
 mod model;
 mod n_step;
+mod outcome_trees;
+#[cfg(test)]
+mod outcome_trees_tests;
 mod planning_progress;
 mod policy_gradient;
 mod policy_gradient_learner;

@@ -125,9 +125,7 @@ impl Persist for Model {
             for position in 0..tried {
                 self.persist_entry(row, position, checkpoint)?;
             }
-            if self.visited.len() <= index || self.visited[index] != row {
-                return Err(CheckpointError::Invalid("visited row"));
-            }
+            checkpoint.check(self.visited.get(index) == Some(&row), "visited row")?;
         }
         Ok(())
     }
@@ -135,11 +133,13 @@ impl Persist for Model {
 
 impl Model {
     /// Refuses planning that is unfinished although nothing was tried yet.
-    pub(in crate::learners) fn check_planning(&self, progress: &PlanningProgress) -> Result<(), CheckpointError> {
-        if progress.is_unfinished() && self.visited.is_empty() {
-            return Err(CheckpointError::Invalid("number of planning updates"));
-        }
-        Ok(())
+    pub(in crate::learners) fn check_planning(
+        &self,
+        progress: &PlanningProgress,
+        checkpoint: &Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        let is_valid = !progress.is_unfinished() || !self.visited.is_empty();
+        checkpoint.check(is_valid, "number of planning updates")
     }
 
     /// The entry of the action that was tried in a row as number `position`.
@@ -154,13 +154,9 @@ impl Model {
         let known = self.entry(row, action as usize);
         let ModelEntry { mut reward, mut next } = known.unwrap_or(ModelEntry { reward: 0.0, next: None });
         (&mut reward, &mut next).persist(checkpoint)?;
-        if next.is_some_and(|next| next as usize >= self.counts.len()) {
-            return Err(CheckpointError::Invalid("row of the model"));
-        }
+        checkpoint.check(next.is_none_or(|next| (next as usize) < self.counts.len()), "row of the model")?;
         if checkpoint.is_restoring() {
-            if known.is_some() {
-                return Err(CheckpointError::Invalid("action tried twice"));
-            }
+            checkpoint.check(known.is_none(), "action tried twice")?;
             self.record(row, action as usize, ModelEntry { reward, next });
         }
         Ok(())

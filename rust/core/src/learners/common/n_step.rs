@@ -6,7 +6,7 @@ use super::agent::{MAX_WORK_PER_CALL, VALUES_PER_WORK};
 use super::{Agent, UpdateRule};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
 use crate::features::ActiveRows;
-use crate::memory::{AllocationError, out_of_memory};
+use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -131,9 +131,9 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
     }
 
     /// An episode has as many pairs as steps, and at most n of them wait.
-    fn reserve(&mut self, _agent: &mut Agent, work: u64) -> Result<(), AllocationError> {
+    fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         let count = ((self.n - self.visits.len()) as u64).min(work) as usize;
-        self.visits.try_reserve(count).map_err(out_of_memory::<NStepVisit<R, M::Memo>>(count))
+        memory.reserve(&mut self.visits, count)
     }
 
     #[inline]
@@ -171,6 +171,8 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
         self.memo.persist(checkpoint)?;
         let mut follows = self.following.is_some();
         (&mut self.finishing, &mut follows).persist(checkpoint)?;
+        let is_valid = if self.finishing { count > 0 } else { count < self.n };
+        checkpoint.check(is_valid, "number of steps")?;
         self.following = if follows {
             let rows = persist_rows(self.following.map(|(rows, _)| rows), num_rows, checkpoint)?;
             let mut action = self.following.map_or(0, |(_, action)| action);

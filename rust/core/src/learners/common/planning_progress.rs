@@ -10,18 +10,15 @@ pub struct PlanningProgress {
     remaining: u32,
     /// The work of the last part.
     work: u64,
-    /// The work of an update.
-    update_work: u64,
-    /// The most updates in a part.
-    most: u32,
+    /// The work of reading and updating a row.
+    row_work: u64,
 }
 
 impl PlanningProgress {
     /// Before the first step, with rows of so many values.
     pub(in crate::learners) fn new(num_actions: usize) -> Self {
-        let update_work = row_work(num_actions);
-        let most = (MAX_WORK_PER_CALL / update_work).max(1) as u32;
-        Self { remaining: 0, work: update_work, update_work, most }
+        let row_work = row_work(num_actions);
+        Self { remaining: 0, work: row_work, row_work }
     }
 
     /// Begins the planning of a step.
@@ -30,12 +27,13 @@ impl PlanningProgress {
         self.remaining = planning_steps;
     }
 
-    /// How many updates to do now.
+    /// How many updates to do now, where the model does so much work for each.
     #[inline]
-    pub(in crate::learners) fn take(&mut self) -> u32 {
-        let updates = self.remaining.min(self.most);
+    pub(in crate::learners) fn take(&mut self, model_work: u64) -> u32 {
+        let update_work = self.row_work + model_work;
+        let updates = self.remaining.min((MAX_WORK_PER_CALL / update_work).max(1) as u32);
         self.remaining -= updates;
-        self.work = u64::from(1 + updates) * self.update_work;
+        self.work = u64::from(1 + updates) * update_work;
         updates
     }
 

@@ -2,7 +2,7 @@
 
 use super::{Agent, Critic, Learner};
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -26,9 +26,9 @@ pub trait PolicyGradientRule<R> {
     /// As [`Learner::reserve`](super::Learner::reserve).
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    fn reserve(&mut self, shape: (usize, usize), work: u64) -> Result<(), AllocationError> {
-        let (_, _) = (shape, work);
+    /// `OutOfMemory`, `LimitReached`.
+    fn reserve(&mut self, shape: (usize, usize), work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        let (_, _, _) = (shape, work, memory);
         Ok(())
     }
 
@@ -90,8 +90,8 @@ impl<R: Copy + AsRef<[u32]>, U: PolicyGradientRule<R>> Learner<R> for PolicyGrad
         self.rule.work(&self.agent)
     }
 
-    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
-        self.rule.reserve(self.agent.table.shape(), work)
+    fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.rule.reserve(self.agent.table.shape(), work, memory)
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! The state-action pairs that a model predicts to lead to each state.
 
 use crate::StopFlag;
-use crate::memory::{AllocationError, filled};
+use crate::memory::{AllocationError, check_indices, filled};
 
 /// The end of a list, and a pair in none.
 const NONE: u32 = u32::MAX;
@@ -18,6 +18,7 @@ pub(in crate::learners) struct Predecessors {
 impl Predecessors {
     /// Empty lists.
     pub(in crate::learners) fn new(rows: usize, pairs: usize, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        check_indices(rows.max(pairs))?;
         Ok(Self { first: filled(&NONE, rows, stop)?, links: filled(&[NONE; 2], pairs, stop)? })
     }
 
@@ -65,6 +66,11 @@ impl Predecessors {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pairs_beyond_32_bits_are_refused() {
+        assert_eq!(Predecessors::new(2, 1 << 32, &StopFlag::new()), Err(AllocationError::TooManyEntries));
+    }
 
     #[test]
     fn pairs_move_between_lists() {

@@ -2,7 +2,7 @@
 
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::memory::{AllocationError, filled, with_capacity};
+use crate::memory::{AllocationError, check_indices, filled, with_capacity};
 
 /// Not in the queue.
 const ABSENT: u32 = u32::MAX;
@@ -20,6 +20,7 @@ pub(in crate::learners) struct PriorityQueue {
 impl PriorityQueue {
     /// An empty queue with room for so many pairs.
     pub(in crate::learners) fn new(pairs: usize, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        check_indices(pairs)?;
         let (heap, places) = (with_capacity(pairs)?, filled(&ABSENT, pairs, stop)?);
         Ok(Self { heap, places, priorities: filled(&0.0, pairs, stop)? })
     }
@@ -111,9 +112,7 @@ impl PriorityQueue {
             let mut priority = self.priorities[pair as usize];
             priority.persist(checkpoint)?;
             if checkpoint.is_restoring() {
-                if self.places[pair as usize] != ABSENT || priority.is_nan() {
-                    return Err(CheckpointError::Invalid("pair in the queue"));
-                }
+                checkpoint.check(self.places[pair as usize] == ABSENT && !priority.is_nan(), "pair in the queue")?;
                 self.insert(pair as usize, priority);
             }
         }
@@ -126,6 +125,11 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn pairs_beyond_32_bits_are_refused() {
+        assert_eq!(PriorityQueue::new(1 << 32, &StopFlag::new()), Err(AllocationError::TooManyEntries));
+    }
 
     #[test]
     fn the_higher_priority_of_a_pair_stays() {

@@ -1,32 +1,20 @@
 //! A model of a stochastic environment: how often each outcome followed each state-action pair.
 
+use super::outcome_trees::{OutcomeTrees, Root};
 use super::{DynaModel, Model, ModelEntry, PlanningProgress};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::memory::{AllocationError, filled, reserve};
+use crate::memory::{AllocationError, MemoryRoom, RunMemory, filled};
 use crate::random::Rng;
-
-/// The end of a list.
-const NONE: u32 = u32::MAX;
-
-/// What followed a pair, how often, and the next outcome of the same pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct CountedOutcome {
-    entry: ModelEntry,
-    count: u32,
-    after: u32,
-}
 
 /// The outcomes of each pair in the order in which they were first seen, with their counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StochasticModel {
     /// Which pairs were tried, and in which order.
     tried: Model,
-    /// The first outcome of each pair.
-    first: Vec<u32>,
-    /// How often each pair was tried.
-    totals: Vec<u32>,
-    outcomes: Vec<CountedOutcome>,
+    /// The outcomes of each pair.
+    roots: Vec<Root>,
+    trees: OutcomeTrees,
 }
 
 impl StochasticModel {
@@ -35,35 +23,14 @@ impl StochasticModel {
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
     pub fn new(rows: usize, num_actions: usize, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
-        let (pairs, tried) = (rows * num_actions, Model::new(rows, num_actions, stop)?);
-        Ok(Self { tried, first: filled(&NONE, pairs, stop)?, totals: filled(&0, pairs, stop)?, outcomes: Vec::new() })
+        let (tried, roots) = (Model::new(rows, num_actions, stop)?, filled(&Root::EMPTY, rows * num_actions, stop)?);
+        Ok(Self { tried, roots, trees: OutcomeTrees::new() })
     }
 
-    /// Counts an outcome so many times more.
-    fn count(&mut self, pair: usize, entry: ModelEntry, times: u32) {
-        self.totals[pair] = self.totals[pair].saturating_add(times);
-        let (mut last, mut next) = (NONE, self.first[pair]);
-        while next != NONE {
-            let outcome = &mut self.outcomes[next as usize];
-            if outcome.entry == entry {
-                outcome.count = outcome.count.saturating_add(times);
-                return;
-            }
-            (last, next) = (next, outcome.after);
-        }
-        let index = self.outcomes.len() as u32;
-        self.outcomes.push(CountedOutcome { entry, count: times, after: NONE });
-        if last == NONE {
-            self.first[pair] = index;
-        } else {
-            self.outcomes[last as usize].after = index;
-        }
-    }
-
-    /// The outcomes of a pair.
-    fn of(&self, pair: usize) -> impl Iterator<Item = &CountedOutcome> {
-        let at = |index: u32| self.outcomes.get(index as usize);
-        std::iter::successors(at(self.first[pair]), move |outcome| at(outcome.after))
+    /// The index of a pair.
+    #[inline]
+    fn pair(&self, row: u32, action: usize) -> usize {
+        row as usize * self.tried.num_actions() + action
     }
 }
 
@@ -74,7 +41,8 @@ impl DynaModel for StochasticModel {
 
     fn record(&mut self, row: u32, action: usize, entry: ModelEntry) {
         self.tried.record(row, action, entry);
-        self.count(row as usize * self.tried.num_actions() + action, entry, 1);
+        let pair = self.pair(row, action);
+        self.trees.count(&mut self.roots[pair], pair, entry, 1);
     }
 
     #[inline]
@@ -89,64 +57,65 @@ impl DynaModel for StochasticModel {
 
     /// Draws one `integers` of the number of times that the pair was tried.
     fn sample(&self, row: u32, action: usize, rng: &mut impl Rng) -> Option<ModelEntry> {
-        let pair = row as usize * self.tried.num_actions() + action;
-        let mut left = rng.integers(self.totals[pair].max(1));
-        for outcome in self.of(pair) {
-            if left < outcome.count {
-                return Some(outcome.entry);
-            }
-            left -= outcome.count;
-        }
-        None
+        let root = self.roots[self.pair(row, action)];
+        let left = rng.integers(self.trees.total(root).max(1));
+        self.trees.at(root, left)
     }
 
-    fn reserve(&mut self, transitions: u64) -> Result<(), AllocationError> {
-        reserve(&mut self.outcomes, usize::try_from(transitions).unwrap_or(usize::MAX))
+    /// A tree is as deep as the logarithm of its number of outcomes.
+    #[inline]
+    fn work(&self) -> u64 {
+        u64::from(self.trees.len().checked_ilog2().unwrap_or(0))
     }
 
-    fn check_planning(&self, progress: &PlanningProgress) -> Result<(), CheckpointError> {
-        self.tried.check_planning(progress)
+    fn reserve(&mut self, transitions: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.trees.reserve(usize::try_from(transitions).unwrap_or(usize::MAX), memory)
+    }
+
+    fn check_planning(&self, progress: &PlanningProgress, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.tried.check_planning(progress, checkpoint)
     }
 }
 
 /// The outcomes of each pair that was tried, in the order of the pairs.
 impl Persist for StochasticModel {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        const INVALID: CheckpointError = CheckpointError::Invalid("outcome of the model");
         self.tried.persist(checkpoint)?;
-        let saved = if checkpoint.is_restoring() {
-            self.first.fill(NONE);
-            self.totals.fill(0);
-            self.outcomes.clear();
-            None
-        } else {
-            Some(self.clone())
-        };
+        if checkpoint.is_restoring() {
+            self.roots.fill(Root::EMPTY);
+            self.trees = OutcomeTrees::new();
+        }
         let num_actions = self.tried.num_actions();
-        let num_rows = self.first.len() / num_actions;
-        for pair in 0..self.first.len() {
-            if self.tried.entry((pair / num_actions) as u32, pair % num_actions).is_none() {
-                continue;
+        for pair in 0..self.roots.len() {
+            if self.tried.entry((pair / num_actions) as u32, pair % num_actions).is_some() {
+                self.persist_outcomes(pair, checkpoint)?;
             }
-            let mut known = saved.iter().flat_map(|saved| saved.of(pair));
-            let mut count = saved.as_ref().map_or(0, |saved| saved.of(pair).count());
-            checkpoint.index(&mut count, usize::MAX, "number of outcomes")?;
-            if count == 0 {
-                return Err(INVALID);
-            }
-            for _ in 0..count {
-                let empty = CountedOutcome { entry: ModelEntry { reward: 0.0, next: None }, count: 0, after: NONE };
-                let CountedOutcome { entry: ModelEntry { mut reward, mut next }, mut count, .. } =
-                    known.next().copied().unwrap_or(empty);
-                (&mut reward, &mut next, &mut count).persist(checkpoint)?;
-                if checkpoint.is_restoring() {
-                    let in_table = next.is_none_or(|next| (next as usize) < num_rows);
-                    if !in_table || count == 0 || self.totals[pair].checked_add(count).is_none() {
-                        return Err(INVALID);
-                    }
-                    self.outcomes.try_reserve(1).map_err(|_| CheckpointError::OutOfMemory)?;
-                    self.count(pair, ModelEntry { reward, next }, count);
-                }
+        }
+        Ok(())
+    }
+}
+
+impl StochasticModel {
+    fn persist_outcomes(&mut self, pair: usize, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        const WHAT: &str = "outcome of the model";
+        let num_rows = self.roots.len() / self.tried.num_actions();
+        let mut outcomes = self.roots[pair].len() as usize;
+        checkpoint.index(&mut outcomes, usize::MAX, "number of outcomes")?;
+        checkpoint.check(outcomes > 0, WHAT)?;
+        for index in 0..outcomes {
+            let (mut entry, mut count) = if checkpoint.is_restoring() {
+                (ModelEntry { reward: 0.0, next: None }, 0)
+            } else {
+                self.trees.outcome(self.roots[pair], index as u32)
+            };
+            (&mut entry.reward, &mut entry.next, &mut count).persist(checkpoint)?;
+            checkpoint.check(entry.next.is_none_or(|next| (next as usize) < num_rows), WHAT)?;
+            checkpoint.check(count > 0, WHAT)?;
+            if checkpoint.is_restoring() {
+                let mut memory = RunMemory::new(MemoryRoom::unlimited());
+                self.trees.reserve(1, &mut memory).map_err(|_| CheckpointError::OutOfMemory)?;
+                let counted = self.trees.count(&mut self.roots[pair], pair, entry, count);
+                checkpoint.check(counted, WHAT)?;
             }
         }
         Ok(())
@@ -161,6 +130,7 @@ mod tests {
     #[test]
     fn outcomes_are_sampled_as_often_as_they_were_seen() {
         let mut model = StochasticModel::new(2, 2, &StopFlag::new()).expect("a few pairs");
+        model.reserve(4, &mut RunMemory::new(MemoryRoom::unlimited())).expect("a few outcomes");
         let often = ModelEntry { reward: 1.0, next: Some(1) };
         let rare = ModelEntry { reward: 1.0, next: None };
         for entry in [often, rare, often, often] {

@@ -2,7 +2,7 @@
 
 use super::{Agent, Learner, UpdateRule};
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 use crate::policies::Policy;
 use crate::random::Rng;
 use crate::schedules::StepSize;
@@ -52,8 +52,8 @@ where
         self.rule.work(&self.agent)
     }
 
-    fn reserve(&mut self, work: u64) -> Result<(), AllocationError> {
-        self.rule.reserve(&mut self.agent, work)
+    fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.rule.reserve(&mut self.agent, work, memory)
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! The trait of all update rules.
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -34,9 +34,9 @@ pub trait UpdateRule<R, G> {
     /// As [`Learner::reserve`](super::Learner::reserve).
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    fn reserve(&mut self, agent: &mut G, work: u64) -> Result<(), AllocationError> {
-        let (_, _) = (agent, work);
+    /// `OutOfMemory`, `LimitReached`.
+    fn reserve(&mut self, agent: &mut G, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        let (_, _, _) = (agent, work, memory);
         Ok(())
     }
 

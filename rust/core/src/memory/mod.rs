@@ -4,7 +4,10 @@ use std::collections::TryReserveError;
 use std::error::Error;
 use std::fmt;
 
+pub use self::run_memory::{Growable, Growing, MemoryRoom, RunMemory};
 use crate::StopFlag;
+
+mod run_memory;
 
 /// How many values are written between two looks at the stop flag: a fraction of a millisecond.
 const VALUES_BETWEEN_CHECKS: usize = 1 << 16;
@@ -19,6 +22,15 @@ pub enum AllocationError {
     },
     /// The caller set the stop flag.
     Stopped,
+    /// What a run stores while it trains takes more than the caller permits.
+    LimitReached {
+        /// The number of bytes that the caller permits for everything.
+        limit: u64,
+        /// What would take more.
+        growing: Growing,
+    },
+    /// More values than can be numbered in the bits that there are for it.
+    TooManyEntries,
 }
 
 impl fmt::Display for AllocationError {
@@ -26,6 +38,8 @@ impl fmt::Display for AllocationError {
         match self {
             Self::OutOfMemory { bytes } => write!(formatter, "{bytes} bytes more could not be allocated"),
             Self::Stopped => write!(formatter, "the allocation was stopped"),
+            Self::LimitReached { limit, .. } => write!(formatter, "the limit of {limit} bytes is reached"),
+            Self::TooManyEntries => write!(formatter, "there are more values than can be numbered"),
         }
     }
 }
@@ -43,6 +57,14 @@ pub fn out_of_memory<T>(additional: usize) -> impl FnOnce(TryReserveError) -> Al
 /// `OutOfMemory`.
 pub fn reserve<T>(values: &mut Vec<T>, additional: usize) -> Result<(), AllocationError> {
     values.try_reserve(additional).map_err(out_of_memory::<T>(additional))
+}
+
+/// Checks that so many values can be numbered in 32 bits, the last number being left for a mark.
+///
+/// # Errors
+/// `TooManyEntries`.
+pub fn check_indices(values: usize) -> Result<(), AllocationError> {
+    if u32::try_from(values).is_ok() { Ok(()) } else { Err(AllocationError::TooManyEntries) }
 }
 
 /// An empty vector with room for `capacity` values.
@@ -98,6 +120,12 @@ mod tests {
         let stop = StopFlag::new();
         assert_eq!(filled(&0_u8, usize::MAX, &stop), Err(AllocationError::OutOfMemory { bytes: usize::MAX }));
         assert_eq!(with_capacity::<f64>(1 << 60).map(|_| ()), Err(AllocationError::OutOfMemory { bytes: 1 << 63 }));
+    }
+
+    #[test]
+    fn numbers_of_32_bits_tell_so_many_values_apart() {
+        assert_eq!(check_indices(u32::MAX as usize), Ok(()));
+        assert_eq!(check_indices(1 << 32), Err(AllocationError::TooManyEntries));
     }
 
     #[test]

@@ -1,15 +1,17 @@
 //! A run that is saved and restored at any step continues as if nothing had happened, for every learner.
 
+mod unfinished_episodes;
+
 use proptest::prelude::*;
 
 use super::Checkpoint;
 use crate::envs::classic_control::MountainCar;
 use crate::features::{Axis, Features, Rounding, TileCoding};
 use crate::learners::{
-    Agent, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model,
-    MonteCarloControl, NStepQSigma, NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping, QLearning,
-    Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda,
-    WatkinsQLambda,
+    ActorCritic, ActorCriticLambda, Agent, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
+    DynaQPlus, ExpectedSarsa, Model, MonteCarloControl, NStepQSigma, NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo,
+    PolicyGradientLearner, PrioritizedSweeping, QLearning, Reinforce, Sarsa, SarsaLambda, StochasticModel,
+    TargetPolicy, TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, WatkinsQLambda,
 };
 use crate::policies::{AnyPolicy, TieBreaking};
 use crate::q_table::TerminalUpdate;
@@ -25,16 +27,18 @@ const LIMIT: u64 = 40;
 type Run<F, L> = Trainer<NativeTask<MountainCar, F>, L, AgentRng>;
 
 /// Where a run is saved, and how it is made.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Setup {
     steps: u64,
     seed: u32,
     mt19937: bool,
     visits: bool,
+    /// Which bytes of the checkpoint are damaged, and what they become. Then the run need not be restored.
+    damage: Vec<(prop::sample::Index, u8)>,
 }
 
 impl Setup {
-    fn agent(self, rows: usize, n_active: usize) -> Agent {
+    fn agent(&self, rows: usize, n_active: usize) -> Agent {
         let schedule = Schedule::linear(0.5, 0.1, EPISODES as u64, 0);
         Agent {
             table: QTable::new(vec![0.0; rows * ACTIONS], ACTIONS),
@@ -51,7 +55,7 @@ impl Setup {
         }
     }
 
-    fn run<F, L>(self, features: F, learner: L) -> Run<F, L>
+    fn run<F, L>(&self, features: F, learner: L) -> Run<F, L>
     where
         F: Features<[f32; 2]>,
         L: Learner<F::Active>,
@@ -63,12 +67,15 @@ impl Setup {
     }
 
     /// Compares an uninterrupted run with one that is saved after some steps and restored into a new run.
-    fn check<F, L>(self, features: &F, learner: impl Fn() -> L)
+    fn check<F, L>(&self, features: &F, learner: impl Fn() -> L)
     where
         F: Features<[f32; 2]> + Clone,
         L: Learner<F::Active>,
     {
         let new_run = || self.run(features.clone(), learner());
+        if !self.damage.is_empty() {
+            return self.check_damaged(new_run);
+        }
         let (mut whole, mut stopped, mut resumed) = (new_run(), new_run(), new_run());
         let advance = |run: &mut Run<F, L>, steps| {
             run.advance(Budget { episodes: EPISODES, work: steps }).expect("all observations have rows");
@@ -99,8 +106,26 @@ impl Setup {
         assert_eq!(states[0], states[1]);
     }
 
+    /// Restores a run from damaged bytes, or finds that they are damaged. Neither panics, and the run can be advanced.
+    fn check_damaged<F, L>(&self, new_run: impl Fn() -> Run<F, L>)
+    where
+        F: Features<[f32; 2]>,
+        L: Learner<F::Active>,
+    {
+        let (mut run, mut restored, mut bytes) = (new_run(), new_run(), Vec::new());
+        run.advance(Budget { episodes: EPISODES, work: self.steps }).expect("all observations have rows");
+        run.persist(&mut Checkpoint::save(&mut bytes)).expect("memory suffices");
+        for (index, value) in &self.damage {
+            let index = index.index(bytes.len());
+            bytes[index] = *value;
+        }
+        if restored.persist(&mut Checkpoint::restore(&bytes)).is_ok() {
+            let _ = restored.advance(Budget { episodes: 2, work: 1000 });
+        }
+    }
+
     /// The learners that work with any features.
-    fn check_all<F: Features<[f32; 2]> + Clone>(self, features: &F, n_active: usize) {
+    fn check_all<F: Features<[f32; 2]> + Clone>(&self, features: &F, n_active: usize) {
         let rows = features.len();
         let agent = || self.agent(rows, n_active);
         let traces = || Traces::new(rows * ACTIONS, 1e-3, &StopFlag::new()).expect("a few traces");
@@ -121,13 +146,51 @@ impl Setup {
         self.check(features, || TdLearner { agent: agent(), rule: rule() });
         if !self.visits {
             self.check(features, || TdLearner { agent: agent(), rule: TrueOnlineSarsaLambda::new(traces(), 0.8) });
+            let critic = || Some(Critic { table: QTable::new(vec![0.0; rows * ACTIONS], ACTIONS), step_size: 0.1 });
+            let actor = || Agent { policy: AnyPolicy::softmax(1.0, ACTIONS), ..agent() };
+            self.check(features, || PolicyGradientLearner { agent: actor(), critic: critic(), rule: Reinforce::new() });
+            self.check(features, || PolicyGradientLearner {
+                agent: actor(),
+                critic: critic(),
+                rule: ActorCritic::new(),
+            });
+            let rule = || ActorCriticLambda::new(0.8, rows, &StopFlag::new()).expect("a few rows");
+            self.check(features, || PolicyGradientLearner { agent: actor(), critic: critic(), rule: rule() });
         }
     }
+
+    /// The learners of tables, those of all features among them.
+    fn check_tables<F: Features<[f32; 2], Active = [u32; 1]> + Clone>(&self, grid: &F) {
+        let rows = grid.len();
+        self.check_all(grid, 1);
+        // More planning than is done in one call, so that a run can stop within a step.
+        let planning = if self.damage.is_empty() { 9000 } else { 3 };
+        let (agent, stop) = (|| self.agent(rows, 1), StopFlag::new());
+        let model = || Model::new(rows, ACTIONS, &stop).expect("a small model");
+        self.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(model(), planning) });
+        let stochastic = || StochasticModel::new(rows, ACTIONS, &stop).expect("a small model");
+        self.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(stochastic(), 5) });
+        let sweeping = || PrioritizedSweeping::new(model(), planning, 1e-4, &stop).expect("a small model");
+        self.check(grid, || TdLearner { agent: agent(), rule: sweeping() });
+        let pairs = rows * ACTIONS;
+        for exploring_starts in [false, true] {
+            let rule = || MonteCarloControl::new(pairs, LIMIT, exploring_starts, &stop).expect("a few pairs");
+            self.check(grid, || TdLearner { agent: agent(), rule: rule() });
+        }
+        let off_policy = || OffPolicyMonteCarlo::new(pairs, LIMIT, (1.0, 0.0), &stop).expect("a few pairs");
+        self.check(grid, || TdLearner { agent: agent(), rule: off_policy() });
+        let dyna_q_plus = || DynaQPlus::new(model(), planning, 1e-3, &StopFlag::new()).expect("a small model");
+        self.check(grid, || TdLearner { agent: agent(), rule: dyna_q_plus() });
+    }
+}
+
+fn rounding() -> impl Features<[f32; 2], Active = [u32; 1]> + Clone {
+    Rounding::new([Axis::new(-1.2_f32, 0.6, 10.0), Axis::new(-0.07_f32, 0.07, 100.0)])
 }
 
 fn setup() -> impl Strategy<Value = Setup> {
     (0..EPISODES as u64 * LIMIT, any::<u32>(), any::<bool>(), any::<bool>())
-        .prop_map(|(steps, seed, mt19937, visits)| Setup { steps, seed, mt19937, visits })
+        .prop_map(|(steps, seed, mt19937, visits)| Setup { steps, seed, mt19937, visits, damage: Vec::new() })
 }
 
 proptest! {
@@ -141,53 +204,15 @@ proptest! {
 
     #[test]
     fn every_learner_on_a_grid_resumes_exactly(setup in setup()) {
-        let grid = Rounding::new([Axis::new(-1.2_f32, 0.6, 10.0), Axis::new(-0.07_f32, 0.07, 100.0)]);
-        let rows = Features::<[f32; 2]>::len(&grid);
-        setup.check_all(&grid, 1);
-        // More planning than is done in one call, so that a run can stop within a step.
-        let planning = 20_000;
-        let (agent, model) = (|| setup.agent(rows, 1), || Model::new(rows, ACTIONS, &StopFlag::new()).expect("a small model"));
-        setup.check(&grid, || TdLearner { agent: agent(), rule: DynaQ::new(model(), planning) });
-        let stop = StopFlag::new();
-        let stochastic = || StochasticModel::new(rows, ACTIONS, &stop).expect("a small model");
-        setup.check(&grid, || TdLearner { agent: agent(), rule: DynaQ::new(stochastic(), 5) });
-        let sweeping = || PrioritizedSweeping::new(model(), planning, 1e-4, &stop).expect("a small model");
-        setup.check(&grid, || TdLearner { agent: agent(), rule: sweeping() });
-        let pairs = rows * ACTIONS;
-        for exploring_starts in [false, true] {
-            let rule = || MonteCarloControl::new(pairs, LIMIT, exploring_starts, &stop).expect("a few pairs");
-            setup.check(&grid, || TdLearner { agent: agent(), rule: rule() });
-        }
-        let off_policy = || OffPolicyMonteCarlo::new(pairs, LIMIT, (1.0, 0.0), &stop).expect("a few pairs");
-        setup.check(&grid, || TdLearner { agent: agent(), rule: off_policy() });
-        let dyna_q_plus = || DynaQPlus::new(model(), planning, 1e-3, &StopFlag::new()).expect("a small model");
-        setup.check(&grid, || TdLearner { agent: agent(), rule: dyna_q_plus() });
+        setup.check_tables(&rounding());
     }
 
     /// Not even bytes that somebody made up cause a panic.
     #[test]
     fn any_bytes_are_restored_or_refused(
         setup in setup(),
-        flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
     ) {
-        let grid = Rounding::new([Axis::new(-1.2_f32, 0.6, 10.0), Axis::new(-0.07_f32, 0.07, 100.0)]);
-        let rows = Features::<[f32; 2]>::len(&grid);
-        let new_run = || {
-            let stop = StopFlag::new();
-            let model = Model::new(rows, ACTIONS, &stop).expect("a small model");
-            let rule = DynaQPlus::new(model, 3, 1e-3, &stop).expect("a small model");
-            setup.run(grid.clone(), TdLearner { agent: setup.agent(rows, 1), rule })
-        };
-        let (mut run, mut bytes) = (new_run(), Vec::new());
-        run.advance(Budget { episodes: EPISODES, work: setup.steps }).expect("all observations have rows");
-        run.persist(&mut Checkpoint::save(&mut bytes)).expect("memory suffices");
-        for (index, value) in flips {
-            let index = index.index(bytes.len());
-            bytes[index] = value;
-        }
-        let mut restored = new_run();
-        if restored.persist(&mut Checkpoint::restore(&bytes)).is_ok() {
-            let _ = restored.advance(Budget { episodes: 2, work: 1000 });
-        }
+        Setup { damage, ..setup }.check_tables(&rounding());
     }
 }
