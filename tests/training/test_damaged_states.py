@@ -42,12 +42,11 @@ def test_damaged_states_are_refused_or_resumed(env, backend):
     assert found == {False, True}
 
 
-@pytest.mark.parametrize("backend", ["rust", "gymnasium"])
-def test_an_episode_that_python_steps_cannot_be_smuggled_into_a_state(backend):
-    run = qtab.train("FrozenLake-v1", seed=1, episodes=3, backend=backend, algorithm="q_learning")
+def test_an_episode_that_python_steps_cannot_be_smuggled_into_a_state():
+    run = qtab.train("FrozenLake-v1", seed=1, episodes=3, backend="gymnasium", algorithm="q_learning")
     assert run.state is not None
-    between = run.state.checkpoint
-    # Whichever byte says where in an episode the run is.
-    within = [between[:index] + b"\1" + between[index + 1 :] for index in range(len(between)) if not between[index]]
-    answers = [resumes(replace(run, state=replace(run.state, checkpoint=state)), 4) for state in within]
-    assert False in answers
+    between, episode = run.state.checkpoint, bytes(8 + 8 + 8 + 1)  # an action, a return, a length, nothing unfinished
+    for index in range(len(between)):  # one of the bytes says that the run is between two episodes
+        if not between[index]:
+            within = between[:index] + b"\1" + between[index + 1 :] + episode
+            assert not resumes(replace(run, state=replace(run.state, checkpoint=within)), 4)

@@ -246,9 +246,9 @@ mod tests {
 
     /// Each step is worth 1 and leads back: without an end the values grow forever.
     #[derive(Clone, Copy, Debug, PartialEq)]
-    struct Endless;
+    struct NeverEnding;
 
-    impl GridTask<1> for Endless {
+    impl GridTask<1> for NeverEnding {
         const POINTS: [usize; 1] = [2];
         const COARSEST_STRIDE: usize = 1;
         const CONVERGED: f64 = 1e-2;
@@ -276,7 +276,7 @@ mod tests {
 
     #[test]
     fn values_that_never_settle_are_an_error() {
-        let values = GridValues::new(Endless, 10, 1, &StopFlag::new());
+        let values = GridValues::new(NeverEnding, 10, 1, &StopFlag::new());
         assert_eq!(values, Err(PlanningError::NotConverged));
     }
 }
