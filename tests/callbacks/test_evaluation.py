@@ -87,6 +87,24 @@ def test_the_best_table_is_kept(tmp_path):
     assert qtab.evaluate(best.run, 50, seed=7).mean_return == best.best_return
 
 
+def test_the_best_table_of_the_earlier_part_is_kept_where_a_run_is_resumed(tmp_path):
+    path, short = tmp_path / "best.npz", {**LAKE, "episodes": 1500, "learning_rate": 1.0}
+    whole = KeepBest(episodes=50, every=250, seed=7)
+    qtab.train(**short, callback=whole)
+    at = whole.evaluated_at[int(np.argmax(whole.mean_returns))]
+    assert at < 1500
+    part = qtab.train(
+        **short, callback=[KeepBest(path, 50, 250, seed=7), lambda now: now.episodes < at], callback_every=250
+    )
+    best = KeepBest(path, 50, 250, seed=7)
+    qtab.resume(part, callback=best)
+    assert best.run is not None
+    assert whole.run is not None
+    assert best.best_return == whole.best_return
+    assert_same_run(best.run, whole.run)
+    assert_same_run(qtab.load(path), whole.run)
+
+
 def test_of_equal_evaluations_the_first_is_kept():
     best = KeepBest(episodes=1, every=2)
     qtab.train("MountainCar-v0", episodes=6, max_episode_steps=5, callback=best)

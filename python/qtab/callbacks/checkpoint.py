@@ -79,16 +79,10 @@ class Checkpoint(BaseCallback):
 
     def _saved_of(self, earlier: "Run") -> Iterator[tuple[int, Path]]:
         """Each numbered file that holds the first episodes of a run, after their number."""
-        from qtab.results.storage import load
-
         for path in self.path.parent.glob(f"{glob.escape(self.path.stem)}-*{glob.escape(self.path.suffix)}"):
             number = path.stem.removeprefix(f"{self.path.stem}-")
-            if not number.isdecimal() or int(number) > len(earlier.episode_returns):
-                continue
-            with suppress(OSError, ValueError):  # not the file of a run
-                returns = load(path).episode_returns
-                if returns.tobytes() == earlier.episode_returns[: int(number)].tobytes():
-                    yield int(number), path
+            if number.isdecimal() and first_part(path, earlier) is not None:
+                yield int(number), path
 
     def __call__(self, progress: Progress) -> None:
         """Saves the run, and removes the files that are too many."""
@@ -105,6 +99,19 @@ class Checkpoint(BaseCallback):
             return self.path
         width = len(str(progress.total))  # so that the names sort by their numbers
         return self.path.with_name(f"{self.path.stem}-{progress.episodes:0{width}d}{self.path.suffix}")
+
+
+def first_part(path: Path, run: "Run") -> "Run | None":
+    """Returns the run in a file if it holds the first episodes of a run; None for any other file."""
+    from qtab.results.storage import load
+
+    with suppress(OSError, ValueError):  # not the file of a run
+        found = load(path)
+        count = len(found.episode_returns)
+        if found.config.seed == run.config.seed and count <= len(run.episode_returns):
+            same = found.episode_returns.tobytes() == run.episode_returns[:count].tobytes()
+            return found if same else None
+    return None
 
 
 def file_path(name: str, path: "str | os.PathLike[str]") -> Path:

@@ -1,5 +1,7 @@
 """``EvaluateEvery``: how good the greedy policy is, again and again during a run."""
 
+from typing import TYPE_CHECKING
+
 import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +12,9 @@ from qtab.config import Config
 from qtab.envs.registry import spec_of
 from qtab.training.callbacks import Progress
 from qtab.training.evaluate import Evaluation, evaluate
+
+if TYPE_CHECKING:
+    from qtab.results.run import Run
 
 
 class EvaluateEvery(BaseCallback):
@@ -70,10 +75,13 @@ class EvaluateEvery(BaseCallback):
 
     def __call__(self, progress: Progress) -> bool | None:
         """Evaluates the greedy policy."""
-        seed = _evaluation_seed(progress.config) if self.seed is None else self.seed
-        self.evaluations.append(evaluate(progress.run, self.episodes, seed, self.env, progress=False))
+        self.evaluations.append(self._evaluate(progress.run))
         self.evaluated_at.append(progress.episodes)
         return None
+
+    def _evaluate(self, run: "Run") -> Evaluation:
+        seed = _evaluation_seed(run.config) if self.seed is None else self.seed
+        return evaluate(run, self.episodes, seed, self.env, progress=False)
 
 
 def _require_another(config: Config, env: gym.Env | None) -> None:

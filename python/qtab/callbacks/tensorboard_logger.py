@@ -52,7 +52,8 @@ class TensorBoardLogger(MetricsLogger):
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise type(error)(f"folder must be a folder, got {str(self.folder)!r}: {error.strerror}") from None
-        # TensorBoard drops the points of earlier files from `purge_step` on. The name of a file is the second of its making.
+        # TensorBoard drops the points of earlier files from `purge_step` on. The suffix tells two files of one second
+        # apart.
         again = {"purge_step": finished + 1, "filename_suffix": f".{finished}"} if finished else {}
         self._writer = SummaryWriter(str(self.folder), **again)
         settings = "\n".join(f"    {name} = {value!r}" for name, value in vars(config).items() if value is not None)

@@ -1,6 +1,7 @@
 //! How much memory runs may take for what grows while they train.
 
 use std::collections::{HashMap, TryReserveError, VecDeque};
+use std::hash::{BuildHasher, Hash};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -150,7 +151,7 @@ growable! {
     <T> VecDeque<T>, T, try_reserve_exact;
 }
 
-impl<K: Eq + std::hash::Hash, V> Growable for HashMap<K, V> {
+impl<K: Eq + Hash, V, S: BuildHasher> Growable for HashMap<K, V, S> {
     fn len(&self) -> usize {
         Self::len(self)
     }
