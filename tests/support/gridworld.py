@@ -101,3 +101,27 @@ class Tutorial(gym.Env):
         self.agent = np.clip(self.agent + self.MOVES[action], 0, self.size - 1)
         arrived = np.array_equal(self.agent, self.target)
         return self._observation(), float(arrived), arrived, False, {}
+
+
+class StoppedError(Exception):
+    """What stops a run."""
+
+
+class StoppingRoom(Room):
+    """Fails at one of its steps, or at one of its resets, as an environment that Ctrl-C interrupts does."""
+
+    def __init__(self, steps: int = 10**6, resets: int = 10**6) -> None:
+        super().__init__()
+        self.steps_left, self.resets_left = steps, resets
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        self.resets_left -= 1
+        if not self.resets_left:
+            raise StoppedError
+        return super().reset(seed=seed, options=options)
+
+    def step(self, action: int) -> Any:
+        self.steps_left -= 1
+        if not self.steps_left:
+            raise StoppedError
+        return super().step(action)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import qtab
 from qtab.callbacks import Checkpoint
 from qtab.config.choices import Algorithm
-from support.gridworld import Room
+from support.gridworld import Room, StoppedError, StoppingRoom
 from support.learner_settings import run_settings
 from support.parity import assert_same_run, run_of
 from support.posix import posix_only
@@ -56,10 +56,6 @@ def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, dat
             assert qtab.resume(stored) is stored
         else:
             assert_resumed(qtab.resume(stored), whole)
-
-
-class StoppedError(Exception):
-    pass
 
 
 def stopped_by_a_timer(seconds: float, env: str, **config: Any) -> qtab.Run:
@@ -150,26 +146,6 @@ def test_every_learner_resumes_within_an_episode(algorithm, time_aware, caplog):
 def test_a_run_that_learns_from_an_episode_at_its_time_limit_resumes_exactly(config, seconds):
     space: dict[str, Any] = {"discretizer": "bins", "bins": 2, "env_kwargs": {"goal_velocity": 1.0}}
     check_within("MountainCar-v0", seconds, episodes=10**6, time_aware=True, seed=3, **space, **config)
-
-
-class StoppingRoom(Room):
-    """Fails at one of its steps, or at one of its resets, as an environment that Ctrl-C interrupts does."""
-
-    def __init__(self, steps: int = 10**6, resets: int = 10**6) -> None:
-        super().__init__()
-        self.steps_left, self.resets_left = steps, resets
-
-    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
-        self.resets_left -= 1
-        if not self.resets_left:
-            raise StoppedError
-        return super().reset(seed=seed, options=options)
-
-    def step(self, action: int) -> Any:
-        self.steps_left -= 1
-        if not self.steps_left:
-            raise StoppedError
-        return super().step(action)
 
 
 @pytest.mark.parametrize("algorithm", STEPS)
