@@ -57,11 +57,23 @@ pub(crate) fn in_c_order<T: numpy::Element + Copy, D: Dimension>(
     collect(array.as_array().iter().copied()).map(Arc::from).map_err(allocation)
 }
 
+/// A new array of a few numbers. Where there is no memory for it, there is none for the interpreter either.
+#[inline]
+#[expect(clippy::disallowed_methods, reason = "a few numbers")]
+pub(crate) fn small_array<'py, T: numpy::Element + Copy, const N: usize>(
+    py: Python<'py>,
+    values: &[T; N],
+) -> Bound<'py, PyArray1<T>> {
+    PyArray1::from_slice(py, values)
+}
+
 /// An array of up to this many bytes is made by `NumPy`, in a fraction of the time: where there is no memory for it, there is
 /// none for the interpreter either.
 const SMALL: usize = 1 << 14;
 
 /// A new array that is a copy of these values. `PyArray1::from_slice` would panic where memory runs out.
+#[inline]
+#[expect(clippy::disallowed_methods, reason = "a small array")]
 pub(crate) fn array_from<'py, T: numpy::Element + Copy>(
     py: Python<'py>,
     values: &[T],
@@ -73,6 +85,8 @@ pub(crate) fn array_from<'py, T: numpy::Element + Copy>(
 }
 
 /// The same of rows: an array of shape `(rows.len(), N)`.
+#[inline]
+#[expect(clippy::disallowed_methods, reason = "a small array")]
 pub(crate) fn rows_array<'py, T: numpy::Element + Copy, const N: usize>(
     py: Python<'py>,
     rows: &[[T; N]],

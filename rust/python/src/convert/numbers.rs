@@ -1,9 +1,10 @@
 //! Numbers of Python's and `NumPy`'s; None for those with which Python would compute something else.
 
-use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt};
 use qtab_core::numeric::Scalar;
+
+use super::small_array;
 
 /// `NumPy` warns where a constant is too large for f32, Python raises where its square is too large for f64.
 const LARGEST_FLOAT: f64 = 1e30;
@@ -34,7 +35,7 @@ pub(crate) fn double(value: &Bound<'_, PyAny>) -> Option<f64> {
 /// A `NumPy` scalar. Taking an array's item is faster than calling the scalar's type.
 pub(crate) fn numpy_scalar(py: Python<'_>, number: Scalar) -> PyResult<Bound<'_, PyAny>> {
     match number {
-        Scalar::Single(number) => PyArray1::from_slice(py, &[number]).get_item(0),
-        Scalar::Python(number) | Scalar::Double(number) => PyArray1::from_slice(py, &[number]).get_item(0),
+        Scalar::Single(number) => small_array(py, &[number]).get_item(0),
+        Scalar::Python(number) | Scalar::Double(number) => small_array(py, &[number]).get_item(0),
     }
 }

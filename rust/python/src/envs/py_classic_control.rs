@@ -4,7 +4,6 @@
 use std::mem::replace;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use numpy::PyArray1;
 use pyo3::exceptions::PyAttributeError;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -13,7 +12,7 @@ use pyo3::types::{PyDict, PyTuple, PyType};
 use super::classic_control::{DynClassicEnv, StepResult, StoredState, numpy_uses_libm};
 use super::gymnasium::{generator, is_numpy_generator, render_if_human};
 use super::registry::{Entry, classic_control, entry};
-use crate::convert::StateArray;
+use crate::convert::{StateArray, array_from};
 
 /// The names of all parameters of an environment, as Gymnasium spells its attributes.
 #[pyfunction]
@@ -139,7 +138,7 @@ impl PyClassicControl {
                 return Err(PyAttributeError::new_err(format!("'{}' object has no attribute 'state'", class.name()?)));
             }
         };
-        let mut state = PyArray1::from_slice(py, &numbers[..layout.state_len]).into_any();
+        let mut state = array_from(py, &numbers[..layout.state_len])?.into_any();
         if layout.state_is_tuple {
             state = PyTuple::new(py, state.try_iter()?.collect::<PyResult<Vec<_>>>()?)?.into_any();
         }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use numpy::{PyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
+use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 use qtab_core::prediction::{Choice, FixedPolicy, ObservationPolicy};
@@ -10,7 +10,7 @@ use qtab_core::random::Rng;
 
 use super::box_features::ReadRows;
 use super::function_policy::FunctionPolicy;
-use crate::convert::in_c_order;
+use crate::convert::{in_c_order, small_array};
 use crate::error::{RunError, invalid};
 use crate::spec::{DiscretizerSpec, Fields, Variant};
 
@@ -111,7 +111,7 @@ pub(crate) trait PyObservation {
 
 impl<const M: usize> PyObservation for [f32; M] {
     fn to_python<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        PyArray1::from_slice(py, self).into_any()
+        small_array(py, self).into_any()
     }
 }
 

@@ -7,7 +7,7 @@ use pyo3::types::PyString;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::numeric::Scalar;
 
-use crate::convert::{LARGEST_FORCE, discrete_action, double, first_item, numpy_scalar};
+use crate::convert::{LARGEST_FORCE, discrete_action, double, first_item, numpy_scalar, small_array};
 use crate::error::invalid;
 
 /// Up to this many items are read faster one by one than by borrowing the array.
@@ -81,7 +81,7 @@ impl BatchAction for usize {
     }
 
     fn to_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        PyArray1::from_slice(py, &[self.cast_signed() as i64]).get_item(0)
+        small_array(py, &[self.cast_signed() as i64]).get_item(0)
     }
 
     fn persist(&mut self, num_actions: usize, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {

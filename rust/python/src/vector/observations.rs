@@ -5,7 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::convert::{array_from, array_of, rows_array};
+use crate::convert::{array_of, rows_array, small_array};
 
 /// A type of observations that are handed to Python in batches.
 pub(crate) trait BatchObservation: Copy + Send + 'static {
@@ -37,7 +37,7 @@ impl<const N: usize> BatchObservation for [f32; N] {
     }
 
     fn single<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(array_from(py, self)?.into_any())
+        Ok(small_array(py, self).into_any())
     }
 }
 

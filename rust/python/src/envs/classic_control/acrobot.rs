@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use numpy::PyArray1;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,7 +11,7 @@ use super::reset::reset;
 use super::snapshot::{set_f32_state, set_state};
 use super::trigonometry::{f32_cos_sin, f32_cos_sin_of_any_angle, numpy_uses_libm};
 use super::{ClassicEnv, EnvLayout, ResetResult, StepResult};
-use crate::convert::{StateArray, double};
+use crate::convert::{StateArray, double, small_array};
 use crate::runs::{RunFactory, generic_box};
 use crate::spec::RunSpec;
 
@@ -41,7 +40,7 @@ impl ClassicEnv for Acrobot {
     fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>> {
         let Some(f32_cos_sin) = f32_cos_sin(generator.py())? else { return Ok(None) };
         let (state, observation) = reset(&Acrobot { f32_cos_sin, ..*self }, 4, generator)?;
-        let state = PyArray1::from_iter(generator.py(), <[f64; 4]>::from(state).map(|angle| angle as f32));
+        let state = small_array(generator.py(), &<[f64; 4]>::from(state).map(|angle| angle as f32));
         Ok(Some(ResetResult { state: state.into_any(), observation }))
     }
 

@@ -6,6 +6,8 @@ use pyo3::prelude::*;
 use qtab_core::Env;
 use qtab_core::random::Rng;
 
+use crate::convert::small_array;
+
 pub(crate) struct ResetResult<'py> {
     pub(crate) state: Bound<'py, PyAny>,
     pub(crate) observation: Bound<'py, PyArray1<f32>>,
@@ -21,7 +23,7 @@ where
     E: Env<Observation = [f32; M], State: Into<[f64; N]>>,
 {
     let (state, observation) = reset(env, draws, generator)?;
-    Ok(ResetResult { state: PyArray1::from_slice(generator.py(), &state.into()).into_any(), observation })
+    Ok(ResetResult { state: small_array(generator.py(), &state.into()).into_any(), observation })
 }
 
 /// The initial state, and its observation.
@@ -37,7 +39,7 @@ where
     // One call for all numbers is faster than a call for each, and draws the same.
     let numbers = generator.call_method1(intern!(py, "random"), (draws,))?.cast_into::<PyArray1<f64>>()?.to_vec()?;
     let state = env.reset(&mut PresetDraws(numbers.into_iter()));
-    Ok((state, PyArray1::from_slice(py, &env.observe(&state))))
+    Ok((state, small_array(py, &env.observe(&state))))
 }
 
 /// A generator of numbers that were drawn before.

@@ -1,10 +1,11 @@
 //! Steps of Gymnasium's classes: the core's step, with the types that Gymnasium returns.
 
-use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyFloat;
 use qtab_core::Env;
 use qtab_core::envs::Step;
+
+use crate::convert::small_array;
 
 /// The state of a Gymnasium class, which its steps leave in Rust until Python asks for it.
 pub(crate) enum StoredState {
@@ -48,7 +49,7 @@ impl<'py> StepResult<'py> {
         let observation = env.observe(&step.state);
         Self {
             state: StoredState::Native(state),
-            observation: PyArray1::from_slice(py, &observation).into_any(),
+            observation: small_array(py, &observation).into_any(),
             reward: PyFloat::new(py, step.reward).into_any(),
             terminated: step.terminated,
             finite: step.reward.is_finite() && observation.iter().all(|number| number.is_finite()),

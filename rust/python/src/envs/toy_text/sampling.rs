@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyInt, PyList, PyTuple};
 
 use super::super::gymnasium::{attribute_after_reset, generator};
-use crate::convert::double;
+use crate::convert::{double, small_array};
 
 /// The transition that was drawn, as it is in `P`.
 pub(super) struct SampledTransition<'py> {
@@ -76,7 +76,7 @@ pub(super) fn sample_initial<'py>(env: &Bound<'py, PyAny>) -> PyResult<Option<Bo
         sum > random
     });
     let state = chosen.and_then(|state| i64::try_from(state).ok()).unwrap_or(0);
-    PyArray1::from_slice(py, &[state]).get_item(0).map(Some)
+    small_array(py, &[state]).get_item(0).map(Some)
 }
 
 /// The probability of an outcome; NaN for a type that Python adds differently than floats.

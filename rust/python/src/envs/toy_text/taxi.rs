@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use numpy::{PyArray1, PyArrayDescrMethods, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{PyArrayDescrMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -17,7 +17,7 @@ use super::super::native_env::NativeEnv;
 use super::sampling::{python_int, reset_fallback, sample_initial, sample_transition, set_snapshot, step_fallback};
 use super::table::{identity, table_runs};
 use super::transition_table::table_of;
-use crate::convert::discrete_action;
+use crate::convert::{discrete_action, small_array};
 use crate::runs::{RunFactory, generic};
 use crate::spec::RunSpec;
 use crate::vector::{ActionMasks, DynVectorEnv, EnvInfo, TransitionInfo, VectorOptions, native_vector_env};
@@ -179,7 +179,7 @@ impl PyTaxi {
         let dropoff =
             passenger == IN_TAXI && (square.eq(locations.get_item(destination)?)? || locations.contains(square)?);
         let mask = [row < 4, row > 0, column < 4 && open(2), column > 0 && open(0), pickup, dropoff];
-        Ok(PyArray1::from_slice(py, &mask.map(i8::from)).into_any())
+        Ok(small_array(py, &mask.map(i8::from)).into_any())
     }
 }
 
