@@ -50,14 +50,29 @@ def test_an_environment_of_ones_own_is_evaluated_in_another_one():
     assert evaluation.evaluated_at == [3, 6]
 
 
-def test_an_id_does_not_stand_for_an_environment_with_more_wrappers():
-    class Negative(gym.RewardWrapper[Any, Any]):
-        def reward(self, reward: Any) -> Any:
-            return -float(reward)
+class Scaled(gym.RewardWrapper[Any, Any]):
+    def __init__(self, env: gym.Env, factor: float) -> None:
+        super().__init__(env)
+        self.factor = factor
 
-    wrapped = Negative(gym.make("MountainCar-v0"))
-    with pytest.raises(ValueError, match=r"^env must be given: 'MountainCar-v0' does not make .* \(Negative\)$"):
+    def reward(self, reward: Any) -> Any:
+        return self.factor * float(reward)
+
+
+def test_an_id_does_not_stand_for_an_environment_with_more_wrappers():
+    wrapped = Scaled(gym.make("MountainCar-v0"), 2.0)
+    message = "^env must be given: .* the arguments of its wrapper Scaled are not known$"
+    with pytest.raises(ValueError, match=message):
         qtab.train(wrapped, episodes=3, callback=EvaluateEvery())
+
+
+def test_evaluations_take_place_in_the_environment_of_the_training():
+    env: Any = gym.make("MountainCar-v0", max_episode_steps=30)
+    env.unwrapped.goal_position = -0.5
+    best = KeepBest(episodes=2)
+    qtab.train(env, episodes=20, seed=0, callback=best)
+    assert best.best_return is not None
+    assert best.best_return > -30  # the usual goal is out of reach within 30 steps
 
 
 def test_an_exception_in_an_evaluation_carries_the_run_that_is_trained():

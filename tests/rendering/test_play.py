@@ -166,7 +166,7 @@ def test_an_error_of_the_environment_closes_it(monkeypatch: pytest.MonkeyPatch) 
     def broken(self: Any, action: Any) -> Any:
         raise RuntimeError("the motor is broken")
 
-    monkeypatch.setattr(FrozenLakeEnv, "step", broken)
+    monkeypatch.setattr(gym.wrappers.TimeLimit, "step", broken)
     with pytest.raises(RuntimeError, match="the motor is broken"):
         qtab.play(run, seed=0, window=False)
     assert pygame_is_closed()

@@ -20,19 +20,20 @@ class Chain(gym.Env[Any, Any]):
     action_space = gym.spaces.Discrete(2)
 
     def __init__(self, first: int, reward: float, raises: BaseException | None = None) -> None:
-        self.first, self.reward, self.raises = first, reward, raises
+        # Not by the names of the arguments, by which a resumed run would notice the other environment.
+        self.start, self.pays, self.error = first, reward, raises
         self.state = first
 
     def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[int, dict[str, Any]]:
         super().reset(seed=seed)
-        self.state = self.first
+        self.state = self.start
         return self.state, {}
 
     def step(self, action: int) -> tuple[int, float, bool, bool, dict[str, Any]]:
-        if self.raises is not None and self.state == self.first + 2:
-            raise self.raises
+        if self.error is not None and self.state == self.start + 2:
+            raise self.error
         self.state += 1
-        return self.state, self.reward, self.state == self.first + 3, False, {}
+        return self.state, self.pays, self.state == self.start + 3, False, {}
 
 
 @pytest.mark.parametrize("algorithm", LEARNERS)

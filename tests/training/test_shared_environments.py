@@ -65,8 +65,13 @@ def test_a_run_that_another_thread_resumes_there_is_refused_before_it_touches_th
         if count == 12:
             raise error
 
+    called = [interrupt]
+
+    def before(count):
+        called[0](count)
+
     with pytest.raises(KeyboardInterrupt):
-        train(Calls(ScriptedEnv([ONE]), interrupt))
+        train(Calls(ScriptedEnv([ONE]), before))
     errors: list[RuntimeError] = []
 
     def meddle(count):
@@ -84,7 +89,8 @@ def test_a_run_that_another_thread_resumes_there_is_refused_before_it_touches_th
         thread.join()
 
     scripted = ScriptedEnv([ONE])
-    env = Calls(scripted, meddle)
+    called[0] = meddle
+    env = Calls(scripted, before)
     run = train(env)
     assert "is being trained in by another thread" in str(errors[0])
     assert scripted.seeds == [0, None, None]

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab.callbacks.base import BaseCallback
 from qtab.config import Config
-from qtab.envs.registry import spec_of
 from qtab.training.callbacks import Progress
 from qtab.training.evaluate import Evaluation, evaluate
+from qtab.training.run_env import make_run_env
 
 if TYPE_CHECKING:
     from qtab.results.run import Run
@@ -28,7 +28,7 @@ class EvaluateEvery(BaseCallback):
         every: The number of training episodes between two evaluations; None takes ``callback_every``.
         seed: The seed of the environment, the same in every evaluation, so that they differ by the policy alone. None
             derives one from the seed of the run.
-        env: The environment to evaluate in; None makes one like the run's from its id.
+        env: The environment to evaluate in; None makes the run's again, with its wrappers and changed attributes.
 
     Attributes:
         evaluated_at: For each evaluation the number of finished training episodes.
@@ -69,7 +69,7 @@ class EvaluateEvery(BaseCallback):
         """
         self.evaluated_at, self.evaluations = [], []
         if self.env is None:
-            _require_another(config, env)
+            _require_another(config)
         elif env is not None and self.env.unwrapped is env.unwrapped:
             raise ValueError("env must be another environment than the one that is trained in, got the same one")
 
@@ -84,15 +84,13 @@ class EvaluateEvery(BaseCallback):
         return evaluate(run, self.episodes, seed, self.env, progress=False)
 
 
-def _require_another(config: Config, env: gym.Env | None) -> None:
+def _require_another(config: Config) -> None:
     try:
-        spec = spec_of(config.env)
+        make_run_env(config).close()
+    except ValueError:  # it says what is missing, and asks for env=
+        raise
     except Exception as error:
         raise ValueError(f"env must be given: no other environment can be made from {config.env!r}") from error
-    wrappers = () if env is None or env.spec is None else env.spec.additional_wrappers
-    if len(wrappers) != len(spec.additional_wrappers):
-        names = ", ".join(wrapper.name for wrapper in wrappers)
-        raise ValueError(f"env must be given: {config.env!r} does not make the wrappers of the run's ({names})")
 
 
 def _evaluation_seed(config: Config) -> int:

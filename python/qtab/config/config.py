@@ -31,6 +31,7 @@ from qtab.config.choices import (
     Traces,
 )
 from qtab.config.options import PREFERENCES, fixed_settings, freed_settings, implied_schedules
+from qtab.config.origin import WithOrigin, copied
 from qtab.config.unknown import check_names
 from qtab.config.validation import validated
 
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
 
 @with_fields
 @dataclass(frozen=True, eq=False)
-class Config:
+class Config(WithOrigin):
     """The settings of a run: with the same config, it can be repeated exactly.
 
     A setting that is None was not given. The config of a run holds the value that was used instead, and None where the
@@ -232,7 +233,7 @@ class Config:
         return html.summary(f"Config of {self.env}", shown)
 
     def replace(self, **changes: "Unpack[ConfigSettings]") -> "Config":
-        """Returns a copy with some settings changed.
+        """Returns a copy with some settings changed; beside another environment what followed from the old one is open.
 
         Raises:
             TypeError: for an unknown setting, or a value of the wrong type.
@@ -240,12 +241,18 @@ class Config:
         """
         check_names(changes, DEFAULTS)
         own: dict[str, Any] = {}
+        origin = self.origin
+        if origin is not None and changes.get("env", self.env) != self.env:
+            own |= {name: DEFAULTS[name] for name in origin.derived}
+            origin = None
         if "algorithm" in changes:
             own |= {name: DEFAULTS[name] for name in freed_settings(self.algorithm, changes["algorithm"])}
             own |= fixed_settings(changes["algorithm"])
         if changes.get("time_aware", own and self.time_aware):
             own["on_truncation"] = "terminate"
-        return dataclasses.replace(self, **{**own, **changes})
+        elif self.time_aware and "time_aware" in changes:
+            own["on_truncation"] = DEFAULTS["on_truncation"]
+        return copied(dataclasses.replace(self, **{**own, **changes}), origin and origin.without(changes))
 
 
 DEFAULTS: Mapping[str, Any] = {
@@ -295,6 +302,6 @@ setattr(Config, "__init__", _suggesting(Config.__init__))  # noqa: B010 - type c
 
 def replace_checked(config: Config, **changes: Any) -> Config:
     """Returns a copy with some fields changed, for values that are known to be valid: they are not checked again."""
-    changed = object.__new__(Config)
-    vars(changed).update(vars(config), **changes)
+    changed = copied(config, config.origin)
+    vars(changed).update(changes)
     return changed

@@ -2,14 +2,17 @@
 
 import inspect
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache
 from typing import Any, TypeAlias
 
+import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, Config, replace_checked
 from qtab.config.options import applicable, freed_settings, is_set, turned_off
+from qtab.config.origin import copied
 from qtab.config.unknown import check_names
 
 Base: TypeAlias = Config | Mapping[str, Any]
@@ -24,7 +27,8 @@ def collect(
     Args:
         function: The function that was called. Its signature shows which settings it takes.
         env: The environment given; None takes the config's.
-        config: The config given. With another environment, its ``env_kwargs`` and ``preset`` do not count.
+        config: The config given. With another environment, its ``env_kwargs``, its ``preset``, and what followed from
+            its own environment do not count.
         settings: The keywords given.
 
     Raises:
@@ -37,9 +41,11 @@ def collect(
     if isinstance(config, Config):
         if "seed" not in arguments:
             config = replace_checked(config, seed=None)
-        if env is None or config.env == (env.id if isinstance(env, EnvSpec) else env):
+        registered = gym.registry.get(config.env.rpartition(":")[2]) if isinstance(env, EnvSpec) else None
+        if env is None or env in (config.env, registered):
             return config.env, config
-        return env, replace_checked(config, env_kwargs={}, preset=None)
+        origin = config.origin and replace(config.origin, environment=None)
+        return env, copied(replace_checked(config, env_kwargs={}, preset=None), origin)
     if not isinstance(config, Mapping):
         raise TypeError(f"config must be a qtab.Config or a mapping of settings, got {shown(config)}")
     check_names(config, [name for name in DEFAULTS if name in arguments], function.__name__)
@@ -56,12 +62,16 @@ def _arguments(function: Callable[..., Any]) -> frozenset[str]:
 def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns settings over the base of a call.
 
-    What a mapping holds counts like a keyword. The fields of a Config yield: those that are not set, and those that do
-    not apply beside the other settings, are left out. An option that is off in the config of a run stays off, whatever
-    a preset has.
+    What a mapping holds counts like a keyword. The fields of a Config yield: those that are not set, those that do not
+    apply beside the other settings, and those that are derived again are left out. An option that is off in the config
+    of a run stays off, whatever a preset has.
     """
     if isinstance(base, Config):
         left_out = {"env", *freed_settings(base.algorithm, settings.get("algorithm", base.algorithm))}
+        if base.origin is not None:
+            left_out |= base.origin.derived_again
+        if base.time_aware and not settings.get("time_aware", True):
+            left_out.add("on_truncation")
         given = {name: value for name, value in vars(base).items() if name not in left_out and is_set(value)}
         base = applicable({**given, **turned_off(vars(base))}, {**vars(base), **settings})
     return {**base, **settings}

@@ -12,13 +12,13 @@ from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES
 from qtab.diagnosis.routes import shortest_best_episode
 from qtab.diagnosis.sample import Sample, repeat, sample_steps
 from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, is_usual_mountain_car
-from qtab.envs.stored import is_registered
 from qtab.planning.optimum import Optimum
 from qtab.planning.quick import quick_optimum
 from qtab.results.initial_tables import are_finite, initial_tables
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.training.extensions import repeatable
+from qtab.training.run_env import can_be_made
 from qtab.training.train import train
 from qtab.training.train_many import seed_sequence, train_many
 from qtab.training.verdict import Verdict, judge
@@ -46,9 +46,9 @@ class Facts:
 
     @cached_property
     def can_repeat(self) -> bool:
-        """Whether the whole run can be repeated quickly: Rust steps its environment, which can be made from its id."""
+        """Whether the whole run can be repeated quickly: Rust steps its environment, which can be made again."""
         finished = len(self.run.episode_returns)
-        in_rust = self.config.backend == "rust" and is_registered(self.config.env)
+        in_rust = self.config.backend == "rust" and can_be_made(self.config)
         return in_rust and repeatable(self.run)[1] == finished > 0
 
     @cached_property

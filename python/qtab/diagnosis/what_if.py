@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from qtab._utils import html
 from qtab._utils.progress import ProgressBar, check_progress
 from qtab.config import Config
+from qtab.config.origin import copied
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, as_keywords, shown
 from qtab.envs.registry import spec_of
 from qtab.results.runs import Runs
-from qtab.training.train_many import seed_numbers, train_many
+from qtab.training.run_env import as_in_training
+from qtab.training.train_many import resolve_template, seed_numbers, train_many
 from qtab.training.verdict import judge
 
 if TYPE_CHECKING:
@@ -160,8 +162,11 @@ def _train(facts: Facts, change: Mapping[str, Any], seeds: Sequence[int], bar: P
     if bar.is_shown:
         watched["callback"] = lambda progress: bar.move_to(done * len(seeds) + progress.runs)
     if "preset" in change:
-        environment: dict[str, Any] = {"env_kwargs": config.env_kwargs, "max_episode_steps": config.max_episode_steps}
-        return train_many(config.env, seeds, **watched, **environment, **change)
+        # A config that holds nothing but the environment.
+        environment = Config(env=config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps)
+        bare = {"max_episode_steps": config.max_episode_steps}
+        _, made, asked = as_in_training(copied(environment, config.origin), {**bare, **change}, resolve_template)
+        return train_many(made, seeds, **watched, **{"env_kwargs": config.env_kwargs, **asked})
     return train_many(config=config, seeds=seeds, **watched, **change)
 
 

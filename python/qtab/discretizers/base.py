@@ -144,8 +144,10 @@ class Discretizer(ABC):
         return self
 
     def same_space(self, other: "Discretizer") -> bool:
-        """Whether another discretizer has the same rows for observations of the same shape."""
-        return self.shape == other.shape and self.low.shape == other.low.shape
+        """Whether another discretizer has the same rows for observations between the same limits."""
+        return (
+            self.shape == other.shape and np.array_equal(self.low, other.low) and np.array_equal(self.high, other.high)
+        )
 
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (n_active,) rows of an observation, or the (n, n_active) rows of n observations.

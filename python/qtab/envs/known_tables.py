@@ -1,10 +1,8 @@
 """Environments of Gymnasium whose transition tables Rust makes: Gymnasium's constructors take milliseconds for them."""
 
-import inspect
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from importlib import import_module
-from types import ModuleType
 from typing import Any
 
 import gymnasium as gym
@@ -12,6 +10,7 @@ from gymnasium import spaces
 from gymnasium.envs.registration import EnvSpec
 
 from qtab import _core
+from qtab.envs.class_code import changed_library_code
 from qtab.envs.registry import ENTRIES, gymnasium_id
 
 VERSION = "1.4."
@@ -59,7 +58,8 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
         return None
     module_name, _, class_name = ENTRIES[name].gymnasium_entry_point.partition(":")
     module: Any = import_module(module_name)
-    if not _is_gymnasiums_own(getattr(module, class_name), module):
+    cls = getattr(module, class_name)
+    if cls.__module__ != module_name or changed_library_code(cls) is not None:
         return None
     try:
         return make_table(module, **arguments)
@@ -132,21 +132,3 @@ _KNOWN = {
     "Taxi-v4": _TAXI,
 }
 """By the environment's id: the keyword arguments of its constructor with their defaults, and what makes its table."""
-
-
-def _is_gymnasiums_own(cls: type, module: ModuleType) -> bool:
-    """Whether neither the class nor one of its methods was replaced, as a test or a lesson may do.
-
-    A function's globals show where its code is; its name and its module can be those of what it replaces.
-    """
-    if cls.__module__ != module.__name__:
-        return False
-    members = [
-        member.__func__ if isinstance(member, staticmethod) else member
-        for member in vars(cls).values()
-        if callable(member) or hasattr(member, "__get__")
-    ]
-    return all(
-        inspect.isgetsetdescriptor(member) or (inspect.isfunction(member) and member.__globals__ is vars(module))
-        for member in members
-    )

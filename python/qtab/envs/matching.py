@@ -6,8 +6,10 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
+from gymnasium.envs.registration import EnvSpec, load_env_creator
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
+from qtab.envs.class_code import changed_library_code
 from qtab.envs.registry import TABULAR, EnvEntry, entry_for_id
 
 # The wrappers of gymnasium.make, none of which changes an observation or a reward.
@@ -52,13 +54,15 @@ def entry_for_env(env: gym.Env) -> EnvEntry:
     """
     unwrapped: Any = env.unwrapped
     entry = _entry_for_class(unwrapped)
+    if (changed := changed_library_code(type(unwrapped))) is not None:
+        raise NotInRustError(f"{changed} was replaced", "Gymnasium's own code is stepped in Rust")
     wrapper = unknown_wrapper(env)
     if wrapper is not None:
         raise NotInRustError(
             f"Rust does not implement its wrapper {wrapper}",
             "pass the environment without this wrapper, as gymnasium.make returns it",
         )
-    for layer in _layers(env):
+    for layer in layers(env):
         for name in vars(layer):
             if callable(getattr(type(layer), name, None)):
                 raise _changed(f"its method {name} was replaced")
@@ -68,6 +72,14 @@ def entry_for_env(env: gym.Env) -> EnvEntry:
     if not entry.has_table:  # Rust reads a table from the object, so no attribute can be out of date
         _check_attributes(unwrapped, entry)
     return entry
+
+
+def changed_entry_code(spec: EnvSpec) -> str | None:
+    """Returns what was replaced in the class that a spec names, which Rust otherwise steps; None if nothing was."""
+    if not isinstance(spec.entry_point, str):
+        return None
+    made: Any = load_env_creator(spec.entry_point)
+    return changed_library_code(made) if isinstance(made, type) else None
 
 
 def _entry_for_class(unwrapped: Any) -> EnvEntry:
@@ -129,8 +141,8 @@ def _changed(reason: str) -> NotInRustError:
     return NotInRustError(reason, "pass the environment as gymnasium.make returns it")
 
 
-def _layers(env: gym.Env) -> Iterator[gym.Env]:
-    """The wrappers of an environment, the outermost first, and the environment in them."""
+def layers(env: gym.Env) -> Iterator[gym.Env]:
+    """Yields the wrappers of an environment, the outermost first, and the environment in them."""
     while isinstance(env, gym.Wrapper):
         yield env
         env = env.env
@@ -139,19 +151,19 @@ def _layers(env: gym.Env) -> Iterator[gym.Env]:
 
 def unknown_wrapper(env: gym.Env) -> str | None:
     """Returns the class name of the outermost wrapper that may change a number; None if there is none."""
-    *wrappers, _ = _layers(env)
+    *wrappers, _ = layers(env)
     return next((type(wrapper).__name__ for wrapper in wrappers if type(wrapper) not in _HARMLESS_WRAPPERS), None)
 
 
 def time_limit(env: gym.Env) -> int | None:
     """Returns the time limit in steps that ``TimeLimit`` wrappers set, the lowest of several; None without one."""
-    limits = [layer._max_episode_steps for layer in _layers(env) if isinstance(layer, TimeLimit)]
+    limits = [layer._max_episode_steps for layer in layers(env) if isinstance(layer, TimeLimit)]
     return min(limits, default=None)
 
 
 def equal_environments(one: gym.Env, other: gym.Env) -> bool:
     """Returns whether two environments are known to be equal: the same wrappers and classes with equal attributes."""
-    ours, theirs = list(_layers(one)), list(_layers(other))
+    ours, theirs = list(layers(one)), list(layers(other))
     if [type(layer) for layer in ours] != [type(layer) for layer in theirs]:
         return False
     return all(_equal(_attributes(layer), _attributes(twin)) for layer, twin in zip(ours, theirs, strict=True))

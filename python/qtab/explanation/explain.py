@@ -25,6 +25,7 @@ from qtab.results.axes import description_of
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
 from qtab.training.extensions import ONLY_FIRST, repeatable
+from qtab.training.given_env import check_same
 from qtab.training.run_env import make_run_env
 
 N_STEP = ("n_step_sarsa", "n_step_tree_backup", "n_step_q_sigma")
@@ -53,7 +54,7 @@ def explain(
         episode: The number of the episode, from 0.
         steps: How many steps to explain; fewer where the episode ends before.
         start: The first of these steps, from 0.
-        env: The environment, for a run that was trained on an environment object without an id.
+        env: The environment, where that of the run cannot be made again. It must be the one that was trained on.
         progress: Whether to show a progress bar. None shows one on a terminal if it takes more than a second.
 
     Raises:
@@ -77,6 +78,8 @@ def explain(
     steps = checks.integer("steps", steps, least=1)
     if env is not None and not isinstance(env, gym.Env):
         raise TypeError(f"env must be an environment, got {env!r}")
+    if env is not None:
+        check_same(run, env)
     began = time.perf_counter()
     config = run.config
     beginning = start_of(run, episode) if env is None else None

@@ -16,7 +16,7 @@ from qtab.reference.schedules import epsilon_schedule
 from qtab.reference.streams import AgentStream, agent_stream
 from qtab.rendering.replay import generator_states
 from qtab.results.run import Run
-from qtab.training.resolve import resolve
+from qtab.training.run_env import resolve_run
 
 CHOOSE_FIRST = ("q_learning", "expected_sarsa", "double_q_learning", *PREFERENCES)
 """The algorithms that choose an action before each step; the others choose the next one after it."""
@@ -52,7 +52,7 @@ def start_of(run: Run, episode: int) -> Start | None:
         return None
     if episode == 0 or config.learning_rate_schedule == "visits":
         return None
-    resolved = resolve(config.env, {name: value for name, value in vars(config).items() if name != "env"})
+    resolved = resolve_run(config, {name: value for name, value in vars(config).items() if name != "env"})
     try:
         trainer = _core.Trainer(resolved.spec(), resolved.seed, record=1)
         trainer.advance(episode)

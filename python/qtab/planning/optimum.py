@@ -12,6 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from qtab._utils import checks, html, svg
 from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
+from qtab.config import Config
+from qtab.config.origin import Origin, copied, trained_on
+from qtab.envs.origin.description import EnvironmentDescription
+from qtab.envs.origin.differences import differences
 from qtab.envs.registry import gymnasium_id, spec_of
 from qtab.planning.gap import Gap
 from qtab.planning.search import Search
@@ -83,6 +87,14 @@ class Optimum:
     """The episodes that the search found; None for a transition table."""
     solver: Solver = field(repr=False)
     """The solution behind :meth:`predict` and :meth:`gap`."""
+    environment: EnvironmentDescription | None = field(default=None, repr=False)
+    """The environment in detail: what was changed in it after it was made."""
+
+    @property
+    def config(self) -> Config:
+        """The environment and the time limit as a config, from which it can be made again."""
+        config = Config(env=self.env, env_kwargs=self.env_kwargs, max_episode_steps=self.max_episode_steps)
+        return copied(config, Origin(self.environment))
 
     @property
     def label(self) -> str:
@@ -180,8 +192,12 @@ class Optimum:
         found = self.solver.attainable_return(run)
         return None if found is None else max(found, float(np.max(greedy_returns)))
 
-    def check_same_env(self, run: Run | Runs) -> None:
+    def check_same_env(self, run: Run | Runs, *, with_limit: bool = True) -> None:
         """Checks that a run is on the environment of this optimum.
+
+        Args:
+            run: The run, or many runs of one config.
+            with_limit: Whether the time limits must be equal as well.
 
         Raises:
             ValueError: if the environment, its keyword arguments or the time limit of the run differ.
@@ -190,8 +206,13 @@ class Optimum:
         expected = gymnasium_id(self.env), _all_kwargs(self.env, self.env_kwargs), self.max_episode_steps
         actual = gymnasium_id(config.env), _all_kwargs(config.env, config.env_kwargs), config.max_episode_steps
         for name, ours, theirs in zip(("env", "env_kwargs", "max_episode_steps"), expected, actual, strict=True):
-            if repr(ours) != repr(theirs):
+            if repr(ours) != repr(theirs) and (with_limit or name != "max_episode_steps"):
                 raise ValueError(f"run must have {name} {ours!r} as this optimum has, got {theirs!r}")
+        described = trained_on(config)
+        if described is not None and self.environment is not None:
+            found = differences(described, self.environment)
+            if found:
+                raise ValueError(f"run must be on the environment of this optimum, got another one: {'; '.join(found)}")
 
     def __str__(self) -> str:
         certainty = "exact" if self.exact else "the best known policy, not proven optimal"

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Mapping
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,12 +15,15 @@ from qtab import _core
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar, check_progress
 from qtab._utils.shown import shown
+from qtab.config.origin import trained_on
 from qtab.config.unknown import suggesting
 from qtab.discretizers import Identity
 from qtab.discretizers.actions import choose_actions
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS, reward_threshold
 from qtab.envs.matching import time_limit, unknown_wrapper
 from qtab.envs.native import table_env
+from qtab.envs.origin.describe import describe
+from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import make_env, spec_of, versioned
 from qtab.envs.stored import spec_of_run
 from qtab.planning.classic_control import GridSolver, search_grid
@@ -30,6 +34,7 @@ from qtab.planning.table import has_transition_table
 from qtab.planning.tabular import METHODS, TabularSolver, solve_table
 from qtab.results.run import Run
 from qtab.results.runs import Runs
+from qtab.training.run_env import make_run_env
 
 SEARCH = "search"
 SEARCH_STAGES = 2
@@ -92,7 +97,8 @@ def optimum(
     spec = env if isinstance(env, EnvSpec) else spec_of(name)
     made = make_env(spec, env_kwargs or {})
     try:
-        return _optimum_for_env(name, made, max_episode_steps, discount, method, progress)
+        described = describe(made, is_new=True)
+        return _optimum_for_env(name, made, max_episode_steps, discount, method, progress, described)
     finally:
         made.close()
 
@@ -114,14 +120,11 @@ def _optimum_for_run(
         raise ValueError(
             f"env must be an environment object for this run: its environment {config.env!r} is not a registered id"
         ) from None
-    return optimum(
-        config.env,
-        discount=discount,
-        max_episode_steps=max_episode_steps or config.max_episode_steps,
-        method=method,
-        env_kwargs=config.env_kwargs,
-        progress=progress,
-    )
+    if max_episode_steps is not None:
+        max_episode_steps = checks.count("max_episode_steps", max_episode_steps, least=1)
+    with closing(make_run_env(config, of="gymnasium")) as made:
+        limit = max_episode_steps or config.max_episode_steps
+        return _optimum_for_env(config.env, made, limit, discount, method, progress, trained_on(config))
 
 
 def _optimum_for_env(
@@ -131,6 +134,7 @@ def _optimum_for_env(
     discount: float | None,
     method: str | None,
     progress: bool | None,
+    described: EnvironmentDescription | None = None,
 ) -> Optimum:
     started = time.perf_counter()
     unwrapped: Any = env.unwrapped
@@ -168,6 +172,7 @@ def _optimum_for_env(
         seconds=time.perf_counter() - started,
         search=best.search,
         solver=best.solver,
+        environment=described or describe(env),
     )
 
 

@@ -56,7 +56,8 @@ def difference(
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         TypeError: for an argument of the wrong type.
-        ValueError: if the optimum is that of another environment, or an argument does not fit it.
+        ValueError: if the optimum is that of another environment, or of one with other arguments or changes, or an
+            argument does not fit it.
     """
     if not isinstance(run, Run | Runs):
         raise TypeError(f"run must be a Run or Runs, got {run!r}")
@@ -119,6 +120,8 @@ def _check_same(subject: Subject, best: Subject) -> None:
     ours, theirs = gymnasium_id(subject.env), gymnasium_id(best.env)
     if ours != theirs:
         raise ValueError(f"optimum must be that of {ours!r}, the run's environment, got that of {theirs!r}")
+    if isinstance(best.source, Optimum) and isinstance(subject.source, Run | Runs):
+        best.source.check_same_env(subject.source, with_limit=False)
     if len(subject.action_names) != len(best.action_names):
         raise ValueError(
             f"optimum must have the run's {len(subject.action_names)} actions, got {len(best.action_names)}"

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
-from qtab.envs.stored import spec_of_run
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
@@ -18,6 +17,7 @@ from qtab.plots.subject import subject_of
 from qtab.plots.values import values
 from qtab.results.action_values import mask_of_step
 from qtab.results.run import Run
+from qtab.training.run_env import make_run_env
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,7 +44,7 @@ def trajectory(
         ax: The axes to draw on; None creates a new figure.
         episodes: The number of episodes.
         seed: The seed of the first reset of the environment.
-        env: The environment, for a run that was trained on an environment without an id; it is not closed.
+        env: The environment, where that of the run cannot be made again; it is not closed.
         at: For observations of more than two components, the values of those that are not axes; see
             :func:`qtab.plots.values`.
         layout: A map for numbered states; see :func:`qtab.plots.values`.
@@ -79,17 +79,16 @@ def _play(run: Run | Optimum, env: gym.Env | None, episodes: int, seed: int) -> 
     """Returns the observations of each episode, and whether it ended in a terminal state."""
     if env is not None and not isinstance(env, gym.Env):
         raise TypeError(f"env must be an environment, got {env!r}")
-    if isinstance(run, Run):
-        name, kwargs, limit = run.config.env, run.config.env_kwargs, run.config.max_episode_steps
-    else:
-        name, kwargs, limit = run.env, run.env_kwargs, run.max_episode_steps
+    config = run.config
     if env is None:
         try:
-            made: Any = gym.make(spec_of_run(name), max_episode_steps=limit, **kwargs)
+            made: Any = make_run_env(config, of="gymnasium")
         except gym.error.Error:
-            raise ValueError(f"env must be given: {name!r}, the run's environment, is not a registered id") from None
+            raise ValueError(
+                f"env must be given: {config.env!r}, the run's environment, is not a registered id"
+            ) from None
     else:
-        made = nullcontext(gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", limit)))
+        made = nullcontext(gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", config.max_episode_steps)))
     played = []
     with made as playing:
         for index in range(episodes):

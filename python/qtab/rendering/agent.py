@@ -9,10 +9,10 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.shown import shown
+from qtab.config import Config
 from qtab.envs.registry import spec_of
-from qtab.envs.stored import spec_of_run
 from qtab.planning.optimum import Optimum
-from qtab.rendering.replay import check_render_mode, render_env
+from qtab.rendering.replay import check_render_mode, make_render_env, render_env
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
 from qtab.training.assigned_rows import greedy_table
@@ -25,15 +25,21 @@ class Agent:
 
     source: Run | Optimum
     """What it was made from."""
-    env: str
-    """The environment's id, or the name of its class."""
-    env_kwargs: Mapping[str, Any]
-    """Keyword arguments of the environment's constructor."""
-    max_episode_steps: int
-    """The time limit, in steps."""
+    config: Config
+    """Its environment and the time limit; of a run, all settings."""
     act: Callable[[Any, Any, Any], tuple[Any, Any]]
     """Takes an observation, a state, None at first, and the action mask, None without one; returns the action as
     ``env.step`` takes it, and the state."""
+
+    @property
+    def env(self) -> str:
+        """The environment's id, or the name of its class."""
+        return self.config.env
+
+    @property
+    def max_episode_steps(self) -> int:
+        """The time limit, in steps."""
+        return int(self.config.max_episode_steps or 0)
 
 
 def agent_of(source: Any) -> Agent:
@@ -43,13 +49,10 @@ def agent_of(source: Any) -> Agent:
         TypeError: for anything else.
     """
     if isinstance(source, Run):
-        config = source.config
-        return Agent(source, config.env, config.env_kwargs, int(config.max_episode_steps or 0), _greedy(source))
+        return Agent(source, source.config, _greedy(source))
     if isinstance(source, Optimum):
         best = source
-        return Agent(
-            best, best.env, best.env_kwargs, best.max_episode_steps, lambda seen, state, _: best.predict(seen, state)
-        )
+        return Agent(best, best.config, lambda seen, state, _: best.predict(seen, state))
     hint = "; qtab.load reads one from a file" if isinstance(source, str) or hasattr(source, "__fspath__") else ""
     raise TypeError(f"run must be a Run or an Optimum, got {shown(source)}{hint}")
 
@@ -83,7 +86,8 @@ def environment_of(
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for an agent whose environment is not registered.
         TypeError: if ``env`` is neither None, an id, an EnvSpec nor an environment.
-        ValueError: for an environment with other spaces than the agent's, or that cannot be rendered so.
+        ValueError: for an environment with other spaces than the agent's, that cannot be rendered so, or
+            without ``env`` cannot be made again as it was in training.
     """
     check_env(env)
     if isinstance(env, gym.Env):
@@ -93,8 +97,7 @@ def environment_of(
             raise ValueError(f"env must be made with render_mode={render_mode!r}, got {env.render_mode!r}")
         return gym.wrappers.TimeLimit(env, max_episode_steps)
     if env is None:
-        kwargs = agent.env_kwargs if env_kwargs is None else env_kwargs
-        return render_env(spec_of_run(agent.env), kwargs, max_episode_steps, render_mode)
+        return make_render_env(agent.config, render_mode, env_kwargs, max_episode_steps)
     spec = env if isinstance(env, EnvSpec) else spec_of(env)
     made = render_env(spec, env_kwargs or {}, max_episode_steps, render_mode)
     try:

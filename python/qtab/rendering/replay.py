@@ -11,8 +11,8 @@ from gymnasium.envs.registration import EnvSpec
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
 from qtab.envs.continue_after import continue_after
-from qtab.envs.stored import spec_of_run
 from qtab.results.run import Recording, Run
+from qtab.training.run_env import make_run_env
 
 
 def generator_states(config: Config, recorded: Sequence[Any]) -> list[dict[str, Any]]:
@@ -38,13 +38,28 @@ def _generator_state(seed: int | None, start: Any) -> dict[str, Any]:
     return dict(generator.state)
 
 
-def make_render_env(config: Config, render_mode: str) -> gym.Env:
+def make_render_env(
+    config: Config,
+    render_mode: str,
+    env_kwargs: Mapping[str, Any] | None = None,
+    max_episode_steps: int | None = None,
+) -> gym.Env:
     """Creates the environment of a run with a render mode.
 
+    Args:
+        config: The config of the run.
+        render_mode: The render mode.
+        env_kwargs: Other keyword arguments than the run's; None takes those.
+        max_episode_steps: Another time limit; None takes the run's.
+
     Raises:
-        ValueError: if the environment does not have this render mode.
+        ValueError: if the environment does not have this render mode, or cannot be made as it was in training.
     """
-    return render_env(spec_of_run(config.env), config.env_kwargs, config.max_episode_steps, render_mode)
+    with closing(make_run_env(config, of="id", env_kwargs=env_kwargs)) as env:
+        check_render_mode(config.env, env, render_mode)
+    return make_run_env(
+        config, of="id", env_kwargs=env_kwargs, max_episode_steps=max_episode_steps, render_mode=render_mode
+    )
 
 
 def render_env(

@@ -13,8 +13,10 @@ from qtab._utils import checks, html, svg
 from qtab._utils.fields import with_fields
 from qtab._utils.frames import episode_frame
 from qtab.config import Config
+from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
+from qtab.envs.origin.description import EnvironmentDescription
 from qtab.results import action_values, behaviour, plain_data, run_file, saving, time_steps
 from qtab.results.axes import Axis, action_names, axes_of, description_of
 from qtab.results.consistency import check_consistent
@@ -77,7 +79,7 @@ class Run(WithPage):
     def __repr__(self) -> str:
         """One line: the tables are not shown."""
         config, finished = self.config, len(self.episode_returns)
-        episodes = f"{finished}" if self.completed else f"{finished} of {config.episodes}"
+        episodes = str(finished) if self.completed else f"{finished} of {config.episodes}"
         last = self.episode_returns[-FINAL_EPISODES:]
         mean = f", the last {len(last)} at {last.mean():.2f}" if finished else ""
         unchecked = ", from a file without a digest" if self.unchecked else ""
@@ -104,6 +106,11 @@ class Run(WithPage):
             f"Learning curve: the mean return of each {block:,} episodes" if block > 1 else "The return of each episode"
         )
         return html.summary(f"Run of {config.env}", facts, svg.lines(label, {"mean return": self.mean_returns(block)}))
+
+    @property
+    def trained_on(self) -> EnvironmentDescription | None:
+        """The environment in detail, as it was when training began; None where a file does not say it."""
+        return trained_on(self.config)
 
     @property
     def grid(self) -> Discretizer:
@@ -289,10 +296,5 @@ class Run(WithPage):
         arrays = {name: getattr(self, name) for name in run_file.ARRAYS} | optional_arrays(self)
         header: dict[str, Any] = {}
         if self.state is not None:
-            arrays["state"] = self.state.array()
-            header["generator"] = self.state.generator
-            if self.state.snapshots:
-                header["snapshots"] = self.state.snapshots
-            if self.state.extensions:
-                header["extensions"] = self.state.extensions
+            arrays["state"], header = self.state.array(), self.state.header()
         saving.write(checks.file_path("path", path), run_file.RUN, self, header, arrays)

@@ -30,6 +30,11 @@ class RunState:
         """Returns the checkpoint as a file holds it."""
         return np.frombuffer(self.checkpoint, np.uint8)
 
+    def header(self) -> dict[str, Any]:
+        """Returns the rest of the state as the header of a file holds it."""
+        optional = {"snapshots": self.snapshots, "extensions": self.extensions}
+        return {"generator": self.generator, **{name: value for name, value in optional.items() if value}}
+
     @classmethod
     def restore(cls, array: NDArray[Any], generator: Any, snapshots: Any, extensions: Any) -> "RunState":
         """Returns the state in a file, of which nothing is known.

@@ -15,8 +15,10 @@ from qtab._utils.fields import with_fields
 from qtab._utils.frames import data_frame
 from qtab.config import Config
 from qtab.config.config import replace_checked
+from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
+from qtab.envs.origin.description import EnvironmentDescription
 from qtab.results.run import Run
 from qtab.results.saving import save_runs
 from qtab.results.summary import FINAL_EPISODES, block_means, default_block, summarize
@@ -91,6 +93,11 @@ class Runs:
             label = f"Mean learning curve in blocks of {block:,}, with the band of 80% of the runs"
             picture = svg.lines(label, {"mean of the runs": means.mean(axis=0)}, (low, high))
         return html.summary(f"Runs of {config.env}", facts, picture)
+
+    @property
+    def trained_on(self) -> EnvironmentDescription | None:
+        """The environment in detail, as it was when training began; None where a file does not say it."""
+        return trained_on(self.config)
 
     @property
     def grid(self) -> Discretizer:

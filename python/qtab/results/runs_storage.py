@@ -11,7 +11,7 @@ from qtab.results import run_file
 from qtab.results.consistency import check_consistent_runs
 from qtab.results.optional_arrays import checked_masks
 from qtab.results.runs import Runs
-from qtab.results.storage import check_function, integer, opened, shared_fields, with_action_mask
+from qtab.results.storage import check_function, integer, log_unknown_origin, opened, shared_fields, with_action_mask
 
 
 def load_runs(
@@ -39,6 +39,7 @@ def load_runs(
     with opened(path, "file of runs") as file:
         runs = _runs(run_file.read(file, run_file.RUNS), discretizer)
     check_function(discretizer, runs.config)
+    log_unknown_origin(path, runs.config)
     return runs if action_mask is None else with_action_mask(runs, action_mask)
 
 

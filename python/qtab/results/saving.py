@@ -54,6 +54,8 @@ def write(
         "versions": dict(result.versions),
         **header,
     }
+    if result.config.origin is not None:
+        content["origin"] = result.config.origin.as_json()
     if result.actions.composite is not None:
         content["action_parts"] = describe_parts(result.actions)
     kwargs = result.config.env_kwargs

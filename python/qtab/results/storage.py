@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 from qtab import discretizers
 from qtab._utils import checks
 from qtab._utils.shown import shown
-from qtab.config import Config
+from qtab.config import DEFAULTS, Config
 from qtab.config.action_mask import STORED
 from qtab.config.config import replace_checked
 from qtab.config.discretizer import MissingFunction
 from qtab.config.options import defaults
+from qtab.config.origin import Origin, copied, trained_on
 from qtab.config.stored import corrected_settings, implied_settings
+from qtab.envs.origin.description import from_json
 from qtab.envs.stored import stored_id
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent
@@ -71,6 +73,7 @@ def load(
         _LOGGER.warning(
             "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
         )
+    log_unknown_origin(path, run.config)
     return run if action_mask is None else with_action_mask(run, action_mask)
 
 
@@ -184,10 +187,31 @@ def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Call
         fields["initial_q"] = stored["initial_q"]
     fields["env"] = stored_id(fields["env"])
     config = Config(**fields)
-    config = replace_checked(config, **implied_settings(config))
+    config = copied(replace_checked(config, **implied_settings(config)), _origin(header))
     if config.seed is None or config.max_episode_steps is None or defaults(vars(config)):
         raise ValueError("its config is not that of a run")
     return config
+
+
+def _origin(header: Mapping[str, Any]) -> Origin | None:
+    """What a file says about its environment; None for files of earlier versions, which say nothing."""
+    if "origin" not in header:
+        return None
+    content = header["origin"]
+    environment, derived = content["environment"], content["derived"]
+    if not isinstance(derived, list) or not set(derived) <= DEFAULTS.keys():
+        raise ValueError(f"its derived settings are not names of settings: {derived!r}")
+    return Origin(None if environment is None else from_json(environment), frozenset(derived))
+
+
+def log_unknown_origin(path: Path, config: Config) -> None:
+    """Logs that a file does not say what was trained on, besides the id and its arguments."""
+    if trained_on(config) is None:
+        _LOGGER.warning(
+            "%r says of its environment only the id and the arguments, as files of earlier versions: wrappers, changed "
+            "attributes and bounds of spaces are not compared",
+            str(path),
+        )
 
 
 def integer(header: Mapping[str, Any], name: str) -> int:

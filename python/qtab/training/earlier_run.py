@@ -19,8 +19,9 @@ from qtab.config.config import replace_checked
 from qtab.config.discretizer import MissingFunction
 from qtab.config.layers import over
 from qtab.config.options import is_set
+from qtab.config.origin import copied, trained_on
+from qtab.envs.origin.differences import differences
 from qtab.envs.registry import versioned
-from qtab.envs.stored import spec_of_run
 from qtab.results.run import Run
 from qtab.results.snapshots import resumed_snapshot_episodes, snapshot_episodes
 from qtab.results.storage import load, with_action_mask
@@ -29,6 +30,7 @@ from qtab.training.extensions import extensions, falling_rates
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.run_env import environment_of, resolve_run
 
 _LOGGER = logging.getLogger("qtab")
 _OF_ENV = ("env_kwargs", "max_episode_steps")
@@ -74,12 +76,17 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
             ``run``.
     """
     config = _config(name, run, episodes)
-    if env is None:
-        spec_of_run(config.env)  # the name of a class without an id is not taken for one
     _check_id(run, env)
-    resolved = resolve(config.env if env is None else env, over(_without_kwargs(config, env), {}))
-    if env is not None:
+    # What was derived is not derived anew: a resumed run is the same run.
+    kept = {"max_episode_steps": config.max_episode_steps, "backend": config.backend}
+    if env is None:
+        resolved = resolve_run(config, over(config, kept))
+    else:
+        resolved = resolve(env, over(_without_kwargs(config, env), kept))
         _check_settings(run, resolved.config, _OF_ENV)
+        _check_env(run, resolved)
+    origin = config.origin or resolved.config.origin
+    resolved = replace(resolved, config=copied(resolved.config, origin))
     return replace(continued(resolved, run), extensions=extensions(run, config))
 
 
@@ -129,17 +136,27 @@ def check_agrees(run: Run, env: str | EnvSpec | gym.Env | None, settings: Mappin
     if env is None and not given:
         return
     _check_id(run, env)
-    if env is None:
-        spec_of_run(run.config.env)
-    resolved = resolve(run.config.env if env is None else env, over(_without_kwargs(run.config, env), given))
+    kept = {"backend": run.config.backend, **given}
+    if env is None or isinstance(env, str):
+        resolved = resolve_run(run.config, over(run.config, kept))
+    else:
+        resolved = resolve(env, over(_without_kwargs(run.config, env), kept))
     resolved.close()
     _check_settings(run, resolved.config, (*_OF_ENV, *given))
+    _check_env(run, resolved)
 
 
 def _check_id(run: Run, env: Any) -> None:
     """Checks that an environment that is given, if any, has the id or the class of the run's."""
     if env is not None and (id_given := _id(env)) is not None and _bare(id_given) != _bare(run.config.env):
         raise _differs("env", run.config.env, id_given)
+
+
+def _check_env(run: Run, resolved: ResolvedRun) -> None:
+    """Checks that the environment that was found is the one that the run was trained on, as far as that is known."""
+    described = trained_on(run.config)
+    if described is not None and (found := differences(described, environment_of(resolved))):
+        raise ValueError(f"env must be that of the run to resume, got another one: {'; '.join(found)}")
 
 
 def _check_settings(run: Run, config: Config, names: Iterable[str]) -> None:

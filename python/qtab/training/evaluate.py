@@ -17,7 +17,7 @@ from qtab._utils.frames import episode_frame
 from qtab._utils.progress import check_progress
 from qtab._utils.shown import shown
 from qtab.config import Config
-from qtab.config.options import OPTIONS
+from qtab.config.layers import over
 from qtab.config.unknown import suggesting
 from qtab.discretizers import Sparse
 from qtab.envs.goals import threshold_of
@@ -29,19 +29,24 @@ from qtab.training.assigned_rows import greedy_table, with_assigned_rows
 from qtab.training.given_env import check_env, check_spaces
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import log_python_stepping, resolve
+from qtab.training.run_env import resolve_run
 from qtab.training.train import train_resolved
 
 if TYPE_CHECKING:
     import pandas as pd
 
-TABLE_SETTINGS = (
-    "discretizer",
-    *(name for name, option in OPTIONS.items() if option.choice == "discretizer"),
-    "actions",
-    "action_mask",
-    "time_aware",
-)
-"""The settings that say what the rows and columns of a table stand for."""
+GREEDY: Mapping[str, Any] = {
+    "algorithm": "q_learning",
+    "learning_rate": 0.0,
+    "learning_rate_schedule": "constant",
+    "count_bonus": 0.0,
+    "terminal_update": "target",
+    "exploration": "epsilon_greedy",
+    "epsilon": 0.0,
+    "epsilon_schedule": "constant",
+    "ties": "first",
+}
+"""With a learning rate and an exploration rate of 0, training is evaluation: of the first of several greedy actions."""
 
 
 @with_fields
@@ -138,8 +143,9 @@ def evaluate(
         run: The run to evaluate.
         episodes: The number of episodes.
         seed: The seed of the environment; None draws one, which the evaluation records.
-        env: Another environment than the run's, or one like it for a run that was trained on an environment without an
-            id: an id, an EnvSpec, or an environment, which is not closed.
+        env: Another environment than the run's, or one like it where that cannot be made again: an id, an EnvSpec, or
+            an environment, which is not closed. None makes the environment that the run was trained on, with its
+            wrappers and changed attributes.
         env_kwargs: Keyword arguments for the environment's constructor; None takes those of the run, or with ``env``
             none.
         max_episode_steps: The time limit of an episode, in steps; None takes that of the run.
@@ -149,7 +155,8 @@ def evaluate(
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or an environment with other spaces than the run's.
+        ValueError: for an argument out of range, an environment with other spaces than the run's, or without ``env``
+            one that cannot be made again as it was in training; the message says why.
     """
     checks.instance("run", run, Run)
     check_progress(progress)
@@ -174,21 +181,22 @@ def evaluate(
         spec = env if isinstance(env, EnvSpec) else spec_of(env)
         with closing(make_env(spec, env_kwargs or {})) as made:
             check_spaces(run, made)
-    # With a learning rate and an exploration rate of 0, training is evaluation.
-    settings: dict[str, Any] = {
-        "episodes": episodes,
-        "seed": seed,
-        "algorithm": "q_learning",
-        "learning_rate": 0.0,
-        "epsilon": 0.0,
-        "terminal_update": "target",
-        "initial_q": 0.0 if isinstance(run.discretizer, Sparse) else greedy_table(run),
-        **{name: getattr(config, name) for name in TABLE_SETTINGS},
-        **_env_kwargs(config, env, env_kwargs),
-        "max_episode_steps": config.max_episode_steps if max_episode_steps is None else max_episode_steps,
-        "backend": config.backend if env is None and env_kwargs is None else "auto",
-    }
-    resolved = with_assigned_rows(resolve(config.env if env is None else env, settings), run)
+    # Over the run's own settings, so that no preset adds any.
+    settings = over(
+        config,
+        {
+            **GREEDY,
+            "episodes": episodes,
+            "seed": seed,
+            "initial_q": 0.0 if isinstance(run.discretizer, Sparse) else greedy_table(run),
+            "env_kwargs": _env_kwargs(config, env, env_kwargs),
+            "preset": config.preset if env is None else None,
+            "max_episode_steps": config.max_episode_steps if max_episode_steps is None else max_episode_steps,
+            "backend": config.backend if env is None and env_kwargs is None else "auto",
+        },
+    )
+    made = resolve_run(config, settings) if env is None else resolve(env, settings)
+    resolved = with_assigned_rows(made, run)
     if env is not None:
         log_python_stepping(resolved)
     try:
@@ -204,7 +212,9 @@ def evaluate(
     )
 
 
-def _env_kwargs(config: Config, env: Any, env_kwargs: Mapping[str, Any] | None) -> dict[str, Any]:
+def _env_kwargs(config: Config, env: Any, env_kwargs: Mapping[str, Any] | None) -> Mapping[str, Any]:
     if env_kwargs is not None:
-        return {"env_kwargs": env_kwargs}
-    return {"env_kwargs": config.env_kwargs} if env is None else {}
+        return env_kwargs
+    if env is None:
+        return config.env_kwargs
+    return dict(env.kwargs) if isinstance(env, EnvSpec) else {}

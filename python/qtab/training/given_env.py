@@ -7,7 +7,10 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab import discretizers
 from qtab._utils.shown import shown
+from qtab.config.origin import trained_on
 from qtab.discretizers.actions import choose_actions
+from qtab.envs.origin.describe import describe
+from qtab.envs.origin.differences import differences
 from qtab.results.run import Run
 
 
@@ -28,6 +31,18 @@ def check_spaces(run: Run, env: gym.Env) -> None:
             f"env must have the spaces of the run's {run.config.env}, got {_name(env)} with observations "
             f"{env.observation_space} and actions {env.action_space}"
         )
+
+
+def check_same(run: Run, env: gym.Env) -> None:
+    """Checks that an environment is the one that a run was trained on, as far as that is known.
+
+    Raises:
+        ValueError: if it is another one; the message says what differs.
+    """
+    check_spaces(run, env)
+    described = trained_on(run.config)
+    if described is not None and (found := differences(described, describe(env))):
+        raise ValueError(f"env must be that of the run, got another one: {'; '.join(found)}")
 
 
 def check_env(env: Any) -> None:

@@ -17,6 +17,7 @@ from qtab.config.algorithms import algorithm_settings
 from qtab.config.config import replace_checked
 from qtab.config.merge import config_of, merge_layers, naming_preset
 from qtab.config.options import WITH_STATE_VALUES, defaults, n_tables
+from qtab.config.origin import Origin, copied
 from qtab.config.policies import policy
 from qtab.config.presets import preset
 from qtab.config.schedules import learning_rate
@@ -24,10 +25,13 @@ from qtab.discretizers import Discretizer, Sparse
 from qtab.discretizers.actions import Actions, choose_actions
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.envs.known_tables import KnownTable, known_table
-from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
+from qtab.envs.matching import NotInRustError, changed_entry_code, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import native_env
+from qtab.envs.origin.describe import describe, describe_known
+from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import EnvEntry, entry_for_spec, make_env, spec_of, versioned
 from qtab.training.action_masks import NO_MASKS, asks_for_masks, known_masks, observed_masks
+from qtab.training.derived import derived_settings
 from qtab.training.preset_fit import infer_discretizer, set_aside
 from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun
 
@@ -55,6 +59,12 @@ class _Request:
     """Why an environment object is stepped in Python although that was not asked for, and what would help."""
     spec: EnvSpec | None = None
     """That of an environment that was made here."""
+
+    def description(self) -> EnvironmentDescription:
+        """Describes the environment, before anything steps it."""
+        if isinstance(self.env, KnownTable) and self.spec is not None:
+            return describe_known(self.spec, self.config.env_kwargs, self.env)
+        return describe(self.env, is_new=self.spec is not None)
 
 
 def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: bool = False) -> ResolvedRun:
@@ -96,6 +106,8 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
     asked = merge_layers({"env_kwargs": dict(spec.kwargs)}, *layers)
     config = config_of(name, asked)
     entry, python_reason = entry_for_spec(spec, config.env_kwargs), None
+    if entry is not None and changed_entry_code(spec) is not None:
+        entry = None
     known = None
     if entry is not None and config.backend != "gymnasium" and not asks_for_masks(config.action_mask):
         known = known_table(spec, config.env_kwargs)
@@ -166,7 +178,7 @@ def _check_not_shown(env: gym.Env) -> None:
 
 
 def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
-    env = request.env
+    env, description = request.env, request.description()
     config = set_aside(env, request.config, request.asked)
     config = infer_discretizer(env.observation_space, config, request.asked)
     config = replace_checked(config, **defaults(vars(config)))
@@ -201,8 +213,9 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         seed=seed,
         backend="rust" if in_rust else "gymnasium",
     )
+    origin = Origin(description, derived_settings(request.config, config, discretizer))
     return ResolvedRun(
-        config=config,
+        config=copied(config, origin),
         environment=environment,
         discretizer=discretizer,
         actions=actions,

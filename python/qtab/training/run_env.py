@@ -1,25 +1,153 @@
-"""The environment of a run, made again to be stepped in Python."""
+"""The environment of a run, made again as it was in training."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any, Literal
 
 import gymnasium as gym
 
 from qtab.config import Config
-from qtab.envs.registry import ENTRIES, gymnasium_id
+from qtab.config.origin import copied, trained_on
+from qtab.envs.origin.again import cannot_be_made, make_again, needs_object
+from qtab.envs.origin.description import EnvironmentDescription
+from qtab.envs.origin.differences import differences
+from qtab.envs.registry import ENTRIES, gymnasium_id, make_env, spec_of
 from qtab.envs.stored import spec_of_run
+from qtab.training.resolve import resolve
+from qtab.training.resolved_run import ResolvedRun
+
+Attempt = Callable[[Any, dict[str, Any]], ResolvedRun]
+"""Resolves settings in an environment: an id, or a function that makes one."""
 
 
-def make_run_env(config: Config) -> gym.Env:
-    """Makes the environment of a run, with its keyword arguments and its time limit.
+def make_run_env(
+    config: Config,
+    *,
+    of: Literal["either", "gymnasium", "id"] = "either",
+    env_kwargs: Mapping[str, Any] | None = None,
+    max_episode_steps: int | None = None,
+    render_mode: str | None = None,
+) -> gym.Env:
+    """Makes the environment of a run, with its wrappers, its arguments, its changed attributes and its time limit.
 
-    Of the environments of Gymnasium that this package has, it is this package's class, which is equal and faster. An id
-    from a file must be registered: nothing is imported for it.
+    An id from a file must be registered: nothing is imported for it.
+
+    Args:
+        config: The config of the run.
+        of: Whose class to make, of the environments of Gymnasium that this package has as well, with equal numbers:
+            the faster one (this package's), Gymnasium's, or that of the run's id.
+        env_kwargs: Other keyword arguments than the run's; None takes those.
+        max_episode_steps: Another time limit; None takes the run's.
+        render_mode: The render mode, if it is to be seen.
 
     Raises:
         gymnasium.error.UnregisteredEnv: if the run was trained on an environment that is not registered.
+        ValueError: if the environment cannot be made as it was; the message says why, and asks for ``env=``.
     """
     name = gymnasium_id(config.env)
-    return gym.make(
-        f"qtab/{name}" if name in ENTRIES else spec_of_run(config.env),
-        max_episode_steps=config.max_episode_steps,
-        disable_env_checker=True,
-        **config.env_kwargs,
-    )
+    known = name in ENTRIES and of != "id"
+    spec = spec_of(name if of == "gymnasium" else f"qtab/{name}") if known else spec_of_run(config.env)
+    rendering = {} if render_mode is None else {"render_mode": render_mode}
+    kwargs = {**(config.env_kwargs if env_kwargs is None else env_kwargs), **rendering}
+    limit = config.max_episode_steps if max_episode_steps is None else max_episode_steps
+    described = trained_on(config)
+    if described is None or _others(config, env_kwargs):
+        if described is not None:
+            _check_plain(described)
+        return make_env(spec, kwargs, max_episode_steps=limit, disable_env_checker=True)
+    return make_again(described, spec, kwargs, limit)
+
+
+def can_be_made(config: Config) -> bool:
+    """Returns whether the environment of a run can be made as it was in training."""
+    try:
+        make_run_env(config).close()
+    except (gym.error.UnregisteredEnv, ModuleNotFoundError, ValueError):
+        return False
+    return True
+
+
+def resolve_run(config: Config, settings: Mapping[str, Any]) -> ResolvedRun:
+    """Resolves settings in the environment of a run.
+
+    Raises:
+        gymnasium.error.UnregisteredEnv: if the run was trained on an environment that is not registered.
+        ValueError: if the environment cannot be made as it was, or a setting does not fit.
+    """
+    spec_of_run(config.env)  # the name of a class without an id is not taken for one
+    return as_in_training(config, {"env_kwargs": config.env_kwargs, **settings}, resolve_made)[0]
+
+
+def resolve_made(env: Any, settings: Mapping[str, Any]) -> ResolvedRun:
+    """Resolves settings in an environment, an id, or what a function makes."""
+    return resolve(env(), settings, owns_env=True) if isinstance(env, partial) else resolve(env, settings)
+
+
+def as_in_training(
+    config: Config, settings: Mapping[str, Any], attempt: Attempt
+) -> tuple[ResolvedRun, Any, dict[str, Any]]:
+    """Resolves settings in the environment of a config's run: by its id where that makes the one of the training.
+
+    Args:
+        config: The config.
+        settings: What is asked for.
+        attempt: Resolves settings in an environment.
+
+    Returns:
+        The resolved run, the environment with which ``attempt`` found it, and the settings for that.
+
+    Raises:
+        ValueError: if the environment cannot be made as it was, or a setting does not fit.
+    """
+    described, asked = trained_on(config), dict(settings)
+    if described is None:
+        return attempt(config.env, asked), config.env, asked
+    if _others(config, asked.get("env_kwargs")):
+        _check_plain(described)
+        return attempt(config.env, asked), config.env, asked
+    if not needs_object(described, spec_of_run(config.env)):
+        resolved = attempt(config.env, asked)
+        if not differences(described, environment_of(resolved)):
+            return resolved, config.env, asked
+        resolved.close()
+    make = partial(make_run_env, config, of="id")
+    asked["env_kwargs"] = {}
+    return attempt(make, asked), make, asked
+
+
+def environment_of(resolved: ResolvedRun) -> EnvironmentDescription:
+    """Returns the description of the environment of a resolved run."""
+    described = trained_on(resolved.config)
+    if described is None:
+        raise AssertionError("a resolved run knows its environment")
+    return described
+
+
+def _others(config: Config, env_kwargs: Any) -> bool:
+    """Whether other keyword arguments than those of a config are given."""
+    if env_kwargs is None:
+        return False
+    return not isinstance(env_kwargs, Mapping) or dict(env_kwargs) != dict(config.env_kwargs)
+
+
+def _check_plain(described: EnvironmentDescription) -> None:
+    """Checks that an environment can be made with other arguments than those of the training."""
+    if described.wrappers or described.table is not None:
+        changed = "it has wrappers" if described.wrappers else "its transition table was changed"
+        raise cannot_be_made(described, f"other env_kwargs are given, and {changed}")
+
+
+def with_origin_of(resolved: ResolvedRun, config: Config, names: Mapping[str, Any]) -> ResolvedRun:
+    """Returns a resolved run that knows which of the settings it takes from a config had been derived there.
+
+    Args:
+        resolved: The resolved run.
+        config: The config.
+        names: The settings that were given over it.
+    """
+    ours, theirs = resolved.config.origin, config.origin
+    if ours is None or theirs is None or theirs.environment is None:
+        return resolved
+    origin = replace(ours, derived=ours.derived | theirs.without(names).derived)
+    return replace(resolved, config=copied(resolved.config, origin))

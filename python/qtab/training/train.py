@@ -16,7 +16,7 @@ from qtab._utils.attach import attach, is_raised_in
 from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
-from qtab.config.layers import collect, over
+from qtab.config.layers import over
 from qtab.config.settings import Settings
 from qtab.config.signature import with_settings
 from qtab.rendering.replay import generator_states
@@ -35,9 +35,11 @@ from qtab.training.earlier_run import (
     with_function,
 )
 from qtab.training.options import CALLBACK_EVERY, TrainingOptions
-from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
+from qtab.training.over_config import collect_for, resolve_over
+from qtab.training.resolve import log_default_limit, log_python_stepping
 from qtab.training.resolved_run import ResolvedRun, masks_of
 from qtab.training.restore import restore, state_of
+from qtab.training.run_env import resolve_made
 from qtab.training.run_memory import check_run, tables_shape
 
 
@@ -67,8 +69,10 @@ def train(
             with the same numbers and leaves the object untouched. Any other environment is stepped in Python as it is;
             the logger ``qtab`` gives the reason once, unless ``progress`` is False.
         config: The settings to start from: the config of a run, ``qtab.train(config=run.config)``, repeats the run
-            exactly. Of a Config, the settings that do not apply beside the keywords are ignored, and with another
-            environment its ``env_kwargs`` and ``preset`` as well. A mapping gives only some settings, as keywords do.
+            exactly, in the environment that it was trained on, with its wrappers. Of a Config, the settings that do not
+            apply beside the keywords are ignored, and with another environment its ``env_kwargs``, its ``preset`` and
+            what followed from its own environment, such as the time limit. A mapping gives only some settings, as
+            keywords do.
         resume: A run that was stopped early, or the path of its file, to be continued exactly where it stopped; see
             :func:`qtab.resume`. It brings its settings along: those given here must be the same, except for
             ``episodes``. Visits and snapshots are continued if the run has them. A run that has all its episodes is
@@ -102,10 +106,10 @@ def train(
             so far as ``.run``.
     """
     options = TrainingOptions(callback, callback_every, record, visits, snapshots, progress, memory_limit)
-    env, base = collect(train, env, config, settings)
+    env, base = collect_for(env, train, config, settings)
     earlier = None
     if resume is None:
-        resolved = resolve(env, over(base, settings))
+        resolved, _, _ = resolve_over(env, base, settings, resolve_made)
     else:
         asked = over(base, settings)
         earlier = with_function(earlier_run("resume", resume, asked.get("action_mask")), asked.get("discretizer"))

@@ -22,13 +22,14 @@ from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
-from qtab.config.layers import collect, over
+from qtab.config.layers import collect
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
 from qtab.discretizers import Sparse
 from qtab.envs.matching import equal_environments
 from qtab.results.runs import Runs
 from qtab.training.action_masks import mask_bytes
+from qtab.training.over_config import resolve_over
 from qtab.training.resolve import log_default_limit, log_python_stepping, resolve
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_memory import bytes_in_progress, tables_shape
@@ -90,10 +91,10 @@ def train_many(
     numbers = seed_sequence(seeds, limit)
     workers = thread_count(threads)
     env, base = collect(train_many, env, config, settings)
-    overrides = over(base, settings)
     # The largest seed is the one that the bit generator may refuse.
     largest = numbers[-1] if isinstance(numbers, range) else max(numbers)
-    resolved = resolve_template(env, {**overrides, "seed": largest}).with_seed(numbers[0])
+    template, env, overrides = resolve_over(env, base, {**settings, "seed": largest}, resolve_template)
+    resolved = template.with_seed(numbers[0])
     log_default_limit(resolved)
     log_python_stepping(resolved)
     if tables and isinstance(resolved.discretizer, Sparse):

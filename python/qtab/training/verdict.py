@@ -15,11 +15,11 @@ from qtab.envs.goals import (
     threshold_of,
     why_no_threshold,
 )
-from qtab.envs.stored import is_registered
 from qtab.results.initial_tables import are_finite
 from qtab.results.run import Run
 from qtab.results.summary import SOLVED_EPISODES
 from qtab.training.evaluate import evaluate
+from qtab.training.run_env import can_be_made
 
 if TYPE_CHECKING:
     from qtab.planning.optimum import Optimum
@@ -126,7 +126,7 @@ def _greedy_return(run: Run, optimum: "Optimum | None") -> tuple[float | None, b
     if optimum is not None and optimum.exact and run.config.algorithm not in PREFERENCES:
         with suppress(ValueError):  # a table of other rows than the states
             return float(optimum.solver.greedy_return(run)[0]), True
-    if run.config.backend != "rust" or not is_registered(run.config.env):
+    if run.config.backend != "rust" or not can_be_made(run.config):
         return None, False
     return evaluate(run, EVALUATION_EPISODES, seed=0, progress=False).mean_return, False
 

@@ -19,14 +19,13 @@ from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.unknown import suggesting
-from qtab.envs.registry import ENTRIES, gymnasium_id
-from qtab.envs.stored import spec_of_run
 from qtab.reference import LEARNERS
 from qtab.results.run import Run
 from qtab.training.extensions import ONLY_FIRST, repeatable
-from qtab.training.given_env import check_env, check_spaces
+from qtab.training.given_env import check_env, check_same
 from qtab.training.repetition import repeats_itself, wrapper_with_statistics
 from qtab.training.resolve import resolve
+from qtab.training.run_env import make_run_env, resolve_run
 
 
 @with_fields
@@ -146,15 +145,15 @@ def verify(
         episodes: Compare only the first episodes, using the full run's schedule: where these are not all of them, the
             run holds no table of that time, and the one that Rust has after training again is compared. None compares
             all episodes and the run's own Q table.
-        env: The environment, for a run that was trained on one without an id: an environment, which is not closed, an
-            id or an EnvSpec.
+        env: The environment, where that of the run cannot be made again: an environment, which is not closed, an id or
+            an EnvSpec. It must be the one that the run was trained on.
         progress: Called after every episode of the reference with the number done and the total.
 
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
         TypeError: for an argument of the wrong type.
         MemoryError: if the tables of the reference do not fit into what is free.
-        ValueError: for an argument out of range, an environment with other spaces than the run's, or an interrupted run
+        ValueError: for an argument out of range, an environment that is not that of the run, or an interrupted run
             without ``episodes``. Of a run that was resumed with more episodes while a rate fell, only the episodes
             before can be compared.
     """
@@ -178,13 +177,10 @@ def verify(
             f"got {episodes!r}"
         )
     config = run.config
-    if env is None:
-        spec_of_run(config.env)
-    elif isinstance(env, gym.Env):
-        check_spaces(run, env)
-    else:
+    if isinstance(env, gym.Env):
+        check_same(run, env)
+    elif env is not None:
         with closing(gym.make(env)) as made:
-            check_spaces(run, made)
             return verify(run, episodes, made, progress)
     check_memory("the tables of the reference", 2 * run.tables.nbytes, memory_limit(None))
     recorder = _Recorder(_environment(config, env), count, progress)
@@ -236,17 +232,13 @@ def _environment(config: Config, env: gym.Env | None) -> gym.Env:
     """Gymnasium's own environment, also where the id names qtab's."""
     if env is not None:
         return gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", config.max_episode_steps))
-    name = gymnasium_id(config.env)
-    return gym.make(
-        name if name in ENTRIES else spec_of_run(config.env),
-        max_episode_steps=config.max_episode_steps,
-        **config.env_kwargs,
-    )
+    return make_run_env(config, of="gymnasium")
 
 
 def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[np.float64], list[Any]]:
     """Trains in Rust again: the table after so many episodes, and the actions of the last of them."""
-    resolved = resolve(config.env if env is None else env, _fields(config, env))
+    fields = _fields(config, env)
+    resolved = resolve_run(config, fields) if env is None else resolve(env, fields)
     try:
         trainer = _core.Trainer(resolved.spec(), resolved.seed, record=1)
         trainer.advance(episodes)

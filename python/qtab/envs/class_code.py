@@ -1,0 +1,168 @@
+"""Digests of the code of classes and functions, and whether that of a library is still its own.
+
+They are digests of byte code, not of source: byte code is there without a file, it is the code that runs even if the
+file was edited since, and comments and formatting do not change it. Another version of Python has another one.
+"""
+
+import dis
+import hashlib
+import inspect
+import sys
+from collections.abc import Iterator
+from types import (
+    BuiltinFunctionType,
+    ClassMethodDescriptorType,
+    CodeType,
+    FunctionType,
+    MethodDescriptorType,
+    WrapperDescriptorType,
+)
+from typing import Any
+
+LIBRARY = "library"
+"""Stands for the code of Gymnasium and of this package, which their versions tell."""
+_LIBRARIES = ("gymnasium", "qtab")
+_PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
+
+
+def class_code(cls: type) -> str | None:
+    """Returns a digest of the code of a class and of its bases outside Gymnasium and qtab; ``LIBRARY`` without any.
+
+    A method of Gymnasium's or qtab's classes that was replaced counts as well.
+    """
+    parts = []
+    for base in cls.__mro__:
+        if not is_of_library(base):
+            if base.__module__.partition(".")[0] not in sys.stdlib_module_names:
+                parts.append(_members(base))
+        elif (name := replaced_member(base)) is not None:
+            replaced = inspect.getattr_static(base, name, None)
+            parts.append([name, [_of_function(one) for one in _functions(replaced)]])
+    return _digest(parts) if parts else LIBRARY
+
+
+def function_code(function: Any) -> str:
+    """Returns a digest of the code of a function, with its defaults and the values that it closes over."""
+    return _digest(_of_function(function))
+
+
+def is_of_library(cls: type) -> bool:
+    """Returns whether a class is one of Gymnasium's or of this package's."""
+    return cls.__module__.partition(".")[0] in _LIBRARIES
+
+
+def changed_library_code(cls: type) -> str | None:
+    """Returns what was replaced in a class of Gymnasium's or this package's, as a test or a lesson may do, or None.
+
+    It is a method of the class or of its bases, or a function of their modules.
+    """
+    for base in filter(is_of_library, cls.__mro__):
+        if (name := replaced_member(base)) is not None:
+            return f"{base.__qualname__}.{name}"
+        for name, value in vars(sys.modules[base.__module__]).items():
+            if isinstance(value, FunctionType) and not _is_trusted(value):
+                return f"{base.__module__}.{name}"
+    return None
+
+
+def replaced_member(cls: type) -> str | None:
+    """Returns the name of a method of a class that is not the one of its module; None if there is none.
+
+    A function's globals show where its code is; its name and its module can be those of what it replaces.
+    """
+    module = sys.modules.get(cls.__module__)
+    if module is None or cls.__module__ == "qtab._core":
+        return None
+    for name, member in vars(cls).items():
+        functions = _functions(member)
+        if any(function.__globals__ is not vars(module) and not _is_trusted(function) for function in functions):
+            return name
+        if not functions and callable(member) and not isinstance(member, type) and not _is_builtin(member):
+            return name
+    return None
+
+
+def _is_trusted(function: FunctionType) -> bool:
+    root = str(function.__globals__.get("__name__", "")).partition(".")[0]
+    return root in _LIBRARIES or (root in sys.stdlib_module_names and root != "__main__")
+
+
+def _is_builtin(member: Any) -> bool:
+    kinds = (BuiltinFunctionType, ClassMethodDescriptorType, MethodDescriptorType, WrapperDescriptorType)
+    return isinstance(member, kinds)
+
+
+def _functions(member: Any) -> list[FunctionType]:
+    """The functions of a member of a class: a method, those of a property, or none."""
+    if isinstance(member, property):
+        candidates = [member.fget, member.fset, member.fdel]
+    else:
+        candidates = [getattr(member, "__func__", None), getattr(member, "func", None), member]
+    return [function for function in candidates if isinstance(function, FunctionType)]
+
+
+def _members(cls: type) -> list[Any]:
+    stored = set(_stored_attributes(cls))
+    parts: list[Any] = [cls.__qualname__.rpartition(".")[2]]
+    for name, member in sorted(vars(cls).items()):
+        functions = _functions(member)
+        if functions:
+            parts.append([name, [_of_function(function) for function in functions]])
+        elif not name.startswith("__") and name not in stored and _is_constant(member):
+            parts.append([name, repr(member)])
+    return parts
+
+
+def _stored_attributes(cls: type) -> Iterator[str]:
+    """The attributes that a method assigns: what a class holds under such a name is no constant."""
+    for member in vars(cls).values():
+        for function in _functions(member):
+            for instruction in dis.get_instructions(function):
+                if instruction.opname == "STORE_ATTR":
+                    yield instruction.argval
+
+
+def _is_constant(value: Any) -> bool:
+    return isinstance(value, bool | int | float | str | tuple | type(None))
+
+
+def _of_function(function: FunctionType) -> list[Any]:
+    cells = [_captured(cell) for cell in function.__closure__ or ()]
+    defaults = [function.__defaults__, sorted((function.__kwdefaults__ or {}).items())]
+    code = function.__code__
+    # Constants of the module, by their names in capitals.
+    constants = {name: function.__globals__.get(name) for name in code.co_names if name.isupper()}
+    known = sorted((name, repr(value)) for name, value in constants.items() if _is_constant(value))
+    return [_of_code(code, function.__doc__), _constant(defaults), cells, known]
+
+
+def _captured(cell: Any) -> Any:
+    try:
+        value = cell.cell_contents
+    except ValueError:  # it is empty
+        return None
+    return _of_code(value.__code__, value.__doc__) if isinstance(value, FunctionType) else _constant(value)
+
+
+def _of_code(code: CodeType, docstring: str | None = None) -> list[Any]:
+    constants = [_constant(value) for value in code.co_consts]
+    if constants and docstring is not None and isinstance(code.co_consts[0], str):
+        constants[0] = _constant(None)
+    names = [*code.co_names, *code.co_varnames, *code.co_freevars, *code.co_cellvars]
+    return [code.co_code.hex(), constants, names, code.co_argcount, code.co_kwonlyargcount, code.co_flags]
+
+
+def _constant(value: Any) -> Any:
+    if isinstance(value, CodeType):
+        return _of_code(value)
+    if isinstance(value, list | tuple):
+        return [type(value).__name__, *map(_constant, value)]
+    if isinstance(value, frozenset):
+        return ["frozenset", *sorted(map(repr, value))]
+    if isinstance(value, bool | int | float | complex | str | bytes | type(None)):
+        return repr(value)
+    return f"{type(value).__module__}:{type(value).__qualname__}"
+
+
+def _digest(parts: Any) -> str:
+    return f"{_PYTHON}:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"

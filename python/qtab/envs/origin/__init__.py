@@ -1,0 +1,15 @@
+"""Where a run comes from: one description of its environment, its comparison, and how the environment is made again."""
+
+from qtab.envs.origin.again import make_again, needs_object
+from qtab.envs.origin.describe import describe
+from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
+from qtab.envs.origin.differences import differences
+
+__all__ = [
+    "EnvironmentDescription",
+    "WrapperDescription",
+    "describe",
+    "differences",
+    "make_again",
+    "needs_object",
+]

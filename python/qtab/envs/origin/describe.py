@@ -1,0 +1,218 @@
+"""Describes an environment as it is now."""
+
+import hashlib
+import inspect
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import closing
+from dataclasses import replace
+from itertools import chain
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.envs.registration import EnvSpec
+from gymnasium.utils import RecordConstructorArgs
+from gymnasium.wrappers import (
+    HumanRendering,
+    OrderEnforcing,
+    PassiveEnvChecker,
+    RecordEpisodeStatistics,
+    RecordVideo,
+    RenderCollection,
+)
+from gymnasium.wrappers import TimeLimit as TimeLimitWrapper
+
+from qtab.envs.class_code import LIBRARY, class_code, is_of_library
+from qtab.envs.matching import layers, time_limit
+from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
+from qtab.envs.origin.spaces import space_text
+from qtab.envs.origin.values import described, is_plain, same
+from qtab.envs.registry import EnvEntry, entry_for_id
+
+_NEUTRAL = (
+    *(OrderEnforcing, PassiveEnvChecker, TimeLimitWrapper, RecordEpisodeStatistics, RecordVideo),
+    *(HumanRendering, RenderCollection),
+)
+"""Wrappers that change neither observations nor rewards nor when an episode ends; the time limit is described apart."""
+_UNIMPORTANT = ("render_mode", "spec", "metadata")
+"""Attributes of environments that change no number."""
+_PROBE_STEPS = 50
+
+
+def describe(env: gym.Env, *, is_new: bool = False) -> EnvironmentDescription:
+    """Describes an environment. It is not stepped.
+
+    Args:
+        env: The environment.
+        is_new: Whether it is as ``gymnasium.make`` returned it, so that nothing can have been changed.
+    """
+    unwrapped: Any = env.unwrapped
+    cls, spec = type(unwrapped), unwrapped.spec
+    entry = None if spec is None else entry_for_id(spec.id)
+    kwargs = {} if spec is None else _without_rendering(spec.kwargs)
+    attributes = _attributes(unwrapped, entry)
+    table = None
+    if hasattr(unwrapped, "P") and not is_new:
+        table = _changed_table(unwrapped)
+    elif not is_new and spec is not None and (entry is None or entry.has_table):
+        attributes |= _changed(unwrapped, attributes)
+    return EnvironmentDescription(
+        id=None if spec is None else spec.id,
+        cls=f"{cls.__module__}:{cls.__qualname__}",
+        code=class_code(cls),
+        kwargs={name: described(value) for name, value in kwargs.items()},
+        wrappers=tuple(_wrapper(layer) for layer in layers(env) if _counts(layer)),
+        attributes=attributes,
+        table=table,
+        observation_space=space_text(env.observation_space),
+        action_space=space_text(env.action_space),
+        max_episode_steps=time_limit(env),
+    )
+
+
+def describe_known(spec: EnvSpec, kwargs: Mapping[str, Any], env: gym.Env) -> EnvironmentDescription:
+    """Describes an environment of Gymnasium's that is known by its table and was not made.
+
+    Args:
+        spec: Its spec.
+        kwargs: The keyword arguments of the constructor.
+        env: The environment that stands for it, with its spaces.
+    """
+    given = _without_rendering({**spec.kwargs, **kwargs})
+    return EnvironmentDescription(
+        id=spec.id,
+        cls=str(spec.entry_point),
+        code=LIBRARY,
+        kwargs={name: described(value) for name, value in given.items()},
+        wrappers=(),
+        attributes={},
+        table=None,
+        observation_space=space_text(env.observation_space),
+        action_space=space_text(env.action_space),
+        max_episode_steps=spec.max_episode_steps,
+    )
+
+
+def _without_rendering(kwargs: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in kwargs.items() if name not in _UNIMPORTANT}
+
+
+def _counts(layer: gym.Env) -> bool:
+    """Whether a layer is a wrapper that may change a number: of a subclass nothing is known."""
+    return isinstance(layer, gym.Wrapper) and type(layer) not in _NEUTRAL
+
+
+def _wrapper(layer: gym.Env) -> WrapperDescription:
+    cls = type(layer)
+    kwargs = None
+    if isinstance(layer, RecordConstructorArgs):
+        given = {name: value for name, value in layer._saved_kwargs.items() if name != "env"}
+        kwargs = {name: described(value) for name, value in given.items()}
+    elif len(_parameters(cls)) == 1:  # nothing but the environment
+        kwargs = {}
+    return WrapperDescription(
+        cls=f"{cls.__module__}:{cls.__qualname__}",
+        code=class_code(cls),
+        kwargs=kwargs,
+        attributes={**_arguments(layer), **_replaced_methods(layer)},
+    )
+
+
+def _attributes(unwrapped: Any, entry: EnvEntry | None) -> dict[str, Any]:
+    replaced = _replaced_methods(unwrapped)
+    if entry is not None and not entry.has_table and is_of_library(type(unwrapped)):
+        from qtab._core import parameter_names
+
+        known = {name: getattr(unwrapped, name, None) for name in parameter_names(entry.name)}
+        return {name: described(value) for name, value in known.items()} | replaced
+    return replaced if hasattr(unwrapped, "P") else _arguments(unwrapped) | replaced
+
+
+def _arguments(layer: Any) -> dict[str, Any]:
+    """The attributes with the names of constructor arguments, where most classes keep these."""
+    held = vars(layer)
+    names = _parameters(type(layer))
+    found = {name: held[key] for name in names for key in (name, f"_{name}") if key in held and name != "env"}
+    return {name: described(value) for name, value in found.items() if name not in _UNIMPORTANT}
+
+
+def _parameters(cls: type) -> list[str]:
+    """The names of the constructor's parameters; none where they cannot be known."""
+    try:
+        return list(inspect.signature(cls).parameters)
+    except (TypeError, ValueError):
+        return []
+
+
+def _replaced_methods(layer: gym.Env) -> dict[str, Any]:
+    return {name: described(value) for name, value in vars(layer).items() if callable(getattr(type(layer), name, None))}
+
+
+def _changed(unwrapped: Any, described_already: Mapping[str, Any]) -> dict[str, Any]:
+    """The attributes that differ from those of a new environment of the same id, and that stepping does not change."""
+    held = {name: value for name, value in _plain_attributes(unwrapped) if name not in described_already}
+    try:
+        with _new(unwrapped) as new:
+            made = dict(_plain_attributes(new))
+            names = [name for name in held if name in made and not same(described(held[name]), described(made[name]))]
+            moving = _moving(new, made) if names else set()
+    except Exception:  # what a constructor or a step of any package may raise
+        return {}
+    return {name: described(held[name]) for name in names if name not in moving}
+
+
+def _new(unwrapped: Any) -> "closing[Any]":
+    spec = replace(unwrapped.spec, kwargs=_without_rendering(unwrapped.spec.kwargs))
+    return closing(gym.make(spec).unwrapped)
+
+
+def _plain_attributes(unwrapped: Any) -> Iterator[tuple[str, Any]]:
+    for name, value in vars(unwrapped).items():
+        if not name.startswith("_") and name not in _UNIMPORTANT and is_plain(value):
+            yield name, value
+
+
+def _moving(env: Any, before: Mapping[str, Any]) -> set[str]:
+    """The attributes that resets and random steps change: the state, not the problem."""
+    moving: set[str] = set()
+    env.action_space.seed(0)
+    for seed in (0, 1):
+        env.reset(seed=seed)
+        for _ in range(_PROBE_STEPS):
+            _, _, terminated, truncated, _ = env.step(env.action_space.sample())
+            now = vars(env)
+            moving |= {
+                name
+                for name, value in before.items()
+                if name not in now or not same(described(now[name]), described(value))
+            }
+            if terminated or truncated:
+                break
+    return moving
+
+
+def _changed_table(unwrapped: Any) -> str | None:
+    """A digest of a transition table; None where it is that of a new environment of the same id."""
+    table = _table_digest(unwrapped)
+    if unwrapped.spec is not None:
+        with _new(unwrapped) as new:
+            if _table_digest(new) == table:
+                return None
+    return table
+
+
+def _table_digest(unwrapped: Any) -> str:
+    """A digest of the transitions and of the first states, by their numbers."""
+    states = _items(unwrapped.P)
+    pairs = [(state, action, len(outcomes), outcomes) for state, row in states for action, outcomes in _items(row)]
+    first = getattr(unwrapped, "initial_state_distrib", ())
+    transitions = chain.from_iterable(chain.from_iterable(outcomes for *_, outcomes in pairs))
+    numbers = [chain.from_iterable(pair[:3] for pair in pairs), transitions, first]
+    digest = hashlib.sha256()
+    for part in numbers:
+        digest.update(np.fromiter(part, np.float64).tobytes() + b";")
+    return digest.hexdigest()[:32]
+
+
+def _items(table: Any) -> Iterable[tuple[Any, Any]]:
+    return table.items() if isinstance(table, Mapping) else enumerate(table)

@@ -1,0 +1,136 @@
+"""Values of arguments and attributes as JSON holds them: exact where that is possible, else a digest to compare."""
+
+import hashlib
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from qtab.envs.class_code import function_code
+from qtab.envs.origin.spaces import space_text
+
+MOST_BYTES = 4096
+"""Larger arrays are described by a digest."""
+_TAG = "is"
+
+
+class NotRestorableError(ValueError):
+    """A value is known only by its description. The message says what it is."""
+
+
+def described(value: Any) -> Any:
+    """Returns a value as JSON can hold it, equal for equal values; what has no such form is described by its type."""
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, int | str):
+        return int(value) if isinstance(value, int) else str(value)
+    if isinstance(value, float) and not isinstance(value, np.generic):
+        return float(value) if math.isfinite(value) else {_TAG: "float", "value": repr(float(value))}
+    if isinstance(value, np.ndarray | np.generic):
+        return _described_array(np.asarray(value))
+    if isinstance(value, tuple):
+        return {_TAG: "tuple", "items": [described(item) for item in value]}
+    if isinstance(value, list):
+        return [described(item) for item in value]
+    if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
+        return {_TAG: "dict", "items": {key: described(item) for key, item in value.items()}}
+    if isinstance(value, gym.Space):
+        return {_TAG: "space", "text": space_text(value)}
+    if isinstance(value, type):
+        return {_TAG: "class", "name": f"{value.__module__}:{value.__qualname__}"}
+    if callable(value) and hasattr(value, "__code__"):
+        return {_TAG: "function", "name": value.__qualname__, "code": function_code(value)}
+    return {_TAG: "object", "name": f"{type(value).__module__}:{type(value).__qualname__}"}
+
+
+def _described_array(array: Any) -> dict[str, Any]:
+    content: dict[str, Any] = {_TAG: "array", "dtype": array.dtype.str, "shape": list(array.shape)}
+    if array.dtype.hasobject:
+        return {_TAG: "object", "name": "numpy:ndarray"}
+    data = np.ascontiguousarray(array).tobytes()
+    return {**content, "bytes": data.hex()} if len(data) <= MOST_BYTES else {**content, "sha256": sha256(data)}
+
+
+def is_plain(value: Any) -> bool:
+    """Returns whether a value is a number, text, or an array, tuple or list of them, which its description restores."""
+    try:
+        restored(described(value))
+    except NotRestorableError:
+        return False
+    return True
+
+
+def restored(content: Any) -> Any:
+    """Returns the value that is described.
+
+    Raises:
+        NotRestorableError: if only a digest or a type is known.
+    """
+    if isinstance(content, list):
+        return [restored(item) for item in content]
+    if not isinstance(content, dict):
+        return content
+    match content:
+        case {"is": "float", "value": "inf" | "-inf" | "nan" as text}:
+            return float(text)
+        case {"is": "array", "dtype": str(dtype), "shape": list(shape), "bytes": str(data)}:
+            return _array(dtype, shape, data)
+        case {"is": "tuple", "items": list(items)}:
+            return tuple(restored(item) for item in items)
+        case {"is": "dict", "items": dict(items)}:
+            return {name: restored(item) for name, item in items.items()}
+    raise NotRestorableError(in_words(content))
+
+
+def _array(dtype: str, shape: list[Any], data: str) -> Any:
+    try:
+        found = np.frombuffer(bytes.fromhex(data), np.dtype(dtype)).reshape(shape).copy()
+    except (TypeError, ValueError):
+        raise NotRestorableError("a damaged array") from None
+    return found if shape else found[()]
+
+
+def same(one: Any, other: Any) -> bool:
+    """Returns whether two descriptions of a value are equal as far as is known."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        if one.keys() != other.keys():
+            return False
+        unknown = one.get(_TAG) == "function" and not comparable(one.get("code"), other.get("code"))
+        return all(same(one[name], other[name]) for name in one if not (unknown and name == "code"))
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
+        return len(one) == len(other) and all(map(same, one, other))
+    return type(one) is type(other) and bool(one == other)
+
+
+def comparable(one: str | None, other: str | None) -> bool:
+    """Returns whether two digests of code can be compared: both are known, and were made by the same Python."""
+    return one is not None and other is not None and one.partition(":")[0] == other.partition(":")[0]
+
+
+def in_words(content: Any) -> str:
+    """Returns a described value as messages show it."""
+    match content:
+        case {"is": "function", "name": name}:
+            return f"the function {name}"
+        case {"is": "class", "name": name}:
+            return f"the class {name}"
+        case {"is": "object", "name": name}:
+            return f"an object of {name}"
+        case {"is": "space", "text": text}:
+            return f"the space {text}"
+        case {"is": "array", "shape": shape, "sha256": _}:
+            return f"an array of shape {tuple(shape)}"
+        case list():
+            return f"[{', '.join(map(in_words, content))}]"
+    try:
+        text = repr(restored(content))
+    except NotRestorableError as error:
+        return str(error)
+    return text if len(text) <= 100 else f"{text[:97]}..."
+
+
+def sha256(data: bytes) -> str:
+    """Returns the first 32 hexadecimal digits of a digest."""
+    return hashlib.sha256(data).hexdigest()[:32]

@@ -1,0 +1,246 @@
+"""The description of an environment: it shows each difference, and is enough to make the environment again."""
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.wrappers import (
+    ClipReward,
+    RecordEpisodeStatistics,
+    RescaleObservation,
+    TransformObservation,
+    TransformReward,
+)
+from hypothesis import given
+from hypothesis import strategies as st
+
+import qtab
+from qtab.envs.origin import describe, differences, make_again
+from qtab.envs.origin.description import EnvironmentDescription, from_json
+from qtab.envs.origin.values import NotRestorableError, described, restored, same
+from qtab.envs.registry import ENTRIES, EXTRA
+
+CAR, LAKE = "MountainCar-v0", "FrozenLake-v1"
+SLOW_TABLES = ("qtab/JacksCarRental-v0", "qtab/GamblersProblem-v0")
+
+
+class Reversed(gym.Wrapper[Any, Any, Any, Any]):
+    """A wrapper with nothing but the environment."""
+
+    def step(self, action: Any) -> Any:
+        return self.env.step(2 - action)
+
+
+class Padded(gym.Wrapper[Any, Any, Any, Any]):
+    """A wrapper that does not record its arguments."""
+
+    def __init__(self, env: gym.Env, amount: float) -> None:
+        super().__init__(env)
+        self._amount = amount
+
+
+class Corridor(gym.Env[Any, Any]):
+    """An environment without an id."""
+
+    observation_space = gym.spaces.Discrete(3)
+    action_space = gym.spaces.Discrete(2)
+
+    def __init__(self, penalty: float = -1.0) -> None:
+        self.penalty = penalty
+
+
+def car(**kwargs: Any) -> Any:
+    return gym.make(CAR, **kwargs)
+
+
+def changed(env: Any, **attributes: Any) -> Any:
+    for name, value in attributes.items():
+        setattr(env.unwrapped, name, value)
+    return env
+
+
+def lake_with_rewards() -> Any:
+    env: Any = gym.make(LAKE)
+    for actions in env.unwrapped.P.values():
+        for action, outcomes in actions.items():
+            actions[action] = [(p, state, 10 * reward, end) for p, state, reward, end in outcomes]
+    return env
+
+
+def other_space(env: Any) -> Any:
+    return TransformObservation(env, np.array, gym.spaces.Box(-2.0, 2.0, (2,), np.float32))
+
+
+DIFFERENT: dict[str, tuple[Callable[[], Any], Callable[[], Any], str]] = {
+    "id": (car, lambda: gym.make("CartPole-v1"), "trained on MountainCar-v0, not on CartPole-v1"),
+    "argument": (
+        car,
+        lambda: car(goal_velocity=0.1),
+        "its argument goal_velocity was not given in training, and is 0.1",
+    ),
+    "attribute": (car, lambda: changed(car(), force=0.01), "its attribute force was 0.001 in training, and is 0.01"),
+    "method": (car, lambda: changed(car(), step=lambda action: None), "its attribute step was as the constructor"),
+    "table": (lambda: gym.make(LAKE), lake_with_rewards, "its transition table is not that of the training"),
+    "wrapper": (
+        lambda: RescaleObservation(car(), np.float32(0), np.float32(1)),
+        car,
+        "was trained in the wrapper RescaleObservation, and this environment is without a wrapper",
+    ),
+    "argument of a wrapper": (
+        lambda: ClipReward(car(), -1.0, 0.0),
+        lambda: ClipReward(car(), -2.0, 0.0),
+        "of the wrapper ClipReward, the argument min_reward was -1.0 in training, and is -2.0",
+    ),
+    "function of a wrapper": (
+        lambda: TransformReward(car(), lambda reward: 2 * reward),
+        lambda: TransformReward(car(), lambda reward: 3 * reward),
+        "the argument func was the function",
+    ),
+    "attribute of a wrapper": (
+        lambda: Padded(car(), 1.0),
+        lambda: Padded(car(), 2.0),
+        "of the wrapper Padded, the attribute amount was 1.0 in training, and is 2.0",
+    ),
+    "bounds": (
+        lambda: other_space(car()),
+        lambda: TransformObservation(car(), np.array, gym.spaces.Box(-3.0, 2.0, (2,), np.float32)),
+        "its observation_space was Box(-2.0, 2.0, (2,), float32) in training, and is Box(",
+    ),
+    "order of a MultiDiscrete": (
+        lambda: changed(Corridor(), observation_space=gym.spaces.MultiDiscrete([4, 6])),
+        lambda: changed(Corridor(), observation_space=gym.spaces.MultiDiscrete([6, 4])),
+        "its observation_space was MultiDiscrete([4 6]) in training, and is MultiDiscrete([6 4])",
+    ),
+    "constructor of a class without an id": (
+        Corridor,
+        lambda: Corridor(-7.0),
+        "its attribute penalty was -1.0 in training, and is -7.0",
+    ),
+    "transitions of a class without an id": (
+        lambda: qtab.TabularEnv([[[(1.0, 0, -1.0, True)]]], [1.0]),
+        lambda: qtab.TabularEnv([[[(1.0, 0, -7.0, True)]]], [1.0]),
+        "its transition table is not that of the training",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", DIFFERENT)
+def test_each_difference_is_named(what: str) -> None:
+    one, other, sentence = DIFFERENT[what]
+    assert differences(describe(one()), describe(one())) == []
+    for ours, theirs in ((describe(one()), describe(other())), (stored(describe(one())), stored(describe(other())))):
+        assert sentence in "; ".join(differences(ours, theirs))
+
+
+def stored(description: EnvironmentDescription) -> EnvironmentDescription:
+    return from_json(json.loads(json.dumps(description.as_json(), allow_nan=False)))
+
+
+def test_a_function_that_is_written_again_is_the_same() -> None:
+    one = describe(TransformReward(car(), lambda reward: 2 * reward))
+    assert differences(one, describe(TransformReward(car(), lambda reward: 2 * reward))) == []
+
+
+@pytest.mark.parametrize("name", [name for name in (*ENTRIES, *EXTRA) if name not in SLOW_TABLES])
+@pytest.mark.filterwarnings("ignore:.*out of date")
+def test_a_used_environment_is_described_as_a_new_one(name: str) -> None:
+    env = gym.make(name)
+    expected = describe(env, is_new=True)
+    env.reset(seed=3)
+    env.action_space.seed(3)
+    for _ in range(20):
+        _, _, terminated, truncated, _ = env.step(env.action_space.sample())
+        if terminated or truncated:
+            env.reset()
+    assert differences(expected, describe(env)) == []
+    assert differences(describe(env), expected) == []
+
+
+def test_wrappers_that_only_look_on_do_not_count() -> None:
+    assert differences(describe(RecordEpisodeStatistics(car())), describe(car().unwrapped)) == []
+
+
+AGAIN: dict[str, Callable[[], Any]] = {
+    "plain": car,
+    "arguments": lambda: car(goal_velocity=0.02),
+    "attribute": lambda: changed(car(), gravity=0.0015),
+    "wrappers": lambda: ClipReward(RescaleObservation(changed(car(), force=0.002), np.float32(0), np.float32(1)), -2.0),
+    "own wrapper": lambda: Reversed(car()),
+    "qtab's twin": lambda: RescaleObservation(gym.make(f"qtab/{CAR}"), np.float32(0), np.float32(1)),
+    "spec with wrappers": lambda: gym.make(RescaleObservation(car(), np.float32(0), np.float32(1)).spec),
+}
+
+
+@pytest.mark.parametrize("what", AGAIN)
+def test_an_environment_is_made_again_as_it_was(what: str) -> None:
+    env = AGAIN[what]()
+    description = stored(describe(env))
+    again = make_again(description, gym.spec(env.spec.id), env.unwrapped.spec.kwargs, 200)
+    assert differences(description, describe(again)) == []
+    for one in (env, again):
+        one.reset(seed=5)
+    for action in (0, 2, 1, 2):
+        mine, theirs = env.step(action), again.step(action)
+        assert mine[0].tobytes() == theirs[0].tobytes()
+        assert mine[1:4] == theirs[1:4]
+
+
+def test_what_cannot_be_made_again_is_named() -> None:
+    class Local(Reversed):
+        pass
+
+    found = {
+        "the arguments of its wrapper Padded are not known": Padded(car(), 1.0),
+        "its wrapper TransformReward was made with the function": TransformReward(car(), lambda reward: reward),
+        "<locals>.Local is not a class of an imported module": Local(car()),
+        "its attribute step was the function": changed(car(), step=lambda action: None),
+    }
+    for reason, env in found.items():
+        with pytest.raises(ValueError, match=f"^env must be given: the environment {CAR} cannot be made") as caught:
+            make_again(describe(env), gym.spec(CAR), {}, 200)
+        assert reason in str(caught.value)
+    with pytest.raises(ValueError, match=r"its transition table was changed before the training$"):
+        make_again(describe(lake_with_rewards()), gym.spec(LAKE), {}, 200)
+
+
+def test_a_description_from_a_file_imports_nothing_and_calls_no_class_but_a_wrapper() -> None:
+    description = describe(Reversed(car()))
+    for cls in ("antigravity:Wrapper", "os:system", "builtins:int", "gymnasium.wrappers:np.array"):
+        wrapper = description.wrappers[0].__class__(cls, None, {}, {})
+        hostile = from_json({**description.as_json(), "wrappers": [wrapper.__dict__]})
+        with pytest.raises(ValueError, match="is not a class of an imported module"):
+            make_again(hostile, gym.spec(CAR), {}, 200)
+    for name in ("__class__", "step", "no_such_attribute"):
+        with pytest.raises(ValueError, match=f"its attribute {name} was 3"):
+            make_again(from_json({**describe(car()).as_json(), "attributes": {name: 3}}), gym.spec(CAR), {}, 200)
+
+
+PLAIN = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text("abc"),
+    lambda part: st.lists(part, max_size=3) | st.tuples(part, part) | st.dictionaries(st.text("xyz"), part, max_size=3),
+    max_leaves=6,
+)
+
+
+@given(PLAIN)
+def test_plain_values_are_restored_from_json(value: Any) -> None:
+    content = json.loads(json.dumps(described(value), allow_nan=False))
+    assert same(content, described(value))
+    assert repr(restored(content)) == repr(value)
+
+
+@pytest.mark.parametrize("value", [np.float32(0.1), np.array([[1.5, np.nan]]), np.int8(3), np.array([True, False])])
+def test_arrays_are_restored_with_their_dtypes(value: Any) -> None:
+    found = restored(json.loads(json.dumps(described(value))))
+    assert np.asarray(found).dtype == value.dtype
+    assert np.asarray(found).tobytes() == value.tobytes()
+
+
+def test_of_large_arrays_a_digest_is_kept() -> None:
+    one, other = described(np.zeros(10_000)), described(np.ones(10_000))
+    assert not same(one, other)
+    with pytest.raises(NotRestorableError, match=r"an array of shape \(10000,\)"):
+        restored(one)
