@@ -208,9 +208,9 @@ class Optimum:
         for name, ours, theirs in zip(("env", "env_kwargs", "max_episode_steps"), expected, actual, strict=True):
             if repr(ours) != repr(theirs) and (with_limit or name != "max_episode_steps"):
                 raise ValueError(f"run must have {name} {ours!r} as this optimum has, got {theirs!r}")
-        described = trained_on(config)
-        if described is not None and self.environment is not None:
-            found = differences(described, self.environment)
+        description = trained_on(config)
+        if description is not None and self.environment is not None:
+            found = differences(description, self.environment)
             if found:
                 raise ValueError(f"run must be on the environment of this optimum, got another one: {'; '.join(found)}")
 

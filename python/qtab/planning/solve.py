@@ -97,8 +97,8 @@ def optimum(
     spec = env if isinstance(env, EnvSpec) else spec_of(name)
     made = make_env(spec, env_kwargs or {})
     try:
-        described = describe(made, is_new=True)
-        return _optimum_for_env(name, made, max_episode_steps, discount, method, progress, described)
+        description = describe(made, is_new=True)
+        return _optimum_for_env(name, made, max_episode_steps, discount, method, progress, description)
     finally:
         made.close()
 
@@ -134,7 +134,7 @@ def _optimum_for_env(
     discount: float | None,
     method: str | None,
     progress: bool | None,
-    described: EnvironmentDescription | None = None,
+    description: EnvironmentDescription | None = None,
 ) -> Optimum:
     started = time.perf_counter()
     unwrapped: Any = env.unwrapped
@@ -172,7 +172,7 @@ def _optimum_for_env(
         seconds=time.perf_counter() - started,
         search=best.search,
         solver=best.solver,
-        environment=described or describe(env),
+        environment=description or describe(env),
     )
 
 

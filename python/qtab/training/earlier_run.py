@@ -154,8 +154,8 @@ def _check_id(run: Run, env: Any) -> None:
 
 def _check_env(run: Run, resolved: ResolvedRun) -> None:
     """Checks that the environment that was found is the one that the run was trained on, as far as that is known."""
-    described = trained_on(run.config)
-    if described is not None and (found := differences(described, environment_of(resolved))):
+    description = trained_on(run.config)
+    if description is not None and (found := differences(description, environment_of(resolved))):
         raise ValueError(f"env must be that of the run to resume, got another one: {'; '.join(found)}")
 
 

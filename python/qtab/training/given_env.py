@@ -40,8 +40,8 @@ def check_same(run: Run, env: gym.Env) -> None:
         ValueError: if it is another one; the message says what differs.
     """
     check_spaces(run, env)
-    described = trained_on(run.config)
-    if described is not None and (found := differences(described, describe(env))):
+    description = trained_on(run.config)
+    if description is not None and (found := differences(description, describe(env))):
         raise ValueError(f"env must be that of the run, got another one: {'; '.join(found)}")
 
 

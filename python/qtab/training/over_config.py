@@ -21,8 +21,8 @@ def collect_for(
     """Does what :func:`qtab.config.layers.collect` does; an environment equal to that of the config is no other one."""
     given, base = collect(function, env, config, settings)
     if isinstance(env, gym.Env) and isinstance(config, Config):
-        described = trained_on(config)
-        if described is not None and not differences(described, describe(env)):
+        description = trained_on(config)
+        if description is not None and not differences(description, describe(env)):
             return env, replace_checked(config, env_kwargs={})
     return given, base
 

@@ -51,12 +51,12 @@ def make_run_env(
     rendering = {} if render_mode is None else {"render_mode": render_mode}
     kwargs = {**(config.env_kwargs if env_kwargs is None else env_kwargs), **rendering}
     limit = config.max_episode_steps if max_episode_steps is None else max_episode_steps
-    described = trained_on(config)
-    if described is None or _others(config, env_kwargs):
-        if described is not None:
-            _check_plain(described)
+    description = trained_on(config)
+    if description is None or _others(config, env_kwargs):
+        if description is not None:
+            _check_plain(description)
         return make_env(spec, kwargs, max_episode_steps=limit, disable_env_checker=True)
-    return make_again(described, spec, kwargs, limit)
+    return make_again(description, spec, kwargs, limit)
 
 
 def can_be_made(config: Config) -> bool:
@@ -100,15 +100,15 @@ def as_in_training(
     Raises:
         ValueError: if the environment cannot be made as it was, or a setting does not fit.
     """
-    described, asked = trained_on(config), dict(settings)
-    if described is None:
+    description, asked = trained_on(config), dict(settings)
+    if description is None:
         return attempt(config.env, asked), config.env, asked
     if _others(config, asked.get("env_kwargs")):
-        _check_plain(described)
+        _check_plain(description)
         return attempt(config.env, asked), config.env, asked
-    if not needs_object(described, spec_of_run(config.env)):
+    if not needs_object(description, spec_of_run(config.env)):
         resolved = attempt(config.env, asked)
-        if not differences(described, environment_of(resolved)):
+        if not differences(description, environment_of(resolved)):
             return resolved, config.env, asked
         resolved.close()
     make = partial(make_run_env, config, of="id")
@@ -118,10 +118,10 @@ def as_in_training(
 
 def environment_of(resolved: ResolvedRun) -> EnvironmentDescription:
     """Returns the description of the environment of a resolved run."""
-    described = trained_on(resolved.config)
-    if described is None:
+    description = trained_on(resolved.config)
+    if description is None:
         raise AssertionError("a resolved run knows its environment")
-    return described
+    return description
 
 
 def _others(config: Config, env_kwargs: Any) -> bool:
@@ -131,11 +131,11 @@ def _others(config: Config, env_kwargs: Any) -> bool:
     return not isinstance(env_kwargs, Mapping) or dict(env_kwargs) != dict(config.env_kwargs)
 
 
-def _check_plain(described: EnvironmentDescription) -> None:
+def _check_plain(description: EnvironmentDescription) -> None:
     """Checks that an environment can be made with other arguments than those of the training."""
-    if described.wrappers or described.table is not None:
-        changed = "it has wrappers" if described.wrappers else "its transition table was changed"
-        raise cannot_be_made(described, f"other env_kwargs are given, and {changed}")
+    if description.wrappers or description.table is not None:
+        changed = "it has wrappers" if description.wrappers else "its transition table was changed"
+        raise cannot_be_made(description, f"other env_kwargs are given, and {changed}")
 
 
 def with_origin_of(resolved: ResolvedRun, config: Config, names: Mapping[str, Any]) -> ResolvedRun:

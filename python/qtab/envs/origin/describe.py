@@ -26,7 +26,7 @@ from qtab.envs.class_code import LIBRARY, class_code, is_of_library
 from qtab.envs.matching import layers, time_limit
 from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
 from qtab.envs.origin.spaces import space_text
-from qtab.envs.origin.values import described, is_plain, same
+from qtab.envs.origin.values import describe_value, is_plain, same
 from qtab.envs.registry import EnvEntry, entry_for_id
 
 _NEUTRAL = (
@@ -60,7 +60,7 @@ def describe(env: gym.Env, *, is_new: bool = False) -> EnvironmentDescription:
         id=None if spec is None else spec.id,
         cls=f"{cls.__module__}:{cls.__qualname__}",
         code=class_code(cls),
-        kwargs={name: described(value) for name, value in kwargs.items()},
+        kwargs={name: describe_value(value) for name, value in kwargs.items()},
         wrappers=tuple(_wrapper(layer) for layer in layers(env) if _counts(layer)),
         attributes=attributes,
         table=table,
@@ -83,7 +83,7 @@ def describe_known(spec: EnvSpec, kwargs: Mapping[str, Any], env: gym.Env) -> En
         id=spec.id,
         cls=str(spec.entry_point),
         code=LIBRARY,
-        kwargs={name: described(value) for name, value in given.items()},
+        kwargs={name: describe_value(value) for name, value in given.items()},
         wrappers=(),
         attributes={},
         table=None,
@@ -107,7 +107,7 @@ def _wrapper(layer: gym.Env) -> WrapperDescription:
     kwargs = None
     if isinstance(layer, RecordConstructorArgs):
         given = {name: value for name, value in layer._saved_kwargs.items() if name != "env"}
-        kwargs = {name: described(value) for name, value in given.items()}
+        kwargs = {name: describe_value(value) for name, value in given.items()}
     elif len(_parameters(cls)) == 1:  # nothing but the environment
         kwargs = {}
     return WrapperDescription(
@@ -124,7 +124,7 @@ def _attributes(unwrapped: Any, entry: EnvEntry | None) -> dict[str, Any]:
         from qtab._core import parameter_names
 
         known = {name: getattr(unwrapped, name, None) for name in parameter_names(entry.name)}
-        return {name: described(value) for name, value in known.items()} | replaced
+        return {name: describe_value(value) for name, value in known.items()} | replaced
     return replaced if hasattr(unwrapped, "P") else _arguments(unwrapped) | replaced
 
 
@@ -133,7 +133,7 @@ def _arguments(layer: Any) -> dict[str, Any]:
     held = vars(layer)
     names = _parameters(type(layer))
     found = {name: held[key] for name in names for key in (name, f"_{name}") if key in held and name != "env"}
-    return {name: described(value) for name, value in found.items() if name not in _UNIMPORTANT}
+    return {name: describe_value(value) for name, value in found.items() if name not in _UNIMPORTANT}
 
 
 def _parameters(cls: type) -> list[str]:
@@ -145,20 +145,26 @@ def _parameters(cls: type) -> list[str]:
 
 
 def _replaced_methods(layer: gym.Env) -> dict[str, Any]:
-    return {name: described(value) for name, value in vars(layer).items() if callable(getattr(type(layer), name, None))}
+    return {
+        name: describe_value(value) for name, value in vars(layer).items() if callable(getattr(type(layer), name, None))
+    }
 
 
-def _changed(unwrapped: Any, described_already: Mapping[str, Any]) -> dict[str, Any]:
+def _changed(unwrapped: Any, known_already: Mapping[str, Any]) -> dict[str, Any]:
     """The attributes that differ from those of a new environment of the same id, and that stepping does not change."""
-    held = {name: value for name, value in _plain_attributes(unwrapped) if name not in described_already}
+    held = {name: value for name, value in _plain_attributes(unwrapped) if name not in known_already}
     try:
         with _new(unwrapped) as new:
             made = dict(_plain_attributes(new))
-            names = [name for name in held if name in made and not same(described(held[name]), described(made[name]))]
+            names = [
+                name
+                for name in held
+                if name in made and not same(describe_value(held[name]), describe_value(made[name]))
+            ]
             moving = _moving(new, made) if names else set()
     except Exception:  # what a constructor or a step of any package may raise
         return {}
-    return {name: described(held[name]) for name in names if name not in moving}
+    return {name: describe_value(held[name]) for name in names if name not in moving}
 
 
 def _new(unwrapped: Any) -> "closing[Any]":
@@ -184,7 +190,7 @@ def _moving(env: Any, before: Mapping[str, Any]) -> set[str]:
             moving |= {
                 name
                 for name, value in before.items()
-                if name not in now or not same(described(now[name]), described(value))
+                if name not in now or not same(describe_value(now[name]), describe_value(value))
             }
             if terminated or truncated:
                 break

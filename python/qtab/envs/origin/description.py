@@ -7,7 +7,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class WrapperDescription:
-    """A wrapper around an environment. Its values are as :func:`qtab.envs.origin.values.described` returns them."""
+    """A wrapper around an environment, with values as :func:`qtab.envs.origin.values.describe_value` returns them."""
 
     cls: str
     """Its class as ``"module:Class"``."""
@@ -28,7 +28,7 @@ class WrapperDescription:
 class EnvironmentDescription:
     """What an environment is made of, described once when training begins.
 
-    Its values are as :func:`qtab.envs.origin.values.described` returns them: what JSON can hold.
+    Its values are as :func:`qtab.envs.origin.values.describe_value` returns them: what JSON can hold.
     """
 
     id: str | None

@@ -94,8 +94,8 @@ def _when(ours: EnvironmentDescription | WrapperDescription) -> str:
     return "after" if ours.code == LIBRARY else "only for"
 
 
-def _class_name(described: EnvironmentDescription | WrapperDescription) -> str:
-    return described.cls.rpartition(":")[2].rpartition(".")[2]
+def _class_name(description: EnvironmentDescription | WrapperDescription) -> str:
+    return description.cls.rpartition(":")[2].rpartition(".")[2]
 
 
 def _bare(name: str) -> str:

@@ -20,7 +20,7 @@ class NotRestorableError(ValueError):
     """A value is known only by its description. The message says what it is."""
 
 
-def described(value: Any) -> Any:
+def describe_value(value: Any) -> Any:
     """Returns a value as JSON can hold it, equal for equal values; what has no such form is described by its type."""
     if value is None or isinstance(value, bool):
         return value
@@ -29,13 +29,13 @@ def described(value: Any) -> Any:
     if isinstance(value, float) and not isinstance(value, np.generic):
         return float(value) if math.isfinite(value) else {_TAG: "float", "value": repr(float(value))}
     if isinstance(value, np.ndarray | np.generic):
-        return _described_array(np.asarray(value))
+        return _describe_array(np.asarray(value))
     if isinstance(value, tuple):
-        return {_TAG: "tuple", "items": [described(item) for item in value]}
+        return {_TAG: "tuple", "items": [describe_value(item) for item in value]}
     if isinstance(value, list):
-        return [described(item) for item in value]
+        return [describe_value(item) for item in value]
     if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
-        return {_TAG: "dict", "items": {key: described(item) for key, item in value.items()}}
+        return {_TAG: "dict", "items": {key: describe_value(item) for key, item in value.items()}}
     if isinstance(value, gym.Space):
         return {_TAG: "space", "text": space_text(value)}
     if isinstance(value, type):
@@ -45,7 +45,7 @@ def described(value: Any) -> Any:
     return {_TAG: "object", "name": f"{type(value).__module__}:{type(value).__qualname__}"}
 
 
-def _described_array(array: Any) -> dict[str, Any]:
+def _describe_array(array: Any) -> dict[str, Any]:
     content: dict[str, Any] = {_TAG: "array", "dtype": array.dtype.str, "shape": list(array.shape)}
     if array.dtype.hasobject:
         return {_TAG: "object", "name": "numpy:ndarray"}
@@ -56,7 +56,7 @@ def _described_array(array: Any) -> dict[str, Any]:
 def is_plain(value: Any) -> bool:
     """Returns whether a value is a number, text, or an array, tuple or list of them, which its description restores."""
     try:
-        restored(described(value))
+        restored(describe_value(value))
     except NotRestorableError:
         return False
     return True
