@@ -30,7 +30,8 @@ from qtab.config.choices import (
     Ties,
     Traces,
 )
-from qtab.config.options import PREFERENCES, fixed_settings, freed_settings, implied_schedules
+from qtab.config.followers import with_followers
+from qtab.config.options import PREFERENCES, fixed_settings, implied_schedules
 from qtab.config.origin import WithOrigin, copied
 from qtab.config.unknown import check_names
 from qtab.config.validation import validated
@@ -240,19 +241,8 @@ class Config(WithOrigin):
             ValueError: for a value that is out of range, or that does not apply beside the others.
         """
         check_names(changes, DEFAULTS)
-        own: dict[str, Any] = {}
-        origin = self.origin
-        if origin is not None and changes.get("env", self.env) != self.env:
-            own |= {name: DEFAULTS[name] for name in origin.derived}
-            origin = None
-        if "algorithm" in changes:
-            own |= {name: DEFAULTS[name] for name in freed_settings(self.algorithm, changes["algorithm"])}
-            own |= fixed_settings(changes["algorithm"])
-        if changes.get("time_aware", own and self.time_aware):
-            own["on_truncation"] = "terminate"
-        elif self.time_aware and "time_aware" in changes:
-            own["on_truncation"] = DEFAULTS["on_truncation"]
-        return copied(dataclasses.replace(self, **{**own, **changes}), origin and origin.without(changes))
+        given, origin = with_followers(self, changes, DEFAULTS)
+        return copied(dataclasses.replace(self, **given), origin)
 
 
 DEFAULTS: Mapping[str, Any] = {

@@ -102,9 +102,8 @@ class Run(WithPage):
         if self.unchecked:
             facts["file"] = "of an earlier version, without a digest"
         block = min(default_block(len(returns)), max(len(returns) // 20, 1))
-        label = (
-            f"Learning curve: the mean return of each {block:,} episodes" if block > 1 else "The return of each episode"
-        )
+        each = f"Learning curve: the mean return of each {block:,} episodes"
+        label = each if block > 1 else "The return of each episode"
         return html.summary(f"Run of {config.env}", facts, svg.lines(label, {"mean return": self.mean_returns(block)}))
 
     @property
@@ -294,7 +293,7 @@ class Run(WithPage):
         except ValueError as error:
             raise ValueError(f"this run cannot be saved: {error}") from None
         arrays = {name: getattr(self, name) for name in run_file.ARRAYS} | optional_arrays(self)
-        header: dict[str, Any] = {}
+        header = {} if self.state is None else self.state.header()
         if self.state is not None:
-            arrays["state"], header = self.state.array(), self.state.header()
+            arrays["state"] = self.state.array()
         saving.write(checks.file_path("path", path), run_file.RUN, self, header, arrays)

@@ -195,8 +195,8 @@ def evaluate(
             "backend": config.backend if env is None and env_kwargs is None else "auto",
         },
     )
-    made = resolve_run(config, settings) if env is None else resolve(env, settings)
-    resolved = with_assigned_rows(made, run)
+    playing = resolve_run(config, settings) if env is None else resolve(env, settings)
+    resolved = with_assigned_rows(playing, run)
     if env is not None:
         log_python_stepping(resolved)
     try:

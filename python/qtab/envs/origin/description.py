@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
-from typing import Any
+from typing import Any, TypeVar
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,9 @@ class EnvironmentDescription:
         return asdict(self)
 
 
+D = TypeVar("D", WrapperDescription, EnvironmentDescription)
+
+
 def from_json(content: Any) -> EnvironmentDescription:
     """Returns the description that a file holds.
 
@@ -76,8 +79,8 @@ def from_json(content: Any) -> EnvironmentDescription:
     return _checked(EnvironmentDescription(**{**content, "wrappers": wrappers}))
 
 
-def _checked(description: Any) -> Any:
-    kinds = {
+def _checked(description: D) -> D:
+    kinds: dict[str, Any] = {
         "id": (str, type(None)),
         "cls": str,
         "code": (str, type(None)),

@@ -33,7 +33,7 @@ def differences(trained_on: EnvironmentDescription, given: EnvironmentDescriptio
 
 
 def _edited(ours: EnvironmentDescription, theirs: EnvironmentDescription) -> Iterator[str]:
-    pairs = [(ours, theirs), *zip(ours.wrappers, theirs.wrappers, strict=False)]
+    pairs: list[tuple[Any, Any]] = [(ours, theirs), *zip(ours.wrappers, theirs.wrappers, strict=False)]
     for one, other in pairs:
         if _class_name(one) == _class_name(other) and one.code != other.code and comparable(one.code, other.code):
             yield _class_name(one)

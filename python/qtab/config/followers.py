@@ -1,0 +1,32 @@
+"""The settings that follow when others of a config are changed."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from qtab.config.options import fixed_settings, freed_settings
+from qtab.config.origin import Origin
+
+
+def with_followers(
+    config: Any, changes: Mapping[str, Any], defaults: Mapping[str, Any]
+) -> tuple[dict[str, Any], Origin | None]:
+    """Returns the changes of a config with those that follow from them, and the origin that it has then.
+
+    Args:
+        config: The config.
+        changes: The settings that are changed.
+        defaults: The default of each setting.
+    """
+    own: dict[str, Any] = {}
+    origin: Origin | None = config.origin
+    if origin is not None and changes.get("env", config.env) != config.env:
+        own |= {name: defaults[name] for name in origin.derived}
+        origin = None
+    if "algorithm" in changes:
+        own |= {name: defaults[name] for name in freed_settings(config.algorithm, changes["algorithm"])}
+        own |= fixed_settings(changes["algorithm"])
+    if changes.get("time_aware", own and config.time_aware):
+        own["on_truncation"] = "terminate"
+    elif config.time_aware and "time_aware" in changes:
+        own["on_truncation"] = defaults["on_truncation"]
+    return {**own, **changes}, None if origin is None else origin.without(changes)
