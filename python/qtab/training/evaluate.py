@@ -181,6 +181,7 @@ def evaluate(
         spec = env if isinstance(env, EnvSpec) else spec_of(env)
         with closing(make_env(spec, env_kwargs or {})) as made:
             check_spaces(run, made)
+    is_derived = config.origin is not None and "backend" in config.origin.derived
     # Over the run's own settings, so that no preset adds any.
     settings = over(
         config,
@@ -192,7 +193,7 @@ def evaluate(
             "env_kwargs": _env_kwargs(config, env, env_kwargs),
             "preset": config.preset if env is None else None,
             "max_episode_steps": config.max_episode_steps if max_episode_steps is None else max_episode_steps,
-            "backend": config.backend if env is None and env_kwargs is None else "auto",
+            "backend": "auto" if env is not None or env_kwargs is not None or is_derived else config.backend,
         },
     )
     playing = resolve_run(config, settings) if env is None else resolve(env, settings)
