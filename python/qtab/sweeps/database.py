@@ -1,5 +1,6 @@
 """The SQLite file format of a store: its tables, the check of its version and content, and how runs are written."""
 
+import json
 import math
 import sqlite3
 from collections.abc import Sequence
@@ -82,7 +83,10 @@ def create_tables(connection: sqlite3.Connection, description: Description, vers
     """
     for statement in sorted(_TABLES[str(FORMAT_VERSION)]):
         connection.execute(statement)
-    write_meta(connection, {"study": description.text, "versions": versions}, [])
+    content = {"study": description.text, "versions": versions}
+    if description.environments is not None:
+        content["environments"] = description.environments
+    write_meta(connection, content, [])
 
 
 def write_meta(connection: sqlite3.Connection, content: dict[str, str], chunks: Sequence[int]) -> None:
@@ -206,6 +210,14 @@ def replace_runs(
         consecutive = [run for _, run in group]
         digests.append(insert_chunk(connection, consecutive, seconds * len(consecutive) / len(runs)))
     write_meta(connection, content, digests)
+
+
+def add_versions(connection: sqlite3.Connection, meta: dict[str, str], versions: str) -> None:
+    """Notes that runs may be added by other versions than those that the store names already."""
+    others = [*json.loads(meta.get("other_versions", "[]")), json.loads(versions)]
+    changed = {**meta, "other_versions": json.dumps(others)}
+    connection.execute("INSERT OR REPLACE INTO meta VALUES ('other_versions', ?)", (changed["other_versions"],))
+    add_digests(connection, [study_digest(meta), study_digest(changed)])
 
 
 def add_digests(connection: sqlite3.Connection, chunks: Sequence[int]) -> None:

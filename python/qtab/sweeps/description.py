@@ -27,6 +27,8 @@ class Description:
     """The seeds of every setting."""
     block: int
     """The number of episodes that each point of a learning curve averages."""
+    environments: str | None = None
+    """JSON text: the environments in detail; None where a store does not say it."""
 
     @property
     def runs(self) -> int:

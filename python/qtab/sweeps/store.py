@@ -29,6 +29,7 @@ from qtab.sweeps.database import (
     Contents,
     RunRecord,
     add_digests,
+    add_versions,
     create_tables,
     insert_chunk,
     is_empty,
@@ -37,7 +38,7 @@ from qtab.sweeps.database import (
 )
 from qtab.sweeps.description import Description
 from qtab.sweeps.more_seeds import add_seeds, numbering
-from qtab.sweeps.stored import check_study, store_path, warn_unchecked
+from qtab.sweeps.stored import check_study, known_versions, store_path, warn_unchecked
 
 
 class Store:
@@ -167,6 +168,11 @@ class Store:
                 add_seeds(self._connection, path, self._description)
                 number = numbering(self._connection)
         self._numbering = number
+        if path is not None and versions() not in known_versions(contents.meta):
+            with self._transaction():
+                meta = read_meta(self._connection, path)
+                if versions() not in known_versions(meta):
+                    add_versions(self._connection, meta, json.dumps(versions()))
 
     def _first_unclaimed(self) -> range | None:
         """Returns the first runs that are neither stored nor claimed; None if there are none."""

@@ -1,14 +1,18 @@
 """What a store holds, read without writing to it."""
 
+import json
 import logging
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from qtab._utils.versions import versions
 from qtab.sweeps import version_1
 from qtab.sweeps.connection import StoreError, is_writable, name_of, reading
 from qtab.sweeps.database import Contents, is_empty, read_contents
 from qtab.sweeps.description import Description
+from qtab.sweeps.environments import check_environments
 
 _LOGGER = logging.getLogger("qtab")
 
@@ -80,6 +84,9 @@ def check_study(contents: Contents, description: Description, path: Path | None)
     """
     stored = contents.description
     if stored.text == description.text or description.has_more_seeds(stored):
+        if description.environments is not None:
+            check_environments(contents.meta.get("environments"), description.environments, path)
+            _warn_unknown(contents, path)
         return
     if stored.has_more_seeds(description):
         raise StoreError(
@@ -89,6 +96,35 @@ def check_study(contents: Contents, description: Description, path: Path | None)
     raise StoreError(
         f"{name_of(path)} belongs to another sweep (other settings, seeds or environment); choose another file"
     )
+
+
+def known_versions(meta: Mapping[str, str]) -> list[Any]:
+    """Returns the versions of the processes that have used a store, the first one's first."""
+    try:
+        return [json.loads(meta.get("versions", "{}")), *json.loads(meta.get("other_versions", "[]"))]
+    except ValueError:
+        return []
+
+
+def _warn_unknown(contents: Contents, path: Path | None) -> None:
+    """Logs what a store does not say, and that its results come from other versions than these."""
+    if "environments" not in contents.meta:
+        _LOGGER.warning(
+            "%s says of its environment only the id and the arguments, as earlier versions did: it is not compared",
+            name_of(path),
+        )
+    here = versions()
+    others = [
+        f"{name} {one.get(name)}"
+        for one in known_versions(contents.meta)
+        if isinstance(one, dict) and one
+        for name in here
+        if one.get(name) != here[name]
+    ]
+    if others and contents.runs:
+        _LOGGER.warning(
+            "%s has results made with %s, which these may differ from", name_of(path), ", ".join(dict.fromkeys(others))
+        )
 
 
 def warn_unchecked(contents: Contents, path: Path | None) -> None:

@@ -12,7 +12,8 @@ from typing_extensions import Unpack
 from qtab._utils import checks, memory
 from qtab._utils.attach import attach
 from qtab.config import Config
-from qtab.config.layers import collect
+from qtab.config.config import replace_checked
+from qtab.config.layers import collect, over
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
 from qtab.envs.registry import spec_of
@@ -23,7 +24,8 @@ from qtab.sweeps.results import Sweep, build_sweep, empty_sweep
 from qtab.sweeps.study import plan_study
 from qtab.sweeps.training import run_study
 from qtab.training.resolve import log_default_limit
-from qtab.training.train_many import MakeEnv
+from qtab.training.run_env import as_in_training
+from qtab.training.train_many import MakeEnv, resolve_template
 
 BLOCK = 100
 
@@ -86,6 +88,9 @@ def sweep(
     try:
         block = checks.count("block", block, least=1)
         env, base = collect(sweep, env, config, settings)
+        if isinstance(base, Config) and env == base.env:
+            _, env, _ = as_in_training(base, over(base, {}), resolve_template)
+            base = base if isinstance(env, str) else replace_checked(base, env_kwargs={})
         if isinstance(env, str):
             env = spec_of(env)  # a worker process may not have imported the package that registers the id
         limit = memory.memory_limit(memory_limit)

@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import closing, suppress
+from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
@@ -11,6 +12,7 @@ from qtab._utils import memory
 from qtab._utils.attach import attach
 from qtab._utils.progress import ProgressBar, check_progress
 from qtab.sweeps.database import Contents
+from qtab.sweeps.environments import describe_environments
 from qtab.sweeps.executors import ExecutorTraining
 from qtab.sweeps.pace import Pace, claim_size
 from qtab.sweeps.progress import Callback, ProgressReporter
@@ -60,9 +62,12 @@ def run_study(
     check_progress(progress)
     path = None if store is None else store_path(store)
     study.check_memory(memory.memory_limit(memory_limit))
-    if path is not None and (finished := finished_contents(path, study.description)) is not None:
-        return build(finished)
-    with closing(Store(path, study.description)) as opened, ProgressBar(study.runs, "run", progress, "sweep") as bar:
+    description = study.description
+    if path is not None:
+        description = replace(description, environments=describe_environments(study.env, study.resolved))
+        if (finished := finished_contents(path, description)) is not None:
+            return build(finished)
+    with closing(Store(path, description)) as opened, ProgressBar(study.runs, "run", progress, "sweep") as bar:
         try:
             report = ProgressReporter(study.runs, opened.finished, callback, bar)
             if executor is not None:

@@ -50,23 +50,23 @@ def _play(env: gym.Env, seed: int, actions: Sequence[Sequence[Any]]) -> tuple[li
     outcomes, returns = [], []
     for episode, episode_actions in enumerate(actions):
         observation, _ = env.reset(seed=seed if episode == 0 else None)
-        outcomes.append(hash(_encoded(observation)))
+        outcomes.append(hash(encoded(observation)))
         returns.append(0.0)
         for action in episode_actions:
             observation, reward, terminated, truncated, _ = env.step(action)
-            outcomes.append(hash(_encoded((observation, reward, terminated, truncated))))
+            outcomes.append(hash(encoded((observation, reward, terminated, truncated))))
             returns[-1] += float(reward)
             if terminated or truncated:
                 break
     return outcomes, returns
 
 
-def _encoded(value: Any) -> bytes:
-    """Returns bytes that are equal for equal bits, also of NaN."""
+def encoded(value: Any) -> bytes:
+    """Returns bytes that are equal for equal bits, also of NaN: of an observation, or of what a step returns."""
     if isinstance(value, Mapping):
-        return b"".join(_encoded(name) + _encoded(part) for name, part in value.items())
+        return b"".join(encoded(name) + encoded(part) for name, part in value.items())
     if isinstance(value, tuple | list):
-        return b"".join(_encoded(part) for part in value)
+        return b"".join(encoded(part) for part in value)
     array = np.asarray(value)
     if array.dtype.hasobject or array.dtype.kind == "U":
         return repr(value).encode()

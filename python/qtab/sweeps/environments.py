@@ -1,0 +1,96 @@
+"""The environments of a study, by which a store notices that they are no longer the same."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+
+from qtab.config import Config
+from qtab.envs.class_code import LIBRARY
+from qtab.envs.origin.description import from_json
+from qtab.envs.origin.differences import differences
+from qtab.envs.registry import entry_for_id, make_env, spec_of
+from qtab.sweeps.connection import StoreError, damaged, name_of
+from qtab.training.repetition import encoded
+from qtab.training.resolved_run import ResolvedRun
+from qtab.training.run_env import environment_of
+
+FINGERPRINT_STEPS = 100
+
+
+def describe_environments(env: Any, resolved: Sequence[ResolvedRun]) -> str:
+    """Returns JSON text: each different environment of a study, with a fingerprint of what it does.
+
+    Args:
+        env: The environment of the study: an id, an EnvSpec, or a function that makes one.
+        resolved: A run of each setting.
+    """
+    found: dict[str, dict[str, Any]] = {}
+    for run in resolved:
+        content = environment_of(run).as_json()
+        text = json.dumps(content, sort_keys=True)
+        if text not in found:
+            found[text] = {"environment": content, "fingerprint": _fingerprint(env, run)}
+    return json.dumps(list(found.values()))
+
+
+def check_environments(stored: str | None, ours: str, path: Path | None) -> None:
+    """Checks that the environments of a study are those of its store; an earlier version's store does not say.
+
+    Raises:
+        StoreError: if one is another, or does something else now.
+    """
+    if stored is None or stored == ours:
+        return
+    try:
+        before = [(from_json(one["environment"]), one["fingerprint"]) for one in json.loads(stored)]
+    except (KeyError, TypeError, ValueError) as error:
+        raise damaged(path, error) from error
+    now = [(from_json(one["environment"]), one["fingerprint"]) for one in json.loads(ours)]
+    if len(before) != len(now):
+        raise StoreError(f"{name_of(path)} belongs to a sweep of {len(before)} environments, not of {len(now)}")
+    for (then, fingerprint), (here, another) in zip(before, now, strict=True):
+        if found := differences(then, here):
+            raise StoreError(
+                f"{name_of(path)} belongs to a sweep of another environment: {'; '.join(found)}; choose another file"
+            )
+        if None not in (fingerprint, another) and fingerprint != another:
+            raise StoreError(
+                f"{name_of(path)} has results of {then.name} as it was before: with the same seed and actions it gives "
+                "other observations or rewards now; choose another file"
+            )
+
+
+def _fingerprint(env: Any, run: ResolvedRun) -> str | None:
+    """A digest of some steps of a random policy; None where they do not repeat, fail, or are Rust's."""
+    description = environment_of(run)
+    if description.code == LIBRARY and description.id is not None and entry_for_id(description.id) is not None:
+        return None  # the versions tell
+    try:
+        first, second = (_played(env, run.config) for _ in range(2))
+    except Exception:  # what any environment may raise
+        return None
+    return first if first == second else None
+
+
+def _played(env: Any, config: Config) -> str:
+    with closing(_made(env, config)) as playing:
+        digest = hashlib.sha256(encoded(playing.reset(seed=0)[0]))
+        playing.action_space.seed(0)
+        for _ in range(FINGERPRINT_STEPS):
+            observation, reward, terminated, truncated, _ = playing.step(playing.action_space.sample())
+            digest.update(encoded((observation, reward, terminated, truncated)))
+            if terminated or truncated:
+                digest.update(encoded(playing.reset()[0]))
+        return digest.hexdigest()[:32]
+
+
+def _made(env: Any, config: Config) -> gym.Env:
+    if callable(env):
+        made: gym.Env = env()
+        return made
+    return make_env(spec_of(env) if isinstance(env, str) else env, config.env_kwargs)
