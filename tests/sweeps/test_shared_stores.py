@@ -106,6 +106,20 @@ def test_results_that_another_worker_stored_meanwhile_are_kept_once_and_the_othe
         assert errors(quick) == ALL
 
 
+def test_other_results_for_a_stored_run_are_logged_and_not_stored(tmp_path, caplog):
+    with opened(tmp_path / "study.db", 2) as (slow, quick):
+        claim = slow.claim(lambda start: 30)
+        quick.claim(lambda start: 30)
+        quick.commit(claim, results(claim[:5]), 1.0)
+        others = results(claim[:7])
+        others[3] = RunRecord(others[3].seed, None, b"", "RuntimeError: another")
+        with caplog.at_level(logging.WARNING, logger="qtab"):
+            slow.commit(claim, others, 1.0)
+        assert errors(slow) == ALL[:7]
+    (message,) = caplog.messages
+    assert message.startswith("the results of 1 of 7 runs trained here differ from those in store '")
+
+
 class Worker:
     """A worker that takes several turns for a chunk, and may die in between."""
 

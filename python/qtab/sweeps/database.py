@@ -180,6 +180,12 @@ def _check_chunks(
     return total
 
 
+def read_runs(connection: sqlite3.Connection, runs: range) -> list[StoredRun]:
+    """Returns those of consecutive runs that are stored, without checking them."""
+    query = f"SELECT {_RUN_COLUMNS} FROM runs WHERE run >= ? AND run < ?"  # noqa: S608 - fixed names
+    return connection.execute(query, (runs.start, runs.stop)).fetchall()
+
+
 def insert_chunk(connection: sqlite3.Connection, rows: Sequence[StoredRun], seconds: float) -> int:
     """Stores consecutive runs, which took so many seconds; returns their digest."""
     placeholders = ", ".join("?" * (len(SUMMARY_COLUMNS) + 4))

@@ -6,6 +6,7 @@ the first result is stored.
 """
 
 import json
+import logging
 import os
 import stat
 import time
@@ -35,10 +36,13 @@ from qtab.sweeps.database import (
     is_empty,
     read_contents,
     read_meta,
+    read_runs,
 )
 from qtab.sweeps.description import Description
 from qtab.sweeps.more_seeds import add_seeds, numbering
 from qtab.sweeps.stored import check_study, known_versions, store_path, warn_unchecked
+
+_LOGGER = logging.getLogger("qtab")
 
 
 class Store:
@@ -101,7 +105,7 @@ class Store:
     def commit(self, claim: range, records: Sequence[RunRecord], seconds: float) -> None:
         """Stores the results of the first runs of a claim in one transaction, and releases the others.
 
-        Runs that another process has stored meanwhile are left as they are.
+        Runs that another process has stored meanwhile are left as they are. If their results differ, this is logged.
 
         Args:
             claim: What :meth:`claim` returned.
@@ -120,6 +124,16 @@ class Store:
                 of_part = rows[part.start - trained.start : part.stop - trained.start]
                 digests.append(insert_chunk(self._connection, of_part, seconds * len(part) / len(trained)))
             add_digests(self._connection, digests)
+            others = {run[0]: run for part in stored for run in read_runs(self._connection, part)}
+        different = [row[0] for row in rows if row[0] in others and others[row[0]] != row]
+        if different:
+            _LOGGER.warning(
+                "the results of %d of %d runs trained here differ from those in %s, which are kept: the environment "
+                "does not repeat itself, or the processes use different code",
+                len(different),
+                len(rows),
+                name_of(self.path),
+            )
 
     def release(self, claim: range) -> None:
         """Withdraws a claim."""
@@ -158,9 +172,9 @@ class Store:
                 check_study(contents, self._description, path)
                 version_1.check_chunks(self._connection, path, contents)
                 version_1.upgrade(self._connection, contents)
-        number = numbering(self._connection)  # before the contents, as another process may change both
-        with bounded(self._connection, path):
-            contents = self.contents()  # finds damage now instead of after the training
+        with bounded(self._connection, path), self._reading():  # another process may change both
+            number = numbering(self._connection)
+            contents = read_contents(self._connection, path)  # finds damage now instead of after the training
         check_study(contents, self._description, path)
         warn_unchecked(contents, path)
         if self._description.has_more_seeds(contents.description):
