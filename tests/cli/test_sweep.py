@@ -198,7 +198,8 @@ def test_an_interrupted_sweep_says_what_is_kept(tmp_path, capsys, monkeypatch, s
     [
         ("--top 5 --confirm 3", "--top must be an integer from 1 to 4, got 5"),
         ("--top 0 --confirm 3", "--top must be an integer from 1 to 4, got 0"),
-        ("--confirm 0", "--confirm must be an integer of at least 1, got 0"),
+        ("--confirm 0", "--confirm must be an integer from 1 to 10000000, got 0"),
+        ("--confirm 10000001", "--confirm must be an integer from 1 to 10000000, got 10000001"),
         ("--per algorithm --confirm 3", "--per must be one of 'learning_rate', 'scale', got 'algorithm'"),
         ("--confirm 3 --confirm-store study.db", "--confirm-store must be another file than the store of the sweep, "),
         ("--confirm 3 --confirm-store ./other/../study.db", "--confirm-store must be another file than the store"),

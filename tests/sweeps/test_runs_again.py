@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
@@ -30,7 +31,7 @@ def test_other_results_than_those_of_the_table_are_refused() -> None:
     table.columns["steps"][5] += 1  # setting 2, seed 1
     assert table.run(2, 0).completed
     with pytest.raises(
-        ValueError, match=r"^the run of setting 2 with seed 1 has another steps here: 2400 instead of 24"
+        ValueError, match=r"^the run of setting 2 with seed 1 is different here: steps is 2400.0, in the sweep 2401.0$"
     ):
         table.run(2, 1)
 
@@ -57,6 +58,25 @@ def brittle() -> qtab.Sweep:
     table = qtab.sweep(CAR, {"learning_rate": [0.1, 0.5]}, 2, episodes=2)
     table.columns["error"][3] = "RuntimeError: out of order"
     return table
+
+
+def test_the_table_of_a_store_takes_the_function_that_made_the_environment(tmp_path: Path) -> None:
+    def make() -> gym.Env:
+        return gym.make("FrozenLake-v1", is_slippery=False)
+
+    path = tmp_path / "study.db"
+    made = qtab.sweep(make, {"epsilon": [0.5]}, 2, episodes=5, store=path)
+    table = qtab.load_sweep(path)
+    assert_same_run(table.run(0, 1, env=make), made.run(0, 1))
+    assert len(table.confirm(2, env=make).confirmed) == 2
+    with pytest.raises(ValueError, match="setting 0 cannot be restored here: it would have another env_kwargs"):
+        table.run(0, 1, env=lambda: gym.make("FrozenLake-v1", is_slippery=True))
+
+
+def test_an_environment_object_is_refused_and_stays_open() -> None:
+    table = qtab.sweep("FrozenLake-v1", {"epsilon": [0.5]}, 1, episodes=5)
+    with pytest.raises(TypeError, match="env must be an id, an EnvSpec or a function that makes an environment"):
+        table.run(0, 0, env=gym.make("FrozenLake-v1"))
 
 
 @pytest.mark.slow

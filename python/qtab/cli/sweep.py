@@ -17,6 +17,7 @@ from qtab.cli.reporting import OutputFlags, Report
 from qtab.cli.study_file import read_study
 from qtab.cli.usage import UsageError, flag, one_line, usage_errors
 from qtab.sweeps import StoreError, Sweep, sweep
+from qtab.sweeps.confirm import MAX_SEEDS
 from qtab.sweeps.stored import read_store, store_path
 from qtab.sweeps.study import settings_of
 
@@ -101,7 +102,7 @@ def _check_confirmation(options: Arguments, settings: Sequence[Mapping[str, Any]
             if getattr(options, name) is not None:
                 raise ValueError(f"{flag(name)} needs --confirm, the number of seeds")
         return
-    checks.integer("--confirm", options.confirm, least=1)
+    checks.integer("--confirm", options.confirm, least=1, most=MAX_SEEDS)
     if options.top is not None:
         checks.integer("--top", options.top, least=1, most=len(settings))
     if options.per is not None:

@@ -7,7 +7,7 @@ import numpy as np
 from qtab._utils import checks
 from qtab.results.run import Run
 from qtab.results.summary import summarize
-from qtab.sweeps.confirm import origin
+from qtab.sweeps.confirm import plan_again
 from qtab.training.resolve import resolve
 from qtab.training.train import train_resolved
 
@@ -29,17 +29,19 @@ def trained_again(sweep: "Sweep", setting: int, seed: int, env: Any) -> Run:
         raise ValueError(f"seed must be that of a finished run of setting {setting}, got {seed}")
     if (error := sweep.columns["error"][found[0]]) is not None:
         raise ValueError(f"the run of setting {setting} with seed {seed} failed: {error}")
-    made, (overrides,) = origin(sweep, [int(setting)], env)
-    resolved = resolve(made() if callable(made) else made, {**overrides, "seed": seed}, owns_env=True)
+    study = plan_again(sweep, [int(setting)], (seed,), env)
+    made = study.env() if callable(study.env) else study.env
+    resolved = resolve(made, {**study.overrides[0], "seed": seed}, owns_env=True)
     try:
         run = train_resolved(resolved)
     finally:
         resolved.close()
     columns = summarize(run.episode_returns[np.newaxis], run.episode_lengths[np.newaxis], run.terminated[np.newaxis])
     for name, values in columns.items():
-        if values[0] != sweep.columns[name][found[0]]:
+        here, there = float(values[0]), float(sweep.columns[name][found[0]])
+        if here != there:
             raise ValueError(
-                f"the run of setting {setting} with seed {seed} has another {name} here: {values[0]:g} instead of "
-                f"{sweep.columns[name][found[0]]:g}"
+                f"the run of setting {setting} with seed {seed} is different here: {name} is {here}, "
+                f"in the sweep {there}"
             )
     return run

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from qtab.stats import Interval
     from qtab.sweeps.results import Sweep
 
+MAX_SEEDS = 10**7
+"""The maximum number of seeds of a confirmation."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Confirmation:
@@ -123,29 +126,26 @@ def _given(settings: Any, count: int) -> list[int]:
     return indices
 
 
-def origin(sweep: "Sweep", indices: Sequence[int], env: Any) -> tuple[Any, Sequence[Mapping[str, Any]]]:
-    """Returns the environment of a sweep and the overrides of some of its settings, to train them again.
+def plan_again(sweep: "Sweep", chosen: Sequence[int], numbers: tuple[int, ...], env: Any) -> Study:
+    """Returns the study that trains settings of a sweep again.
+
+    Args:
+        sweep: The sweep.
+        chosen: The indices of the settings.
+        numbers: The seeds.
+        env: The environment; None takes that of the sweep.
 
     Raises:
-        ValueError: if they cannot be restored from a store.
+        TypeError: if ``env`` is an environment, which several runs cannot share.
+        ValueError: if the settings cannot be restored here.
     """
     if sweep._source is not None:
-        return sweep._source[0] if env is None else env, [sweep._source[1][index] for index in indices]
-    restored = [_restored(sweep.configs[index]) for index in indices]
-    return _registered(sweep.env) if env is None else env, restored
-
-
-def plan_confirmation(sweep: "Sweep", seeds: Any, chosen: Sequence[int], env: Any) -> Study:
-    """Returns the study that trains settings of a sweep with other seeds.
-
-    Raises:
-        TypeError: for an argument of the wrong type.
-        ValueError: for seeds that the sweep used, an argument out of range, or settings that cannot be restored.
-    """
-    numbers = _other_seeds(sweep, seeds)
-    template = {"seed": max(numbers)}
-    made, overrides = origin(sweep, chosen, env)
-    resolved = [resolve_template(made, {**given, **template}) for given in overrides]
+        made = sweep._source[0] if env is None else env
+        overrides = [sweep._source[1][index] for index in chosen]
+    else:
+        made = _registered(sweep.env) if env is None else env
+        overrides = [_restored(sweep.configs[index], made) for index in chosen]
+    resolved = [resolve_template(made, {**given, "seed": max(numbers)}) for given in overrides]
     study = Study(made, [sweep.settings[index] for index in chosen], overrides, numbers, resolved, sweep.block)
     for index, config in zip(chosen, study.description.configs, strict=True):
         different = [
@@ -156,10 +156,20 @@ def plan_confirmation(sweep: "Sweep", seeds: Any, chosen: Sequence[int], env: An
     return study
 
 
+def plan_confirmation(sweep: "Sweep", seeds: Any, chosen: Sequence[int], env: Any) -> Study:
+    """Returns the study that trains settings of a sweep with other seeds.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for seeds that the sweep used, an argument out of range, or settings that cannot be restored.
+    """
+    return plan_again(sweep, chosen, _other_seeds(sweep, seeds), env)
+
+
 def _other_seeds(sweep: "Sweep", seeds: Any) -> tuple[int, ...]:
     if hasattr(seeds, "__index__") and not np.ndim(seeds):
         first = max(sweep.seeds) + 1
-        return seed_numbers(range(first, first + checks.integer("seeds", seeds, least=1, most=10**7)))
+        return seed_numbers(range(first, first + checks.integer("seeds", seeds, least=1, most=MAX_SEEDS)))
     numbers = seed_numbers(seeds)
     used = sorted(set(numbers) & set(sweep.seeds))
     if used:
@@ -175,8 +185,9 @@ def _registered(env: str) -> Any:
     return spec
 
 
-def _restored(config: Mapping[str, Any]) -> dict[str, Any]:
+def _restored(config: Mapping[str, Any], env: Any) -> dict[str, Any]:
     """Returns the overrides that give a config from a store."""
     if isinstance(config["initial_q"], dict):
-        raise ValueError("a store does not keep an array initial_q; call confirm on the result of qtab.sweep")
-    return over(Config(**config), {})
+        raise ValueError("a store does not keep an array initial_q; use the table that qtab.sweep returned")
+    kwargs = {} if callable(env) else config["env_kwargs"]  # a function passes them to the environment itself
+    return over(Config(**{**config, "env_kwargs": kwargs}), {})
