@@ -34,7 +34,7 @@ class Arguments(OutputFlags):
     save: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     """Save the run to this file; by default to RUN, which is replaced. Ctrl-C saves what was learned so far."""
     checkpoint: Annotated[int | None, tyro.conf.arg(metavar="EPISODES")] = None
-    """Save the run so far to this file each time that so many more episodes are finished."""
+    """Save the run so far, to the same file as the result, each time this many more episodes are finished."""
     plot: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     """Draw the learning curve of the whole run to this file. Its ending gives the format."""
     snapshots: Annotated[int | None, OPTIONAL_INT] = None

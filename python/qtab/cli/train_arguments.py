@@ -42,7 +42,7 @@ class Arguments(OutputFlags):
     save: _File = None
     """Save the run to this file, for qtab.load, qtab verify and --initial-q. Ctrl-C saves what was learned so far."""
     checkpoint: Annotated[int | None, tyro.conf.arg(metavar="EPISODES")] = None
-    """Save the run so far to the file of --save each time that so many more episodes are finished."""
+    """Save the run so far to the file of --save each time this many more episodes are finished."""
     watch: Annotated[int | None, OPTIONAL_INT] = None
     """Show this many of the last training episodes on the screen."""
     record: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER")] = None
