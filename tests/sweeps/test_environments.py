@@ -13,6 +13,7 @@ import pytest
 from gymnasium.wrappers import RescaleObservation
 
 import qtab
+from qtab._utils.versions import versions
 from qtab.sweeps import store as store_module
 from qtab.sweeps import stored as stored_module
 from qtab.sweeps.digests import combined, study_digest, to_text
@@ -51,7 +52,8 @@ def other() -> Chain:
 
 @pytest.fixture
 def by_id() -> Any:
-    gym.register("QtabTests/Chain-v0", entry_point=Chain)
+    made: Any = Chain
+    gym.register("QtabTests/Chain-v0", entry_point=made)
     yield "QtabTests/Chain-v0"
     del gym.registry["QtabTests/Chain-v0"]
 
@@ -114,7 +116,7 @@ def test_a_store_says_that_its_results_come_from_other_versions(
     tmp_path: Path, by_id: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     swept(tmp_path / "a", by_id)
-    here = {**store_module.versions(), "numpy": "9.9.9"}
+    here = {**versions(), "numpy": "9.9.9"}
     for module in (store_module, stored_module):
         monkeypatch.setattr(module, "versions", lambda: here)
     with caplog.at_level(logging.WARNING, "qtab"):

@@ -86,7 +86,7 @@ def test_each_call_asks_for_an_environment_that_cannot_be_made_again(name: str) 
 
 def test_no_public_call_that_takes_a_run_is_forgotten() -> None:
     taking = set()
-    for name in qtab.__all__:
+    for name in vars(qtab)["__all__"]:
         value = getattr(qtab, name, None) if name not in ("sb3", "playground") else None
         if inspect.isfunction(value) and {"run", "config", "resume"} & inspect.signature(value).parameters.keys():
             taking.add(name)

@@ -40,7 +40,7 @@ from qtab.sweeps.database import (
 )
 from qtab.sweeps.description import Description
 from qtab.sweeps.more_seeds import add_seeds, numbering
-from qtab.sweeps.stored import check_study, known_versions, store_path, warn_unchecked
+from qtab.sweeps.stored import check_study, known_versions, store_path, warn_unchecked, warn_unknown
 
 _LOGGER = logging.getLogger("qtab")
 
@@ -177,6 +177,8 @@ class Store:
             contents = read_contents(self._connection, path)  # finds damage now instead of after the training
         check_study(contents, self._description, path)
         warn_unchecked(contents, path)
+        if path is not None:
+            warn_unknown(contents, path)
         if self._description.has_more_seeds(contents.description):
             with self._transaction(), bounded(self._connection, path):
                 add_seeds(self._connection, path, self._description)

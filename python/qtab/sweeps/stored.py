@@ -51,6 +51,7 @@ def finished_contents(path: Path, description: Description) -> Contents | None:
         return None
     contents = read_store(path)
     check_study(contents, description, path)
+    warn_unknown(contents, path)
     if len(contents.runs) < description.runs:
         raise PermissionError(
             f"{name_of(path)} cannot be written, and has only {len(contents.runs):,} of {description.runs:,} runs"
@@ -86,7 +87,6 @@ def check_study(contents: Contents, description: Description, path: Path | None)
     if stored.text == description.text or description.has_more_seeds(stored):
         if description.environments is not None:
             check_environments(contents.meta.get("environments"), description.environments, path)
-            _warn_unknown(contents, path)
         return
     if stored.has_more_seeds(description):
         raise StoreError(
@@ -106,7 +106,7 @@ def known_versions(meta: Mapping[str, str]) -> list[Any]:
         return []
 
 
-def _warn_unknown(contents: Contents, path: Path | None) -> None:
+def warn_unknown(contents: Contents, path: Path | None) -> None:
     """Logs what a store does not say, and that its results come from other versions than these."""
     if "environments" not in contents.meta:
         _LOGGER.warning(
