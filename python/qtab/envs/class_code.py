@@ -60,7 +60,7 @@ def changed_library_code(cls: type) -> str | None:
         if (name := replaced_member(base)) is not None:
             return f"{base.__qualname__}.{name}"
         for name, value in vars(sys.modules[base.__module__]).items():
-            if isinstance(value, FunctionType) and not _is_trusted(value):
+            if type(value) is FunctionType and not _is_trusted(value):
                 return f"{base.__module__}.{name}"
     return None
 
@@ -73,9 +73,12 @@ def replaced_member(cls: type) -> str | None:
     module = sys.modules.get(cls.__module__)
     if module is None or cls.__module__ == "qtab._core":
         return None
+    own = vars(module)
     for name, member in vars(cls).items():
+        if type(member) is FunctionType and member.__globals__ is own:
+            continue
         functions = _functions(member)
-        if any(function.__globals__ is not vars(module) and not _is_trusted(function) for function in functions):
+        if any(function.__globals__ is not own and not _is_trusted(function) for function in functions):
             return name
         if not functions and callable(member) and not isinstance(member, type) and not _is_builtin(member):
             return name

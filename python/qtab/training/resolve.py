@@ -23,6 +23,7 @@ from qtab.config.presets import preset
 from qtab.config.schedules import learning_rate
 from qtab.discretizers import Discretizer, Sparse
 from qtab.discretizers.actions import Actions, choose_actions
+from qtab.envs.class_code import LIBRARY, is_of_library
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.envs.known_tables import KnownTable, known_table
 from qtab.envs.matching import NotInRustError, changed_entry_code, entry_for_env, rust_unavailable, time_limit
@@ -64,7 +65,9 @@ class _Request:
         """Describes the environment, before anything steps it."""
         if isinstance(self.env, KnownTable) and self.spec is not None:
             return describe_known(self.spec, self.config.env_kwargs, self.env)
-        return describe(self.env, is_new=self.spec is not None)
+        # What Rust steps has the code of its library, as was just checked.
+        is_checked = self.entry is not None and is_of_library(type(self.env.unwrapped))
+        return describe(self.env, is_new=self.spec is not None, code=LIBRARY if is_checked else None)
 
 
 def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: bool = False) -> ResolvedRun:

@@ -42,8 +42,9 @@ def resume(
     Args:
         run: The run, or the path of a file that :meth:`qtab.Run.save` wrote.
         episodes: The number of episodes of the whole run, those that are finished included. None takes that of the run.
-        env: The environment, for a run that was trained on an environment without an id. It is not closed. It must have
-            the id or the class of the run's, its keyword arguments, and no shorter time limit.
+        env: The environment, where that of the run cannot be made again. It is not closed. It must be the one that the
+            run was trained on, with the same arguments, wrappers, changed attributes and spaces, and no shorter time
+            limit. None makes it again.
         callback: As for :func:`qtab.train`; it sees the whole run.
         callback_every: As for :func:`qtab.train`.
         record: As for :func:`qtab.train`.

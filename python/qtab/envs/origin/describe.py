@@ -39,12 +39,13 @@ _UNIMPORTANT = ("render_mode", "spec", "metadata")
 _PROBE_STEPS = 50
 
 
-def describe(env: gym.Env, *, is_new: bool = False) -> EnvironmentDescription:
+def describe(env: gym.Env, *, is_new: bool = False, code: str | None = None) -> EnvironmentDescription:
     """Describes an environment. It is not stepped.
 
     Args:
         env: The environment.
         is_new: Whether it is as ``gymnasium.make`` returned it, so that nothing can have been changed.
+        code: The digest of the code of its class, if that is known already.
     """
     unwrapped: Any = env.unwrapped
     cls, spec = type(unwrapped), unwrapped.spec
@@ -59,7 +60,7 @@ def describe(env: gym.Env, *, is_new: bool = False) -> EnvironmentDescription:
     return EnvironmentDescription(
         id=None if spec is None else spec.id,
         cls=f"{cls.__module__}:{cls.__qualname__}",
-        code=class_code(cls),
+        code=class_code(cls) if code is None else code,
         kwargs={name: describe_value(value) for name, value in kwargs.items()},
         wrappers=tuple(_wrapper(layer) for layer in layers(env) if _counts(layer)),
         attributes=attributes,

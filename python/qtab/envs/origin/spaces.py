@@ -7,16 +7,25 @@ import numpy as np
 from gymnasium import spaces
 
 _MOST_CHARACTERS = 200
+_MOST_TEXTS = 1000
+_texts: dict[bytes, str] = {}
+"""The texts of small spaces: NumPy takes longer to show bounds than the rest of a description takes."""
 
 
 def space_text(space: Any) -> str:
     """Returns a space as it is shown, and a digest of all of it."""
     if isinstance(space, spaces.Discrete):
         return f"Discrete({space.n}, start={space.start})"
-    shown = " ".join(repr(space).split())
-    if len(shown) > _MOST_CHARACTERS:
-        shown = f"{shown[: _MOST_CHARACTERS - 3]}..."
-    return f"{shown} #{hashlib.sha256(_encoded(space)).hexdigest()[:16]}"
+    encoded = _encoded(space)
+    found = _texts.get(encoded)
+    if found is None:
+        shown = " ".join(repr(space).split())
+        if len(shown) > _MOST_CHARACTERS:
+            shown = f"{shown[: _MOST_CHARACTERS - 3]}..."
+        found = f"{shown} #{hashlib.sha256(encoded).hexdigest()[:16]}"
+        if len(_texts) < _MOST_TEXTS and len(encoded) < _MOST_TEXTS:
+            _texts[encoded] = found
+    return found
 
 
 def without_digest(text: str) -> str:
