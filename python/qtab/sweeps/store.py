@@ -177,7 +177,7 @@ class Store:
             contents = read_contents(self._connection, path)  # finds damage now instead of after the training
         check_study(contents, self._description, path)
         warn_unchecked(contents, path)
-        if path is not None:
+        if self._description.environments is not None:
             warn_unknown(contents, path)
         if self._description.has_more_seeds(contents.description):
             with self._transaction(), bounded(self._connection, path):
