@@ -137,3 +137,17 @@ def test_of_tile_coding_and_of_lost_tables_no_best_policy_is_known(car):
     for gap in (car.gap(solved), car.gap(without)):
         assert (gap.attainable, gap.approximation, gap.learning) == (None, None, None)
         assert "of the table" not in str(gap)
+
+
+def test_a_picture_of_the_difference_requires_the_same_arguments_as_a_gap():
+    found = qtab.optimum("FrozenLake-v1")
+    run = qtab.train("FrozenLake-v1", episodes=2, seed=0, env_kwargs={"is_slippery": False})
+    for compare in (found.gap, lambda one: qtab.plots.difference(one, found)):
+        with pytest.raises(ValueError, match=r"^run must have env_kwargs"):
+            compare(run)
+
+
+def test_a_time_limit_of_zero_is_refused_with_a_run_too():
+    run = qtab.train("FrozenLake-v1", episodes=2, seed=0)
+    with pytest.raises(ValueError, match="max_episode_steps must be an integer of at least 1, got 0"):
+        qtab.optimum(run, max_episode_steps=0)

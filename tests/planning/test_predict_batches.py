@@ -64,3 +64,14 @@ def test_a_vector_environment_of_tuples_is_answered_as_one_by_one(count):
     assert found.predict(batch)[0].tolist() == [found.predict(hand)[0] for hand in hands]
     assert run.predict(batch)[0].tolist() == [run.predict(hand)[0] for hand in hands]
     assert run.q_values(batch).tolist() == run.q_values(np.array(hands)).tolist()
+
+
+def test_torques_of_many_observations_are_those_of_each():
+    best = qtab.optimum("Pendulum-v1")
+    angles = np.linspace(-0.3, 0.3, 20)
+    observations = np.stack((np.cos(angles), np.sin(angles), np.zeros(20)), axis=1).astype(np.float32)
+    torques, state = best.predict(observations)
+    assert (state, torques.shape, torques.dtype) == (None, (20, 1), np.float32)
+    assert torques.tolist() == [best.predict(observation)[0].tolist() for observation in observations]
+    assert (torques != torques.round()).any()
+    assert best.predict(observations[:0])[0].shape == (0, 1)

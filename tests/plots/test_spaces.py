@@ -79,3 +79,11 @@ def test_a_wrapper_that_merges_states_leaves_the_map() -> None:
 def test_indices_of_a_function_are_not_drawn_as_angles() -> None:
     run = qtab.train("Pendulum-v1", discretizer=lambda _: (1, 1, 1), shape=(3, 3, 3), actions=2, episodes=1, seed=0)
     assert plots.values(run, Figure().subplots()).get_xlim() == (-0.5, 2.5)
+
+
+def test_the_states_of_an_optimum_are_numbered_as_the_environment_numbers_them() -> None:
+    ahead = {state: {0: [(1.0, min(state + 1, 3), -1.0, state == 3)]} for state in range(4)}
+    env = qtab.TabularEnv(ahead, [1.0, 0.0, 0.0, 0.0])
+    env.observation_space = spaces.Discrete(4, start=1)
+    best = qtab.optimum(env)
+    assert plots.values(best, Figure().subplots()).get_xlim() == (0.5, 4.5)

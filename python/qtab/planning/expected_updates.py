@@ -58,6 +58,7 @@ class ExpectedUpdates:
         """Makes more updates.
 
         Raises:
+            OverflowError: if a value exceeds the range of float64; the updates before are kept.
             TypeError: if the number is not an integer.
             ValueError: if it is negative.
         """
@@ -72,9 +73,10 @@ class ExpectedUpdates:
     def greedy_return(self) -> float:
         """Returns the expected discounted return of the greedy policy: of several best actions it takes the first.
 
-        It has converged to about 7 digits.
+        It is exact up to rounding errors.
 
         Raises:
+            OverflowError: if it exceeds the range of float64.
             ValueError: if the policy collects rewards forever without a discount.
         """
         return self._planning.greedy_return()

@@ -33,6 +33,10 @@ class Solver(Protocol):
     """Whether the best action depends on the number of steps taken in the episode."""
 
     @property
+    def has_continuous_actions(self) -> bool:
+        """Whether its actions are some of a Box, as Pendulum's torques."""
+
+    @property
     def observation_shape(self) -> tuple[int, ...]:
         """The shape of an observation."""
 
@@ -123,7 +127,7 @@ class Optimum:
         the episode; otherwise it is None.
 
         For n observations, batched as Gymnasium's vector environments do, it returns an array of n actions, and of n
-        states.
+        states. The actions are (n,) int64, or of Pendulum (n, 1) float32.
 
         Args:
             observation: An observation, or n of them.
@@ -150,7 +154,9 @@ class Optimum:
         states = _each("state", state, count)
         starts = _each("episode_start", episode_start, count)
         answers = [self.predict(*arguments) for arguments in zip(observations, states, starts, strict=True)]
-        actions = np.array([action for action, _ in answers], dtype=np.int64)
+        chosen = [action for action, _ in answers]
+        continuous = self.solver.has_continuous_actions
+        actions = np.array(chosen, np.float32).reshape(count, 1) if continuous else np.array(chosen, np.int64)
         if not self.solver.needs_step_count:
             return actions, None
         return actions, np.array([steps for _, steps in answers], dtype=np.int64)

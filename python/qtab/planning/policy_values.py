@@ -35,8 +35,8 @@ class PolicyValues:
     probabilities: NDArray[np.float64]
     """(*cells, actions): the policy, as the probabilities of its actions."""
     error: float
-    """A bound of the error of every value: the largest residual of the Bellman equation, or a rounding error if that is
-    larger, times the largest expected number of (discounted) steps to the end of an episode."""
+    """A bound of the error of every state value: the largest expected (discounted) sum, over the steps to the end of an
+    episode, of what is left of the Bellman equation and of the rounding errors."""
     expected_return: float
     """The expected discounted return of an episode from the environment's first states, without a time limit."""
     solver: _core.MdpSolver = field(repr=False)
@@ -102,7 +102,8 @@ def policy_values(
 ) -> PolicyValues:
     """Computes the exact values of a policy by iterative policy evaluation (Sutton & Barto, 2nd ed., section 4.1).
 
-    The values are those of episodes without a time limit, up to rounding errors that ``error`` bounds. Every
+    Where that takes many sweeps, as with episodes of thousands of steps, tables of up to 2,000 states are solved
+    directly. The values are those of episodes without a time limit, up to rounding errors that ``error`` bounds. Every
     environment with a transition table has them: toy text, :class:`qtab.TabularEnv`, any other environment with ``P``
     and ``initial_state_distrib``, and Blackjack, whose table follows from its rules.
 
@@ -116,6 +117,7 @@ def policy_values(
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
+        OverflowError: if values exceed the range of float64.
         TypeError: for an argument of the wrong type.
         ValueError: for a policy of the wrong shape or with probabilities that do not sum to 1, an environment without a
             transition table, or a policy that collects rewards forever without a discount.

@@ -66,15 +66,16 @@ def optimum(
         max_episode_steps: The time limit in steps; None means the environment's own, or 10,000, as in training.
         method: With a transition table, ``"finite_horizon"`` (the default; backward induction over the time limit, so
             no policy returns more), ``"value_iteration"`` (Sutton & Barto, 2nd ed., eq. 4.10) or
-            ``"policy_iteration"`` (section 4.3). The last two give the best policy that ignores the time limit; without
-            a discount, policy iteration considers only policies that end the episode. For classic control,
-            ``"search"``.
+            ``"policy_iteration"`` (section 4.3). The last two give the best policy that ignores the time limit, and its
+            values; without a discount, policy iteration considers only policies that end the episode, and value
+            iteration those, too, that stay where there are no rewards. For classic control, ``"search"``.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
         progress: Whether to show a progress bar over the stages of the search. None shows one on a terminal or in a
             notebook if it takes more than a second.
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
+        OverflowError: if values exceed the range of float64.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range, an environment whose optimum is not known, or values that are
             unbounded without a discount.

@@ -99,7 +99,7 @@ def _improved(
             most -= 1
             kept, policy[row] = policy[row], action
             changed = planner.policy_return(policy, max_episode_steps)
-            if changed > expected + TOLERANCE * max(1.0, abs(expected)):
+            if changed > expected + TOLERANCE * abs(expected):
                 expected, unchanged = changed, 0
             else:
                 policy[row] = kept
@@ -108,4 +108,4 @@ def _improved(
 
 
 def _reaches(expected: float, optimal: float) -> bool:
-    return math.isclose(expected, optimal, rel_tol=TOLERANCE, abs_tol=TOLERANCE)
+    return math.isclose(expected, optimal, rel_tol=TOLERANCE)

@@ -54,6 +54,7 @@ def policy_evaluation(
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
+        OverflowError: if values exceed the range of float64.
         TypeError: for an argument of the wrong type.
         ValueError: for an environment without a transition table, or a policy that does not fit it.
     """
@@ -113,6 +114,7 @@ def policy_iteration(
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
+        OverflowError: if values exceed the range of float64.
         TypeError: for an argument of the wrong type.
         ValueError: for an environment without a transition table, a policy that does not fit it, or one that collects
             rewards forever without a discount.
@@ -125,26 +127,16 @@ def policy_iteration(
         solver = table.solver
     if not ((given == 0.0) | (given == 1.0)).all():
         raise ValueError("policy must take one action in each state, got probabilities between 0 and 1")
-    return _improvements(solver, cells, actions, discount, given)
+    return _improvements(solver, cells, actions, discount, np.argmax(given, axis=1))
 
 
 def _improvements(
-    solver: _core.MdpSolver, cells: Identity, actions: Actions, discount: float, given: FloatArray
+    solver: _core.MdpSolver, cells: Identity, actions: Actions, discount: float, policy: NDArray[np.int64]
 ) -> Iterator[Improvement]:
-    rows = np.arange(cells.n_rows)
     while True:
-        policy = np.argmax(given, axis=1)
-        values, q_values, _ = solver.policy_evaluation(np.ascontiguousarray(given.ravel()), discount)
-        shown = values[: cells.n_rows].reshape(cells.shape)
-        yield Improvement(policy.reshape(cells.shape) + actions.first, shown)
-        observed = q_values.reshape(len(values), -1)[: cells.n_rows]
-        best = np.argmax(observed, axis=1)
-        better = observed[rows, best] > observed[rows, policy] + TIE_TOLERANCE * np.abs(values).max()
-        if not better.any():
+        values, better = solver.policy_improvement(policy, discount)
+        yield Improvement(policy.reshape(cells.shape) + actions.first, values[: cells.n_rows].reshape(cells.shape))
+        # The first states are those that observations show.
+        if better is None or np.array_equal(better[: cells.n_rows], policy):
             return
-        given = np.zeros_like(given)
-        given[rows, np.where(better, best, policy)] = 1.0
-
-
-TIE_TOLERANCE = 1e-10
-"""Two actions tie when their values differ by less than this fraction of the largest value."""
+        policy = better[: cells.n_rows].copy()

@@ -51,21 +51,24 @@ def solve_table(planner: _core.MdpSolver, method: str, discount: float, max_epis
 class TabularSolver:
     """Acts by the solution of a transition table, and evaluates the policies of runs exactly."""
 
+    has_continuous_actions = False
+
     def __init__(
         self, planner: _core.MdpSolver, cells: Identity, actions: Actions, solution: Solution, max_episode_steps: int
     ) -> None:
-        self._planner, self._cells, self._actions, self._solution = planner, cells, actions, solution
+        self.cells, self.actions = cells, actions
+        self._planner, self._solution = planner, solution
         self._max_episode_steps = max_episode_steps
         self.needs_step_count = solution.policy_changes is not None
 
     @property
     def observation_shape(self) -> tuple[int, ...]:
         """The shape of an observation: () for a Discrete space."""
-        return self._cells.low.shape
+        return self.cells.low.shape
 
     def in_rows(self, observation: Any) -> Any:
         """Returns n observations of a Tuple space as one array; any other observation as it is."""
-        return self._cells.in_rows(observation)
+        return self.cells.in_rows(observation)
 
     def action(self, observation: ArrayLike, steps_taken: int) -> int:
         """Returns the best action after a number of steps of the episode.
@@ -73,14 +76,14 @@ class TabularSolver:
         Raises:
             ValueError: for an observation outside the space, or one that does not determine the best action.
         """
-        row = self._cells.row(observation)
+        row = self.cells.row(observation)
         # Several states share an observation if it hides part of the state.
         best_actions = {
             self._best_action(int(state), steps_taken) for state in np.flatnonzero(self._planner.rows == row)
         }
         if len(best_actions) > 1:
             raise ValueError(f"the best action depends on what the observation {observation!r} does not show")
-        return best_actions.pop() + self._actions.first
+        return best_actions.pop() + self.actions.first
 
     def _best_action(self, state: int, steps_taken: int) -> int:
         if self._solution.policy_changes is None:
@@ -104,7 +107,7 @@ class TabularSolver:
                 "run must have a table of the components of its observations, not of a function or of max_rows; "
                 "qtab.evaluate(run) estimates its return"
             )
-        self._check_shape(run, self._cells.shape)
+        self._check_shape(run, self.cells.shape)
         policy: Any = np.ascontiguousarray(run.policy.ravel() - run.actions.first)
         return self._planner.policy_return(policy, self._max_episode_steps), 0.0
 
@@ -115,12 +118,12 @@ class TabularSolver:
                 "run must have a table of the components of its observations, not of a function; "
                 "qtab.evaluate(run) estimates its return"
             )
-        self._check_shape(run, (self._max_episode_steps, *self._cells.shape))
+        self._check_shape(run, (self._max_episode_steps, *self.cells.shape))
         policy: Any = run.policy.reshape(self._max_episode_steps, -1) - run.actions.first
         return time_dependent_return(self._planner, policy)
 
     def _check_shape(self, run: Run, cells: tuple[int, ...]) -> None:
-        shape = (*cells, len(self._actions))
+        shape = (*cells, len(self.actions))
         found = (*run.discretizer.shape, len(run.actions))
         if not run.discretizer.has_cells or found != shape:
             raise ValueError(f"run must have a table of shape {shape}, got {found}")
@@ -134,8 +137,8 @@ class TabularSolver:
     @cached_property
     def stationary(self) -> StationaryPolicy | None:
         """The best policy known that does not depend on the number of steps taken; None for large tables."""
-        found = stationary_policy(self._planner, self._cells.n_rows, self._max_episode_steps)
+        found = stationary_policy(self._planner, self.cells.n_rows, self._max_episode_steps)
         if found is None:
             return None
         policy, expected, proven = found
-        return StationaryPolicy(policy.reshape(self._cells.shape) + self._actions.first, expected, proven)
+        return StationaryPolicy(policy.reshape(self.cells.shape) + self.actions.first, expected, proven)

@@ -14,6 +14,7 @@ def time_dependent_return(planner: _core.MdpSolver, policy: NDArray[np.int64]) -
         policy: (max_episode_steps, rows): the action after each number of steps, counted from 0, for each observation.
 
     Raises:
+        OverflowError: if it exceeds the range of float64.
         ValueError: if it has no action for each row, or one that does not exist.
     """
     rows, n_actions = planner.rows, planner.n_actions
@@ -27,6 +28,8 @@ def time_dependent_return(planner: _core.MdpSolver, policy: NDArray[np.int64]) -
     for actions in policy[::-1]:
         chosen = pairs + actions[rows]
         values = immediate[chosen] + (continues[chosen] * values[states[chosen]]).sum(axis=1)
+    if not np.isfinite(values).all():
+        raise OverflowError("rewards must be smaller here: the return exceeds the range of float64")
     return float(planner.initial_distribution @ values)
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 EXACT = 1e-9
-"""A smaller cost, relative to the largest value, is a tie between actions."""
+"""A smaller cost, relative to the values of the two actions, is a tie between them."""
 APPROXIMATE = 1.0
 """For MountainCar's values, which are interpolated in a grid, a cost of up to one step is none."""
 
@@ -110,9 +110,10 @@ def costs(subject: Subject, best: Subject, raster: Raster) -> NDArray[np.float64
     greedy = subject.greedy_actions(raster.rows)
     optimal = best.action_values(rows)[0]
     taken = np.take_along_axis(optimal, np.maximum(greedy, 0)[..., np.newaxis], axis=-1)[..., 0]
-    cost = optimal.max(axis=-1) - taken
+    highest = optimal.max(axis=-1)
+    cost = highest - taken
     exact = isinstance(best.source, Optimum) and best.source.exact
-    tolerance = EXACT * np.nanmax(np.abs(optimal), initial=1.0) if exact else APPROXIMATE
+    tolerance = EXACT * np.maximum(np.abs(highest), np.abs(taken)) if exact else APPROXIMATE
     return np.where(greedy < 0, np.nan, np.where(cost > tolerance, cost, 0.0))
 
 

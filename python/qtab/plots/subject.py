@@ -12,7 +12,7 @@ from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.choices import ALGORITHM_NAMES
 from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
-from qtab.discretizers import Discretizer, Identity
+from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.edges import Edges
 from qtab.envs.descriptions import Description, describe
@@ -189,8 +189,8 @@ def _known(source: Run | Runs, config: Config, tables: NDArray[np.float64]) -> N
 
 
 def _of_optimum(best: Optimum) -> Subject:
-    shape = best.values.shape
     discretizer: Discretizer
+    actions = Actions(best.q_values.shape[-1])
     if best.search is not None:
         points = best.search.axes
         components = best.solver.observation_shape[0]
@@ -201,12 +201,11 @@ def _of_optimum(best: Optimum) -> Subject:
             )
         low, high = (np.array([axis[end] for axis in points], np.float64) for end in (0, -1))
         discretizer = Edges(low, high, tuple((axis[1:] + axis[:-1]) / 2 for axis in points))
-    elif len(shape) == 1:
-        discretizer = Identity(np.array(0), np.array(shape[0] - 1))
     else:
-        discretizer = Identity(np.zeros(len(shape), np.int64), np.array(shape) - 1)
-    tables = best.q_values.reshape(1, -1, best.q_values.shape[-1])
+        solver: Any = best.solver  # of a transition table
+        discretizer, actions = solver.cells, solver.actions
+    tables = best.q_values.reshape(1, -1, len(actions))
     description = describe(best.env)
-    names = action_names(description, Actions(tables.shape[-1]))
+    names = action_names(description, actions)
     name = f"{best.env}: {best.label}"
     return Subject(best, best.env, best.env_kwargs, description, name, discretizer, tables, None, names, best.discount)

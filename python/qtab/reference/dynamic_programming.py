@@ -23,17 +23,30 @@ def action_value(P: Any, V: Sequence[float] | NDArray[np.float64], s: int, a: in
     return value
 
 
+def action_size(P: Any, V: Sequence[float] | NDArray[np.float64], s: int, a: int, discount: float) -> float:
+    """Σ p (|r| + γ |V(s')|): the magnitude of what an action value is the sum of."""
+    size = 0.0
+    for p, s_next, r, terminated in P[s][a]:
+        size += p * (abs(r) + discount * (0.0 if terminated else abs(V[s_next])))
+    return size
+
+
 def value_iteration(P: Any, discount: float) -> NDArray[np.float64]:
-    """V(s) ← max_a Σ p (r + γ V(s')), in place, until changes are in the last bits and shrink no more (eq. 4.10)."""
+    """V(s) ← max_a Σ p (r + γ V(s')), in place, until changes are in the last bits and shrink no more (eq. 4.10).
+
+    The last bits are those of the terms that the largest action value is the sum of.
+    """
     V = np.zeros(len(P)).tolist()
     before = float("inf")
     while True:
         change = 0.0
         for s in range(len(P)):
-            v = V[s]
-            V[s] = max(action_value(P, V, s, a, discount) for a in range(len(P[s])))
-            change = max(change, abs(V[s] - v))
-        if change == 0.0 or (change <= LAST_BITS * max(map(abs, V)) and change >= before):
+            q = [action_value(P, V, s, a, discount) for a in range(len(P[s]))]
+            v = max(q)
+            size = action_size(P, V, s, q.index(v), discount)
+            change = max(change, abs(v - V[s]) / max(size, sys.float_info.min))
+            V[s] = v
+        if change == 0.0 or (change <= LAST_BITS and change >= before):
             return np.array(V)
         before = change
 

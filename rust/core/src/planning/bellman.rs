@@ -2,17 +2,12 @@
 
 use crate::StopFlag;
 
+use super::markov_chain::LAST_BITS;
 use super::stop_checks::StopChecks;
 use super::{MAX_SWEEPS, PlanningError};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::with_capacity;
-
-/// Values may have converged when a sweep changes none by more than this fraction of the largest: their last bits.
-const CONVERGED: f64 = 4.0 * f64::EPSILON;
-/// Two actions tie when their values differ by less than this fraction of the largest value. It exceeds the error of
-/// converged values.
-const TIE_TOLERANCE: f64 = 1e-10;
 
 /// q(s, a) = Σ p (r + γ v(s′)), summed from left to right (Sutton & Barto, equation 4.6). Terminal states have the value
 /// 0.
@@ -24,6 +19,45 @@ pub(super) fn action_value(mdp: &TabularMdp, state: usize, action: usize, discou
         sum += probability * (step.reward + discount * next_value);
     }
     sum
+}
+
+/// Σ p (|r| + γ |v(s′)|): the magnitude of the terms that an action value is the sum of.
+fn action_size(mdp: &TabularMdp, state: usize, action: usize, discount: f64, values: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (probability, step) in mdp.outcomes(state, action) {
+        let next_value = if step.terminated { 0.0 } else { values[step.state as usize] };
+        sum += probability * (step.reward.abs() + discount * next_value.abs());
+    }
+    sum
+}
+
+/// The magnitude of the terms of the largest action value of a state, of several the first. Those of other actions, such as
+/// large penalties, do not matter.
+pub(super) fn best_size(mdp: &TabularMdp, state: usize, discount: f64, values: &[f64]) -> f64 {
+    let value = |action: usize| action_value(mdp, state, action, discount, values);
+    let best = (1..mdp.num_actions()).fold((0, value(0)), |best, action| {
+        let value = value(action);
+        if value > best.1 { (action, value) } else { best }
+    });
+    action_size(mdp, state, best.0, discount, values)
+}
+
+/// A bound of the error of an action value, given those of the values. Actions tie when their values differ by less
+/// than the errors of both.
+pub(super) fn action_error(
+    mdp: &TabularMdp,
+    state: usize,
+    action: usize,
+    discount: f64,
+    values: &[f64],
+    errors: &[f64],
+) -> f64 {
+    let size = action_size(mdp, state, action, discount, values).clamp(f64::MIN_POSITIVE, f64::MAX);
+    let (outcomes, error) = mdp.outcomes(state, action).fold((0.0, 0.0), |(outcomes, error), (probability, step)| {
+        let next_error = if step.terminated { 0.0 } else { errors[step.state as usize] };
+        (outcomes + 1.0, error + probability * discount * next_error)
+    });
+    error + f64::EPSILON * (2.0 + outcomes) * size
 }
 
 /// maxₐ q(s, a).
@@ -53,6 +87,9 @@ pub(super) fn choices<'a>(
 }
 
 /// q(s, a) of all states and actions, the actions of state 0 first.
+///
+/// # Errors
+/// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.
 pub(super) fn action_values(
     mdp: &TabularMdp,
     discount: f64,
@@ -63,39 +100,46 @@ pub(super) fn action_values(
     let mut q_values = with_capacity(mdp.num_states() * mdp.num_actions())?;
     for state in 0..mdp.num_states() {
         q_values.extend((0..mdp.num_actions()).map(|action| action_value(mdp, state, action, discount, values)));
+        if q_values[state * mdp.num_actions()..].iter().any(|value| !value.is_finite()) {
+            return Err(PlanningError::Overflow(state));
+        }
         checks.state()?;
     }
     Ok(q_values)
 }
 
-/// The difference up to which the values of two actions count as equal.
-pub(super) fn tie_tolerance(values: &[f64]) -> f64 {
-    TIE_TOLERANCE * values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()))
-}
-
 /// Sweeps over the states and replaces each value in place by `backup(state, values)`, until the changes are in the last
-/// bits and no longer shrink. Returns the number of sweeps.
+/// bits of the terms, whose magnitude is `size(state, values)`, and no longer shrink. Returns the number of sweeps.
+///
+/// # Errors
+/// `NotConverged`; `Overflow`; `Stopped` after `stop` was set.
 pub(super) fn converge(
     values: &mut [f64],
     mdp: &TabularMdp,
     stop: &StopFlag<'_>,
     mut backup: impl FnMut(usize, &[f64]) -> f64,
+    mut size: impl FnMut(usize, &[f64]) -> f64,
 ) -> Result<u64, PlanningError> {
     let mut checks = StopChecks::new(mdp, stop);
-    let mut previous_change = f64::INFINITY;
+    let mut previous = f64::INFINITY;
     for sweeps in 1..=MAX_SWEEPS {
-        let (mut change, mut largest) = (0.0_f64, 0.0_f64);
+        let mut largest = 0.0_f64;
         for state in 0..values.len() {
             let value = backup(state, values);
-            change = change.max((value - values[state]).abs());
-            largest = largest.max(value.abs());
-            values[state] = value;
+            if !value.is_finite() {
+                return Err(PlanningError::Overflow(state));
+            }
+            if value != values[state] {
+                let size = size(state, values).clamp(f64::MIN_POSITIVE, f64::MAX);
+                largest = largest.max((value - values[state]).abs() / size);
+                values[state] = value;
+            }
             checks.state()?;
         }
-        if change == 0.0 || (change <= CONVERGED * largest && change >= previous_change) {
+        if largest == 0.0 || (largest <= LAST_BITS && largest >= previous) {
             return Ok(sweeps);
         }
-        previous_change = change;
+        previous = largest;
         checks.now()?;
     }
     Err(PlanningError::NotConverged)

@@ -1,20 +1,21 @@
 //! Planning by expected updates of single state-action pairs, and how they are distributed (Sutton & Barto, section 8.6).
 
+use std::iter::once;
+
 use crate::StopFlag;
 
+use super::PlanningError;
 use super::bellman::action_value;
+use super::evaluation::solve;
+use super::markov_chain::MarkovChain;
 use super::stop_checks::StopChecks;
-use super::{MAX_SWEEPS, PlanningError};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
-use crate::memory::{collect, filled, with_capacity};
+use crate::memory::{collect, filled};
 use crate::numeric::{argmax, maximum};
 use crate::policies::{AnyPolicy, Policy, TieBreaking};
 use crate::random::Pcg64;
 use crate::schedules::Schedule;
-
-/// Values have converged when a sweep changes none by more than this fraction of the largest.
-const CONVERGED: f64 = 1e-8;
 
 /// Which state-action pairs are updated.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,7 +79,7 @@ impl ExpectedUpdates {
     /// Makes so many updates.
     ///
     /// # Errors
-    /// `Stopped` after `stop` was set; the updates before are kept.
+    /// `Overflow`; `Stopped` after `stop` was set. The updates before are kept.
     pub fn advance(&mut self, updates: u64, stop: &StopFlag<'_>) -> Result<(), PlanningError> {
         let mut checks = StopChecks::new(&self.mdp, stop);
         let num_actions = self.mdp.num_actions();
@@ -99,6 +100,9 @@ impl ExpectedUpdates {
                 }
             };
             let target = action_value(&self.mdp, state, action, self.discount, &self.values);
+            if !target.is_finite() {
+                return Err(PlanningError::Overflow(state));
+            }
             self.q_values[state * num_actions + action] = target;
             self.values[state] = maximum(&self.q_values[state * num_actions..][..num_actions]);
             checks.state()?;
@@ -109,54 +113,15 @@ impl ExpectedUpdates {
     /// The expected return of the greedy policy from the initial states: of several best actions it takes the first.
     ///
     /// # Errors
-    /// `NotConverged`; `OutOfMemory`; `Stopped` after `stop` was set.
+    /// Without discounting `NoProperPolicy` if the policy collects rewards forever; `NotConverged`; `Overflow`;
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
     pub fn greedy_return(&self, stop: &StopFlag<'_>) -> Result<f64, PlanningError> {
-        let rows = self.q_values.chunks(self.mdp.num_actions());
-        let policy: Vec<usize> = collect(rows.map(argmax))?;
-        let states = self.reachable(&policy, stop)?;
+        let policy: Vec<usize> = collect(self.q_values.chunks(self.mdp.num_actions()).map(argmax))?;
+        let chain = MarkovChain::new(&self.mdp, self.discount, stop, |state| once((policy[state], 1.0)))?;
+        let mut states = chain.reachable(self.mdp.initial_distribution(), stop)?;
         let mut values = collect(self.values.iter().copied())?;
-        let mut checks = StopChecks::new(&self.mdp, stop);
-        for _ in 0..MAX_SWEEPS {
-            let (mut change, mut largest) = (0.0_f64, 0.0_f64);
-            // A state is reached before those that follow it, so their new values are there first in this order.
-            for &state in states.iter().rev() {
-                let value = action_value(&self.mdp, state, policy[state], self.discount, &values);
-                change = change.max((value - values[state]).abs());
-                largest = largest.max(value.abs());
-                values[state] = value;
-                checks.state()?;
-            }
-            if change <= CONVERGED * largest {
-                let starts = self.mdp.initial_distribution().iter().zip(&values);
-                return Ok(starts.fold(0.0, |sum, (probability, value)| sum + probability * value));
-            }
-        }
-        Err(PlanningError::NotConverged)
-    }
-
-    /// The states that a policy reaches from the initial ones.
-    fn reachable(&self, policy: &[usize], stop: &StopFlag<'_>) -> Result<Vec<usize>, PlanningError> {
-        let mut checks = StopChecks::new(&self.mdp, stop);
-        let mut reached = filled(&false, policy.len(), stop)?;
-        let mut states = with_capacity(policy.len())?;
-        for (state, &probability) in self.mdp.initial_distribution().iter().enumerate() {
-            if probability > 0.0 {
-                reached[state] = true;
-                states.push(state);
-            }
-        }
-        let mut next = 0;
-        while let Some(&state) = states.get(next) {
-            for (probability, step) in self.mdp.outcomes(state, policy[state]) {
-                let following = step.state as usize;
-                if probability > 0.0 && !step.terminated && !reached[following] {
-                    reached[following] = true;
-                    states.push(following);
-                }
-            }
-            next += 1;
-            checks.state()?;
-        }
-        Ok(states)
+        solve(&chain, self.discount, &mut states, &mut values, stop)?;
+        let starts = self.mdp.initial_distribution().iter().zip(&values);
+        Ok(starts.fold(0.0, |sum, (probability, value)| sum + probability * value))
     }
 }

@@ -6,7 +6,7 @@ use crate::StopFlag;
 use std::mem::swap;
 
 use super::PlanningError;
-use super::bellman::{action_value, action_values};
+use super::bellman::{action_error, action_value, action_values};
 use super::stop_checks::StopChecks;
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
@@ -42,10 +42,10 @@ pub struct PolicyChange {
 }
 
 /// The optimal policy over `steps` steps. Among tied actions it keeps the one that is best with fewer steps to go, so
-/// that nothing is postponed, and otherwise takes the first.
+/// that nothing is postponed, and otherwise takes the first. Actions tie if rounding may be all that makes one better.
 ///
 /// # Errors
-/// `Stopped` after `stop` was set.
+/// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.
 pub fn finite_horizon(
     mdp: &TabularMdp,
     discount: f64,
@@ -54,6 +54,8 @@ pub fn finite_horizon(
 ) -> Result<FiniteHorizon, PlanningError> {
     let zeros = || filled(&0.0, mdp.num_states(), stop);
     let (mut values, mut returns, mut next_values, mut next_returns) = (zeros()?, zeros()?, zeros()?, zeros()?);
+    // Bounds of the errors of the values.
+    let (mut errors, mut next_errors) = (zeros()?, zeros()?);
     let mut row = filled(&0.0, mdp.num_actions(), stop)?;
     let mut policy = filled(&usize::MAX, mdp.num_states(), stop)?;
     let mut checks = StopChecks::new(mdp, stop);
@@ -68,16 +70,24 @@ pub fn finite_horizon(
                 *value = action_value(mdp, state, action, discount, &values);
             }
             let best = argmax(&row);
-            if row.get(*kept).is_none_or(|&value| value < row[best]) {
+            let error_of = |action| action_error(mdp, state, action, discount, &values, &errors);
+            next_errors[state] = error_of(best);
+            let is_better =
+                |kept: usize| row[best] > row[kept] && row[best] - row[kept] > error_of(kept) + error_of(best);
+            if *kept == usize::MAX || is_better(*kept) {
                 *kept = best;
                 reserve(&mut changes, 1)?;
                 changes.push(PolicyChange { steps_to_go: sweeps, state, action: best });
             }
             next_values[state] = row[best];
             next_returns[state] = action_value(mdp, state, *kept, 1.0, &returns);
+            if !(next_values[state].is_finite() && next_returns[state].is_finite()) {
+                return Err(PlanningError::Overflow(state));
+            }
             checks.state()?;
         }
         swap(&mut values, &mut next_values);
+        swap(&mut errors, &mut next_errors);
         swap(&mut returns, &mut next_returns);
         // Once the values repeat, they repeat for any number of further steps.
         converged = values == next_values && returns == next_returns;
@@ -91,7 +101,7 @@ pub fn finite_horizon(
 /// The expected undiscounted return of a stationary policy within `steps` steps.
 ///
 /// # Errors
-/// `Stopped` after `stop` was set.
+/// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.
 ///
 /// # Panics
 /// If the policy does not have one action per state, or an action is out of range.
@@ -109,6 +119,9 @@ pub fn policy_return(
         checks.now()?;
         for (state, &action) in policy.iter().enumerate() {
             next_returns[state] = action_value(mdp, state, action, 1.0, &returns);
+            if !next_returns[state].is_finite() {
+                return Err(PlanningError::Overflow(state));
+            }
             checks.state()?;
         }
         swap(&mut returns, &mut next_returns);

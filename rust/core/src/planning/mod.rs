@@ -1,14 +1,18 @@
 //! Planning: dynamic programming over a table (Sutton & Barto, 2nd ed., chapter 4), and over grids for classic control.
 
 mod bellman;
+mod best_policy;
+mod elimination;
+mod endings;
+mod evaluation;
 mod expected_updates;
 mod finite_horizon;
 pub mod grid;
+mod markov_chain;
 mod mdp;
 mod planning_error;
 mod policy_evaluation;
 mod policy_iteration;
-mod proper_policy;
 mod solution;
 mod stop_checks;
 mod sweep;
@@ -21,7 +25,7 @@ pub use finite_horizon::{FiniteHorizon, PolicyChange, finite_horizon, policy_ret
 pub use mdp::Mdp;
 pub use planning_error::{MAX_SWEEPS, PlanningError};
 pub use policy_evaluation::{PolicyEvaluation, expected_visits, policy_evaluation};
-pub use policy_iteration::policy_iteration;
+pub use policy_iteration::{policy_improvement, policy_iteration};
 pub use solution::Solution;
 pub use sweep::sweep;
 pub use value_iteration::value_iteration;

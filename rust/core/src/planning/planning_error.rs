@@ -24,6 +24,8 @@ pub enum PlanningError {
     NoProperPolicy(usize),
     /// From this state a policy collects an unbounded return.
     UnboundedReturn(usize),
+    /// The value of this state exceeds the range of numbers.
+    Overflow(usize),
 }
 
 impl fmt::Display for PlanningError {
@@ -34,6 +36,7 @@ impl fmt::Display for PlanningError {
             Self::NotConverged => write!(formatter, "the values still change after {MAX_SWEEPS} sweeps"),
             Self::NoProperPolicy(state) => write!(formatter, "from state {state} no episode ends"),
             Self::UnboundedReturn(state) => write!(formatter, "from state {state} the return is unbounded"),
+            Self::Overflow(state) => write!(formatter, "the return from state {state} exceeds the range of float64"),
         }
     }
 }

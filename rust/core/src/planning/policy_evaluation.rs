@@ -3,9 +3,10 @@
 
 use crate::StopFlag;
 
-use super::bellman::{action_values, choices, converge, expected_value};
-use super::stop_checks::StopChecks;
-use super::{MAX_SWEEPS, PlanningError};
+use super::PlanningError;
+use super::bellman::{action_values, choices};
+use super::evaluation::{Evaluation, evaluate};
+use super::markov_chain::MarkovChain;
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::filled;
@@ -17,19 +18,20 @@ pub struct PolicyEvaluation {
     pub values: Vec<f64>,
     /// The value of each state-action pair, the actions of state 0 first.
     pub q_values: Vec<f64>,
-    /// A bound of the error of every state value: the largest residual of the Bellman equation, or a rounding error if
-    /// that is larger, times the largest expected number of (discounted) steps to the end.
+    /// A bound of the error of every state value: the largest expected (discounted) sum, over the steps to the end, of
+    /// what is left of the Bellman equation and of the rounding errors.
     pub error: f64,
     /// The number of sweeps over all states.
     pub sweeps: u64,
 }
 
-/// The solution of v(s) = Σ π(a|s) Σ p (r + γ v(s′)) (equation 4.4), by sweeps in place. `policy` holds π(a|s), the actions
-/// of state 0 first.
+/// The solution of v(s) = Σ π(a|s) Σ p (r + γ v(s′)) (equation 4.4), by sweeps in place, or directly where these take long.
+/// `policy` holds π(a|s), the actions of state 0 first. Without discounting, states that never leave each other and
+/// collect no reward have the value 0.
 ///
 /// # Errors
-/// Without discounting `NoProperPolicy` if from some state no episode ends and rewards are not 0; `NotConverged`;
-/// `Stopped` after `stop` was set.
+/// Without discounting `NoProperPolicy` if from some state the policy collects rewards forever; `NotConverged`;
+/// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.
 ///
 /// # Panics
 /// If `policy` does not hold a number for each pair.
@@ -40,104 +42,32 @@ pub fn policy_evaluation(
     stop: &StopFlag<'_>,
 ) -> Result<PolicyEvaluation, PlanningError> {
     assert_eq!(policy.len(), mdp.num_states() * mdp.num_actions(), "policy must have a probability for each pair");
-    let ends = can_end(mdp, policy, stop)?;
-    let collects = |state: usize| {
-        choices(mdp, policy, state)
-            .any(|(action, _)| mdp.outcomes(state, action).any(|(probability, step)| probability * step.reward != 0.0))
-    };
-    if discount == 1.0
-        && let Some(state) = (0..mdp.num_states()).find(|&state| !ends[state] && collects(state))
-    {
-        return Err(PlanningError::NoProperPolicy(state));
-    }
-    let backup = |state: usize, values: &[f64]| expected_value(mdp, policy, state, discount, values);
-    let mut values = filled(&0.0, mdp.num_states(), stop)?;
-    let sweeps = converge(&mut values, mdp, stop, backup)?;
-    let (mut residual, mut largest) = (0.0_f64, 0.0_f64);
-    for state in 0..mdp.num_states() {
-        residual = residual.max((backup(state, &values) - values[state]).abs());
-        largest = largest.max(values[state].abs());
-    }
-    let mut steps = filled(&0.0, mdp.num_states(), stop)?;
-    converge(&mut steps, mdp, stop, |state, steps| {
-        // Undiscounted values of states without an end are 0, without an error.
-        if discount == 1.0 && !ends[state] {
-            return 0.0;
-        }
-        choices(mdp, policy, state).fold(1.0, |sum, (action, probability)| {
-            mdp.outcomes(state, action).fold(sum, |sum, (weight, step)| {
-                let next = if step.terminated { 0.0 } else { steps[step.state as usize] };
-                sum + probability * weight * discount * next
-            })
-        })
-    })?;
-    let longest = steps.iter().fold(1.0_f64, |longest, &steps| longest.max(steps));
+    let chain = MarkovChain::new(mdp, discount, stop, |state| choices(mdp, policy, state))?;
+    let Evaluation { values, errors, sweeps } =
+        evaluate(&chain, discount, filled(&0.0, mdp.num_states(), stop)?, stop)?;
     let q_values = action_values(mdp, discount, &values, stop)?;
-    Ok(PolicyEvaluation { values, q_values, error: residual.max(f64::EPSILON * largest) * longest, sweeps })
+    let error = errors.iter().fold(0.0, |largest: f64, &error| largest.max(error));
+    Ok(PolicyEvaluation { values, q_values, error, sweeps })
 }
 
 /// The expected number of visits of each state in an episode, η(s) = h(s) + Σ η(s̄) Σ π(a|s̄) p(s|s̄, a) (equation 9.2).
 ///
 /// # Errors
-/// `NoProperPolicy` if an episode may never end; `NotConverged`; `Stopped` after `stop` was set.
+/// `NoProperPolicy` if an episode may never end; `NotConverged`; `OutOfMemory`; `Stopped` after `stop` was set.
 ///
 /// # Panics
 /// If `policy` does not hold a number for each pair.
 pub fn expected_visits(mdp: &TabularMdp, policy: &[f64], stop: &StopFlag<'_>) -> Result<Vec<f64>, PlanningError> {
     assert_eq!(policy.len(), mdp.num_states() * mdp.num_actions(), "policy must have a probability for each pair");
-    let ends = can_end(mdp, policy, stop)?;
-    let mut checks = StopChecks::new(mdp, stop);
-    // The visits at one time step, and at all so far.
-    let mut current = mdp.initial_distribution().to_vec();
+    let chain = MarkovChain::new(mdp, 1.0, stop, |state| choices(mdp, policy, state))?;
+    let reached = chain.reachable(mdp.initial_distribution(), stop)?;
+    let ends = chain.reaching(&filled(&false, mdp.num_states(), stop)?, stop)?;
+    if let Some(&state) = reached.iter().find(|&&state| !ends[state]) {
+        return Err(PlanningError::NoProperPolicy(state));
+    }
     let mut visits = filled(&0.0, mdp.num_states(), stop)?;
-    for _ in 0..MAX_SWEEPS {
-        let mut next = filled(&0.0, mdp.num_states(), stop)?;
-        let mut changed = false;
-        for (state, &here) in current.iter().enumerate().filter(|&(_, &here)| here > 0.0) {
-            if !ends[state] {
-                return Err(PlanningError::NoProperPolicy(state));
-            }
-            changed |= visits[state] + here != visits[state];
-            visits[state] += here;
-            for (action, probability) in choices(mdp, policy, state) {
-                for (weight, step) in mdp.outcomes(state, action).filter(|(_, step)| !step.terminated) {
-                    next[step.state as usize] += here * probability * weight;
-                }
-            }
-            checks.state()?;
-        }
-        if !changed {
-            return Ok(visits);
-        }
-        current = next;
-    }
-    Err(PlanningError::NotConverged)
-}
-
-/// From which states an episode can end under a policy.
-fn can_end(mdp: &TabularMdp, policy: &[f64], stop: &StopFlag<'_>) -> Result<Vec<bool>, PlanningError> {
-    let mut checks = StopChecks::new(mdp, stop);
-    let mut ends = filled(&false, mdp.num_states(), stop)?;
-    let mut forward = true;
-    loop {
-        let mut changed = false;
-        for index in 0..ends.len() {
-            // In both directions, so that long corridors take few sweeps.
-            let state = if forward { index } else { ends.len() - 1 - index };
-            if !ends[state] {
-                ends[state] = choices(mdp, policy, state).any(|(action, _)| {
-                    mdp.outcomes(state, action)
-                        .any(|(probability, step)| probability > 0.0 && (step.terminated || ends[step.state as usize]))
-                });
-                changed |= ends[state];
-            }
-            checks.state()?;
-        }
-        if !changed {
-            return Ok(ends);
-        }
-        forward = !forward;
-    }
+    chain.transposed(stop)?.solve(&reached, mdp.initial_distribution(), &mut visits, stop)?;
+    Ok(visits)
 }
 
 #[cfg(test)]
@@ -187,5 +117,37 @@ mod tests {
         assert!((found.values[0] - 4.0).abs() <= found.error);
         let idle = TabularMdp::new(1, &[1.0], &[stay(0.0)]).expect("a valid table");
         assert_eq!(policy_evaluation(&idle, &[1.0], 1.0, &stop).expect("no rewards").values, [0.0]);
+    }
+
+    #[test]
+    fn long_episodes_have_exact_values() {
+        let rare = |probability: f64| {
+            let outcome = |probability, terminated| Outcome { probability, state: 0, reward: -1.0, terminated };
+            TabularMdp::new(1, &[1.0], &[vec![outcome(1.0 - probability, false), outcome(probability, true)]])
+        };
+        for steps in [1e4, 1e6] {
+            let table = rare(1.0 / steps).expect("a valid table");
+            let found = policy_evaluation(&table, &[1.0], 1.0, &StopFlag::new()).expect("proper");
+            assert!((found.values[0] + steps).abs() <= found.error && found.error < 1e-8 * steps, "{found:?}");
+            let visits = expected_visits(&table, &[1.0], &StopFlag::new()).expect("proper");
+            assert!((visits[0] - steps).abs() < 1e-8 * steps, "{visits:?}");
+        }
+    }
+
+    #[test]
+    fn large_values_elsewhere_change_nothing() {
+        let states = 8;
+        let step = |state: usize| {
+            let end = state + 1 == states;
+            let next = if end { state } else { state + 1 };
+            vec![Outcome { probability: 1.0, state: (next as u64).cast_signed(), reward: -1.0, terminated: end }]
+        };
+        let mut pairs: Vec<_> = (0..states).map(step).collect();
+        pairs.push(vec![Outcome { probability: 1.0, state: 0, reward: -1e16, terminated: true }]);
+        let mut start = vec![0.0; states + 1];
+        start[0] = 1.0;
+        let table = TabularMdp::new(1, &start, &pairs).expect("a valid table");
+        let found = policy_evaluation(&table, &[1.0; 9], 1.0, &StopFlag::new()).expect("proper");
+        assert_eq!(found.values, [-8.0, -7.0, -6.0, -5.0, -4.0, -3.0, -2.0, -1.0, -1e16]);
     }
 }

@@ -1,67 +1,152 @@
 //! Policy iteration: evaluate and improve a policy until no action is better (Sutton & Barto, section 4.3).
 
+use std::iter::once;
+
 use crate::StopFlag;
 
-use super::bellman::{action_value, action_values, converge, tie_tolerance};
-use super::{PlanningError, Solution, proper_policy};
+use super::bellman::{action_error, action_values};
+use super::best_policy::best_policy;
+use super::endings::Endings;
+use super::evaluation::{Evaluation, evaluate};
+use super::markov_chain::MarkovChain;
+use super::{MAX_SWEEPS, PlanningError, Solution};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{collect, filled};
 use crate::numeric::argmax;
 
-/// An optimal policy and its values. An action is replaced only by one that is better by more than rounding errors, so
-/// that equally good policies do not alternate forever (the book's exercise 4.4).
+/// An optimal policy and its values.
 ///
 /// Without discounting (`discount == 1`) the policy is the best proper one, that is, among those that end every episode.
 /// The first policy is proper, and an improvement of a proper policy is proper too, or has an unbounded return
-/// (D. Bertsekas and J. Tsitsiklis, "An analysis of stochastic shortest path problems", 1991). States that no policy can
-/// leave and whose rewards are 0, such as walls, have the value 0.
+/// (D. Bertsekas and J. Tsitsiklis, "An analysis of stochastic shortest path problems", 1991). From states where no
+/// policy can end the episode, the policy stays forever where there are no rewards, such as in walls, whose value is 0.
 ///
 /// # Errors
-/// Without discounting `NoProperPolicy` and `UnboundedReturn`; `NotConverged`; `Stopped` after `stop` was set.
+/// Without discounting `NoProperPolicy` and `UnboundedReturn`; `NotConverged`; `Overflow`; `OutOfMemory`; `Stopped` after
+/// `stop` was set.
 pub fn policy_iteration(mdp: &TabularMdp, discount: f64, stop: &StopFlag<'_>) -> Result<Solution, PlanningError> {
-    let num_actions = mdp.num_actions();
-    let proper = proper_policy::proper_policy(mdp, stop, |_, _| true)?;
-    if let (true, Some(state)) = (discount == 1.0, endless_state(mdp, &proper)) {
-        return Err(PlanningError::NoProperPolicy(state));
-    }
-    let mut policy: Vec<usize> = collect(proper.iter().map(|action| action.unwrap_or(0)))?;
-    let mut values = filled(&0.0, mdp.num_states(), stop)?;
-    let mut sweeps = 0;
-    loop {
-        sweeps += converge(&mut values, mdp, stop, |state, values| {
-            action_value(mdp, state, policy[state], discount, values)
-        })?;
-        let q_values = action_values(mdp, discount, &values, stop)?;
-        let tie_tolerance = tie_tolerance(&values);
-        let mut stable = true;
-        for (state, row) in q_values.chunks(num_actions).enumerate() {
-            let best = argmax(row);
-            if row[best] > row[policy[state]] + tie_tolerance {
-                policy[state] = best;
-                stable = false;
-            }
+    let endings = Endings::for_discount(mdp, discount, false, stop)?;
+    let first = collect(endings.policy.iter().copied())?;
+    let improved = improve(mdp, discount, first, filled(&0.0, mdp.num_states(), stop)?, &endings, stop)?;
+    let (policy, evaluation, sweeps) = improved.settled(mdp, discount, &endings, stop)?;
+    let q_values = action_values(mdp, discount, &evaluation.values, stop)?;
+    Ok(Solution { values: evaluation.values, q_values, policy, sweeps })
+}
+
+/// A policy that no change of an action improves.
+pub(super) struct Improved {
+    policy: Vec<usize>,
+    evaluation: Evaluation,
+    q_values: Vec<f64>,
+    sweeps: u64,
+}
+
+impl Improved {
+    /// Replaces the policy by the one of several equally good ones that does not depend on how it was found, evaluates
+    /// that, and adds up the sweeps.
+    pub(super) fn settled(
+        self,
+        mdp: &TabularMdp,
+        discount: f64,
+        endings: &Endings,
+        stop: &StopFlag<'_>,
+    ) -> Result<(Vec<usize>, Evaluation, u64), PlanningError> {
+        let Evaluation { values, errors, .. } = &self.evaluation;
+        let best = best_policy(mdp, discount, values, errors, &self.q_values, endings, stop)?;
+        if best == self.policy {
+            return Ok((best, self.evaluation, self.sweeps));
         }
-        if stable {
-            if discount == 1.0 {
-                policy = proper_policy::shortest(mdp, &values, &q_values, stop)?;
-            }
-            return Ok(Solution { values, q_values, policy, sweeps });
-        }
-        if discount == 1.0 {
-            let ends = proper_policy::proper_policy(mdp, stop, |state, action| policy[state] == action)?;
-            if let Some(state) = (0..mdp.num_states()).find(|&state| proper[state].is_some() && ends[state].is_none()) {
-                return Err(PlanningError::UnboundedReturn(state));
-            }
-        }
+        let evaluation = evaluate_actions(mdp, &best, discount, self.evaluation.values, stop)?;
+        let sweeps = self.sweeps + evaluation.sweeps;
+        Ok((best, evaluation, sweeps))
     }
 }
 
-/// A state from which no episode ends and not every reward is 0.
-fn endless_state(mdp: &TabularMdp, proper: &[Option<usize>]) -> Option<usize> {
-    let has_reward = |state: usize, action: usize| {
-        mdp.outcomes(state, action).any(|(probability, step)| probability * step.reward != 0.0)
-    };
-    (0..mdp.num_states())
-        .find(|&state| proper[state].is_none() && (0..mdp.num_actions()).any(|action| has_reward(state, action)))
+/// Improves a policy until no action is better by more than rounding errors, so that equally good policies do not
+/// alternate forever (the book's exercise 4.4). `guess` is the first guess of its values.
+///
+/// # Errors
+/// Without discounting `NoProperPolicy` if the first policy collects rewards forever, and `UnboundedReturn` if a better
+/// one does; otherwise as [`policy_iteration`].
+pub(super) fn improve(
+    mdp: &TabularMdp,
+    discount: f64,
+    mut policy: Vec<usize>,
+    mut guess: Vec<f64>,
+    endings: &Endings,
+    stop: &StopFlag<'_>,
+) -> Result<Improved, PlanningError> {
+    let mut sweeps = 0;
+    for improvements in 0..MAX_SWEEPS {
+        let evaluation = evaluate_actions(mdp, &policy, discount, guess, stop).map_err(|error| match error {
+            PlanningError::NoProperPolicy(state) if improvements > 0 => PlanningError::UnboundedReturn(state),
+            _ => error,
+        })?;
+        sweeps += evaluation.sweeps;
+        let q_values = action_values(mdp, discount, &evaluation.values, stop)?;
+        let Some(better) = improvement(mdp, discount, &policy, &evaluation, &q_values, endings)? else {
+            return Ok(Improved { policy, evaluation, q_values, sweeps });
+        };
+        (policy, guess) = (better, evaluation.values);
+    }
+    Err(PlanningError::NotConverged)
+}
+
+/// One step of policy iteration: the values of a policy, and a better policy; `None` if no action is better by more than
+/// rounding errors. Of several best actions, the first is taken.
+///
+/// # Errors
+/// Without discounting `NoProperPolicy` if the policy collects rewards forever; `NotConverged`; `Overflow`;
+/// `OutOfMemory`; `Stopped` after `stop` was set.
+///
+/// # Panics
+/// If the policy does not have one action per state, or an action is out of range.
+pub fn policy_improvement(
+    mdp: &TabularMdp,
+    policy: &[usize],
+    discount: f64,
+    stop: &StopFlag<'_>,
+) -> Result<(Vec<f64>, Option<Vec<usize>>), PlanningError> {
+    assert_eq!(policy.len(), mdp.num_states(), "a policy must have one action per state");
+    let evaluation = evaluate_actions(mdp, policy, discount, filled(&0.0, mdp.num_states(), stop)?, stop)?;
+    let q_values = action_values(mdp, discount, &evaluation.values, stop)?;
+    let better = improvement(mdp, discount, policy, &evaluation, &q_values, &Endings::default())?;
+    Ok((evaluation.values, better))
+}
+
+fn evaluate_actions(
+    mdp: &TabularMdp,
+    policy: &[usize],
+    discount: f64,
+    guess: Vec<f64>,
+    stop: &StopFlag<'_>,
+) -> Result<Evaluation, PlanningError> {
+    let chain = MarkovChain::new(mdp, discount, stop, |state| once((policy[state], 1.0)))?;
+    evaluate(&chain, discount, guess, stop)
+}
+
+/// The policy with all actions that are better by more than the errors of both action values.
+fn improvement(
+    mdp: &TabularMdp,
+    discount: f64,
+    policy: &[usize],
+    Evaluation { values, errors, .. }: &Evaluation,
+    q_values: &[f64],
+    endings: &Endings,
+) -> Result<Option<Vec<usize>>, PlanningError> {
+    let mut better = collect(policy.iter().copied())?;
+    for (state, row) in q_values.chunks(mdp.num_actions()).enumerate() {
+        let (best, taken) = (argmax(row), policy[state]);
+        let error_of = |action| action_error(mdp, state, action, discount, values, errors);
+        match endings.idle_action(state) {
+            // All states that are worth less than idling begin to idle together, as they may lead to each other.
+            Some(idle) if values[state] < -errors[state] => better[state] = idle,
+            _ if row[best] > row[taken] && row[best] - row[taken] > error_of(best) + error_of(taken) => {
+                better[state] = best;
+            }
+            _ => {}
+        }
+    }
+    Ok((better != policy).then_some(better))
 }

@@ -18,7 +18,34 @@ pub(super) struct StopChecks<'a> {
 impl<'a> StopChecks<'a> {
     /// Counts for a table.
     pub(super) fn new(mdp: &TabularMdp, stop: &'a StopFlag<'a>) -> Self {
-        Self { stop, outcomes: 1 + mdp.num_outcomes() / mdp.num_states(), counted: 0 }
+        Self::with_outcomes(mdp.num_outcomes(), mdp.num_states(), stop)
+    }
+
+    /// Counts for so many outcomes of so many states.
+    pub(super) fn with_outcomes(num_outcomes: usize, num_states: usize, stop: &'a StopFlag<'a>) -> Self {
+        Self { stop, outcomes: 1 + num_outcomes / num_states, counted: 0 }
+    }
+
+    /// Visits all states again and again until a sweep changes nothing. `visit` returns whether it changed something.
+    ///
+    /// # Errors
+    /// `Stopped` after the flag was set.
+    pub(super) fn until_stable(
+        &mut self,
+        num_states: usize,
+        mut visit: impl FnMut(usize) -> bool,
+    ) -> Result<(), PlanningError> {
+        let (mut changed, mut forwards) = (true, true);
+        while changed {
+            changed = false;
+            for index in 0..num_states {
+                // In both directions, so that a corridor takes few sweeps, whichever way its states are numbered.
+                changed |= visit(if forwards { index } else { num_states - 1 - index });
+                self.state()?;
+            }
+            forwards = !forwards;
+        }
+        Ok(())
     }
 
     /// Counts one state.

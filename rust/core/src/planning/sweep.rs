@@ -14,7 +14,7 @@ use crate::memory::collect;
 /// In place, a state takes the new values of the states before it; otherwise the old values of all states.
 ///
 /// # Errors
-/// `OutOfMemory`; `Stopped` after `stop` was set. The values are then those of an unfinished sweep.
+/// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set. The values are then those of an unfinished sweep.
 ///
 /// # Panics
 /// If `values` or `policy` has another length than the table.
@@ -35,6 +35,9 @@ pub fn sweep(
             Some(policy) => expected_value(mdp, policy, state, discount, from),
             None => best_value(mdp, state, discount, from),
         };
+        if !values[state].is_finite() {
+            return Err(PlanningError::Overflow(state));
+        }
         checks.state()?;
     }
     Ok(())

@@ -88,10 +88,11 @@ fn never_ending_may_be_best_but_is_not_proper() {
 #[test]
 fn unbounded_returns_are_errors() {
     let unbounded = table(2, &[deterministic(0, 1.0, false), deterministic(0, 0.0, true)]);
-    assert_eq!(value_iteration(&unbounded, 1.0, &NO_STOP), Err(PlanningError::NotConverged));
-    assert_eq!(policy_iteration(&unbounded, 1.0, &NO_STOP), Err(PlanningError::UnboundedReturn(0)));
     let no_exit = table(1, &[deterministic(0, -1.0, false)]);
-    assert_eq!(policy_iteration(&no_exit, 1.0, &NO_STOP), Err(PlanningError::NoProperPolicy(0)));
+    for solve in [value_iteration, policy_iteration] {
+        assert_eq!(solve(&unbounded, 1.0, &NO_STOP), Err(PlanningError::UnboundedReturn(0)));
+        assert_eq!(solve(&no_exit, 1.0, &NO_STOP), Err(PlanningError::NoProperPolicy(0)));
+    }
     let solution = value_iteration(&unbounded, 0.5, &NO_STOP).expect("a solution");
     assert_eq!(solution.values, [2.0]);
     assert_eq!(finite_horizon(&unbounded, 1.0, 7, &NO_STOP).expect("a solution").expected_return, 7.0);
@@ -101,6 +102,69 @@ fn unbounded_returns_are_errors() {
 fn walls_have_a_value_of_zero() {
     let with_wall = table(1, &[deterministic(0, -1.0, true), deterministic(1, 0.0, false)]);
     assert_eq!(policy_iteration(&with_wall, 1.0, &NO_STOP).map(|solution| solution.values), Ok(vec![-1.0, 0.0]));
+}
+
+#[test]
+fn states_without_an_end_and_without_rewards_are_worth_nothing() {
+    // A reward of 1 on the way to a state that is never left, whose second action costs 1.
+    let stays = [deterministic(1, 0.0, false), deterministic(1, -1.0, false)];
+    let table = table(2, &[vec![deterministic(1, 1.0, false); 2], stays.to_vec()].concat());
+    for solve in [value_iteration, policy_iteration] {
+        let solution = solve(&table, 1.0, &NO_STOP).expect("a solution");
+        assert_eq!((solution.values, solution.policy), (vec![1.0, 0.0], vec![0, 0]));
+    }
+}
+
+/// From state 0 to state 1 with a reward of 1 and back with -1, where only state 0 has an exit, worth 0.5.
+fn there_and_back(first: usize) -> TabularMdp {
+    let second = 1 - first;
+    let to = |state: usize, reward, terminated| deterministic((state as u64).cast_signed(), reward, terminated);
+    let first_rows = [to(second, 1.0, false), to(first, 0.5, true)];
+    let second_rows = [to(first, -1.0, false), to(first, -1.0, false)];
+    table(2, &if first == 0 { [first_rows, second_rows] } else { [second_rows, first_rows] }.concat())
+}
+
+#[test]
+fn the_solution_does_not_depend_on_how_states_are_numbered() {
+    for first in [0, 1] {
+        for solve in [value_iteration, policy_iteration] {
+            let solution = solve(&there_and_back(first), 1.0, &NO_STOP).expect("a solution");
+            assert_eq!((solution.values[first], solution.values[1 - first]), (0.5, -0.5));
+            assert_eq!(solution.policy[first], 1);
+        }
+    }
+}
+
+#[test]
+fn returns_beyond_the_range_of_numbers_are_errors() {
+    let huge = table(1, &[deterministic(1, 1e308, false), deterministic(1, 1e308, true)]);
+    let overflow = PlanningError::Overflow(0);
+    for solve in [value_iteration, policy_iteration] {
+        assert_eq!(solve(&huge, 1.0, &NO_STOP), Err(overflow));
+    }
+    assert_eq!(policy_evaluation(&huge, &[1.0; 2], 1.0, &NO_STOP), Err(overflow));
+    assert_eq!(finite_horizon(&huge, 1.0, 2, &NO_STOP), Err(overflow));
+    assert_eq!(policy_return(&huge, &[0; 2], 2, &NO_STOP), Err(overflow));
+    assert_eq!(sweep(&huge, None, 1.0, &mut [0.0, 1e308], true, &NO_STOP), Err(overflow));
+    assert_eq!(policy_return(&huge, &[0; 2], 1, &NO_STOP), Ok(1e308));
+}
+
+#[test]
+fn rounding_does_not_postpone() {
+    // The same rewards in another order: 0.1 + (0.2 + 0.3) is smaller than 0.3 + (0.2 + 0.1) by one bit.
+    let rows = [
+        [deterministic(1, 0.1, false), deterministic(3, 0.3, false)],
+        [deterministic(2, 0.2, false), deterministic(2, 0.2, false)],
+        [deterministic(2, 0.3, true), deterministic(2, 0.3, true)],
+        [deterministic(4, 0.0, false), deterministic(4, 0.0, false)],
+        [deterministic(5, 0.2, false), deterministic(5, 0.2, false)],
+        [deterministic(5, 0.1, true), deterministic(5, 0.1, true)],
+    ];
+    assert!(0.3 + (0.0 + (0.2 + 0.1)) > 0.1 + (0.2 + 0.3));
+    let horizon = finite_horizon(&table(2, &rows.concat()), 1.0, 4, &NO_STOP).expect("a solution");
+    // With three steps to go, the second way is too long, and with four it is as good.
+    assert_eq!(horizon.policy[0], 0);
+    assert_eq!(horizon.changes.iter().filter(|change| change.state == 0).count(), 2);
 }
 
 #[test]
@@ -249,7 +313,7 @@ proptest! {
             }
             Err(error) => {
                 prop_assert!(matches!(error, PlanningError::NoProperPolicy(_)));
-                prop_assert_eq!(value_iteration(&mdp, 1.0, &NO_STOP), Err(PlanningError::NotConverged));
+                prop_assert_eq!(value_iteration(&mdp, 1.0, &NO_STOP), Err(error));
             }
         }
     }

@@ -2,28 +2,55 @@
 
 use crate::StopFlag;
 
-use super::bellman::{action_values, best_value, converge};
-use super::{PlanningError, Solution, proper_policy};
-use crate::envs::Env;
+use super::bellman::{action_values, best_size, best_value, converge};
+use super::best_policy::best_policy;
+use super::endings::Endings;
+use super::policy_iteration::improve;
+use super::{MAX_SWEEPS, PlanningError, Solution};
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{collect, filled};
-use crate::numeric::argmax;
 
-/// The optimal values, iterated from 0, and a greedy policy.
+/// What values that sweeps found may be off by, as a fraction, until their policy is evaluated.
+const ROUGH: f64 = 1e-10;
+/// Values agree that differ by less than so many times the bound of the rounding errors.
+const AGREEMENT: f64 = 4.0;
+
+/// The optimal values, iterated from 0, and an optimal policy.
 ///
-/// Without discounting (`discount == 1`), several actions can tie: the policy then takes the one that ends the episode
-/// soonest.
+/// The policy is evaluated. Values that are not those of the policy are replaced: without discounting, sweeps can end at a
+/// solution of the Bellman equation that no policy achieves, and with a discount close to 1 they can take too long.
+///
+/// Without discounting (`discount == 1`), policies that stay forever where there are no rewards are considered, too.
+/// Several actions can tie: the policy then takes the one that ends the episode soonest.
 ///
 /// # Errors
-/// `NotConverged` if values grow without bound; `Stopped` after `stop` was set.
+/// As [`super::policy_iteration()`].
 pub fn value_iteration(mdp: &TabularMdp, discount: f64, stop: &StopFlag<'_>) -> Result<Solution, PlanningError> {
+    let endings = Endings::for_discount(mdp, discount, true, stop)?;
     let mut values = filled(&0.0, mdp.num_states(), stop)?;
-    let sweeps = converge(&mut values, mdp, stop, |state, values| best_value(mdp, state, discount, values))?;
-    let q_values = action_values(mdp, discount, &values, stop)?;
-    let policy = if discount == 1.0 {
-        proper_policy::shortest(mdp, &values, &q_values, stop)?
-    } else {
-        collect(q_values.chunks(mdp.num_actions()).map(argmax))?
+    let backup = |state: usize, values: &[f64]| best_value(mdp, state, discount, values);
+    let size = |state: usize, values: &[f64]| best_size(mdp, state, discount, values);
+    let converged = match converge(&mut values, mdp, stop, backup, size) {
+        Err(PlanningError::NotConverged) => MAX_SWEEPS,
+        sweeps => sweeps?,
     };
-    Ok(Solution { values, q_values, policy, sweeps })
+    let q_values = action_values(mdp, discount, &values, stop)?;
+    let rough = collect(values.iter().map(|value| ROUGH * value.abs()))?;
+    let greedy = best_policy(mdp, discount, &values, &rough, &q_values, &endings, stop)?;
+    let improved = match improve(mdp, discount, greedy, collect(values.iter().copied())?, &endings, stop) {
+        // The values may be those of no policy.
+        Err(PlanningError::NoProperPolicy(_)) => {
+            let proper = collect(endings.policy.iter().copied())?;
+            improve(mdp, discount, proper, filled(&0.0, mdp.num_states(), stop)?, &endings, stop)?
+        }
+        improved => improved?,
+    };
+    let (policy, found, sweeps) = improved.settled(mdp, discount, &endings, stop)?;
+    let sweeps = converged + sweeps;
+    let pairs = values.iter().zip(found.values.iter().zip(&found.errors));
+    if pairs.into_iter().all(|(value, (found, error))| (value - found).abs() <= AGREEMENT * error) {
+        return Ok(Solution { values, q_values, policy, sweeps });
+    }
+    let q_values = action_values(mdp, discount, &found.values, stop)?;
+    Ok(Solution { values: found.values, q_values, policy, sweeps })
 }

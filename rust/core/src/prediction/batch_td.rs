@@ -6,7 +6,8 @@ use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
 use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
-/// The values have settled when a presentation changes none by more than this fraction of the largest value or reward so far.
+/// The values have settled when a presentation changes none by more than this fraction of the terms that its errors are the
+/// sum of. Large values of other rows do not matter.
 const SETTLED: f64 = 1e-12;
 /// How many transitions are read in one call. A step that needs more is left unfinished.
 const MAX_TRANSITIONS_PER_CALL: u64 = 65_536;
@@ -30,8 +31,8 @@ pub struct BatchTd {
     visits: Vec<f64>,
     /// The sum of the errors of each row in this presentation.
     errors: Vec<f64>,
-    /// The largest magnitude of a value or a reward so far.
-    scale: f64,
+    /// The sum of the magnitudes of the terms of these errors.
+    sizes: Vec<f64>,
     /// Whether these transitions were found to lead to an end.
     leads_to_end: bool,
     unfinished: bool,
@@ -46,7 +47,7 @@ impl BatchTd {
             places: HashMap::new(),
             visits: vec![0.0; rows],
             errors: vec![0.0; rows],
-            scale: 0.0,
+            sizes: vec![0.0; rows],
             leads_to_end: false,
             unfinished: false,
             work: 1,
@@ -56,21 +57,26 @@ impl BatchTd {
     /// Presents all transitions once. Returns whether the values have settled.
     fn present<S: RowSets>(&mut self, values: &mut LinearValues<S>) -> bool {
         self.errors.fill(0.0);
+        self.sizes.fill(0.0);
         for &(row, (reward, next), count) in &self.transitions {
-            let next_value = next.map_or(0.0, |next| values.weights[next as usize]);
-            self.errors[row as usize] += count * (reward + values.discount * next_value - values.weights[row as usize]);
+            let (row, value) = (row as usize, values.weights[row as usize]);
+            let bootstrap = values.discount * next.map_or(0.0, |next| values.weights[next as usize]);
+            self.errors[row] += count * (reward + bootstrap - value);
+            self.sizes[row] += count * (reward.abs() + bootstrap.abs() + value.abs());
         }
-        let mut change = 0.0_f64;
-        for ((value, error), &visits) in values.weights.iter_mut().zip(&self.errors).zip(&self.visits) {
+        let (mut settled, mut finite) = (true, true);
+        let sums = self.errors.iter().zip(&self.sizes).zip(&self.visits);
+        for (value, ((error, size), &visits)) in values.weights.iter_mut().zip(sums) {
             if visits > 0.0 {
-                let increment = error / visits;
-                *value += increment;
-                change = change.max(increment.abs());
-                self.scale = self.scale.max(value.abs());
+                *value += error / visits;
+                settled &= error.abs() <= SETTLED * size;
+                finite &= error.is_finite();
             }
         }
-        values.check_finite(change);
-        change <= SETTLED * self.scale || values.diverged()
+        if !finite {
+            values.give_up();
+        }
+        settled || values.diverged()
     }
 
     /// Whether a path of transitions leads from each row to an end: a terminal state, or a row without transitions, whose
@@ -105,11 +111,9 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
             self.transitions.push((row, (step.reward, next), 0.0));
         }
         self.transitions[place].2 += 1.0;
-        self.scale = self.scale.max(step.reward.abs());
         self.visits[row as usize] += 1.0;
         if step.is_last() {
             self.leads_to_end = false;
-            self.scale = values.weights.iter().fold(self.scale, |scale, value| scale.max(value.abs()));
             self.resume(values);
         }
     }
@@ -185,6 +189,21 @@ mod tests {
         };
         assert_eq!(refused, AllocationError::LimitReached { limit: 100_000, growing: Growing::Learner });
         assert!((300..3000).contains(&stored), "{stored}");
+    }
+
+    #[test]
+    fn a_row_settles_whatever_the_values_of_others() {
+        let mut learner = predictor(&[0.0; 5], BatchTd::new(5));
+        learner.values.discount = 1.0;
+        learner.rule.learn(&mut learner.values, last(4, -1e13));
+        for state in 0..3 {
+            learner.rule.learn(&mut learner.values, step(state, -1.0, state + 1));
+        }
+        learner.rule.learn(&mut learner.values, last(3, -1.0));
+        while learner.rule.unfinished {
+            learner.rule.resume(&mut learner.values);
+        }
+        assert_eq!(learner.values.weights, [-4.0, -3.0, -2.0, -1.0, -1e13]);
     }
 
     /// Example 6.4: eight episodes. Batch TD finds V(A) = 3/4, where the average of the returns is 0.

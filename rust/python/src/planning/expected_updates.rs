@@ -5,7 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::planning::{ExpectedUpdates, UpdateDistribution};
 
-use super::to_py_err;
+use super::{of_policy, to_py_err};
 use crate::convert::{Seed, array_from};
 use crate::envs::PyNativeEnv;
 use crate::interrupt::run_interruptible;
@@ -46,6 +46,6 @@ impl PyExpectedUpdates {
     /// The expected return of the greedy policy from the initial states.
     fn greedy_return(&self, py: Python<'_>) -> PyResult<f64> {
         let expected = run_interruptible(py, |stop| self.planning.greedy_return(stop))?;
-        expected.map_err(|error| to_py_err(error, self.discount))
+        expected.map_err(of_policy)
     }
 }

@@ -7,11 +7,11 @@ use qtab_core::envs::tabular::TabularMdp;
 use qtab_core::memory::collect;
 use qtab_core::planning::{
     FiniteHorizon, Mdp, PlanningError, PolicyEvaluation, Solution, expected_visits, finite_horizon, policy_evaluation,
-    policy_iteration, policy_return, sweep, value_iteration,
+    policy_improvement, policy_iteration, policy_return, sweep, value_iteration,
 };
 use qtab_core::{Env, StopFlag};
 
-use super::to_py_err;
+use super::{of_policy, to_py_err};
 use crate::convert::{array_from, array_of};
 use crate::envs::PyNativeEnv;
 use crate::error::allocation;
@@ -97,17 +97,24 @@ impl PyMdpSolver {
 
     /// The expected return of a policy within `steps` steps. The policy has an action for each state, or for each row.
     fn policy_return(&self, py: Python<'_>, policy: PyReadonlyArray1<'_, i64>, steps: u64) -> PyResult<f64> {
-        let policy = policy.as_slice()?;
-        let by_state = policy.len() == self.0.rows.len();
-        let action = |(state, &row): (usize, &usize)| {
-            let action =
-                policy.get(if by_state { state } else { row }).and_then(|&action| usize::try_from(action).ok());
-            action.filter(|&action| action < self.0.table.num_actions())
-        };
-        let policy: Option<Vec<usize>> = self.0.rows.iter().enumerate().map(action).collect();
-        let policy = policy.ok_or_else(|| PyValueError::new_err("policy must have an action for each row"))?;
+        let policy = self.actions(policy.as_slice()?)?;
         let expected = run_interruptible(py, |stop| policy_return(&self.0.table, &policy, steps, stop))?;
         expected.map_err(|error| to_py_err(error, 1.0))
+    }
+
+    /// One step of policy iteration: the values of a policy, which has an action for each row, and the better action of
+    /// each state; `None` if no action is better.
+    fn policy_improvement<'py>(
+        &self,
+        py: Python<'py>,
+        policy: PyReadonlyArray1<'py, i64>,
+        discount: f64,
+    ) -> PyResult<(Array<'py, f64>, Option<Array<'py, i64>>)> {
+        let policy = self.actions(policy.as_slice()?)?;
+        let found = run_interruptible(py, |stop| policy_improvement(&self.0.table, &policy, discount, stop))?;
+        let (values, better) = found.map_err(of_policy)?;
+        let better = better.map(|better| indices(py, better.iter())).transpose()?;
+        Ok((PyArray1::from_vec(py, values), better))
     }
 
     /// The values of a policy, which has a probability for each row and action, the actions of row 0 first.
@@ -119,7 +126,7 @@ impl PyMdpSolver {
     ) -> PyResult<PyPolicyValues<'py>> {
         let policy = self.by_state(policy.as_slice()?)?;
         let found = run_interruptible(py, |stop| policy_evaluation(&self.0.table, &policy, discount, stop))?;
-        let PolicyEvaluation { values, q_values, error, .. } = found.map_err(endless)?;
+        let PolicyEvaluation { values, q_values, error, .. } = found.map_err(of_policy)?;
         Ok((PyArray1::from_vec(py, values), PyArray1::from_vec(py, q_values), error))
     }
 
@@ -148,11 +155,23 @@ impl PyMdpSolver {
     fn expected_visits<'py>(&self, py: Python<'py>, policy: PyReadonlyArray1<'py, f64>) -> PyResult<Array<'py, f64>> {
         let policy = self.by_state(policy.as_slice()?)?;
         let visits = run_interruptible(py, |stop| expected_visits(&self.0.table, &policy, stop))?;
-        Ok(PyArray1::from_vec(py, visits.map_err(endless)?))
+        Ok(PyArray1::from_vec(py, visits.map_err(of_policy)?))
     }
 }
 
 impl PyMdpSolver {
+    /// The action of a policy in each state. The policy has an action for each state, or for each row.
+    fn actions(&self, policy: &[i64]) -> PyResult<Vec<usize>> {
+        let by_state = policy.len() == self.0.rows.len();
+        let action = |(state, &row): (usize, &usize)| {
+            let action =
+                policy.get(if by_state { state } else { row }).and_then(|&action| usize::try_from(action).ok());
+            action.filter(|&action| action < self.0.table.num_actions())
+        };
+        let actions: Option<Vec<usize>> = self.0.rows.iter().enumerate().map(action).collect();
+        actions.ok_or_else(|| PyValueError::new_err("policy must have an action for each row"))
+    }
+
     /// The probabilities of a policy over rows, for each state instead.
     fn by_state(&self, policy: &[f64]) -> PyResult<Vec<f64>> {
         let num_actions = self.0.table.num_actions();
@@ -166,16 +185,6 @@ impl PyMdpSolver {
         let solution = run_interruptible(py, |stop| method(&self.0.table, discount, stop))?;
         let Solution { values, q_values, policy, .. } = solution.map_err(|error| to_py_err(error, discount))?;
         to_python(py, values, q_values, &policy)
-    }
-}
-
-/// Why a policy could not be evaluated.
-fn endless(error: PlanningError) -> PyErr {
-    match error {
-        PlanningError::NoProperPolicy(_) | PlanningError::NotConverged => PyValueError::new_err(format!(
-            "policy must end every episode here: {error}; with a discount below 1 it has values all the same"
-        )),
-        _ => to_py_err(error, 1.0),
     }
 }
 

@@ -4,7 +4,7 @@ mod expected_updates;
 mod grid_search;
 mod mdp_solver;
 
-use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyOverflowError, PyValueError};
 use pyo3::prelude::*;
 use qtab_core::planning::PlanningError;
 
@@ -14,14 +14,32 @@ pub(crate) use expected_updates::PyExpectedUpdates;
 pub(crate) use grid_search::PyGridSearch;
 pub(crate) use mdp_solver::PyMdpSolver;
 
+/// Why an optimal policy was not found.
 fn to_py_err(error: PlanningError, discount: f64) -> PyErr {
-    if error == PlanningError::Stopped {
-        return PyKeyboardInterrupt::new_err(());
+    of_any_method(error).unwrap_or_else(|| {
+        PyValueError::new_err(format!(
+            "discount must be smaller here, got {discount}: {error}; method 'finite_horizon' fits any discount"
+        ))
+    })
+}
+
+/// Why a policy was not evaluated.
+fn of_policy(error: PlanningError) -> PyErr {
+    let text = match error {
+        PlanningError::NoProperPolicy(_) => "policy must end every episode here",
+        _ => "policy must end episodes in fewer steps here",
+    };
+    of_any_method(error).unwrap_or_else(|| {
+        PyValueError::new_err(format!("{text}: {error}; with a discount below 1 it has values all the same"))
+    })
+}
+
+/// The errors that do not depend on what is computed.
+fn of_any_method(error: PlanningError) -> Option<PyErr> {
+    match error {
+        PlanningError::Stopped => Some(PyKeyboardInterrupt::new_err(())),
+        PlanningError::OutOfMemory { bytes } => Some(out_of_memory(bytes)),
+        PlanningError::Overflow(_) => Some(PyOverflowError::new_err(format!("rewards must be smaller here: {error}"))),
+        PlanningError::NotConverged | PlanningError::NoProperPolicy(_) | PlanningError::UnboundedReturn(_) => None,
     }
-    if let PlanningError::OutOfMemory { bytes } = error {
-        return out_of_memory(bytes);
-    }
-    PyValueError::new_err(format!(
-        "discount must be smaller here, got {discount}: {error}; method 'finite_horizon' fits any discount"
-    ))
 }

@@ -1,0 +1,279 @@
+//! The Markov chain that a policy makes of a transition table, and its linear equations.
+
+use crate::StopFlag;
+
+use super::elimination::eliminate;
+use super::stop_checks::StopChecks;
+use super::{MAX_SWEEPS, PlanningError};
+use crate::envs::tabular::TabularMdp;
+use crate::memory::{filled, reserve, with_capacity};
+
+/// A sweep has found the solution when it changes no value by more than this fraction of the terms that the value is
+/// the sum of: its last bits.
+pub(super) const LAST_BITS: f64 = 4.0 * f64::EPSILON;
+/// So many sweeps are made before a direct method: most chains end, or are discounted, sooner.
+const SWEEPS_BEFORE_ELIMINATION: u64 = 1000;
+/// A direct method solves for up to so many states: in a matrix of 32 MB, within seconds.
+const MAX_ELIMINATED: usize = 2000;
+
+/// From each state the discounted probabilities of the next ones, and the expected reward.
+#[derive(Clone, Debug)]
+pub(super) struct MarkovChain {
+    /// Where the transitions of each state begin, and behind the last one the number of all.
+    starts: Vec<usize>,
+    /// The next state of each transition, and its probability times the discount.
+    transitions: Vec<(u32, f64)>,
+    /// The expected reward of a step from each state.
+    pub(super) rewards: Vec<f64>,
+    /// The same for the magnitudes of the rewards.
+    reward_sizes: Vec<f64>,
+    /// How many outcomes each state has. Terminal ones have no transition.
+    outcomes: Vec<u32>,
+    /// Whether an episode can end with the step from each state.
+    may_end: Vec<bool>,
+}
+
+impl MarkovChain {
+    /// `choices` gives the actions that the policy takes in a state, and their probabilities.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub(super) fn new<Choices: Iterator<Item = (usize, f64)>>(
+        mdp: &TabularMdp,
+        discount: f64,
+        stop: &StopFlag<'_>,
+        choices: impl Fn(usize) -> Choices,
+    ) -> Result<Self, PlanningError> {
+        let num_states = mdp.num_states();
+        let mut chain = Self {
+            starts: with_capacity(num_states + 1)?,
+            transitions: Vec::new(),
+            rewards: filled(&0.0, num_states, stop)?,
+            reward_sizes: filled(&0.0, num_states, stop)?,
+            outcomes: filled(&0, num_states, stop)?,
+            may_end: filled(&false, num_states, stop)?,
+        };
+        let mut checks = StopChecks::new(mdp, stop);
+        for state in 0..num_states {
+            chain.starts.push(chain.transitions.len());
+            for (action, chosen) in choices(state) {
+                for (probability, step) in mdp.outcomes(state, action) {
+                    let weight = chosen * probability;
+                    chain.rewards[state] += weight * step.reward;
+                    chain.reward_sizes[state] += (weight * step.reward).abs();
+                    chain.outcomes[state] += 1;
+                    if step.terminated {
+                        chain.may_end[state] |= weight > 0.0;
+                    } else if weight * discount > 0.0 {
+                        reserve(&mut chain.transitions, 1)?;
+                        chain.transitions.push((step.state, weight * discount));
+                    }
+                }
+            }
+            checks.state()?;
+        }
+        chain.starts.push(chain.transitions.len());
+        Ok(chain)
+    }
+
+    /// The number of states.
+    pub(super) fn num_states(&self) -> usize {
+        self.rewards.len()
+    }
+
+    /// The next states of a state, and their probabilities times the discount.
+    fn next(&self, state: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.starts[state]..self.starts[state + 1];
+        self.transitions[range].iter().map(|&(next, weight)| (next as usize, weight))
+    }
+
+    /// The states that never leave each other and collect no reward. Without discounting their value is 0.
+    pub(super) fn idle(&self, stop: &StopFlag<'_>) -> Result<Vec<bool>, PlanningError> {
+        let mut idle: Vec<bool> = with_capacity(self.num_states())?;
+        idle.extend(self.reward_sizes.iter().map(|&size| size == 0.0));
+        self.checks(stop).until_stable(self.num_states(), |state| {
+            let leaves = idle[state] && self.next(state).any(|(next, _)| !idle[next]);
+            idle[state] &= !leaves;
+            leaves
+        })?;
+        Ok(idle)
+    }
+
+    /// The states from which an episode can end, or reach one of `goals`.
+    pub(super) fn reaching(&self, goals: &[bool], stop: &StopFlag<'_>) -> Result<Vec<bool>, PlanningError> {
+        let mut reaching: Vec<bool> = with_capacity(self.num_states())?;
+        reaching.extend(goals.iter().zip(&self.may_end).map(|(&goal, &ends)| goal || ends));
+        self.checks(stop).until_stable(self.num_states(), |state| {
+            let found = !reaching[state] && self.next(state).any(|(next, _)| reaching[next]);
+            reaching[state] |= found;
+            found
+        })?;
+        Ok(reaching)
+    }
+
+    /// The states that are reached from a distribution, each after one that leads to it.
+    pub(super) fn reachable(&self, initial: &[f64], stop: &StopFlag<'_>) -> Result<Vec<usize>, PlanningError> {
+        let mut checks = self.checks(stop);
+        let mut reached = filled(&false, self.num_states(), stop)?;
+        let mut states = with_capacity(self.num_states())?;
+        for (state, &probability) in initial.iter().enumerate() {
+            if probability > 0.0 {
+                reached[state] = true;
+                states.push(state);
+            }
+        }
+        let mut visited = 0;
+        while let Some(&state) = states.get(visited) {
+            for (next, _) in self.next(state) {
+                if !reached[next] {
+                    reached[next] = true;
+                    states.push(next);
+                }
+            }
+            visited += 1;
+            checks.state()?;
+        }
+        Ok(states)
+    }
+
+    /// The same transitions backwards. Nothing else is kept.
+    pub(super) fn transposed(&self, stop: &StopFlag<'_>) -> Result<Self, PlanningError> {
+        let num_states = self.num_states();
+        let mut starts = filled(&0, num_states + 1, stop)?;
+        for &(next, _) in &self.transitions {
+            starts[next as usize + 1] += 1;
+        }
+        for state in 0..num_states {
+            starts[state + 1] += starts[state];
+        }
+        let mut places = filled(&0, num_states, stop)?;
+        places.copy_from_slice(&starts[..num_states]);
+        let mut transitions = filled(&(0, 0.0), self.transitions.len(), stop)?;
+        for state in 0..num_states {
+            for (next, weight) in self.next(state) {
+                transitions[places[next]] = (state as u32, weight);
+                places[next] += 1;
+            }
+        }
+        let zeros = || filled(&0.0, num_states, stop);
+        Ok(Self {
+            starts,
+            transitions,
+            rewards: zeros()?,
+            reward_sizes: zeros()?,
+            outcomes: filled(&0, num_states, stop)?,
+            may_end: filled(&false, num_states, stop)?,
+        })
+    }
+
+    /// Solves x(s) = c(s) + Σ γ p x(s′) for the states of a list. `solution` holds a first guess, and the numbers of the
+    /// other states, which stay. Returns the number of sweeps.
+    ///
+    /// # Errors
+    /// `NotConverged` for more states than a direct method takes; `Overflow`; `OutOfMemory`; `Stopped` after `stop` was
+    /// set.
+    pub(super) fn solve(
+        &self,
+        unknown: &[usize],
+        constants: &[f64],
+        solution: &mut [f64],
+        stop: &StopFlag<'_>,
+    ) -> Result<u64, PlanningError> {
+        let mut checks = self.checks(stop);
+        let mut previous = f64::INFINITY;
+        for sweeps in 1..=MAX_SWEEPS {
+            let mut largest = 0.0_f64;
+            for index in 0..unknown.len() {
+                // Backwards and forwards: a corridor is solved at once, whichever way its states are numbered.
+                let state = unknown[if sweeps % 2 == 1 { unknown.len() - 1 - index } else { index }];
+                let (value, size) = self.sum(state, constants[state], solution);
+                if !value.is_finite() {
+                    return Err(PlanningError::Overflow(state));
+                }
+                if value != solution[state] {
+                    largest = largest.max((value - solution[state]).abs() / size.clamp(f64::MIN_POSITIVE, f64::MAX));
+                    solution[state] = value;
+                }
+                checks.state()?;
+            }
+            if largest == 0.0 || (largest <= LAST_BITS && largest >= previous) {
+                return Ok(sweeps);
+            }
+            if sweeps == SWEEPS_BEFORE_ELIMINATION && unknown.len() <= MAX_ELIMINATED {
+                self.eliminate(unknown, constants, solution, stop)?;
+                return Ok(sweeps);
+            }
+            previous = largest;
+            checks.now()?;
+        }
+        Err(PlanningError::NotConverged)
+    }
+
+    /// c(s) + Σ γ p x(s′), summed from left to right, and the sum of the magnitudes of its terms.
+    fn sum(&self, state: usize, constant: f64, values: &[f64]) -> (f64, f64) {
+        self.next(state).fold((constant, constant.abs()), |(sum, size), (next, weight)| {
+            let term = weight * values[next];
+            (sum + term, size + term.abs())
+        })
+    }
+
+    /// Solves by Gaussian elimination.
+    fn eliminate(
+        &self,
+        unknown: &[usize],
+        constants: &[f64],
+        solution: &mut [f64],
+        stop: &StopFlag<'_>,
+    ) -> Result<(), PlanningError> {
+        let count = unknown.len();
+        let mut places = filled(&usize::MAX, self.num_states(), stop)?;
+        for (place, &state) in unknown.iter().enumerate() {
+            places[state] = place;
+        }
+        let mut matrix = filled(&0.0, count * count, stop)?;
+        let mut sides = with_capacity(count)?;
+        for (row, &state) in matrix.chunks_mut(count).zip(unknown) {
+            let mut side = constants[state];
+            row[places[state]] = 1.0;
+            for (next, weight) in self.next(state) {
+                match row.get_mut(places[next]) {
+                    Some(entry) => *entry -= weight,
+                    None => side += weight * solution[next],
+                }
+            }
+            sides.push(side);
+        }
+        eliminate(&mut matrix, &mut sides, stop)?;
+        for (&state, &value) in unknown.iter().zip(&sides) {
+            if !value.is_finite() {
+                return Err(PlanningError::Overflow(state));
+            }
+            solution[state] = value;
+        }
+        Ok(())
+    }
+
+    /// A bound of the error of each value, from what is left of its equation, and from how it may have been rounded: the
+    /// expected sum of these over the states that follow.
+    pub(super) fn errors(
+        &self,
+        unknown: &[usize],
+        values: &[f64],
+        stop: &StopFlag<'_>,
+    ) -> Result<Vec<f64>, PlanningError> {
+        let mut residuals = filled(&0.0, self.num_states(), stop)?;
+        for &state in unknown {
+            let (value, size) = self.sum(state, self.rewards[state], values);
+            let terms = 2.0 + f64::from(self.outcomes[state]);
+            let size = (size + self.reward_sizes[state] + values[state].abs()).clamp(f64::MIN_POSITIVE, f64::MAX);
+            residuals[state] = (value - values[state]).abs() + f64::EPSILON * terms * size;
+        }
+        let mut errors = filled(&0.0, self.num_states(), stop)?;
+        self.solve(unknown, &residuals, &mut errors, stop)?;
+        Ok(errors)
+    }
+
+    fn checks<'a>(&self, stop: &'a StopFlag<'a>) -> StopChecks<'a> {
+        StopChecks::with_outcomes(self.transitions.len(), self.num_states(), stop)
+    }
+}
