@@ -109,6 +109,7 @@ def test_results_that_another_worker_stored_meanwhile_are_kept_once_and_the_othe
 def test_other_results_for_a_stored_run_are_logged_and_not_stored(tmp_path, caplog):
     with opened(tmp_path / "study.db", 2) as (slow, quick):
         claim = slow.claim(lambda start: 30)
+        assert claim is not None
         quick.claim(lambda start: 30)
         quick.commit(claim, results(claim[:5]), 1.0)
         others = results(claim[:7])
