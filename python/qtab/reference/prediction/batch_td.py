@@ -5,7 +5,7 @@ import numpy as np
 from qtab.reference.prediction.common import Prediction
 
 SETTLED = 1e-12
-"""The largest change of a value, as a fraction of the terms of its errors, at which values have settled."""
+"""The largest change of a value, as a fraction of the largest terms of its errors, at which values have settled."""
 
 
 def batch_td(prediction: Prediction) -> None:
@@ -19,6 +19,7 @@ def batch_td(prediction: Prediction) -> None:
             transition = row, visit.reward, None if visit.terminal else following
             counts[transition] = counts.get(transition, 0.0) + 1.0
             visits[row] += 1.0
+        largest_sizes = np.zeros_like(w)
         while True:
             errors, sizes = np.zeros_like(w), np.zeros_like(w)
             for (row, reward, next_row), count in counts.items():
@@ -28,5 +29,6 @@ def batch_td(prediction: Prediction) -> None:
                 sizes[row] += count * (abs(reward) + abs(bootstrap) + abs(w[row]))
             seen = visits > 0.0
             w[seen] += errors[seen] / visits[seen]
-            if (np.abs(errors[seen]) <= SETTLED * sizes[seen]).all():
+            largest_sizes = np.maximum(largest_sizes, sizes)
+            if (np.abs(errors[seen]) <= SETTLED * largest_sizes[seen]).all():
                 break

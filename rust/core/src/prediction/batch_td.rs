@@ -6,8 +6,8 @@ use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
 use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
-/// The values have settled when a presentation changes none by more than this fraction of the terms that its errors are the
-/// sum of. Large values of other rows do not matter.
+/// The values have settled when a presentation changes none by more than this fraction of the largest terms that its errors
+/// have been the sum of since the last episode. Large values of other rows do not matter.
 const SETTLED: f64 = 1e-12;
 /// How many transitions are read in one call. A step that needs more is left unfinished.
 const MAX_TRANSITIONS_PER_CALL: u64 = 65_536;
@@ -33,6 +33,8 @@ pub struct BatchTd {
     errors: Vec<f64>,
     /// The sum of the magnitudes of the terms of these errors.
     sizes: Vec<f64>,
+    /// The largest of these sums since the last episode: values that fall to 0 settle, too.
+    largest_sizes: Vec<f64>,
     /// Whether these transitions were found to lead to an end.
     leads_to_end: bool,
     unfinished: bool,
@@ -48,6 +50,7 @@ impl BatchTd {
             visits: vec![0.0; rows],
             errors: vec![0.0; rows],
             sizes: vec![0.0; rows],
+            largest_sizes: vec![0.0; rows],
             leads_to_end: false,
             unfinished: false,
             work: 1,
@@ -65,11 +68,12 @@ impl BatchTd {
             self.sizes[row] += count * (reward.abs() + bootstrap.abs() + value.abs());
         }
         let (mut settled, mut finite) = (true, true);
-        let sums = self.errors.iter().zip(&self.sizes).zip(&self.visits);
-        for (value, ((error, size), &visits)) in values.weights.iter_mut().zip(sums) {
+        let sums = self.errors.iter().zip(&self.sizes).zip(&mut self.largest_sizes).zip(&self.visits);
+        for (value, (((error, size), largest_size), &visits)) in values.weights.iter_mut().zip(sums) {
             if visits > 0.0 {
                 *value += error / visits;
-                settled &= error.abs() <= SETTLED * size;
+                *largest_size = largest_size.max(*size);
+                settled &= error.abs() <= SETTLED * *largest_size;
                 finite &= error.is_finite();
             }
         }
@@ -114,6 +118,7 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
         self.visits[row as usize] += 1.0;
         if step.is_last() {
             self.leads_to_end = false;
+            self.largest_sizes.fill(0.0);
             self.resume(values);
         }
     }
