@@ -172,6 +172,6 @@ def test_states_that_are_never_left_without_a_reward_are_worth_nothing() -> None
     assert qtab.policy_values(env_of(goal), [0, 0]).values.tolist() == [1.0, 0.0]
 
 
-def test_idling_is_considered_by_value_iteration_alone() -> None:
+def test_staying_without_a_reward_is_considered_by_value_iteration_alone() -> None:
     assert qtab.optimum(env_of(IDLE), method="value_iteration").values.tolist() == [0.0, 2.0]
     assert qtab.optimum(env_of(IDLE), method="policy_iteration").values.tolist() == [-2.0, 2.0]

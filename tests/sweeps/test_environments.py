@@ -116,9 +116,9 @@ def test_a_store_says_that_its_results_come_from_other_versions(
     tmp_path: Path, by_id: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     swept(tmp_path / "a", by_id)
-    here = {**versions(), "numpy": "9.9.9"}
+    others = {**versions(), "numpy": "9.9.9"}
     for module in (store_module, stored_module):
-        monkeypatch.setattr(module, "versions", lambda: here)
+        monkeypatch.setattr(module, "versions", lambda: others)
     with caplog.at_level(logging.WARNING, "qtab"):
         swept(tmp_path / "a", by_id)
     assert f"has results made with numpy {np.__version__}" in caplog.text

@@ -16,10 +16,10 @@ const STEP_DISCOUNT: f64 = 0.999;
 /// Two actions end an episode equally soon if the discounted probabilities differ by less than this fraction.
 const EQUALLY_SOON: f64 = 1e-9;
 
-/// For each state the first optimal action. Without discounting it is the first of those that end the episode soonest, or
-/// that reach soonest a state to idle in if none ends it: many actions can be optimal, and some lead around in circles
-/// forever. Actions are optimal unless they are worse by more than rounding errors, for which `errors` has a bound for each
-/// value.
+/// For each state the first optimal action. Without discounting it is the first of those on a shortest way to the end or, if
+/// none ends the episode, to a state to stay in without a reward: many actions can be optimal, and some lead around in
+/// circles forever. Actions are optimal unless they are worse by more than rounding errors, for which `errors` has a bound
+/// for each value.
 pub(super) fn best_policy(
     mdp: &TabularMdp,
     discount: f64,
@@ -34,16 +34,16 @@ pub(super) fn best_policy(
         let rows = optimal.chunks(mdp.num_actions());
         return Ok(collect(rows.map(|row| row.iter().position(|&optimal| optimal).unwrap_or(0)))?);
     }
-    let ending = soonest(mdp, &optimal, stop, |_| None)?;
+    let ending = shortest_way(mdp, &optimal, stop, |_| None)?;
     if let Some(ending) = ending.iter().copied().collect() {
         return Ok(ending);
     }
-    let idle = soonest(mdp, &optimal, stop, |state| {
+    let staying = shortest_way(mdp, &optimal, stop, |state| {
         let is_optimal = |&action: &usize| optimal[state * mdp.num_actions() + action];
-        endings.idle_action(state).filter(is_optimal).filter(|_| values[state].abs() <= errors[state])
+        endings.staying_action(state).filter(is_optimal).filter(|_| values[state].abs() <= errors[state])
     })?;
-    let actions = ending.iter().zip(&idle).zip(&endings.policy);
-    Ok(collect(actions.map(|((&ending, &idle), &policy)| ending.or(idle).unwrap_or(policy)))?)
+    let actions = ending.iter().zip(&staying).zip(&endings.policy);
+    Ok(collect(actions.map(|((&ending, &staying), &policy)| ending.or(staying).unwrap_or(policy)))?)
 }
 
 /// Whether each state-action pair is optimal, the actions of state 0 first.
@@ -70,9 +70,9 @@ fn optimal_actions(
     Ok(optimal)
 }
 
-/// For each state the optimal action that ends the episode soonest, or reaches soonest one of the states for which
-/// `goal_action` has an action, which these take; `None` if no optimal action does.
-fn soonest(
+/// For each state the optimal action on a shortest way to the end, or to one of the states for which `goal_action` has an
+/// action, which these take; `None` if no optimal action does.
+fn shortest_way(
     mdp: &TabularMdp,
     optimal: &[bool],
     stop: &StopFlag<'_>,

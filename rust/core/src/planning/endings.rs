@@ -12,14 +12,14 @@ use crate::memory::{collect, filled};
 #[derive(Debug, Default)]
 pub(super) struct Endings {
     /// For each state that can stay forever among such states without a reward, the first action that does.
-    idle: Vec<Option<usize>>,
+    staying: Vec<Option<usize>>,
     /// A policy that ends every episode, or stays where there are no rewards.
     pub(super) policy: Vec<usize>,
 }
 
 impl Endings {
-    /// With a discount any policy will do. Without, policies may idle only where no policy can end the episode, unless
-    /// `idle_anywhere`.
+    /// With a discount any policy will do. Without, policies may stay without a reward only where no policy can end the
+    /// episode, unless `stays_anywhere`.
     ///
     /// # Errors
     /// Without discounting `NoProperPolicy` if from some state every policy collects rewards forever; `OutOfMemory`;
@@ -27,24 +27,24 @@ impl Endings {
     pub(super) fn for_discount(
         mdp: &TabularMdp,
         discount: f64,
-        idle_anywhere: bool,
+        stays_anywhere: bool,
         stop: &StopFlag<'_>,
     ) -> Result<Self, PlanningError> {
         if discount < 1.0 {
             return Ok(Self { policy: filled(&0, mdp.num_states(), stop)?, ..Self::default() });
         }
         let ending = ending_actions(mdp, filled(&None, mdp.num_states(), stop)?, stop)?;
-        let idle = idle_actions(mdp, stop, |state| idle_anywhere || ending[state].is_none())?;
-        let policy = ending_actions(mdp, collect(idle.iter().copied())?, stop)?;
+        let staying = staying_actions(mdp, stop, |state| stays_anywhere || ending[state].is_none())?;
+        let policy = ending_actions(mdp, collect(staying.iter().copied())?, stop)?;
         if let Some(state) = policy.iter().position(Option::is_none) {
             return Err(PlanningError::NoProperPolicy(state));
         }
-        Ok(Self { idle, policy: collect(policy.iter().map(|action| action.unwrap_or(0)))? })
+        Ok(Self { staying, policy: collect(policy.iter().map(|action| action.unwrap_or(0)))? })
     }
 
     /// The action with which a state stays forever where there are no rewards.
-    pub(super) fn idle_action(&self, state: usize) -> Option<usize> {
-        self.idle.get(state).copied().flatten()
+    pub(super) fn staying_action(&self, state: usize) -> Option<usize> {
+        self.staying.get(state).copied().flatten()
     }
 }
 
@@ -73,21 +73,21 @@ fn ending_actions(
 }
 
 /// For each state of `within` that can stay forever among such states without a reward, the first action that does.
-fn idle_actions(
+fn staying_actions(
     mdp: &TabularMdp,
     stop: &StopFlag<'_>,
     within: impl Fn(usize) -> bool,
 ) -> Result<Vec<Option<usize>>, PlanningError> {
-    let mut idle = collect((0..mdp.num_states()).map(|state| within(state).then_some(0)))?;
+    let mut staying = collect((0..mdp.num_states()).map(|state| within(state).then_some(0)))?;
     StopChecks::new(mdp, stop).until_stable(mdp.num_states(), |state| {
-        let Some(action) = idle[state] else { return false };
+        let Some(action) = staying[state] else { return false };
         let stays = |&action: &usize| {
             mdp.outcomes(state, action)
                 .filter(|(probability, _)| *probability > 0.0)
-                .all(|(_, step)| step.reward == 0.0 && (step.terminated || idle[step.state as usize].is_some()))
+                .all(|(_, step)| step.reward == 0.0 && (step.terminated || staying[step.state as usize].is_some()))
         };
-        idle[state] = (action..mdp.num_actions()).find(stays);
-        idle[state] != Some(action)
+        staying[state] = (action..mdp.num_actions()).find(stays);
+        staying[state] != Some(action)
     })?;
-    Ok(idle)
+    Ok(staying)
 }

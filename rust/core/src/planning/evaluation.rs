@@ -49,15 +49,15 @@ pub(super) fn solve(
     stop: &StopFlag<'_>,
 ) -> Result<u64, PlanningError> {
     if discount == 1.0 {
-        let idle = chain.idle(stop)?;
-        let settles = chain.reaching(&idle, stop)?;
+        let staying = chain.staying(stop)?;
+        let settles = chain.reaching(&staying, stop)?;
         if let Some(&state) = states.iter().find(|&&state| !settles[state]) {
             return Err(PlanningError::NoProperPolicy(state));
         }
-        for (value, _) in values.iter_mut().zip(&idle).filter(|&(_, &idle)| idle) {
+        for (value, _) in values.iter_mut().zip(&staying).filter(|&(_, &staying)| staying) {
             *value = 0.0;
         }
-        states.retain(|&state| !idle[state]);
+        states.retain(|&state| !staying[state]);
     }
     chain.solve(states, &chain.rewards, values, stop)
 }

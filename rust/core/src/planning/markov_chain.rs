@@ -88,15 +88,15 @@ impl MarkovChain {
     }
 
     /// The states that never leave each other and collect no reward. Without discounting their value is 0.
-    pub(super) fn idle(&self, stop: &StopFlag<'_>) -> Result<Vec<bool>, PlanningError> {
-        let mut idle: Vec<bool> = with_capacity(self.num_states())?;
-        idle.extend(self.reward_sizes.iter().map(|&size| size == 0.0));
+    pub(super) fn staying(&self, stop: &StopFlag<'_>) -> Result<Vec<bool>, PlanningError> {
+        let mut staying: Vec<bool> = with_capacity(self.num_states())?;
+        staying.extend(self.reward_sizes.iter().map(|&size| size == 0.0));
         self.checks(stop).until_stable(self.num_states(), |state| {
-            let leaves = idle[state] && self.next(state).any(|(next, _)| !idle[next]);
-            idle[state] &= !leaves;
+            let leaves = staying[state] && self.next(state).any(|(next, _)| !staying[next]);
+            staying[state] &= !leaves;
             leaves
         })?;
-        Ok(idle)
+        Ok(staying)
     }
 
     /// The states from which an episode can end, or reach one of `goals`.

@@ -115,8 +115,8 @@ mod tests {
         assert_eq!(expected_visits(&table, &[1.0], &stop), Err(PlanningError::NoProperPolicy(0)));
         let found = policy_evaluation(&table, &[1.0], 0.75, &stop).expect("discounted");
         assert!((found.values[0] - 4.0).abs() <= found.error);
-        let idle = TabularMdp::new(1, &[1.0], &[stay(0.0)]).expect("a valid table");
-        assert_eq!(policy_evaluation(&idle, &[1.0], 1.0, &stop).expect("no rewards").values, [0.0]);
+        let staying = TabularMdp::new(1, &[1.0], &[stay(0.0)]).expect("a valid table");
+        assert_eq!(policy_evaluation(&staying, &[1.0], 1.0, &stop).expect("no rewards").values, [0.0]);
     }
 
     #[test]

@@ -139,9 +139,10 @@ fn improvement(
     for (state, row) in q_values.chunks(mdp.num_actions()).enumerate() {
         let (best, taken) = (argmax(row), policy[state]);
         let error_of = |action| action_error(mdp, state, action, discount, values, errors);
-        match endings.idle_action(state) {
-            // All states that are worth less than idling begin to idle together, as they may lead to each other.
-            Some(idle) if values[state] < -errors[state] => better[state] = idle,
+        match endings.staying_action(state) {
+            // All states that are worth less than staying without a reward begin to stay together, as they may lead to each
+            // other.
+            Some(staying) if values[state] < -errors[state] => better[state] = staying,
             _ if row[best] > row[taken] && row[best] - row[taken] > error_of(best) + error_of(taken) => {
                 better[state] = best;
             }

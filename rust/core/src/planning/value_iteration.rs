@@ -21,7 +21,7 @@ const AGREEMENT: f64 = 4.0;
 /// solution of the Bellman equation that no policy achieves, and with a discount close to 1 they can take too long.
 ///
 /// Without discounting (`discount == 1`), policies that stay forever where there are no rewards are considered, too.
-/// Several actions can tie: the policy then takes the one that ends the episode soonest.
+/// Several actions can tie: the policy then takes the one on the shortest way to the end.
 ///
 /// # Errors
 /// As [`super::policy_iteration()`].

@@ -170,8 +170,8 @@ mod tests {
 
     #[test]
     fn logging_changes_no_update() {
-        let by_visits = LearningRate::by_visit_count(1.0, 0.0, 3, 2, &StopFlag::new()).expect("three weights");
-        for learning_rate in [LearningRate::scheduled(Schedule::constant(0.3), 2), by_visits] {
+        let by_visit_count = LearningRate::by_visit_count(1.0, 0.0, 3, 2, &StopFlag::new()).expect("three weights");
+        for learning_rate in [LearningRate::scheduled(Schedule::constant(0.3), 2), by_visit_count] {
             let mut table = QTable::<1>::new(vec![0.1, 0.7, -3.0], 1);
             let mut expected = table.clone();
             let (mut logged, mut rate) = (learning_rate.clone(), learning_rate);
