@@ -124,7 +124,7 @@ def test_a_store_says_that_its_results_come_from_other_versions(
     assert f"has results made with numpy {np.__version__}" in caplog.text
     with closing(sqlite3.connect(tmp_path / "a")) as connection:
         text = connection.execute("SELECT value FROM meta WHERE name = 'other_versions'").fetchone()[0]
-    assert json.loads(text) == [here]
+    assert json.loads(text) == [others]
     assert len(qtab.load_sweep(tmp_path / "a")) == 4  # its digest is still right
 
 
