@@ -4,6 +4,7 @@ import csv
 from collections import deque
 from typing import Any
 
+import matplotlib.colors
 import numpy as np
 import pytest
 
@@ -267,3 +268,25 @@ def test_measures_of_runs_are_computed_as_documented():
     assert figure_6_5.left(several).tolist() == [[100.0, 0.0, 0.0], [0.0, 100.0, 0.0]]
     # Episodes end after 7,000, 7,001, 7,999 and 8,001 steps: the two in the middle count.
     assert example_6_5.last_lengths(outcome([7000, 1, 998, 2])).tolist() == [[499.5]]
+
+
+def test_no_customer_is_accepted_without_a_free_server():
+    ax: Any = qtab.book.run("figure-10.5", runs=1, progress=False).plot()
+    policy = ax.figure.axes[0].collections[0]
+    assert policy.get_coordinates()[..., 0].min() == 0.5  # the picture of the policy begins with one free server
+
+
+def test_the_lines_of_a_figure_differ_in_color_and_agree_in_their_markers():
+    ax: Any = qtab.book.run("figure-8.7", progress=False).plot()
+    colors = np.array([matplotlib.colors.to_rgb(line.get_color()) for line in ax.lines])
+    apart = np.linalg.norm(colors[:, None] - colors, axis=-1)[~np.eye(len(colors), dtype=bool)]
+    assert apart.min() > 0.2
+    assert len({line.get_marker() for line in ax.lines}) == 1
+
+
+def test_the_final_values_of_the_gambler_do_not_hide_the_last_sweep():
+    ax: Any = qtab.book.run("figure-4.3", progress=False).plot()
+    widths = {line.get_label(): (line.get_zorder(), line.get_linewidth()) for line in ax.figure.axes[0].lines}
+    (below, broad), (above, narrow) = widths["final values"], widths["sweep 32"]
+    assert below < above
+    assert broad > 2 * narrow

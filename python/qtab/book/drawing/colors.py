@@ -35,7 +35,7 @@ METHOD_COLORS: Mapping[str, str] = {
     "weighted importance sampling": _RED,
     # chapter 8
     "prioritized sweeping": _RED,
-    "expected updates": _BLUE,
+    "expected updates": _RED,
     "sample updates": _ORANGE,
     "uniform": _BLUE,
     "on-policy": _RED,

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MAX_MARKERS = 40
-"""A line with more points than this is drawn without markers."""
+"""A figure in which a line has more points than this is drawn without markers."""
 MOST_LABELED = 100
 """A logarithmic axis over less than this ratio is also labeled between the powers of ten."""
 
@@ -25,8 +25,9 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
     ax = axes_or_new(ax)
     drawn = [line for line in result.lines if line.drawn]
     colors = line_colors(drawn, ax)
+    has_markers = max((len(line.x) for line in drawn), default=0) <= MAX_MARKERS
+    marker: dict[str, Any] = {"marker": "o", "markersize": 4} if has_markers else {}
     for line, hue in zip(drawn, colors, strict=True):
-        marker: dict[str, Any] = {"marker": "o", "markersize": 4} if len(line.x) <= MAX_MARKERS else {}
         error = np.nan_to_num(line.error)
         low, high = line.mean - 2 * error, line.mean + 2 * error
         ax.fill_between(line.x, low, high, color=hue, alpha=0.25, linewidth=0)

@@ -48,7 +48,9 @@ def _draw(result: Result, ax: "Axes | None") -> "Axes":
     figure = shown_figure(8, 7.5)
     upper, lower = figure.subplots(2, sharex=True)
     for line, hue in zip(values, line_colors(values, upper), strict=True):
-        upper.plot(line.x, line.mean, color=hue, linewidth=1.4, label=line.name)
+        # The final values lie behind the others as a broad band: sweep 32 has almost reached them.
+        style = {"linewidth": 6, "alpha": 0.4, "zorder": 1} if line.name == FINAL else {"linewidth": 1.4}
+        upper.plot(line.x, line.mean, color=hue, label=line.name, **style)
     finish(upper, "", "value: the probability of winning", result.experiment.heading)
     lower.bar(policy.x, policy.mean, width=1.0, color=line_colors([policy], lower)[0])
     finish(lower, "capital", POLICY)

@@ -50,13 +50,14 @@ def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
     figure = shown_figure(7, 7)
     title_figure(figure, result.experiment.heading)
     upper, lower = figure.subplots(2, 1, height_ratios=(1, 2), sharex=True)
-    policy = result.surfaces["policy"].T
+    # Without a free server there is nothing to choose: every customer is rejected.
+    policy = result.surfaces["policy"].T[:, 1:]
     free, levels = np.arange(SERVERS + 1), np.arange(len(PRIORITIES))
     upper.pcolormesh(
-        free, levels, policy, cmap=ListedColormap(("#f3c9a6", "#d9e4f2")), vmin=0, vmax=1, edgecolors="white"
+        free[1:], levels, policy, cmap=ListedColormap(("#f3c9a6", "#d9e4f2")), vmin=0, vmax=1, edgecolors="white"
     )
     for action, word in enumerate(("REJECT", "ACCEPT")):
-        where = np.argwhere(policy[:, 1:] == action)
+        where = np.argwhere(policy == action)
         if len(where):  # in the cell that is nearest to the middle
             height, across = where[np.abs(where - where.mean(axis=0)).sum(axis=1).argmin()]
             upper.text(across + 1, height, word, ha="center", va="center", color="black")
