@@ -71,6 +71,19 @@ def interrupted_at(name, interrupt):
     return run_or_interrupt
 
 
+def test_an_experiment_is_run_again_after_its_code_was_edited(tmp_path, monkeypatch):
+    sources, folder = tmp_path / "sources", tmp_path / "figures"
+    (sources / "figures").mkdir(parents=True)
+    edited = sources / "figures" / "figure_6_5.py"
+    edited.write_text("STEPS = 1")
+    monkeypatch.setattr(collection, "SOURCES", sources)
+    monkeypatch.setattr(collection, "EXPERIMENTS", {NAMES[1]: qtab.book.EXPERIMENTS[NAMES[1]]})
+    assert run(folder) == ([NAMES[1]], [])
+    assert run(folder) == ([], [NAMES[1]])
+    edited.write_text("STEPS = 2")
+    assert run(folder) == ([NAMES[1]], [])
+
+
 @pytest.mark.parametrize("content", ["", "[]", "{", json.dumps({"figure-6.5": 3})])
 def test_a_record_that_cannot_be_read_counts_as_none(content, tmp_path):
     (tmp_path / "book.json").write_text(content)

@@ -1,5 +1,6 @@
 """All experiments of the book in a folder: the table, the points and the picture of each."""
 
+import hashlib
 import json
 import os
 from collections.abc import Callable
@@ -14,6 +15,8 @@ from qtab.book.registry import EXPERIMENTS
 
 SUFFIXES = (".txt", ".csv", ".png")
 """The files of an experiment: its table, its points, and its picture."""
+SOURCES = Path(__file__).parent
+"""Where the code of the experiments is."""
 RECORD = "book.json"
 """How each experiment in the folder was run: an experiment that was run otherwise is run again."""
 
@@ -29,8 +32,8 @@ def run_all(
 ) -> None:
     """Runs every experiment of the book and writes its table, its points and its picture to a folder.
 
-    An experiment whose files are there already, from a call with the same ``runs`` and ``seed`` and the same versions,
-    is not run again: a call that was interrupted continues with what is missing.
+    An experiment whose files are there already, from a call with the same ``runs`` and ``seed``, the same versions and
+    the same code of the experiments, is not run again: a call that was interrupted continues with what is missing.
 
     Args:
         folder: The folder, which is created if it does not exist.
@@ -55,7 +58,7 @@ def run_all(
         experiment.check_arguments(runs, seed, threads)
     target.mkdir(parents=True, exist_ok=True)
     record = _read(target / RECORD)
-    how = {"runs": runs, "seed": seed, "versions": versions()}
+    how = {"runs": runs, "seed": seed, "versions": versions(), "code": _code()}
     for name, experiment in EXPERIMENTS.items():
         files = [target / f"{name}{suffix}" for suffix in SUFFIXES]
         done = record.get(name) == how and all(file.exists() for file in files)
@@ -72,6 +75,14 @@ def run_all(
         record[name] = how
         with replacing(target / RECORD) as temporary:
             temporary.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
+
+
+def _code() -> str:
+    """Returns a fingerprint of the code of all experiments: one may have been edited without another version."""
+    digest = hashlib.sha256()
+    for path in sorted(SOURCES.rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def _read(path: Path) -> dict[str, Any]:
