@@ -12,6 +12,7 @@ import qtab
 from qtab.discretizers import Discretizer, Identity
 from qtab.envs.descriptions import DESCRIPTIONS, UNKNOWN, describe
 from qtab.envs.registry import ENTRIES, EXTRA
+from qtab.results.axes import description_of
 
 IDS = [*ENTRIES, *EXTRA]
 
@@ -187,3 +188,35 @@ def test_a_rescaled_position_has_no_unit() -> None:
     ax = qtab.plots.values(run)
     assert (ax.get_xlabel(), [text.get_text() for text in ax.texts]) == ("observation[0]", [])  # no flag at 0.5
     assert qtab.explain(run, steps=1, env=env)[0].state.startswith("(0.")
+
+
+WRAPPED: list[tuple[str, Any, tuple[bool, bool]]] = [
+    ("Pendulum-v1", lambda env: gym.wrappers.TransformReward(env, lambda reward: reward / 10), (True, True)),
+    ("Pendulum-v1", lambda env: gym.wrappers.RescaleAction(env, np.float32(-1), np.float32(1)), (True, False)),
+    ("Pendulum-v1", lambda env: gym.wrappers.DelayObservation(env, 1), (False, True)),
+    ("Pendulum-v1", gym.Wrapper, (False, False)),
+    ("FrozenLake-v1", lambda env: gym.wrappers.TransformObservation(env, lambda n: 15 - n, None), (False, True)),
+    ("FrozenLake-v1", gym.wrappers.RecordEpisodeStatistics, (True, True)),
+]
+"""Wrappers that keep the bounds, and whether observations and actions are still named."""
+
+
+@pytest.mark.parametrize(("env", "wrap", "named"), WRAPPED)
+def test_only_what_no_wrapper_changes_is_named(env: str, wrap: Any, named: tuple[bool, bool], tmp_path: Any) -> None:
+    chosen: Any = {"episodes": 1, "seed": 0, "max_episode_steps": 5}
+    chosen |= {"actions": (-1.0, 0.0, 1.0)} if env == "Pendulum-v1" else {}
+    run = qtab.train(wrap(gym.make(env)), **chosen)
+    run.save(tmp_path / "run.npz")
+    plain = qtab.train(env, **chosen)
+    for found in (run, qtab.load(tmp_path / "run.npz")):
+        if env == "Pendulum-v1":
+            assert (found.axes[0].name == plain.axes[0].name) == named[0]
+        else:
+            assert (qtab.plots.values(found).get_xlabel() == "column") == named[0]  # Gymnasium's map
+        assert (found.action_names == plain.action_names) == named[1]
+
+
+@pytest.mark.parametrize("env", IDS)
+def test_every_environment_of_the_registry_is_described_in_its_runs(env: str) -> None:
+    run = qtab.train(env, episodes=1, seed=0, max_episode_steps=2)
+    assert description_of(run.config, run.discretizer) is describe(env)

@@ -5,8 +5,8 @@ pictures, ``run.axes`` and ``run.action_names`` show them. An environment that i
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import gymnasium as gym
@@ -163,6 +163,13 @@ DESCRIPTIONS: Mapping[str, Description] = {
 }
 """The environments by their id."""
 
+_WRAPPERS = {
+    f"gymnasium.wrappers.{how}_{kind}": kind
+    for how in ("transform", "stateful")
+    for kind in ("observation", "action", "reward")
+}
+"""What the wrappers in the modules of Gymnasium change."""
+
 UNKNOWN = Description()
 """The description of an environment that is not listed."""
 
@@ -192,6 +199,25 @@ def describe_observed(env: str, low: NDArray[Any], high: NDArray[Any]) -> Descri
     own = np.array(known.bounds)
     if low.shape == own[0].shape and np.allclose([low, high], own, rtol=1e-6):
         return known
+    return _actions_of(known)
+
+
+def behind(known: Description, wrappers: Iterable[str]) -> Description:
+    """Returns what remains of a description behind wrappers, which are given as ``"module:Class"``.
+
+    Those of Gymnasium that only change rewards leave all of it, those of observations the actions, and those of actions
+    the observations. Of any other wrapper it is not known what it changes.
+    """
+    for wrapper in wrappers:
+        kind = _WRAPPERS.get(wrapper.partition(":")[0])
+        if kind in (None, "observation"):
+            known = _actions_of(known)
+        if kind in (None, "action"):
+            known = replace(known, actions=(), continuous_actions=())
+    return known
+
+
+def _actions_of(known: Description) -> Description:
     return Description(actions=known.actions, continuous_actions=known.continuous_actions)
 
 

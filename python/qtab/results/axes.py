@@ -8,9 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
+from qtab.config.origin import trained_on
 from qtab.discretizers.actions import Actions
 from qtab.discretizers.time_aware import TimeAware
-from qtab.envs.descriptions import Description, Quantity, describe_observed, observation_quantities
+from qtab.envs.descriptions import (
+    UNKNOWN,
+    Description,
+    Quantity,
+    behind,
+    describe_observed,
+    observation_quantities,
+)
+from qtab.envs.registry import TABULAR, entry_for_id
 
 if TYPE_CHECKING:
     from qtab.discretizers import Discretizer
@@ -45,7 +54,14 @@ class Axis:
 
 def description_of(config: Config, discretizer: "Discretizer") -> Description:
     """Returns what the numbers of a run's environment mean, as far as it is one that is described."""
-    return describe_observed(config.env, discretizer.low, discretizer.high)
+    known = describe_observed(config.env, discretizer.low, discretizer.high)
+    environment = trained_on(config)
+    if environment is None:  # a file of an earlier version
+        return known
+    entry = entry_for_id(config.env.rpartition(":")[2])
+    if entry is None or environment.cls not in (entry.gymnasium_entry_point, entry.entry_point):
+        return known if environment.cls == TABULAR.entry_point else UNKNOWN
+    return behind(known, (wrapper.cls for wrapper in environment.wrappers))
 
 
 def axes_of(known: Description, discretizer: "Discretizer") -> tuple[Axis, ...]:
