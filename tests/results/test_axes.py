@@ -191,7 +191,7 @@ def test_a_rescaled_position_has_no_unit() -> None:
 
 
 WRAPPED: list[tuple[str, Any, tuple[bool, bool]]] = [
-    ("Pendulum-v1", lambda env: gym.wrappers.TransformReward(env, lambda reward: reward / 10), (True, True)),
+    ("Pendulum-v1", lambda env: gym.wrappers.TransformReward(env, lambda reward: float(reward) / 10), (True, True)),
     ("Pendulum-v1", lambda env: gym.wrappers.RescaleAction(env, np.float32(-1), np.float32(1)), (True, False)),
     ("Pendulum-v1", lambda env: gym.wrappers.DelayObservation(env, 1), (False, True)),
     ("Pendulum-v1", gym.Wrapper, (False, False)),
