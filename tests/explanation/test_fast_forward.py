@@ -57,7 +57,7 @@ def test_the_start_leads_to_the_values_after_the_episode(algorithm: Any, env: st
         assert start is not None
         repeated = module._repeat(run, 19, None, start, None)
         assert len(repeated.returns) == 1
-        assert repeated.agrees_with(start)
+        assert repeated.agrees_with(start, run)
 
 
 @pytest.mark.parametrize(
@@ -86,3 +86,17 @@ def test_a_start_that_leads_elsewhere_is_not_believed(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(module, "start_of", wrong)
     assert same(qtab.explain(run, 2, steps=100), expected)
+
+
+def test_values_that_never_change_do_not_make_a_new_bandit_problem_the_first_one() -> None:
+    run = qtab.train(
+        "qtab/KArmedBandit-v0",
+        learning_rate=0.0,
+        epsilon=0.5,
+        ties="first",
+        algorithm="sarsa_lambda",
+        max_episode_steps=4,
+        episodes=4,
+        seed=0,
+    )
+    assert qtab.explain(run, 3).episode_return == run.episode_returns[3]

@@ -161,7 +161,9 @@ def check_step(case: Case, run: qtab.Run, folder: Path) -> None:
 def check_many(case: Case, run: qtab.Run, folder: Path) -> None:
     if run.config.backend != "rust" or not isinstance(case.make(), str):
         return
-    runs = qtab.train_many(case.make(), [7, run.config.seed or 0], config=run.config, tables=True, threads=2)
+    runs = qtab.train_many(
+        case.make(), [(run.config.seed or 0) ^ 1, run.config.seed or 0], config=run.config, tables=True, threads=2
+    )
     assert_same_run(run, runs[1])
     sweep = qtab.sweep(
         case.make(), {"discount": [run.config.discount]}, seeds=[run.config.seed or 0], config=run.config

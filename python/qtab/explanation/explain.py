@@ -84,7 +84,7 @@ def explain(
     config = run.config
     beginning = start_of(run, episode) if env is None else None
     repeated = _repeat(run, episode, env, beginning, progress)
-    if beginning is not None and not repeated.agrees_with(beginning):
+    if beginning is not None and not repeated.agrees_with(beginning, run):
         repeated = _repeat(run, episode, env, None, progress)
     watcher, first = repeated.watcher, episode + 1 - len(repeated.returns)
     for theirs, ours in ((repeated.returns, run.episode_returns), (repeated.lengths, run.episode_lengths)):
@@ -116,10 +116,19 @@ class _Repeated:
     lengths: NDArray[np.int64]
     map_columns: int | None
 
-    def agrees_with(self, start: Start) -> bool:
-        """Whether the actions, and every value after the episode, are those of Rust."""
+    def agrees_with(self, start: Start, run: Run) -> bool:
+        """Whether the actions, the return, and every value after the episode are those of Rust.
+
+        Values that a learning rate of 0 never changes do not tell an environment that keeps something of its first
+        episode, such as a bandit problem, from a new one; the return does.
+        """
         actions = tuple(choice.action for choice in self.watcher.choices[: len(self.watcher.steps)])
-        return actions == start.columns and self.table.tobytes() == start.tables_after.tobytes()
+        returned = run.episode_returns[start.episode : start.episode + 1]
+        return (
+            actions == start.columns
+            and self.returns.tobytes() == returned.tobytes()
+            and self.table.tobytes() == start.tables_after.tobytes()
+        )
 
 
 def _repeat(run: Run, episode: int, env: gym.Env | None, start: Start | None, progress: bool | None) -> _Repeated:
