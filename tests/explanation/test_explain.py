@@ -249,7 +249,7 @@ def test_bad_arguments_are_named() -> None:
     with pytest.raises(TypeError, match="env must be an environment, got 3"):
         qtab.explain(run, env=3)  # type: ignore[arg-type]
     other = replace(run, episode_returns=run.episode_returns + 1.0)
-    with pytest.raises(RuntimeError, match="does not repeat this run: episode 2 differs"):
+    with pytest.raises(RuntimeError, match="does not repeat this run: episode 0 differs"):
         qtab.explain(other, 2)
     nothing = replace(run, episode_returns=np.empty(0), completed=False)
     with pytest.raises(ValueError, match="run must have a finished episode"):
