@@ -13,7 +13,14 @@ from support.gridworld import SHORTEST
 from support.parity import assert_same_run
 
 gym.register("qtab-tests/Room-v0", "support.gridworld:Room", max_episode_steps=100)
-ROOM: dict[str, Any] = {"episodes": 250, "learning_rate": 0.5, "discount": 0.95, "epsilon": 0.5, "initial_q": 0.0}
+ROOM: dict[str, Any] = {
+    "episodes": 250,
+    "learning_rate": 0.5,
+    "discount": 0.95,
+    "epsilon": 0.5,
+    "min_epsilon": 0.0,
+    "initial_q": 0.0,
+}
 ROOM |= {"seed": 0, "ties": "random"}
 
 
