@@ -156,3 +156,9 @@ def test_refusals_are_one_line_and_leave_the_file(tmp_path: Path, arguments: str
 def test_what_is_no_run_to_resume_is_refused(tmp_path: Path, name: str, said: str) -> None:
     qtab.train_many(LAKE, seeds=1, episodes=2, tables=True)[0].save(tmp_path / "many.npz")
     assert refused("resume", name, "--episodes", "9", cwd=tmp_path).startswith(f"qtab resume: error: {said}")
+
+
+def test_the_optimum_of_a_wrapped_environment_is_refused(tmp_path: Path) -> None:
+    wrapped = gym.wrappers.ClipReward(gym.make(LAKE), 0.0, 0.5)
+    qtab.train(wrapped, seed=0, episodes=2).save(tmp_path / "run.npz")
+    assert "ClipReward" in refused("resume", "run.npz", "--episodes", "3", "--optimum", cwd=tmp_path)

@@ -5,10 +5,12 @@ import re
 from pathlib import Path
 from typing import Any
 
+import gymnasium as gym
 import pytest
+from gymnasium.envs.classic_control import MountainCarEnv
 
 import qtab
-from qtab.envs.goals import reward_threshold
+from qtab.envs.goals import reward_threshold, threshold_of
 from qtab.training.verdict import judge
 from support.command import qtab_here
 from support.repository import PACKAGE
@@ -58,6 +60,96 @@ def test_the_threshold_is_that_of_the_environment_as_registered(
     env: str, kwargs: dict[str, Any], steps: int, threshold: float | None
 ) -> None:
     assert reward_threshold(env, kwargs, steps) == threshold
+
+
+def _changed(env: str, *names: str) -> gym.Env:
+    made: Any = gym.make(env)
+    for name in names:
+        setattr(made.unwrapped, name, 2 * getattr(made.unwrapped, name))
+    return made
+
+
+def _with_method(env: str) -> gym.Env:
+    made: Any = gym.make(env)
+    made.unwrapped.step = made.unwrapped.step
+    return made
+
+
+def _with_other_table() -> gym.Env:
+    made: Any = gym.make(LAKE)
+    made.unwrapped.P[0][0] = [(1.0, 15, 1.0, True)]
+    return made
+
+
+class Easier(MountainCarEnv):
+    """Moves the goal."""
+
+    def step(self, action: int) -> Any:
+        observation, reward, _, truncated, info = super().step(action)
+        return observation, reward, bool(observation[0] > -0.4), truncated, info
+
+
+def _of_another_class() -> gym.Env:
+    made: Any = gym.make(CAR)
+    made.unwrapped.__class__ = Easier
+    return made
+
+
+CHANGED: list[tuple[Any, str | None]] = [
+    (lambda: _changed(CAR, "force"), "its attribute force was changed"),
+    (lambda: _changed(CAR, "gravity", "force"), "its attribute force was changed"),
+    (_with_other_table, "its transition table was changed"),
+    (lambda: _with_method(LAKE), "its attribute step was changed"),
+    (_of_another_class, "the code of its class is different"),
+    (
+        lambda: gym.wrappers.TransformReward(gym.make(LAKE), lambda reward: 10 * float(reward)),
+        "it has the wrapper TransformReward",
+    ),
+    (
+        lambda: gym.wrappers.ClipReward(
+            gym.wrappers.TransformReward(gym.make(LAKE), lambda reward: 10 * float(reward)), 0, 5
+        ),
+        "it has the wrappers ClipReward, TransformReward",
+    ),
+    (lambda: gym.Wrapper(gym.make(LAKE)), "it has the wrapper Wrapper"),
+    (lambda: gym.wrappers.StickyAction(gym.make(CAR), 0.5), "it has the wrapper StickyAction"),
+    (lambda: gym.wrappers.RecordEpisodeStatistics(gym.make(LAKE)), None),
+    (lambda: gym.wrappers.TransformObservation(gym.make(LAKE), lambda n: 15 - n, None), None),
+    (lambda: gym.wrappers.TransformAction(gym.make(CAR), lambda a: 2 - a, None), None),
+    (lambda: gym.make(CAR), None),
+    (lambda: gym.make(f"qtab/{CAR}"), None),
+]
+
+
+@pytest.mark.parametrize(("make", "reason"), CHANGED)
+def test_no_threshold_holds_where_the_environment_was_changed(make: Any, reason: str | None, tmp_path: Path) -> None:
+    env = make()
+    run = qtab.train(env, episodes=2, seed=0)
+    run.save(tmp_path / "run.npz")
+    registered = gym.spec(env.spec.id).reward_threshold
+    for found in (run, qtab.load(tmp_path / "run.npz")):
+        verdict = judge(found, None)
+        assert threshold_of(found.config) == verdict.goal.threshold == (registered if reason is None else None)
+        if reason is not None:
+            assert verdict.solved is None
+            assert verdict.why_unknown == (
+                f"Gymnasium's threshold of {registered:g} does not hold for the returns of this environment: {reason}, "
+                "and no optimum is known"
+            )
+    assert qtab.evaluate(run, 1, seed=0, env=env).reward_threshold == threshold_of(run.config)
+
+
+def test_no_threshold_holds_where_a_method_of_gymnasiums_class_was_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    original: Any = MountainCarEnv.step
+    monkeypatch.setattr(MountainCarEnv, "step", lambda *given: original(*given))
+    run = qtab.train(gym.make(CAR), episodes=1, seed=0)  # any other environment made now has that method as well
+    assert threshold_of(run.config) is None
+    assert "methods of its class MountainCarEnv were replaced" in judge(run, None).why_unknown
+
+
+def test_the_optimum_of_a_changed_table_has_no_threshold() -> None:
+    assert qtab.optimum(gym.make(LAKE)).reward_threshold == 0.7
+    assert qtab.optimum(_with_other_table()).reward_threshold is None
 
 
 @pytest.mark.parametrize(

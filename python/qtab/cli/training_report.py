@@ -1,6 +1,7 @@
 """The training of ``qtab train`` and ``qtab resume``, and what they report of the run."""
 
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from qtab.results.summary import FINAL_EPISODES, SOLVED_EPISODES, best_mean_retu
 from qtab.training.callbacks import Progress
 from qtab.training.options import TrainingOptions
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.run_env import make_run_env
 from qtab.training.train import train_resolved
 from qtab.training.verdict import Verdict, judge
 
@@ -31,13 +33,16 @@ def backend_words(config: Config) -> str:
 def optimum_of(resolved: ResolvedRun, always: bool, progress: bool | None) -> "Optimum | None":
     """Returns the optimum of a run's environment; None if it takes more than a second, unless ``always`` is set."""
     config = resolved.config
-    if not (always or has_quick_optimum(config, resolved.discretizer.n_rows, len(resolved.actions))):
+    rows, actions = resolved.discretizer.n_rows, len(resolved.actions)
+    if not (always or has_quick_optimum(config, rows, actions)):
         return None
     from qtab.planning import optimum
+    from qtab.planning.quick import quick_optimum
 
-    return optimum(
-        config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps, progress=progress
-    )
+    if not always:
+        return quick_optimum(config, rows, actions)
+    with closing(make_run_env(config, of="gymnasium")) as env:
+        return optimum(env, max_episode_steps=config.max_episode_steps, progress=progress)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,9 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec, load_env_creator
 
 from qtab.config import Config
+from qtab.config.origin import trained_on
+from qtab.envs.origin.description import EnvironmentDescription
+from qtab.envs.origin.registered import what_changes_returns
 from qtab.envs.registry import entry_for_id, gymnasium_id
 from qtab.envs.stored import is_registered
 
@@ -19,21 +22,32 @@ UNLIMITED_MAX_EPISODE_STEPS = 10_000
 """The time limit in training for environments that have none."""
 
 
-def reward_threshold(env: str, env_kwargs: Mapping[str, Any], max_episode_steps: int | None) -> float | None:
+def reward_threshold(
+    env: str,
+    env_kwargs: Mapping[str, Any],
+    max_episode_steps: int | None,
+    description: EnvironmentDescription | None = None,
+) -> float | None:
     """Returns the return at which Gymnasium considers an environment solved; None where it gives none.
 
-    It gives one for the environment as it is registered: with another time limit or other keyword arguments the same
-    return means something else.
+    It gives one for the environment as it is registered: with another time limit, other keyword arguments, wrappers or
+    attributes the same return means something else.
+
+    Args:
+        env: The id.
+        env_kwargs: The keyword arguments of its constructor.
+        max_episode_steps: The time limit, in steps.
+        description: The environment in detail; None where that is not known.
     """
     spec = _registered(env)
-    if spec is None or not _is_as_registered(spec, env_kwargs, max_episode_steps):
+    if spec is None or spec.reward_threshold is None:
         return None
-    return spec.reward_threshold
+    return None if _why_not_as_registered(spec, env_kwargs, max_episode_steps, description) else spec.reward_threshold
 
 
 def threshold_of(config: Config) -> float | None:
-    """Returns the threshold that holds for a resolved config; see :func:`reward_threshold`."""
-    return reward_threshold(config.env, config.env_kwargs, config.max_episode_steps)
+    """Returns the threshold that holds for the config of a run; see :func:`reward_threshold`."""
+    return reward_threshold(config.env, config.env_kwargs, config.max_episode_steps, trained_on(config))
 
 
 def registered_threshold(env: str) -> float | None:
@@ -43,25 +57,20 @@ def registered_threshold(env: str) -> float | None:
 
 
 def why_no_threshold(config: Config) -> str:
-    """Returns why no threshold holds for a resolved config."""
+    """Returns why no threshold holds for the config of a run."""
     spec = _registered(config.env)
     if spec is None or spec.reward_threshold is None:
         return "Gymnasium defines no threshold"
-    its = f"Gymnasium's threshold of {spec.reward_threshold:g}"
-    limit = spec.max_episode_steps or UNLIMITED_MAX_EPISODE_STEPS
-    if config.max_episode_steps != limit:
-        return f"{its} holds for {limit:,} steps, not for max_episode_steps={config.max_episode_steps}"
-    return f"{its} does not hold for other env_kwargs"
+    reason = _why_not_as_registered(spec, config.env_kwargs, config.max_episode_steps, trained_on(config))
+    return f"Gymnasium's threshold of {spec.reward_threshold:g} {reason}"
 
 
 def is_usual_mountain_car(config: Config) -> bool:
     """Returns whether a run is on MountainCar-v0 with its own constants and time limit."""
     spec = _registered(config.env)
-    return (
-        spec is not None
-        and gymnasium_id(config.env) == "MountainCar-v0"
-        and _is_as_registered(spec, config.env_kwargs, config.max_episode_steps)
-    )
+    if spec is None or gymnasium_id(config.env) != "MountainCar-v0":
+        return False
+    return _why_not_as_registered(spec, config.env_kwargs, config.max_episode_steps, trained_on(config)) is None
 
 
 def has_quick_optimum(config: Config, n_rows: int, n_actions: int) -> bool:
@@ -90,9 +99,23 @@ def _registered(env: str) -> EnvSpec | None:
     return gym.registry.get(env.rpartition(":")[2])
 
 
-def _is_as_registered(spec: EnvSpec, env_kwargs: Mapping[str, Any], max_episode_steps: int | None) -> bool:
-    if max_episode_steps != (spec.max_episode_steps or UNLIMITED_MAX_EPISODE_STEPS):
-        return False
+def _why_not_as_registered(
+    spec: EnvSpec,
+    env_kwargs: Mapping[str, Any],
+    max_episode_steps: int | None,
+    description: EnvironmentDescription | None,
+) -> str | None:
+    """Why the threshold of a spec does not hold, to follow its number; None if it does."""
+    limit = spec.max_episode_steps or UNLIMITED_MAX_EPISODE_STEPS
+    if max_episode_steps != limit:
+        return f"holds for {limit:,} steps, not for max_episode_steps={max_episode_steps}"
+    if not _has_usual_arguments(spec, env_kwargs):
+        return "does not hold for other env_kwargs"
+    change = None if description is None else what_changes_returns(description, spec, env_kwargs)
+    return None if change is None else f"does not hold for the returns of this environment: {change}"
+
+
+def _has_usual_arguments(spec: EnvSpec, env_kwargs: Mapping[str, Any]) -> bool:
     own = {**spec.kwargs, "render_mode": None}
     others = {name: value for name, value in env_kwargs.items() if name not in own}
     if others:

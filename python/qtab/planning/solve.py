@@ -152,6 +152,7 @@ def _optimum_for_env(
     methods = METHODS if on_grid is None else (SEARCH,)
     method = methods[0] if method is None else checks.choice("method", method, methods)
     steps = max_episode_steps or time_limit(env) or UNLIMITED_MAX_EPISODE_STEPS
+    environment = description or describe(env)
     with ProgressBar(1 if on_grid is None else SEARCH_STAGES, "stage", progress, "optimum") as bar:
         if on_grid is not None:
             best = _search_grid(unwrapped, on_grid, discount, steps, bar)
@@ -169,11 +170,11 @@ def _optimum_for_env(
         q_values=best.q_values,
         policy=best.policy,
         expected_return=best.expected_return,
-        reward_threshold=None if env.spec is None else reward_threshold(name, env.spec.kwargs, steps),
+        reward_threshold=None if env.spec is None else reward_threshold(name, env.spec.kwargs, steps, environment),
         seconds=time.perf_counter() - started,
         search=best.search,
         solver=best.solver,
-        environment=description or describe(env),
+        environment=environment,
     )
 
 
