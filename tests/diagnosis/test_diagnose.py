@@ -3,10 +3,12 @@
 from dataclasses import replace
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
 import qtab
+from qtab.diagnosis.rates import epsilons
 from support.gridworld import Room
 
 LAKE = "FrozenLake-v1"
@@ -218,4 +220,35 @@ def test_bad_arguments_are_named(article: qtab.Run) -> None:
 def test_an_extended_run_is_diagnosed_without_repeating_it() -> None:
     part = qtab.train(LAKE, seed=0, episodes=20, epsilon=0.0, learning_rate_schedule="linear")
     diagnosis = qtab.diagnose(qtab.resume(part, 40))
-    assert diagnosis.reasons["noisy values"] == "Rust cannot repeat this run"
+    assert diagnosis.reasons["noisy values"] == (
+        "it was resumed with more episodes while a rate fell, and cannot be repeated"
+    )
+
+
+def test_the_rates_of_an_extended_run_are_those_that_it_had() -> None:
+    part = qtab.train(LAKE, seed=0, episodes=20, epsilon_schedule="linear", min_epsilon=0.0, epsilon=1.0)
+    whole = qtab.resume(part, 40)
+    assert epsilons(whole)[:20].tolist() == epsilons(part).tolist()
+    assert epsilons(whole)[20:].tolist() == epsilons(qtab.train(config=whole.config))[20:].tolist()
+
+
+def test_values_that_no_goal_has_changed_are_not_called_noisy() -> None:
+    run = qtab.train(LAKE, seed=0, episodes=200, epsilon=0.0, learning_rate=1.0)
+    assert not run.episode_returns.any()
+    assert qtab.diagnose(run, seeds=0).names == ("not solved", "exploration")
+
+
+def test_few_updates_where_results_vary_are_no_reason_for_a_learning_rate_of_1() -> None:
+    run = qtab.train("Blackjack-v1", seed=0, episodes=500, learning_rate=0.01)
+    found = qtab.diagnose(run, seeds=0)["slow learning"]
+    assert (found.advice, found.changes) == ("train longer, such as episodes=2500", ({"episodes": 2500},))
+
+
+def test_what_if_names_what_cannot_be_made_again() -> None:
+    env: Any = gym.make(LAKE)
+    env.unwrapped.P[0][0] = [(1.0, 15, 1.0, True)]
+    diagnosis = qtab.diagnose(qtab.train(env, seed=0, episodes=300))
+    assert diagnosis.reasons["exploration"] == "its environment cannot be made again"
+    expected = "what_if must make the environment of the run again: the environment FrozenLake-v1 cannot be made as in"
+    with pytest.raises(ValueError, match=expected):
+        diagnosis.what_if(2)

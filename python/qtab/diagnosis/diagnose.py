@@ -78,5 +78,5 @@ def _unchecked(check: Check, facts: Facts, findings: Iterable[Finding]) -> Unche
     if check.reads_values and facts.config.algorithm in PREFERENCES:
         return Unchecked("it learned preferences instead of action values")
     if check.repeats and not facts.can_repeat:
-        return Unchecked("Rust cannot repeat this run")
+        return Unchecked(facts.why_not_repeated)
     return None

@@ -44,12 +44,21 @@ class Facts:
         """The config of the run."""
         return self.run.config
 
-    @cached_property
+    @property
     def can_repeat(self) -> bool:
         """Whether the whole run can be repeated quickly: Rust steps its environment, which can be made again."""
-        finished = len(self.run.episode_returns)
-        in_rust = self.config.backend == "rust" and can_be_made(self.config)
-        return in_rust and repeatable(self.run)[1] == finished > 0
+        return not self.why_not_repeated
+
+    @cached_property
+    def why_not_repeated(self) -> str:
+        """Why the run cannot be repeated quickly, to follow the word "as"; empty if it can."""
+        if self.config.backend != "rust":
+            return "Rust cannot repeat this run"
+        if not can_be_made(self.config):
+            return "its environment cannot be made again"
+        if repeatable(self.run)[1] < len(self.run.episode_returns):
+            return "it was resumed with more episodes while a rate fell, and cannot be repeated"
+        return ""
 
     @cached_property
     def is_finite(self) -> bool:

@@ -47,7 +47,7 @@ def too_pessimistic(facts: Facts) -> Finding | Unchecked | None:
         return None  # it tries all actions
     if not visited.any():
         return Unchecked("no value changed")
-    epsilon = float(epsilons(config, len(facts.run.episode_returns)).mean())
+    epsilon = float(epsilons(facts.run).mean())
     if epsilon > LITTLE_EPSILON:
         return None
     untried = ~facts.tried & facts.has_action

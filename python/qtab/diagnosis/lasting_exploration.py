@@ -56,7 +56,7 @@ def lasting_bonus(facts: Facts) -> Finding | Unchecked | None:
 
 
 def _of_epsilon(facts: Facts) -> Finding | None:
-    last = float(epsilons(facts.config, len(facts.run.episode_returns))[-1])
+    last = float(epsilons(facts.run)[-1])
     if last <= MOST_EPSILON:
         return None
     return Finding(

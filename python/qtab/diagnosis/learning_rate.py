@@ -27,7 +27,7 @@ OVERWRITING_RATE = 0.5
 
 def slow_learning(facts: Facts) -> Finding | Unchecked | None:
     """Finds that the learning rate is too small for the number of updates."""
-    episodes, rates = learning_rates(facts.config, len(facts.run.episode_returns))
+    episodes, rates = learning_rates(facts.run)
     updated = int(facts.tried.sum())
     if facts.config.learning_rate_schedule == "visits":
         return None  # it averages
@@ -41,37 +41,44 @@ def slow_learning(facts: Facts) -> Finding | Unchecked | None:
     # So large that little of the initial value is left, at the same schedule.
     needed = (1.0 - ENOUGH_LEFT ** (1.0 / updates)) * facts.config.learning_rate / rate if rate > 0 else 1.0
     faster = min(float(f"{1.2 * needed:.1g}"), 1.0)
-    is_faster = faster > facts.config.learning_rate
+    # Where results vary, such a rate would keep the last of them only.
+    is_faster = facts.config.learning_rate < faster and not (faster >= OVERWRITING_RATE and _varies(facts))
+    longer = {"episodes": 5 * facts.config.episodes}
     return Finding(
         name="slow learning",
         title="The learning rate is too small for so few updates.",
         evidence={"mean learning rate": rate, "updates per value": updates, "initial value left": left},
         meaning=f"After {updates:,.3g} updates {percent(left)} of the initial value is still in a value.",
         advice=(f"use a larger learning rate, such as learning_rate={faster:g}, or " if is_faster else "")
-        + "train longer",
-        changes=changes(facts.config, {"learning_rate": faster}) if is_faster else (),
+        + f"train longer, such as episodes={longer['episodes']}",
+        changes=changes(facts.config, {"learning_rate": faster} if is_faster else longer),
     )
 
 
 def overwrites(facts: Facts) -> bool:
     """Returns whether chance decides the values: the last few targets make up most of each, and results vary."""
     config = facts.config
-    if config.discretizer != "identity" or config.learning_rate_schedule == "visits" or facts.sample is None:
+    if config.discretizer != "identity" or config.learning_rate_schedule == "visits":
         return False
-    rate = float(learning_rates(config, len(facts.run.episode_returns))[1][-1])
-    return rate >= OVERWRITING_RATE and facts.sample.mixed_outcomes >= LEAST_CHANCE
+    rate = float(learning_rates(facts.run)[1][-1])
+    return rate >= OVERWRITING_RATE and _varies(facts)
+
+
+def _varies(facts: Facts) -> bool:
+    """Whether the same action in the same state has different results."""
+    return facts.sample is not None and facts.sample.mixed_outcomes >= LEAST_CHANCE
 
 
 def noisy_values(facts: Facts) -> Finding | Unchecked | None:
     """Finds that the values still jump up and down, because the learning rate stays high where there is chance."""
     run, config = facts.run, facts.config
-    rate = float(learning_rates(config, len(run.episode_returns))[1][-1])
+    rate = float(learning_rates(facts.run)[1][-1])
     if rate < LEAST_RATE or config.learning_rate_schedule == "visits":
         return None
     if facts.sample is None or len(run.episode_returns) < 10:
         return Unchecked("there are too few episodes" if facts.is_finite else "values overflowed")
-    if facts.sample.mixed_outcomes < LEAST_CHANCE:
-        return None
+    if not _varies(facts) or (facts.reached is not None and not facts.reached.any()):
+        return None  # where no goal was reached, there is nothing to forget
     if config.count_bonus > 0.0:
         return Unchecked("the count bonus moves the values")
     overwritten = overwrites(facts)
@@ -83,6 +90,7 @@ def noisy_values(facts: Facts) -> Finding | Unchecked | None:
     targets = max(1.0, 2.0 / rate - 1.0)
     few = "the last target" if targets < 1.5 else f"about {targets:.2g} targets"
     share = f"by {percent(change / spread)} of their spread, " if spread > 0.0 else ""
+    moves = f"The values move {share}up and down with chance" if change > 0.0 else "What was learned is forgotten again"
     advised = changes(
         config, {"learning_rate": float(f"{config.learning_rate / 10:.4g}")}, {"learning_rate_schedule": "linear"}
     )
@@ -94,8 +102,7 @@ def noisy_values(facts: Facts) -> Finding | Unchecked | None:
             "mean change in the last tenth of the episodes": change,
             "spread of the values": spread,
         },
-        meaning=f"The values move {share}up and down with chance: with a learning rate of {rate:g} a value is an "
-        f"average over {few} only.",
+        meaning=f"{moves}: with a learning rate of {rate:g} a value is an average over {few} only.",
         advice=f"use a smaller learning rate, or let it fall: {', or '.join(map(as_keywords, advised))}",
         changes=advised,
     )

@@ -46,7 +46,7 @@ def still_improving(facts: Facts) -> bool:
     if len(last) < LEAST_EPISODES:
         return False
     if facts.config.exploration == "epsilon_greedy":
-        rates = epsilons(facts.config, len(facts.run.episode_returns))
+        rates = epsilons(facts.run)
         if rates[-len(rates) * 2 // PARTS :].max() > MOST_EPSILON:
             return False
     error = float(np.sqrt((before.var() + last.var()) / len(last)))

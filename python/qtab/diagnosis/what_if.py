@@ -14,9 +14,8 @@ from qtab.config import Config
 from qtab.config.origin import copied
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, as_keywords, shown
-from qtab.envs.registry import spec_of
 from qtab.results.runs import Runs
-from qtab.training.run_env import as_in_training
+from qtab.training.run_env import as_in_training, make_run_env
 from qtab.training.train_many import resolve_template, seed_numbers, train_many
 from qtab.training.verdict import judge
 
@@ -123,11 +122,14 @@ def try_changes(facts: Facts, findings: Sequence[Finding], seeds: int | Iterable
     if not changes:
         raise ValueError("no finding advises a change of the settings: there is nothing to try")
     try:
-        spec_of(config.env)
-    except gym.error.Error:
+        make_run_env(config).close()
+    except gym.error.UnregisteredEnv:
         raise ValueError(
             f"what_if needs an environment with an id to make it again, and {config.env} has none"
         ) from None
+    except ValueError as error:
+        reason = str(error).removeprefix("env must be given: ")
+        raise ValueError(f"what_if must make the environment of the run again: {reason}") from None
     numbers = seed_numbers(seeds)
     if len(numbers) < 2:
         raise ValueError(f"seeds must be at least 2, to compare them in pairs, got {len(numbers)}")
