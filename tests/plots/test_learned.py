@@ -265,8 +265,8 @@ def test_what_cannot_be_drawn_is_refused(car: qtab.Run, wrong: Any, message: str
 def test_the_schedule_is_that_of_the_reference(chosen: dict[str, Any]) -> None:
     from qtab.config.policies import EpsilonGreedy
     from qtab.config.policies import policy as policy_of
-    from qtab.config.schedules import rates
     from qtab.reference.schedules import epsilon_schedule
+    from qtab.results.rates import rates_of
 
     run = qtab.train(CAR, episodes=30, seed=0, **chosen)
     ax = plots.schedule(run)
@@ -277,7 +277,7 @@ def test_the_schedule_is_that_of_the_reference(chosen: dict[str, Any]) -> None:
         for _ in range(30):
             expected.append(reference.value)
             reference.end_episode()
-        np.testing.assert_allclose(rates(behaviour.epsilon, np.arange(30), 30), expected, atol=1e-12)
+        np.testing.assert_allclose(rates_of(run, behaviour.epsilon, np.arange(30)), expected, atol=1e-12)
 
 
 def test_the_overview_has_four_panels(car: qtab.Run) -> None:

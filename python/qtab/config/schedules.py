@@ -3,9 +3,6 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
 from qtab._spec import ConstantSpec, ExponentialSpec, LinearSpec, VisitsSpec
 from qtab._utils.checks import required
 from qtab.config.config import Config
@@ -116,8 +113,3 @@ def epsilon(config: Config) -> Schedule:
     if kind == "linear":
         return Linear(value, minimum, warm_up)
     return Exponential(value, minimum, required("epsilon_decay", config.epsilon_decay), warm_up)
-
-
-def rates(schedule: Schedule, episodes: NDArray[np.int64], total: int) -> NDArray[np.float64]:
-    """Returns (n,): the value of a schedule in each of n episodes, numbered from 0, of a run of ``total`` episodes."""
-    return np.array([schedule.after(episode, total) for episode in episodes.tolist()])
