@@ -50,6 +50,13 @@ def test_an_address_without_seeds_has_the_first_one_alone(playground: Playground
     assert playground.settled().result()["seeds"] == [0]
 
 
+def test_an_address_without_an_environment_has_the_first_one(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&episodes=20")
+    playground.page.evaluate("() => playground.restore(playground.store, 'episodes=30')")
+    assert playground.settled().state()["environment"] == "MountainCar-v0"
+    assert playground.state()["settings"]["episodes"] == 30
+
+
 @pytest.mark.parametrize(
     ("fragment", "settings", "note"),
     [
@@ -72,6 +79,8 @@ def test_an_address_without_seeds_has_the_first_one_alone(playground: Playground
         ("#env=MountainCar-v0&algorithm=sarsa&n_steps=3", {"algorithm": "sarsa"}, "n_steps"),
         ("#env=MountainCar-v0&scael=10", {}, "scael"),
         ("#env=MountainCar-v0&example=2&wnid=1", {"tilings": 32}, "wnid"),
+        ("#env=grid&wind=0,1", {}, "wind"),
+        ("#env=CliffWalking-v1&layout=S.G", {}, "layout"),
     ],
 )
 def test_what_does_not_fit_is_cut_or_left_out_and_named(
@@ -89,10 +98,15 @@ def test_what_does_not_fit_is_cut_or_left_out_and_named(
 
 def test_a_table_that_is_too_large_is_refused_in_a_sentence(playground: Playground) -> None:
     playground.open("#env=CliffWalking-v1")
+    endless = "env=CartPole-v1&episodes=100000&seeds=16"
+    playground.page.evaluate("endless => playground.restore(playground.store, endless)", endless)
+    playground.page.wait_for_function("() => document.querySelector('#run').disabled")
     wanted = "env=CartPole-v1&discretizer=bins&bins=60,60,60,60&seeds=16&algorithm=dyna_q"
     playground.page.evaluate("wanted => playground.restore(playground.store, wanted)", wanted)
     playground.page.wait_for_function("() => playground.training.state === 'refused'")
     problem = playground.text("problem")
+    assert playground.page.locator("#run").is_enabled()
+    assert playground.page.locator("#stop").is_disabled()
     assert problem.startswith("16 runs with a table of 12960000 rows and 2 actions would take 18")
     assert problem.endswith("MiB, and the page has 512 MiB for them: choose fewer cells, or fewer seeds")
     playground.page.evaluate("() => playground.restore(playground.store, 'env=CliffWalking-v1')")

@@ -108,6 +108,13 @@ def test_an_episode_that_is_cut_is_said_to_end_as_the_learner_takes_it(playgroun
         assert all(each.endswith(f"; {text}") for each in when), when
 
 
+def test_an_update_that_is_not_of_its_step_is_said_to_follow_it(playground: Playground) -> None:
+    playground.open(f"#{GRID}&algorithm=n_step_sarsa&n_steps=4")
+    when = playground.page.locator(".updates .when").all_inner_texts()
+    assert len(when) == 5
+    assert all(", after step " in each for each in when), when
+
+
 def test_an_assigned_value_is_the_reward(playground: Playground) -> None:
     playground.open("#env=grid&layout=SG&terminal_update=assign&episodes=10&goal_reward=7&step_reward=-1")
     assert check_equations(playground, "assign") == 5

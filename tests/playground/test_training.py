@@ -118,13 +118,20 @@ def test_marks_belong_to_the_time_limit(playground: Playground, limit: int, name
         assert ("Its expected return is" in playground.text("best-caption")) == bool(names)
 
 
+def test_the_greatest_return_is_not_said_to_be_that_of_a_discounting_policy(playground: Playground) -> None:
+    playground.open("#env=FrozenLake-v1&episodes=20&discount=0.5")
+    assert "The greatest expected return, without discounting, is 0.7442." in playground.text("best-caption")
+    playground.open("#env=FrozenLake-v1&episodes=20&discount=1")
+    assert "Its expected return is 0.7442." in playground.text("best-caption")
+
+
 def test_two_tables_are_shown_beside_the_optimum(playground: Playground) -> None:
     playground.open("#env=CliffWalking-v1&algorithm=double_q_learning&learning_rate=1&epsilon=1&episodes=300&seed=1")
     values, best = playground.page.evaluate(
         "() => [Array.from(playground.view.result.map.values), Array.from(playground.view.result.best.values)]"
     )
     assert values[35] == best[35] == -1
-    assert "means of both tables" in playground.text("inspection")
+    assert "averaged over both tables" in playground.text("inspection")
 
 
 def test_a_selected_state_is_watched_in_the_next_run(playground: Playground) -> None:

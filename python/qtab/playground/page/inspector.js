@@ -27,7 +27,7 @@ export function showInspection(title, place, inspection, { actions, bootstraps, 
     return;
   }
   title.textContent = `State: ${inspection.state}`;
-  const values = make("div", {}, make("h4", { textContent: bootstraps.length > 1 ? "Action values Q(s, a), means of both tables, and visits" : "Action values Q(s, a) and visits" }), valueTable(inspection, actions));
+  const values = make("div", {}, make("h4", { textContent: bootstraps.length > 1 ? "Action values Q(s, a), averaged over both tables, and visits" : "Action values Q(s, a) and visits" }), valueTable(inspection, actions));
   const updates = make("div", {}, make("h4", { textContent: "Last updates, newest first" }));
   const newest = [...inspection.updates].reverse().slice(0, SHOWN_UPDATES);
   if (newest.length) {
@@ -60,7 +60,9 @@ function valueTable({ actionValues, visits }, actions) {
 function updateItem(update, actions, first, bootstraps) {
   const end = ENDS[update.end];
   const reward = update.reward === null ? "" : `, reward ${number(update.reward)}`;
-  const when = `Episode ${count(update.episode + 1)}, step ${count(update.step + 1)}: ${actions[update.action]}${reward}`;
+  // The action of a delayed or planned update is not that of the step in which it is made.
+  const time = update.end === "other" ? "after step" : "step";
+  const when = `Episode ${count(update.episode + 1)}, ${time} ${count(update.step + 1)}: ${actions[update.action]}${reward}`;
   const parts = numberEquation(update, bootstraps);
   const equation = make("p", { className: "equation" }, parts[0], make("b", { textContent: parts[1] }));
   const item = make("li", {}, make("p", { className: "when", textContent: end ? `${when}; ${end}` : when }));

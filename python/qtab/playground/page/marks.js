@@ -38,7 +38,7 @@ export class Marks {
         : [["accent", "3px dotted", `${word} of each episode`], ["warm", "3px solid", mean]];
     if (marks.some(({ name }) => name === "threshold")) lines.push(["good", "2px dotted", "threshold of a solved task"]);
     const best = marks.find(({ name }) => name !== "threshold");
-    if (best) lines.push(["good", "2px dashed", best.name === "optimal" ? "expected return of an optimal policy" : "best known return"]);
+    if (best) lines.push(["good", "2px dashed", best.name === "optimal" ? "greatest expected return" : "best known return"]);
     const shown = JSON.stringify(lines);
     if (shown === this.shown) return;
     this.shown = shown;

@@ -8,7 +8,8 @@ const MAX_SIDE = 20;
 const MAX_LENGTH = 8000;
 const LARGEST_SEED = 2 ** 32 - 1 - MANY_SEEDS;
 /** What an address holds besides settings. */
-const NAMES = new Set(["env", "example", "seed", "seeds", "layout", "wind", "step_reward", "goal_reward", "rewards"]);
+const GRID_NAMES = ["layout", "wind", "step_reward", "goal_reward", "rewards"];
+const NAMES = new Set(["env", "example", "seed", "seeds", ...GRID_NAMES]);
 
 /** The fragment of a state, without "#". */
 export function fragment({ state, definitions }) {
@@ -35,7 +36,8 @@ export function restore(store, text) {
   const left = text.length > MAX_LENGTH ? ["the whole address, which is too long"] : [];
   const { environments, settings: known } = store.definitions;
   left.push(...[...given.keys()].filter((name) => !NAMES.has(name) && !Object.hasOwn(known, name)).map((name) => name.slice(0, 40)));
-  let environment = store.state.environment;
+  // Not that of the page: a link shows the same in each tab.
+  let [environment] = Object.keys(environments);
   const asked = given.get("env");
   if (asked !== null && Object.hasOwn(environments, asked)) environment = asked;
   else if (asked !== null) left.push("env");
@@ -47,6 +49,7 @@ export function restore(store, text) {
   Object.assign(state, readSeeds(given, left));
   const asks = readSettings(store, given, state, left);
   if (environment === PAINTED && given.has("layout")) readGrid(given, state, left);
+  else left.push(...GRID_NAMES.filter((name) => given.has(name)));
   store.update(state);
   for (const [name, value] of asks) if (String(store.state.settings[name]) !== String(value)) left.push(name);
   return [...new Set(left)];

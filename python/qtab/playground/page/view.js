@@ -87,6 +87,8 @@ export class View {
   showProblem(message) {
     this.showMessage(message);
     element("status").textContent = "Not trained: see the message below.";
+    element("stop").disabled = true;
+    element("run").disabled = false;
   }
 
   /** Shows a message until another run begins. */
@@ -221,7 +223,9 @@ export class View {
     showLegend(element("best-legend"), "values", low, high);
     const word = best.kind === "optimal" ? "optimal" : "best known";
     const value = bestReturn(entry, state.settings, best);
-    const expected = value === null ? "" : ` Its expected return is ${number(value)}.`;
+    // The return is not discounted: with γ < 1 the policy that is shown may be another than the one that earns it.
+    const subject = best.kind === "optimal" && discount < 1 ? "The greatest expected return, without discounting," : "Its expected return";
+    const expected = value === null ? "" : ` ${subject} is ${number(value)}.`;
     element("best-caption").textContent = `The ${word} values for γ = ${number(discount)} and an ${word} policy, in the same colors.${expected}`.replace("an best", "the best");
   }
 
