@@ -44,6 +44,16 @@ def test_everything_that_can_be_pressed_is_reached_with_tab_and_seen(playground:
     assert len(reached) >= wanted
 
 
+def test_the_link_to_the_results_keeps_the_settings(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&episodes=20")
+    state = playground.state()
+    playground.page.locator(".skip").focus()
+    press(playground, "Enter")
+    assert playground.page.evaluate("() => document.activeElement.id") == "results"
+    assert playground.state() == state
+    assert "episodes=20" in playground.page.url
+
+
 def test_a_state_is_selected_with_the_arrow_keys(playground: Playground) -> None:
     playground.open("#env=CliffWalking-v1")
     press(playground, "v", "Home", "ArrowUp", "ArrowUp", "ArrowRight")

@@ -46,7 +46,7 @@ function start() {
   store.subscribe(() => training.start());
   training.start();
   const note = (names) => {
-    if (names.length) view.showNote(`Parts of the address do not fit and were left out or changed: ${names.slice(0, 8).join(", ")}.`);
+    if (names.length) view.showNote(`Some parts of the address are not valid and were left out or changed: ${names.slice(0, 8).join(", ")}.`);
   };
   note(left);
   addEventListener("hashchange", () => note(restore(store, location.hash.slice(1))));
@@ -64,6 +64,11 @@ function setUpPage(store, training, view, announce) {
   };
   for (const [id, action] of Object.entries(press)) element(id).addEventListener("click", action);
   const program = () => { element("python-code").textContent = pythonProgram(store, view.shownMeasure); };
+  // Following the link would replace the fragment, which holds the settings.
+  document.querySelector(".skip").addEventListener("click", (event) => {
+    event.preventDefault();
+    element("results").focus();
+  });
   const openPython = setUpDialog(element("python-dialog"), element("python-open"), program);
   const openShortcuts = setUpDialog(element("shortcuts-dialog"), element("shortcuts-open"));
   const copied = async (text, button, what) => {
