@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from gymnasium.wrappers import (
     ClipReward,
+    NormalizeObservation,
     RecordEpisodeStatistics,
     RescaleObservation,
     TransformObservation,
@@ -42,6 +43,32 @@ class Padded(gym.Wrapper[Any, Any, Any, Any]):
         self._amount = amount
 
 
+class Doubled(gym.RewardWrapper[Any, Any]):
+    """A wrapper that changes one of its attributes, and not the other."""
+
+    def __init__(self, env: gym.Env) -> None:
+        super().__init__(env)
+        self.factor, self.steps = 2, 0
+
+    def reward(self, reward: Any) -> float:
+        self.steps += 1
+        return self.factor * float(reward)
+
+
+class Tenth(TransformReward[Any, Any]):
+    """A subclass whose arguments are not those that its base class records."""
+
+    def __init__(self, env: gym.Env) -> None:
+        super().__init__(env, lambda reward: float(reward) / 10)
+
+
+class Clipped(ClipReward[Any, Any]):
+    """Another one, with an argument."""
+
+    def __init__(self, env: gym.Env, most: float) -> None:
+        super().__init__(env, -most, most)
+
+
 class Corridor(gym.Env[Any, Any]):
     """An environment without an id."""
 
@@ -59,6 +86,11 @@ def car(**kwargs: Any) -> Any:
 def changed(env: Any, **attributes: Any) -> Any:
     for name, value in attributes.items():
         setattr(env.unwrapped, name, value)
+    return env
+
+
+def changed_layer(env: Any, **attributes: Any) -> Any:
+    vars(env).update(attributes)
     return env
 
 
@@ -103,6 +135,16 @@ DIFFERENT: dict[str, tuple[Callable[[], Any], Callable[[], Any], str]] = {
         lambda: Padded(car(), 1.0),
         lambda: Padded(car(), 2.0),
         "of the wrapper Padded, the attribute amount was 1.0 in training, and is 2.0",
+    ),
+    "attribute of a wrapper without arguments": (
+        lambda: Doubled(car()),
+        lambda: changed_layer(Doubled(car()), factor=5),
+        "of the wrapper Doubled, the attribute factor was 2 in training, and is 5",
+    ),
+    "attribute of Taxi": (
+        lambda: gym.make("Taxi-v4"),
+        lambda: changed(gym.make("Taxi-v4"), fickle_passenger=True),
+        "its attribute fickle_passenger was as the constructor leaves it in training, and is True",
     ),
     "bounds": (
         lambda: other_space(car()),
@@ -173,6 +215,8 @@ AGAIN: dict[str, Callable[[], Any]] = {
     "attribute": lambda: changed(car(), gravity=0.0015),
     "wrappers": lambda: ClipReward(RescaleObservation(changed(car(), force=0.002), np.float32(0), np.float32(1)), -2.0),
     "own wrapper": lambda: Reversed(car()),
+    "own wrapper that changes an attribute": lambda: Doubled(car()),
+    "subclass with other arguments": lambda: Tenth(car()),
     "qtab's twin": lambda: RescaleObservation(gym.make(f"qtab/{CAR}"), np.float32(0), np.float32(1)),
     "spec with wrappers": lambda: made_from_spec(RescaleObservation(car(), np.float32(0), np.float32(1))),
 }
@@ -198,6 +242,8 @@ def test_what_cannot_be_made_again_is_named() -> None:
 
     found = {
         "the arguments of its wrapper Padded are not known": Padded(car(), 1.0),
+        "the arguments of its wrapper Clipped are not known": Clipped(car(), 1.0),
+        "its wrapper NormalizeObservation keeps running statistics": NormalizeObservation(car()),
         "its wrapper TransformReward was made with the function": TransformReward(car(), lambda reward: reward),
         "<locals>.Local is not a class of an imported module": Local(car()),
         "its attribute step was the function": changed(car(), step=lambda action: None),
@@ -206,7 +252,7 @@ def test_what_cannot_be_made_again_is_named() -> None:
         with pytest.raises(ValueError, match=f"^env must be given: the environment {CAR} cannot be made") as caught:
             make_again(describe(env), gym.spec(CAR), {}, 200)
         assert reason in str(caught.value)
-    with pytest.raises(ValueError, match=r"its transition table was changed before the training$"):
+    with pytest.raises(ValueError, match=r"its constructor makes another transition table$"):
         make_again(describe(lake_with_rewards()), gym.spec(LAKE), {}, 200)
 
 

@@ -9,6 +9,7 @@ import hashlib
 import inspect
 import sys
 from collections.abc import Iterator
+from itertools import chain
 from types import (
     BuiltinFunctionType,
     ClassMethodDescriptorType,
@@ -18,6 +19,8 @@ from types import (
     WrapperDescriptorType,
 )
 from typing import Any
+
+import numpy as np
 
 LIBRARY = "library"
 """Stands for the code of Gymnasium and of this package, which their versions tell."""
@@ -112,7 +115,7 @@ def _members(cls: type) -> list[Any]:
         if functions:
             parts.append([name, [_of_function(function) for function in functions]])
         elif not name.startswith("__") and name not in stored and _is_constant(member):
-            parts.append([name, repr(member)])
+            parts.append([name, _constant(member)])
     return parts
 
 
@@ -125,6 +128,29 @@ def _stored_attributes(cls: type) -> Iterator[str]:
                     yield instruction.argval
 
 
+def state_attributes(cls: type) -> set[str]:
+    """Returns the attributes that a class assigns when it is reset, stepped, rendered or closed.
+
+    They are its state, not part of the problem. Methods that these methods call count as well.
+    """
+    assigned: set[str] = set()
+    names = ["reset", "step", "render", "close"]
+    for name in names:  # grows by the methods that are called
+        for function in chain.from_iterable(_functions(vars(base).get(name)) for base in cls.__mro__):
+            for code in _nested(function.__code__):
+                stored = {one.argval for one in dis.get_instructions(code) if one.opname == "STORE_ATTR"}
+                assigned |= stored
+                names += sorted({*code.co_names} - stored - {*names})
+    return assigned
+
+
+def _nested(code: CodeType) -> Iterator[CodeType]:
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _nested(constant)
+
+
 def _is_constant(value: Any) -> bool:
     return isinstance(value, bool | int | float | str | tuple | type(None))
 
@@ -135,7 +161,7 @@ def _of_function(function: FunctionType) -> list[Any]:
     code = function.__code__
     # Constants of the module, by their names in capitals.
     constants = {name: function.__globals__.get(name) for name in code.co_names if name.isupper()}
-    known = sorted((name, repr(value)) for name, value in constants.items() if _is_constant(value))
+    known = [(name, _constant(value)) for name, value in sorted(constants.items()) if _is_constant(value)]
     return [_of_code(code, function.__doc__), _constant(defaults), cells, known]
 
 
@@ -162,6 +188,10 @@ def _constant(value: Any) -> Any:
         return [type(value).__name__, *map(_constant, value)]
     if isinstance(value, frozenset):
         return ["frozenset", *sorted(map(repr, value))]
+    if isinstance(value, dict):
+        return ["dict", *([_constant(key), _constant(part)] for key, part in value.items())]
+    if isinstance(value, np.ndarray | np.generic) and not value.dtype.hasobject:
+        return [value.dtype.str, value.shape, value.tobytes().hex()]
     if isinstance(value, bool | int | float | complex | str | bytes | type(None)):
         return repr(value)
     return f"{type(value).__module__}:{type(value).__qualname__}"

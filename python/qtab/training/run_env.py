@@ -134,7 +134,7 @@ def _others(config: Config, env_kwargs: Any) -> bool:
 def _check_plain(description: EnvironmentDescription) -> None:
     """Checks that an environment can be made with other arguments than those of the training."""
     if description.wrappers or description.table is not None:
-        changed = "it has wrappers" if description.wrappers else "its transition table was changed"
+        changed = "it has wrappers" if description.wrappers else "its constructor makes another transition table"
         raise cannot_be_made(description, f"other env_kwargs are given, and {changed}")
 
 

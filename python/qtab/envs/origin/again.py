@@ -7,6 +7,7 @@ from typing import Any
 
 import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
+from gymnasium.wrappers import NormalizeObservation, NormalizeReward
 
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
@@ -43,7 +44,7 @@ def make_again(
             message says what differs, and asks for ``env=``.
     """
     if description.table is not None:
-        raise cannot_be_made(description, "its transition table was changed before the training")
+        raise cannot_be_made(description, "its constructor makes another transition table")
     with ExitStack() as on_error:
         env = make_env(spec, kwargs, max_episode_steps=max_episode_steps, disable_env_checker=True)
         on_error.callback(env.close)
@@ -79,7 +80,13 @@ def _wrapped(env: gym.Env, description: EnvironmentDescription) -> gym.Env:
             kwargs = {name: restored(value) for name, value in wrapper.kwargs.items()}
         except NotRestorableError as error:
             raise NotRestorableError(f"its wrapper {wrapper.name} was made with {error}") from None
-        env = _class_of(wrapper)(env, **kwargs)
+        cls = _class_of(wrapper)
+        if issubclass(cls, NormalizeObservation | NormalizeReward):
+            raise NotRestorableError(f"its wrapper {wrapper.name} keeps running statistics, which a run does not store")
+        try:
+            env = cls(env, **kwargs)
+        except TypeError as error:
+            raise NotRestorableError(f"its wrapper {wrapper.name} no longer takes its arguments: {error}") from None
     return env
 
 

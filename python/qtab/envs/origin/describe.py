@@ -22,7 +22,7 @@ from gymnasium.wrappers import (
 )
 from gymnasium.wrappers import TimeLimit as TimeLimitWrapper
 
-from qtab.envs.class_code import LIBRARY, class_code, is_of_library
+from qtab.envs.class_code import LIBRARY, class_code, is_of_library, state_attributes
 from qtab.envs.matching import layers, time_limit
 from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
 from qtab.envs.origin.spaces import space_text
@@ -36,6 +36,8 @@ _NEUTRAL = (
 """Wrappers that change neither observations nor rewards nor when an episode ends; the time limit is described apart."""
 _UNIMPORTANT = ("render_mode", "spec", "metadata")
 """Attributes of environments that change no number."""
+_BESIDE_TABLE = {"fickle_passenger": False, "fickle_probability": 0.3}
+"""What Taxi's steps read besides the table, with the defaults of its constructor."""
 _PROBE_STEPS = 50
 
 
@@ -53,9 +55,10 @@ def describe(env: gym.Env, *, is_new: bool = False, code: str | None = None) -> 
     kwargs = {} if spec is None else _without_rendering(spec.kwargs)
     attributes = _attributes(unwrapped, entry)
     table = None
-    if hasattr(unwrapped, "P") and not is_new:
+    if _has_table(unwrapped) and (not is_new or _draws_table(spec)):
         table = _changed_table(unwrapped)
-    elif not is_new and spec is not None and (entry is None or entry.has_table):
+    is_described = entry is not None and is_of_library(cls) and (_has_table(unwrapped) or not entry.has_table)
+    if not (is_new or is_described or spec is None):
         attributes |= _changed(unwrapped, attributes)
     return EnvironmentDescription(
         id=None if spec is None else spec.id,
@@ -105,36 +108,70 @@ def _counts(layer: gym.Env) -> bool:
 
 def _wrapper(layer: gym.Env) -> WrapperDescription:
     cls = type(layer)
-    kwargs = None
-    if isinstance(layer, RecordConstructorArgs):
-        given = {name: value for name, value in layer._saved_kwargs.items() if name != "env"}
-        kwargs = {name: describe_value(value) for name, value in given.items()}
-    elif len(_parameters(cls)) == 1:  # nothing but the environment
-        kwargs = {}
+    kwargs = _constructor_kwargs(layer)
     return WrapperDescription(
         cls=f"{cls.__module__}:{cls.__qualname__}",
         code=class_code(cls),
-        kwargs=kwargs,
-        attributes={**_arguments(layer), **_replaced_methods(layer)},
+        kwargs=None if kwargs is None else {name: describe_value(value) for name, value in kwargs.items()},
+        attributes={**_scalars(layer), **_arguments(layer), **_replaced_methods(layer)},
     )
+
+
+def _constructor_kwargs(layer: gym.Wrapper) -> dict[str, Any] | None:
+    """The arguments that a wrapper was made with; None where they are not known."""
+    if isinstance(layer, RecordConstructorArgs):
+        recorded = {name: value for name, value in layer._saved_kwargs.items() if name != "env"}
+        if _takes(type(layer), recorded):  # otherwise they are those of a base class
+            return recorded
+    return {} if len(_parameters(type(layer))) == 1 else None
+
+
+def _takes(cls: type, kwargs: Mapping[str, Any]) -> bool:
+    try:
+        inspect.signature(cls).bind(None, **kwargs)
+    except (TypeError, ValueError):
+        return False
+    return True
+
+
+def _scalars(layer: gym.Wrapper) -> dict[str, Any]:
+    """The numbers and texts that a wrapper holds and does not change itself."""
+    held = {
+        name: value
+        for name, value in vars(layer).items()
+        if not name.startswith("_") and name not in _UNIMPORTANT and isinstance(value, bool | int | float | str)
+    }
+    state = state_attributes(type(layer)) if held else set()
+    return {name: describe_value(value) for name, value in held.items() if name not in state}
 
 
 def _attributes(unwrapped: Any, entry: EnvEntry | None) -> dict[str, Any]:
     replaced = _replaced_methods(unwrapped)
-    if entry is not None and not entry.has_table and is_of_library(type(unwrapped)):
+    if entry is not None and is_of_library(type(unwrapped)):
+        if entry.has_table:
+            return _beside_table(unwrapped) | replaced
         from qtab._core import parameter_names
 
         known = {name: getattr(unwrapped, name, None) for name in parameter_names(entry.name)}
         return {name: describe_value(value) for name, value in known.items()} | replaced
-    return replaced if hasattr(unwrapped, "P") else _arguments(unwrapped) | replaced
+    described_apart = ("P", "initial_state_distrib") if _has_table(unwrapped) else ()
+    return {name: value for name, value in _arguments(unwrapped).items() if name not in described_apart} | replaced
+
+
+def _beside_table(unwrapped: Any) -> dict[str, Any]:
+    """What Taxi's steps read besides the table, where it is no longer what the constructor was given."""
+    given = {**_BESIDE_TABLE, **(unwrapped.spec.kwargs if unwrapped.spec is not None else {})}
+    held = {name: value for name, value in vars(unwrapped).items() if name in _BESIDE_TABLE}
+    return {name: describe_value(value) for name, value in held.items() if value != given[name]}
 
 
 def _arguments(layer: Any) -> dict[str, Any]:
-    """The attributes with the names of constructor arguments, where most classes keep these."""
+    """The attributes with the names of constructor arguments, where most classes keep these; those of the state not."""
     held = vars(layer)
-    names = _parameters(type(layer))
-    found = {name: held[key] for name in names for key in (name, f"_{name}") if key in held and name != "env"}
-    return {name: describe_value(value) for name, value in found.items() if name not in _UNIMPORTANT}
+    names = [name for name in _parameters(type(layer)) if name != "env" and name not in _UNIMPORTANT]
+    keys = {key: name for name in names for key in (name, f"_{name}") if key in held}
+    state = state_attributes(type(layer)) if keys else set()
+    return {name: describe_value(held[key]) for key, name in keys.items() if key not in state}
 
 
 def _parameters(cls: type) -> list[str]:
@@ -153,15 +190,13 @@ def _replaced_methods(layer: gym.Env) -> dict[str, Any]:
 
 def _changed(unwrapped: Any, known_already: Mapping[str, Any]) -> dict[str, Any]:
     """The attributes that differ from those of a new environment of the same id, and that stepping does not change."""
-    held = {name: value for name, value in _plain_attributes(unwrapped) if name not in known_already}
+    left_out = {*known_already, *state_attributes(type(unwrapped))}
+    held = {name: value for name, value in _plain_attributes(unwrapped) if name not in left_out}
     try:
         with _new(unwrapped) as new:
-            made = dict(_plain_attributes(new))
-            names = [
-                name
-                for name in held
-                if name in made and not same(describe_value(held[name]), describe_value(made[name]))
-            ]
+            # Described now, since steps may change an array or a list in place.
+            made = {name: describe_value(value) for name, value in _plain_attributes(new)}
+            names = [name for name in held if name in made and not same(describe_value(held[name]), made[name])]
             moving = _moving(new, made) if names else set()
     except Exception:  # what a constructor or a step of any package may raise
         return {}
@@ -180,7 +215,7 @@ def _plain_attributes(unwrapped: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _moving(env: Any, before: Mapping[str, Any]) -> set[str]:
-    """The attributes that resets and random steps change: the state, not the problem."""
+    """The attributes that resets and random steps change, such as arrays in place: the state, not the problem."""
     moving: set[str] = set()
     env.action_space.seed(0)
     for seed in (0, 1):
@@ -189,35 +224,53 @@ def _moving(env: Any, before: Mapping[str, Any]) -> set[str]:
             _, _, terminated, truncated, _ = env.step(env.action_space.sample())
             now = vars(env)
             moving |= {
-                name
-                for name, value in before.items()
-                if name not in now or not same(describe_value(now[name]), describe_value(value))
+                name for name, value in before.items() if name not in now or not same(describe_value(now[name]), value)
             }
             if terminated or truncated:
                 break
     return moving
 
 
+def _has_table(unwrapped: Any) -> bool:
+    """Returns whether an environment has a transition table as Gymnasium's have, and not another attribute ``P``."""
+    try:
+        return len(unwrapped.P[0][0][0]) == 4
+    except (AttributeError, LookupError, TypeError):
+        return False
+
+
+def _draws_table(spec: EnvSpec | None) -> bool:
+    """Whether the constructor draws a table: FrozenLake's does so where it is given neither a map nor its name."""
+    kwargs: Mapping[str, Any] = {} if spec is None else spec.kwargs
+    return "map_name" in kwargs and kwargs["map_name"] is None and kwargs.get("desc") is None
+
+
 def _changed_table(unwrapped: Any) -> str | None:
     """A digest of a transition table; None where it is that of a new environment of the same id."""
     table = _table_digest(unwrapped)
     if unwrapped.spec is not None:
-        with _new(unwrapped) as new:
-            if _table_digest(new) == table:
-                return None
+        try:
+            with _new(unwrapped) as new:
+                if _table_digest(new) == table:
+                    return None
+        except Exception:  # what a constructor of any package may raise
+            return table
     return table
 
 
-def _table_digest(unwrapped: Any) -> str:
-    """A digest of the transitions and of the first states, by their numbers."""
+def _table_digest(unwrapped: Any) -> str | None:
+    """A digest of the transitions and of the first states, by their numbers; None where these are not all numbers."""
     states = _items(unwrapped.P)
     pairs = [(state, action, len(outcomes), outcomes) for state, row in states for action, outcomes in _items(row)]
     first = getattr(unwrapped, "initial_state_distrib", ())
     transitions = chain.from_iterable(chain.from_iterable(outcomes for *_, outcomes in pairs))
     numbers = [chain.from_iterable(pair[:3] for pair in pairs), transitions, first]
     digest = hashlib.sha256()
-    for part in numbers:
-        digest.update(np.fromiter(part, np.float64).tobytes() + b";")
+    try:
+        for part in numbers:
+            digest.update(np.fromiter(part, np.float64).tobytes() + b";")
+    except (TypeError, ValueError):
+        return None
     return digest.hexdigest()[:32]
 
 

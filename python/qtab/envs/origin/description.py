@@ -14,9 +14,10 @@ class WrapperDescription:
     code: str | None
     """A digest of the code of its class; None where that is not known."""
     kwargs: Mapping[str, Any] | None
-    """The arguments that it was made with; None where the wrapper does not record them."""
+    """The arguments that it was made with; None where they are not known."""
     attributes: Mapping[str, Any]
-    """The attributes with the names of constructor arguments, and methods replaced on the object."""
+    """The attributes that it does not change itself: numbers, texts, those with the names of constructor arguments, and
+    methods replaced on the object."""
 
     @property
     def name(self) -> str:
