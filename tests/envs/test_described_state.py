@@ -1,6 +1,7 @@
 """What an environment changes by itself is its state: its description leaves it out, and keeps everything else."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -11,6 +12,7 @@ import qtab
 from qtab.config.origin import trained_on
 from qtab.envs.class_code import class_code
 from qtab.envs.origin import describe, differences
+from qtab.envs.origin.values import describe_value, with_types
 
 LAKE = "FrozenLake-v1"
 
@@ -134,3 +136,24 @@ def test_functions_that_close_over_other_values_differ(values: tuple[Any, Any]) 
     one, other = map(described, values)
     assert differences(one, described(values[0])) == []
     assert "the argument func was the function" in differences(one, other)[0]
+
+
+@pytest.mark.parametrize("by_id", [False, True])
+def test_a_run_file_keeps_the_types_of_arguments(tmp_path: Path, by_id: bool) -> None:
+    kwargs = {"reward_schedule": (1, -1, 0)}
+    env = LAKE if by_id else gym.make(LAKE, **kwargs)  # type: ignore[arg-type]
+    run = qtab.train(env, env_kwargs=kwargs if by_id else None, episodes=3, seed=0)
+    path = tmp_path / "run.npz"
+    run.save(path)
+    loaded = qtab.load(path)
+    assert loaded.config == run.config
+    assert loaded.config.env_kwargs["reward_schedule"] == (1, -1, 0)
+    assert qtab.evaluate(loaded, episodes=2, seed=1).mean_return == qtab.evaluate(run, episodes=2, seed=1).mean_return
+    assert qtab.train(config=loaded.config).q_table.tobytes() == run.q_table.tobytes()
+    assert qtab.resume(loaded, env=gym.make(LAKE, **kwargs), episodes=4)  # type: ignore[arg-type]
+
+
+def test_arguments_with_which_a_description_disagrees_stay() -> None:
+    described = {"same": describe_value((1, 2)), "other": describe_value((1, 3)), "unknown": describe_value(object())}
+    stored = {"same": [1, 2], "other": [1, 2], "unknown": 3, "not described": [1]}
+    assert with_types(stored, described) == {**stored, "same": (1, 2)}

@@ -19,6 +19,7 @@ from qtab.config.options import defaults
 from qtab.config.origin import Origin, copied, trained_on
 from qtab.config.stored import corrected_settings, implied_settings
 from qtab.envs.origin.description import from_json
+from qtab.envs.origin.values import with_types
 from qtab.envs.stored import stored_id
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent
@@ -187,7 +188,10 @@ def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Call
         fields["initial_q"] = stored["initial_q"]
     fields["env"] = stored_id(fields["env"])
     config = Config(**fields)
-    config = copied(replace_checked(config, **implied_settings(config)), _origin(header))
+    origin, implied = _origin(header), implied_settings(config)
+    if origin is not None and origin.environment is not None:
+        implied["env_kwargs"] = with_types(config.env_kwargs, origin.environment.kwargs)
+    config = copied(replace_checked(config, **implied), origin)
     if config.seed is None or config.max_episode_steps is None or defaults(vars(config)):
         raise ValueError("its config is not that of a run")
     return config

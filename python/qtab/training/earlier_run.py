@@ -86,7 +86,8 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
         _check_settings(run, resolved.config, _OF_ENV)
         _check_env(run, resolved)
     origin = config.origin or resolved.config.origin
-    resolved = replace(resolved, config=copied(resolved.config, origin))
+    same = replace_checked(resolved.config, env_kwargs=config.env_kwargs)
+    resolved = replace(resolved, config=copied(same, origin))
     return replace(continued(resolved, run), extensions=extensions(run, config))
 
 
@@ -161,8 +162,13 @@ def _check_env(run: Run, resolved: ResolvedRun) -> None:
 
 def _check_settings(run: Run, config: Config, names: Iterable[str]) -> None:
     """Checks that a config has those settings of the run that are named."""
+    spec = gym.registry.get(_bare(run.config.env))
+    registered = {} if spec is None else spec.kwargs
     for name in names:
         wanted = getattr(config, name)
+        # An environment object brings along all arguments, those that its id is registered with included.
+        if name == "env_kwargs" and {**registered, **run.config.env_kwargs} == {**registered, **wanted}:
+            continue
         if replace_checked(run.config, **{name: wanted}) != run.config:
             raise _differs(name, getattr(run.config, name), wanted)
 

@@ -1,6 +1,7 @@
 """Values of arguments and attributes as JSON holds them: exact where that is possible, else a digest to compare."""
 
 import hashlib
+import json
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -82,6 +83,20 @@ def restored(content: Any) -> Any:
         case {"is": "dict", "items": dict(items)}:
             return {name: restored(item) for name, item in items.items()}
     raise NotRestorableError(in_words(content))
+
+
+def with_types(stored: Mapping[str, Any], described: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns arguments from JSON with the types that they had, such as tuples, where their descriptions agree."""
+    return {name: _with_type(value, described.get(name)) for name, value in stored.items()}
+
+
+def _with_type(value: Any, content: Any) -> Any:
+    try:
+        found = restored(content)
+        agrees = json.loads(json.dumps(found)) == value
+    except (TypeError, ValueError):
+        return value
+    return found if agrees else value
 
 
 def _array(dtype: str, shape: list[Any], data: str) -> Any:
