@@ -42,8 +42,8 @@ impl<T: RngSnapshot> EpisodeRecorder<T> {
 
     fn record(&mut self, action: usize) -> Result<(), AllocationError> {
         let Some(recording) = &mut self.current else { return Ok(()) };
-        self.room.take(self.action_bytes, Growing::Recordings)?;
         reserve(&mut recording.actions, 1)?;
+        self.room.take(self.action_bytes, Growing::Recordings)?;
         recording.actions.push(action as u32);
         Ok(())
     }
@@ -54,11 +54,17 @@ impl<T: RngSnapshot> EpisodeRecorder<T> {
             finished.try_reserve(1).map_err(out_of_memory::<Recording<T::Snapshot>>(1))?;
             finished.push_back(recording);
             while finished.len() > self.capacity {
-                let actions = finished.pop_front().map_or(0, |oldest| oldest.actions.len() as u64);
-                self.room.give_back(actions * self.action_bytes);
+                let oldest = finished.pop_front();
+                self.give_back(oldest.as_ref());
             }
         }
         Ok(())
+    }
+
+    /// Gives back the bytes of a recording that is discarded.
+    fn give_back(&self, recording: Option<&Recording<T::Snapshot>>) {
+        let actions = recording.map_or(0, |recording| recording.actions.len() as u64);
+        self.room.give_back(actions * self.action_bytes);
     }
 }
 
@@ -69,7 +75,9 @@ impl<T: RngSnapshot> Task for EpisodeRecorder<T> {
 
     fn reset(&mut self) -> Result<(T::State, T::Active), Self::Error> {
         let snapshot = self.task.rng_snapshot().map_err(TrainingError::Task)?;
-        self.current = Some(Recording { snapshot, actions: Vec::new() });
+        // An episode that failed leaves its recording behind.
+        let abandoned = self.current.replace(Recording { snapshot, actions: Vec::new() });
+        self.give_back(abandoned.as_ref());
         self.task.reset().map_err(TrainingError::Task)
     }
 
@@ -106,8 +114,69 @@ impl<T: RngSnapshot> Task for EpisodeRecorder<T> {
         checkpoint: &mut Checkpoint<'_>,
     ) -> Result<(), CheckpointError> {
         if checkpoint.is_restoring() {
-            self.current = None;
+            let discarded = self.current.take();
+            self.give_back(discarded.as_ref());
         }
         self.task.persist(state, checkpoint)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two steps to the end of an episode; the step with this number fails.
+    struct FailingTask {
+        steps: u64,
+        failing: u64,
+    }
+
+    impl RngSnapshot for FailingTask {
+        type Snapshot = ();
+
+        fn rng_snapshot(&self) -> Result<(), ()> {
+            Ok(())
+        }
+    }
+
+    impl Task for FailingTask {
+        type State = u64;
+        type Active = [u32; 1];
+        type Error = ();
+
+        fn reset(&mut self) -> Result<(u64, [u32; 1]), ()> {
+            Ok((0, [0]))
+        }
+
+        fn step(&mut self, state: &mut u64, _action: usize) -> Result<Transition<[u32; 1]>, ()> {
+            self.steps += 1;
+            *state += 1;
+            let next = if *state == 2 { Next::Terminal } else { Next::NonTerminal([0]) };
+            if self.steps == self.failing { Err(()) } else { Ok(Transition { reward: 0.0, next }) }
+        }
+
+        fn active_rows(&self, _state: &u64) -> Result<[u32; 1], ()> {
+            Ok([0])
+        }
+
+        fn persist(&mut self, _: Option<&mut u64>, _: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn the_room_of_discarded_recordings_is_given_back() {
+        let room = MemoryRoom::new(1000, 1000);
+        let (mut recorder, recordings) =
+            EpisodeRecorder::new(FailingTask { steps: 0, failing: 4 }, 1, (room.clone(), 10));
+        let mut left = Vec::new();
+        for _ in 0..4 {
+            let (mut state, _) = recorder.reset().expect("a reset never fails");
+            while state < 2 && recorder.step(&mut state, 0).is_ok() {}
+            left.push(room.left());
+        }
+        // The second episode fails after one step; its action is given back when the third begins.
+        assert_eq!(left, [980, 970, 980, 980]);
+        assert_eq!(recordings.lock().unwrap_or_else(PoisonError::into_inner).len(), 1);
     }
 }
