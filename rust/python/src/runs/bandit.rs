@@ -51,12 +51,13 @@ pub(crate) fn testbed_runs(testbed: Testbed, spec: &Arc<RunSpec>) -> Box<dyn Run
     Box::new(Factory { build, batching: Batching::one_by_one() })
 }
 
-/// The spec, if [`compiled_run`] has the runs that it describes.
+/// The spec, if [`compiled_run`] supports it.
 fn compiled(spec: &RunSpec) -> Option<PlainSpec> {
     let RunPath::Plain(plain) = RunPath::of(spec) else { return None };
-    let is_compiled = match (plain.algorithm, plain.policy) {
-        (AnyAlgorithm::QLearning, PolicySpec::EpsilonGreedy { .. }) | (AnyAlgorithm::GradientBandit { .. }, _) => true,
-        (AnyAlgorithm::QLearning, PolicySpec::Ucb { confidence, .. }) => confidence >= 0.0,
+    let is_compiled = match (plain.algorithm, plain.policy, plain.learning_rate) {
+        (AnyAlgorithm::QLearning, PolicySpec::EpsilonGreedy { .. }, _)
+        | (AnyAlgorithm::GradientBandit { .. }, PolicySpec::Softmax { .. }, LearningRateSpec::Schedule(_)) => true,
+        (AnyAlgorithm::QLearning, PolicySpec::Ucb { confidence, .. }, _) => confidence >= 0.0,
         _ => false,
     };
     (is_compiled && !plain.initial_q.has_masked_actions() && !plain.count_visits).then_some(plain)
@@ -144,7 +145,7 @@ where
     let PlainSpec {
         discount,
         terminal_update,
-        // The arguments are made of these.
+        // The arguments were built from these.
         num_actions: _,
         algorithm: _,
         policy: _,
