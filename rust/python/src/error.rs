@@ -62,8 +62,8 @@ impl From<RunError> for PyErr {
             RunError::Allocation(AllocationError::OutOfMemory { bytes }) => out_of_memory(bytes),
             RunError::Allocation(AllocationError::LimitReached { limit, growing }) => limit_reached(limit, growing),
             RunError::Allocation(AllocationError::TooManyEntries) => PyMemoryError::new_err(
-                "this algorithm numbers state-action pairs in 32 bits and the outcomes of its model in 31 bits, and there \
-                 are more of them; a table of fewer cells or a shorter run has fewer",
+                "this algorithm can number fewer than 2**32 state-action pairs and fewer than 2**31 outcomes of its model, \
+                 and this run needs more; use a table with fewer cells, or train for fewer episodes",
             ),
             RunError::Diverged { episode } => PyOverflowError::new_err(format!(
                 "the action values overflowed in episode {episode} (counted from 0): the updates grow instead of \

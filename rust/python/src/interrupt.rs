@@ -86,8 +86,8 @@ pub(crate) fn run_polling<T>(work: impl FnOnce(&StopFlag<'_>) -> T) -> PyResult<
     run_polling_when(|| true, work)
 }
 
-/// Runs `work` on this thread, while other Python threads run. The flag asks for signals now and then: each time it may wait
-/// for those threads.
+/// Runs `work` on this thread, while other Python threads run. The flag asks for signals at most once per [`POLL`], since it
+/// must wait for those threads each time.
 pub(crate) fn run_detached<T: Send>(py: Python<'_>, work: impl FnOnce(&StopFlag<'_>) -> T + Send) -> PyResult<T> {
     let asked = Mutex::new(Instant::now());
     let is_due = || {
@@ -101,7 +101,7 @@ pub(crate) fn run_detached<T: Send>(py: Python<'_>, work: impl FnOnce(&StopFlag<
     py.detach(|| run_polling_when(is_due, work))
 }
 
-/// The same on this thread as it is. The flag asks for signals when `is_due` returns true.
+/// Runs `work` on this thread. When `work` looks at the flag and `is_due` returns true, the flag asks for signals.
 fn run_polling_when<T>(is_due: impl Fn() -> bool + Sync, work: impl FnOnce(&StopFlag<'_>) -> T) -> PyResult<T> {
     let raised = Mutex::new(None);
     let poll = || {

@@ -93,8 +93,8 @@ impl<'a> Checkpoint<'a> {
         Ok(())
     }
 
-    /// Refuses values that were read and cannot be right: `what` is wrong with them. What a run saves is never refused,
-    /// since nothing but memory may keep a run from being saved.
+    /// Refuses values that were restored and are not valid; `what` names them. While saving, it refuses nothing: only a
+    /// lack of memory may prevent a run from being saved.
     ///
     /// # Errors
     /// [`CheckpointError::Invalid`] with `what`.

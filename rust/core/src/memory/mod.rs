@@ -29,7 +29,7 @@ pub enum AllocationError {
         /// What would take more.
         growing: Growing,
     },
-    /// More values than can be numbered in the bits that there are for it.
+    /// There are more values than their indices can number.
     TooManyEntries,
 }
 
@@ -39,7 +39,7 @@ impl fmt::Display for AllocationError {
             Self::OutOfMemory { bytes } => write!(formatter, "{bytes} bytes more could not be allocated"),
             Self::Stopped => write!(formatter, "the allocation was stopped"),
             Self::LimitReached { limit, .. } => write!(formatter, "the limit of {limit} bytes is reached"),
-            Self::TooManyEntries => write!(formatter, "there are more values than can be numbered"),
+            Self::TooManyEntries => write!(formatter, "there are more values than their indices can number"),
         }
     }
 }
@@ -59,7 +59,7 @@ pub fn reserve<T>(values: &mut Vec<T>, additional: usize) -> Result<(), Allocati
     values.try_reserve(additional).map_err(out_of_memory::<T>(additional))
 }
 
-/// Checks that so many values can be numbered in 32 bits, the last number being left for a mark.
+/// Checks that 32-bit indices can number so many values and leave the largest index free as a mark.
 ///
 /// # Errors
 /// `TooManyEntries`.

@@ -1,4 +1,4 @@
-//! How much memory runs may take for what grows while they train.
+//! A limit on the memory that grows while runs train.
 
 use std::collections::{HashMap, TryReserveError, VecDeque};
 use std::hash::{BuildHasher, Hash};
@@ -16,7 +16,7 @@ pub enum Growing {
     Learner,
 }
 
-/// The bytes that the runs of a call may still take for what grows while they train. Its clones share them.
+/// The bytes that the runs of a call may still take for what grows while they train. All clones take from the same bytes.
 #[derive(Clone, Debug)]
 pub struct MemoryRoom {
     limit: u64,
@@ -29,7 +29,7 @@ impl MemoryRoom {
         Self { limit, left: Arc::new(AtomicU64::new(left)) }
     }
 
-    /// As much as there is.
+    /// Without a limit.
     pub fn unlimited() -> Self {
         Self::new(u64::MAX, u64::MAX)
     }
@@ -62,13 +62,13 @@ pub struct RunMemory {
 }
 
 impl RunMemory {
-    /// Nothing of this room yet.
+    /// A run that has taken nothing from `room` yet.
     pub fn new(room: MemoryRoom) -> Self {
         Self { room, taken: 0 }
     }
 
-    /// Makes room for `additional` more values: for twice as many as before where half of the room stays for the other
-    /// runs, so that the values are seldom moved.
+    /// Makes room for `additional` more values. The capacity doubles, so that values are rarely moved, unless that would
+    /// take more than half of what is left to all runs.
     ///
     /// # Errors
     /// `LimitReached`, `OutOfMemory`.
@@ -98,7 +98,7 @@ impl Drop for RunMemory {
     }
 }
 
-/// A copy shares the room and has taken nothing of it.
+/// A copy shares the room and has taken nothing from it.
 impl Clone for RunMemory {
     fn clone(&self) -> Self {
         Self::new(self.room.clone())
@@ -160,7 +160,7 @@ impl<K: Eq + Hash, V, S: BuildHasher> Growable for HashMap<K, V, S> {
         Self::capacity(self)
     }
 
-    /// Up to half of the places are empty, and each has a byte more.
+    /// Up to half of the slots are empty, and each has a byte of metadata.
     fn value_bytes(&self) -> u64 {
         2 * (size_of::<(K, V)>() as u64 + 1)
     }

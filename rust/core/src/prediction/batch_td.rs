@@ -6,8 +6,8 @@ use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
 use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
-/// The values have settled when a presentation changes none by more than this fraction of the largest terms that its errors
-/// have been the sum of since the last episode. Large values of other rows do not matter.
+/// A value has settled when the sum of its errors in a presentation is at most this fraction of the largest sum of the
+/// magnitudes of their terms since the last episode. Each row has such a sum, so large values of other rows do not matter.
 const SETTLED: f64 = 1e-12;
 /// How many transitions are read in one call. A step that needs more is left unfinished.
 const MAX_TRANSITIONS_PER_CALL: u64 = 65_536;

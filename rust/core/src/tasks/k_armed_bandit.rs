@@ -23,8 +23,8 @@ pub struct Testbed {
     pub random_walk: f64,
 }
 
-/// Whether the optimal action was taken in each episode; false for those that are not finished. The task writes it, and
-/// whoever asked for it reads it.
+/// Whether the optimal action was taken in each episode; false for unfinished episodes. The task that writes it shares it with
+/// its reader.
 pub type OptimalActions = Arc<Vec<AtomicBool>>;
 
 /// A bandit problem, drawn by the first reset: q⁎(a) is normal, and a reward is normal with mean q⁎(A) and variance 1. An

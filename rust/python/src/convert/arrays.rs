@@ -57,7 +57,7 @@ pub(crate) fn in_c_order<T: numpy::Element + Copy, D: Dimension>(
     collect(array.as_array().iter().copied()).map(Arc::from).map_err(allocation)
 }
 
-/// A new array of a few numbers. Where there is no memory for it, there is none for the interpreter either.
+/// A new array of a few numbers. It panics if memory runs out, but then the interpreter could not continue either.
 #[inline]
 #[expect(clippy::disallowed_methods, reason = "a few numbers")]
 pub(crate) fn small_array<'py, T: numpy::Element + Copy, const N: usize>(
@@ -67,8 +67,8 @@ pub(crate) fn small_array<'py, T: numpy::Element + Copy, const N: usize>(
     PyArray1::from_slice(py, values)
 }
 
-/// An array of up to this many bytes is made by `NumPy`, in a fraction of the time: where there is no memory for it, there is
-/// none for the interpreter either.
+/// Up to this many bytes `NumPy` allocates the array, which is several times faster. That panics if memory runs out, but then
+/// the interpreter could not continue either.
 const SMALL: usize = 1 << 14;
 
 /// A new array that is a copy of these values. `PyArray1::from_slice` would panic where memory runs out.
@@ -84,7 +84,7 @@ pub(crate) fn array_from<'py, T: numpy::Element + Copy>(
     array_of(py, values.iter().copied())
 }
 
-/// The same of rows: an array of shape `(rows.len(), N)`.
+/// A new array of shape `(rows.len(), N)` that is a copy of these rows.
 #[inline]
 #[expect(clippy::disallowed_methods, reason = "a small array")]
 pub(crate) fn rows_array<'py, T: numpy::Element + Copy, const N: usize>(

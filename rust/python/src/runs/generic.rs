@@ -19,7 +19,7 @@ use crate::error::{RunError, allocation, invalid};
 use crate::rng::environment_rng;
 use crate::spec::{DiscretizerSpec, RunSpec, TilesSpec};
 
-/// What a recorded action takes: here, in the list that Python reads, and in Python's recording.
+/// How many bytes a recorded action takes: here, in the list that Python reads, and in Python's recording.
 const RECORDED_ACTION_BYTES: u64 = 4 + 8 + 8;
 
 /// Runs in an environment whose observations are `M` float32 numbers, with any discretizer of a Box.

@@ -1,4 +1,4 @@
-//! Which path a run takes: one that is compiled for its types, or the generic one, which honours everything.
+//! Which path a run takes: one that is compiled for its types, or the generic one, which supports every setting.
 
 use std::sync::Arc;
 
@@ -11,20 +11,20 @@ use crate::spec::{ActionMasksSpec, InitialQSpec, LearningRateSpec, PolicySpec, R
 
 /// The paths that a run may take.
 pub(super) enum RunPath {
-    /// A learner that asks for nothing beyond a [`PlainSpec`]. Code that is compiled for its types may take it over.
+    /// A learner that needs no settings beyond a [`PlainSpec`]: code that is compiled for its types may run it.
     Plain(PlainSpec),
-    /// The values of a policy over numbered states, with the common generator, which bootstraps at the time limit.
+    /// The values of a policy over numbered states, with the default generator and bootstrapping at the time limit.
     PlainPrediction(Arc<PredictionSpec>),
     /// The values of a policy that reads the observations of a Box.
     ObservedPrediction(Arc<PredictionSpec>),
-    /// Anything else, in the environment's task as it is.
+    /// Any other run, in a task without wrappers.
     Generic,
-    /// Anything else, in a task with wrappers, which record it, count visits or add the steps taken to its state.
+    /// Any other run, in a task with wrappers, which record episodes, count visits or add the steps taken to the state.
     GenericWithWrappers,
 }
 
-/// All that a run compiled for its types may be asked for. It is built from this alone, and whoever builds it names every
-/// field.
+/// The settings that runs compiled for their types support. Such runs are built from these alone, by code that names every
+/// field, so that no setting is ignored.
 #[derive(Clone)]
 pub(super) struct PlainSpec {
     pub(super) num_actions: usize,
@@ -44,7 +44,7 @@ impl RunPath {
     /// The path of a run. The pattern names every field of the spec, so that none is added without a decision here.
     pub(super) fn of(spec: &RunSpec) -> Self {
         let RunSpec {
-            discretizer: _, // The environment makes the features of it, which all paths have.
+            discretizer: _, // The environment builds the features from it for all paths.
             num_actions,
             max_episode_steps,
             time_aware,
@@ -64,12 +64,12 @@ impl RunPath {
             count_visits,
             prediction,
         } = spec;
-        let is_common = *bit_generator == BitGenerator::Pcg64;
+        let has_default_generator = *bit_generator == BitGenerator::Pcg64;
         if let Some(prediction) = prediction {
-            // `RunSpec::predicting` has refused all that only a learner of actions has.
+            // `RunSpec::predicting` has refused the settings that only control has.
             return if prediction.reads_observations() {
                 Self::ObservedPrediction(Arc::clone(prediction))
-            } else if is_common && !terminate_on_truncation {
+            } else if has_default_generator && !terminate_on_truncation {
                 Self::PlainPrediction(Arc::clone(prediction))
             } else {
                 Self::Generic
@@ -78,7 +78,7 @@ impl RunPath {
         if *record > 0 || *time_aware {
             return Self::GenericWithWrappers;
         }
-        if is_common && *count_bonus == 0.0 && matches!(action_masks, ActionMasksSpec::None) {
+        if has_default_generator && *count_bonus == 0.0 && matches!(action_masks, ActionMasksSpec::None) {
             return Self::Plain(PlainSpec {
                 num_actions: *num_actions,
                 max_episode_steps: *max_episode_steps,

@@ -185,7 +185,7 @@ where
             count_visits,
             // `fits` leaves out the runs that do not bootstrap.
             terminate_on_truncation: _,
-            // The arguments and `N` are made of these.
+            // The arguments and `N` were built from these.
             num_actions: _,
             algorithm: _,
             policy: _,

@@ -63,11 +63,11 @@ impl RunSpec {
     /// The same task, in which the values of a policy are estimated.
     ///
     /// # Errors
-    /// `ValueError` for what only a learner of actions has.
+    /// `ValueError` for settings that only control has.
     pub(crate) fn predicting(self, prediction: PredictionSpec) -> PyResult<Self> {
         // Every field is named, so that none is added without a decision here.
         let Self {
-            // The task, and what runs that estimate values honour as well.
+            // The task, and the settings that prediction supports as well.
             discretizer: _,
             num_actions: _,
             max_episode_steps: _,
@@ -81,7 +81,7 @@ impl RunSpec {
             policy: _,
             initial_q: _,
             prediction: _,
-            // What they do not honour.
+            // The settings that prediction does not support.
             time_aware,
             count_bonus,
             action_masks,
@@ -99,7 +99,7 @@ impl RunSpec {
             ("visits", *count_visits),
         ];
         match refused.iter().find(|(_, is_given)| *is_given) {
-            Some((name, _)) => Err(invalid(name, "left out where values are estimated", "one")),
+            Some((name, _)) => Err(invalid(name, "left at its default to estimate values", "another value")),
             None => Ok(Self { prediction: Some(Arc::new(prediction)), ..self }),
         }
     }

@@ -24,7 +24,8 @@ type FailedRun = (usize, PyErr);
 /// Trains one run for each seed, in an environment that Rust steps, on `threads` threads, and writes the runs into
 /// `results`. Returns the runs that failed; unless `keep_going` is set, the first failure ends all runs.
 ///
-/// The learners of all runs share `memory`. A run starts when a thread is free for it, so that few more tables are alive than threads are at work.
+/// The learners of all runs share `memory`. A run starts when a thread is free for it, so that few more tables are alive
+/// than threads are at work.
 #[pyfunction]
 #[pyo3(signature = (spec, seeds, results, threads, keep_going, memory = None))]
 pub(crate) fn train_many(

@@ -17,8 +17,8 @@ const SETUP: Setup = Setup { steps: 0, seed: 7, mt19937: false, visits: false, d
 /// A time limit whose episodes take several calls to be learned from.
 const LONG: u64 = 9000;
 
-/// A run with rows of their own for each step, of an environment that never ends, is saved when the time limit is reached and
-/// the learner has not learned from all of the episode.
+/// Saves a run at its time limit, while the learner is still learning from the episode. Each step has separate rows, and the
+/// environment never ends an episode.
 fn check_at_the_limit<L: Learner<[u32; 1]>>(learner: impl Fn(usize) -> L) {
     let grid = Rounding::new([Axis::new(-1.2_f32, 0.6, 1.0), Axis::new(-0.07_f32, 0.07, 10.0)]);
     let (rows, seed) = (Features::<[f32; 2]>::len(&grid), SeedSequence::new(&[7]));
@@ -113,7 +113,7 @@ fn failing(steps: u64, resumes: bool) -> Trainer<Failing, TdLearner<QLearning>, 
 }
 
 #[test]
-fn a_checkpoint_says_whether_an_episode_was_lost() {
+fn a_checkpoint_reports_whether_an_episode_was_lost() {
     let budget = |work| Budget { episodes: 9, work };
     for (resumes, work, expected) in [
         (true, 4, EpisodeProgress::Within),

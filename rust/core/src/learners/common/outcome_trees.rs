@@ -113,8 +113,7 @@ impl OutcomeTrees {
         if root.leaves == 0 { 0 } else { self.count_of(root.node) }
     }
 
-    /// The outcome at which the counts before it and its own add up to more than `left`, the first one; `None` if all of
-    /// them do not.
+    /// The first outcome whose count and those before it add up to more than `left`; `None` if all counts together do not.
     #[inline]
     pub(super) fn at(&self, root: Root, mut left: u32) -> Option<ModelEntry> {
         if left >= self.total(root) {
@@ -186,7 +185,8 @@ impl OutcomeTrees {
         node
     }
 
-    /// Adds a leaf at the end of a tree: beside the last perfect tree in it, under a new inner node in that one's place.
+    /// Adds a leaf at the end of a tree. A new inner node, whose children are the last perfect subtree and the leaf, takes the
+    /// place of that subtree.
     fn append(&mut self, root: &mut Root, hash: u32, entry: ModelEntry) -> u32 {
         let leaf = self.leaves.len() as u32;
         self.leaves.push(Leaf { entry, count: 0, parent: NONE, hash, after: NONE });
