@@ -142,7 +142,7 @@ def test_functions_that_close_over_other_values_differ(values: tuple[Any, Any]) 
 def test_a_run_file_keeps_the_types_of_arguments(tmp_path: Path, by_id: bool) -> None:
     kwargs = {"reward_schedule": (1, -1, 0)}
     env = LAKE if by_id else gym.make(LAKE, **kwargs)  # type: ignore[arg-type]
-    run = qtab.train(env, env_kwargs=kwargs if by_id else None, episodes=3, seed=0)
+    run = qtab.train(env, env_kwargs=kwargs if by_id else {}, episodes=3, seed=0)
     path = tmp_path / "run.npz"
     run.save(path)
     loaded = qtab.load(path)

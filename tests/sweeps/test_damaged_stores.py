@@ -155,7 +155,7 @@ def test_results_of_an_earlier_version_are_said_to_be_unchecked(
     others = [text for text in caplog.messages if text not in unchecked]
     assert len(unchecked) == 3
     assert len(others) == 1
-    assert "says of its environment only the id and the arguments" in others[0]
+    assert "stores only the id and the arguments of its environment" in others[0]
     execute(path, "UPDATE runs SET steps = steps + 1 WHERE run = 3")
     with pytest.raises(qtab.StoreError, match="its runs 0 to 11 differ from their digest"):
         qtab.load_sweep(path)

@@ -109,7 +109,7 @@ def test_a_store_of_an_earlier_version_loads_and_says_what_it_does_not_know(
         connection.execute("UPDATE meta SET value = ? WHERE name = 'digest'", (to_text(changed),))
     again = swept(tmp_path / "a", by_id)
     assert again.columns["final_return"].tolist() == first.columns["final_return"].tolist()
-    assert "says of its environment only the id and the arguments" in caplog.text
+    assert "stores only the id and the arguments of its environment" in caplog.text
 
 
 def test_a_store_says_that_its_results_come_from_other_versions(

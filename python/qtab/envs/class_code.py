@@ -1,4 +1,4 @@
-"""Digests of the code of classes and functions, and whether that of a library is still its own.
+"""Digests of the code of classes and functions, and whether the code of a library was replaced.
 
 They are digests of byte code, not of source: byte code is there without a file, it is the code that runs even if the
 file was edited since, and comments and formatting do not change it. Another version of Python has another one.

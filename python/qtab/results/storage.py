@@ -198,7 +198,7 @@ def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Call
 
 
 def _origin(header: Mapping[str, Any]) -> Origin | None:
-    """What a file says about its environment; None for files of earlier versions, which say nothing."""
+    """The origin that a file stores; None for files of earlier versions."""
     if "origin" not in header:
         return None
     content = header["origin"]
@@ -209,11 +209,11 @@ def _origin(header: Mapping[str, Any]) -> Origin | None:
 
 
 def log_unknown_origin(path: Path, config: Config) -> None:
-    """Logs that a file does not say what was trained on, besides the id and its arguments."""
+    """Logs that a file stores only the id and the arguments of its environment."""
     if trained_on(config) is None:
         _LOGGER.warning(
-            "%r says of its environment only the id and the arguments, as files of earlier versions: wrappers, changed "
-            "attributes and bounds of spaces are not compared",
+            "%r stores only the id and the arguments of its environment, like all files of earlier versions: wrappers, "
+            "changed attributes and bounds of spaces are not compared",
             str(path),
         )
 

@@ -39,7 +39,7 @@ def describe_environments(env: Any, resolved: Sequence[ResolvedRun]) -> str:
 
 
 def check_environments(stored: str | None, ours: str, path: Path | None) -> None:
-    """Checks that the environments of a study are those of its store; an earlier version's store does not say.
+    """Checks that the environments of a study are those of its store; stores of earlier versions hold none.
 
     Raises:
         StoreError: if one is another, or does something else now.

@@ -107,10 +107,11 @@ def known_versions(meta: Mapping[str, str]) -> list[Any]:
 
 
 def warn_unknown(contents: Contents, path: Path | None) -> None:
-    """Logs what a store does not say, and that its results come from other versions than these."""
+    """Logs which information a store lacks, and that its results come from other versions than these."""
     if "environments" not in contents.meta:
         _LOGGER.warning(
-            "%s says of its environment only the id and the arguments, as earlier versions did: it is not compared",
+            "%s stores only the id and the arguments of its environment, like all stores of earlier versions: the "
+            "rest of it is not compared",
             name_of(path),
         )
     here = versions()

@@ -17,7 +17,7 @@ from qtab.envs.registry import make_env
 
 
 def needs_object(description: EnvironmentDescription, spec: EnvSpec) -> bool:
-    """Returns whether the id and its arguments are known not to be enough to make an environment again.
+    """Returns whether an id and its arguments certainly cannot make an environment again.
 
     Args:
         description: The description.

@@ -117,7 +117,7 @@ def _wrapper(layer: gym.Env) -> WrapperDescription:
     )
 
 
-def _constructor_kwargs(layer: gym.Wrapper) -> dict[str, Any] | None:
+def _constructor_kwargs(layer: Any) -> dict[str, Any] | None:
     """The arguments that a wrapper was made with; None where they are not known."""
     if isinstance(layer, RecordConstructorArgs):
         recorded = {name: value for name, value in layer._saved_kwargs.items() if name != "env"}
@@ -134,7 +134,7 @@ def _takes(cls: type, kwargs: Mapping[str, Any]) -> bool:
     return True
 
 
-def _scalars(layer: gym.Wrapper) -> dict[str, Any]:
+def _scalars(layer: Any) -> dict[str, Any]:
     """The numbers and texts that a wrapper holds and does not change itself."""
     held = {
         name: value

@@ -53,7 +53,7 @@ def _all(ours: EnvironmentDescription, theirs: EnvironmentDescription) -> Iterat
         if _class_name(ours) != _class_name(theirs):
             yield f"the run was trained on the class {ours.cls}, not on {theirs.cls}"
         elif LIBRARY in (ours.code, theirs.code):
-            yield f"methods of its class {_class_name(ours)} were replaced {_when(ours)} the training"
+            yield f"methods of its class {_class_name(ours)} were replaced {_when(ours)}"
     yield from _values("its argument", ours.kwargs, theirs.kwargs, "not given")
     yield from _values("its attribute", ours.attributes, theirs.attributes, _NOT_SET)
     if ours.table != theirs.table:
@@ -71,7 +71,7 @@ def _wrappers(ours: tuple[WrapperDescription, ...], theirs: tuple[WrapperDescrip
         return
     for one, other in zip(ours, theirs, strict=True):
         if one.code != other.code and LIBRARY in (one.code, other.code):
-            yield f"methods of the wrapper {one.name} were replaced {_when(one)} the training"
+            yield f"methods of the wrapper {one.name} were replaced {_when(one)}"
         what = f"of the wrapper {one.name}, the"
         if one.kwargs is not None and other.kwargs is not None:
             yield from _values(f"{what} argument", one.kwargs, other.kwargs, "not given")
@@ -91,7 +91,7 @@ def _values(what: str, ours: Mapping[str, Any], theirs: Mapping[str, Any], missi
 
 
 def _when(ours: EnvironmentDescription | WrapperDescription) -> str:
-    return "after" if ours.code == LIBRARY else "only for"
+    return "after the training" if ours.code == LIBRARY else "in training, and are not replaced now"
 
 
 def _class_name(description: EnvironmentDescription | WrapperDescription) -> str:
