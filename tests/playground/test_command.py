@@ -76,7 +76,7 @@ def test_a_module_of_another_version_is_refused(tmp_path, chromium):
     problem = page.locator("#problem")
     problem.wait_for()
     assert problem.inner_text() == (
-        f"qtab.wasm is {qtab.__version__}, and the page 9.9.9: build it anew with python rust/web/build_backend.py"
+        f"qtab.wasm is {qtab.__version__}, and the page 9.9.9: rebuild it with python rust/web/build_backend.py"
     )
     page.close()
 

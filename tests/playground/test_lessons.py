@@ -25,9 +25,7 @@ def lessons(chromium: Any, page_file: Path) -> Lessons:
     states = page.evaluate(STATES)
     context.close()
     return {
-        (state["environment"], state["title"]): Lesson(
-            state["environment"], state["look"], state["settings"], state["grid"]
-        )
+        (state["environment"], state["title"]): Lesson(state["environment"], state["settings"], state["grid"])
         for state in states
     }
 

@@ -35,7 +35,6 @@ class Lesson:
     """An example of the page."""
 
     environment: str
-    look: str
     settings: dict[str, Any]
     grid: dict[str, Any] | None
 
@@ -89,7 +88,8 @@ class Lesson:
 def last(runs: qtab.Runs) -> NDArray[np.float64]:
     """Returns the figure that the page shows for each seed: the mean return of the last episodes."""
     episodes = runs.episode_returns.shape[1]
-    window = 100 if episodes >= 1000 else min(max(round(episodes / 20), 5), episodes)
+    rounded = (episodes + 10) // 20  # halves up, as JavaScript rounds
+    window = 100 if episodes >= 1000 else min(max(rounded, 5), episodes)
     means: NDArray[np.float64] = runs.episode_returns[:, -window:].mean(axis=1)
     return means
 

@@ -59,7 +59,7 @@ def windy_softmax(lesson: Lesson, others: Lessons) -> None:
 def open_field(lesson: Lesson, _: Lessons) -> None:
     barrier = ["....#...", "....#...", ".S..#.G.", "....#...", "........", "........"]
     assert lesson.grid is not None
-    walled = Lesson(lesson.environment, lesson.look, lesson.settings, {**lesson.grid, "layout": barrier})
+    walled = Lesson(lesson.environment, lesson.settings, {**lesson.grid, "layout": barrier})
     assert all(episode.terminated for episode in walled.greedy_of_all(walled.runs()))
 
 
@@ -97,7 +97,7 @@ def four_rooms(lesson: Lesson, _: Lessons) -> None:
     layout = list(lesson.grid["layout"])
     layout[used[0]] = layout[used[0]][: used[1]] + "#" + layout[used[0]][used[1] + 1 :]
     for change in ({"layout": layout}, {"rewards": [[*used, -10]]}):
-        changed = Lesson(lesson.environment, lesson.look, lesson.settings, {**lesson.grid, **change})
+        changed = Lesson(lesson.environment, lesson.settings, {**lesson.grid, **change})
         for seen in changed.greedy_of_all(changed.runs()):
             assert seen.terminated
             assert other in [divmod(int(state), 11) for state in seen.states]

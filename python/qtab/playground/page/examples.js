@@ -54,7 +54,7 @@ export const EXAMPLES = {
     {
       preset: "solved",
       title: "Optimistic: solved",
-      look: "The only change: initial values of 1. Whatever has been tried looks worse than what has not, so the agent tries everything. It then reaches the goal in about three of four episodes, as often as an optimal policy does. On slippery ice both fall into a hole at times: the agent above does so with seed 0.",
+      look: "The only change: initial values of 1. Every action that has been tried looks worse than the untried ones, so the agent tries everything. It then reaches the goal in about three out of four episodes, as often as an optimal policy does. On slippery ice both sometimes fall into a hole: with seed 0, the greedy agent shown below does.",
     },
     {
       preset: "tuned",
@@ -84,7 +84,7 @@ export const EXAMPLES = {
       look: "Without exploration or optimism the goal is never reached, and all values stay 0.",
     },
     { preset: "solved", title: "Optimistic: solved", look: "Beside a hole most arrows point straight away from it rather than to the goal: on slippery ice this is the only move that cannot end in the hole." },
-    { preset: "tuned", title: "Exploring with ε", look: "The larger the lake, the longer it takes until chance finds the goal: several hundred episodes, where the small lake takes about a hundred. Look at the visits." },
+    { preset: "tuned", title: "Exploring with ε", look: "The larger the lake, the longer it takes until chance finds the goal: several hundred episodes, compared with about a hundred on the small lake. Look at the visits." },
   ],
   "FrozenLake8x8-v1 (not slippery)": [
     {
@@ -100,13 +100,13 @@ export const EXAMPLES = {
     {
       preset: "book",
       title: "Q-learning on the edge",
-      look: "Example 6.6 of Sutton & Barto. Q-learning learns the shortest path, along the edge; but while it explores, it falls in about one of four episodes. Compare its mean return with Sarsa's, over 16 seeds.",
+      look: "Example 6.6 of Sutton & Barto. Q-learning learns the shortest path, along the edge; but while it explores, it falls in about one in four episodes. Compare its mean return with Sarsa's, over 16 seeds.",
     },
     {
       preset: "book",
       settings: { algorithm: "sarsa" },
       title: "Sarsa keeps away",
-      look: "Sarsa learns the values of the policy that it follows, exploration included, and so keeps away from the edge: its greedy path is longer, but it falls less often. Over 16 seeds the mean return is about −24, and Q-learning's −45. The last episodes of a single seed can say the opposite: seed 0 does.",
+      look: "Sarsa learns the values of the policy that it follows, exploration included, and so keeps away from the edge: its greedy path is longer, but it falls less often. Over 16 seeds its mean return is about −24, compared with −45 for Q-learning. The last episodes of a single seed can show the opposite, as with seed 0.",
     },
     {
       preset: "solved",

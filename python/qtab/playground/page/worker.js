@@ -34,7 +34,7 @@ async function load() {
   }
   if (built === version) return;
   wasm = null;
-  throw new Error(`qtab.wasm is ${built}, and the page ${version}: build it anew with python rust/web/build_backend.py`);
+  throw new Error(`qtab.wasm is ${built}, and the page ${version}: rebuild it with python rust/web/build_backend.py`);
 }
 
 /** Calls the module. Throws an Error with `setting` where it refuses the request. */
