@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -266,6 +267,16 @@ def test_a_description_from_a_file_imports_nothing_and_calls_no_class_but_a_wrap
     for name in ("__class__", "step", "no_such_attribute"):
         with pytest.raises(ValueError, match=f"its attribute {name} was 3"):
             make_again(from_json({**describe(car()).as_json(), "attributes": {name: 3}}), gym.spec(CAR), {}, 200)
+
+
+def test_a_description_from_a_file_writes_no_files(tmp_path: Path) -> None:
+    description = describe(Reversed(car()))
+    kwargs = {"video_folder": str(tmp_path / "videos")}
+    wrapper = description.wrappers[0].__class__("gymnasium.wrappers:RecordVideo", None, kwargs, {})
+    hostile = from_json({**description.as_json(), "wrappers": [wrapper.__dict__]})
+    with pytest.raises(ValueError, match="RecordVideo is not one that a run stores"):
+        make_again(hostile, gym.spec(CAR), {"render_mode": "rgb_array"}, 200)
+    assert not (tmp_path / "videos").exists()
 
 
 PLAIN = st.recursive(

@@ -9,7 +9,7 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 from gymnasium.wrappers import NormalizeObservation, NormalizeReward
 
-from qtab.envs.origin.describe import describe
+from qtab.envs.origin.describe import NEUTRAL, describe
 from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
 from qtab.envs.origin.differences import differences
 from qtab.envs.origin.values import NotRestorableError, in_words, restored, same
@@ -97,6 +97,8 @@ def _class_of(wrapper: WrapperDescription) -> Any:
         found = getattr(found, part, None)
     if not (isinstance(found, type) and issubclass(found, gym.Wrapper)):
         raise NotRestorableError(f"its wrapper {wrapper.cls} is not a class of an imported module")
+    if issubclass(found, NEUTRAL):  # not described: only a crafted file names one, and RecordVideo writes files
+        raise NotRestorableError(f"its wrapper {wrapper.cls} is not one that a run stores")
     return found
 
 

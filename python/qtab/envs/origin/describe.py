@@ -29,7 +29,7 @@ from qtab.envs.origin.spaces import space_text
 from qtab.envs.origin.values import describe_value, is_plain, same
 from qtab.envs.registry import EnvEntry, entry_for_id
 
-_NEUTRAL = (
+NEUTRAL = (
     *(OrderEnforcing, PassiveEnvChecker, TimeLimitWrapper, RecordEpisodeStatistics, RecordVideo),
     *(HumanRendering, RenderCollection),
 )
@@ -103,7 +103,7 @@ def _without_rendering(kwargs: Mapping[str, Any]) -> dict[str, Any]:
 
 def _counts(layer: gym.Env) -> bool:
     """Whether a layer is a wrapper that may change a number: of a subclass nothing is known."""
-    return isinstance(layer, gym.Wrapper) and type(layer) not in _NEUTRAL
+    return isinstance(layer, gym.Wrapper) and type(layer) not in NEUTRAL
 
 
 def _wrapper(layer: gym.Env) -> WrapperDescription:
