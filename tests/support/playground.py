@@ -8,10 +8,10 @@ SETTLED = """() => {
   const done = ["paused", "finished", "diverged"];
   return view?.result && !view.isStale && !view.waiting && view.result.id === training.id
     && done.includes(training.state) && done.includes(view.result.state)
-    && (training.cell === null || training.inspectedRun !== training.id
-      || view.result.inspection?.cell === training.cell);
+    && training.inspectedRun === training.id
+    && (training.cell === null || view.result.inspection?.cell === training.cell);
 }"""
-"""Whether the result of the newest choices is drawn."""
+"""Whether the result of the newest choices is drawn, with the numbers of the cell that is inspected after it."""
 
 COLORS = """(canvas) => {
   const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;

@@ -90,7 +90,6 @@ export class Training {
     this.map = { environment, columns, rows };
     if (this.inspectedRun === this.id) return;
     const hasValues = this.cell !== null && !Number.isNaN(map.values[this.cell]);
-    const cell = hasValues ? this.cell : episode?.cells[0];
-    if (cell !== undefined) this.inspect(cell);
+    this.inspect(hasValues ? this.cell : (episode?.cells[0] ?? null));
   }
 }
