@@ -50,6 +50,12 @@ def test_a_step_is_a_run_like_any_other(run: qtab.Run) -> None:
         run.at_step(2).q_values(0, step=1)
 
 
+def test_a_setting_that_an_algorithm_fixes_stays_without_the_steps() -> None:
+    run = qtab.train(LAKE, time_aware=True, max_episode_steps=3, episodes=2, seed=1, algorithm="reinforce")
+    assert run.at_step(1).config == run.config.replace(time_aware=False)
+    assert run.at_step(1).config.on_truncation == "terminate"
+
+
 def test_the_state_of_the_policy_is_the_number_of_steps_taken(run: qtab.Run) -> None:
     state: Any = None
     for step in range(LIMIT + 2):

@@ -22,11 +22,11 @@ def with_followers(
     if origin is not None and changes.get("env", config.env) != config.env:
         own |= {name: defaults[name] for name in origin.derived}
         origin = None
-    if "algorithm" in changes:
-        own |= {name: defaults[name] for name in freed_settings(config.algorithm, changes["algorithm"])}
-        own |= fixed_settings(changes["algorithm"])
-    if changes.get("time_aware", own and config.time_aware):
+    algorithm = changes.get("algorithm", config.algorithm)
+    own |= {name: defaults[name] for name in freed_settings(config.algorithm, algorithm)}
+    if changes.get("time_aware", config.time_aware):
         own["on_truncation"] = "terminate"
-    elif config.time_aware and "time_aware" in changes:
+    elif config.time_aware:
         own["on_truncation"] = defaults["on_truncation"]
+    own |= fixed_settings(algorithm)
     return {**own, **changes}, None if origin is None else origin.without(changes)

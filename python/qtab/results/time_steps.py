@@ -8,6 +8,7 @@ import numpy as np
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, replace_checked
+from qtab.config.followers import with_followers
 from qtab.discretizers.time_aware import TimeAware
 from qtab.results.snapshots import Snapshots
 
@@ -49,11 +50,9 @@ def at_step(run: AnyRun, step: Any = 0) -> AnyRun:
     if isinstance(initial_q, np.ndarray):
         rows = initial_q.reshape(-1, discretizer.n_rows, initial_q.shape[-1])[:, part]
         initial_q = rows if len(rows) > 1 else rows.reshape(*cells.shape, -1)
+    of_config = {"time_aware": False, "initial_q": initial_q}
     changes: dict[str, Any] = {
-        # With time_aware, on_truncation has no other value than "terminate"; without it, that is a mistake.
-        "config": replace_checked(
-            config, time_aware=False, on_truncation=DEFAULTS["on_truncation"], initial_q=initial_q
-        ),
+        "config": replace_checked(config, **with_followers(config, of_config, DEFAULTS)[0]),
         "discretizer": cells,
         "tables": None if run.tables is None else run.tables[..., part, :],
     }
