@@ -120,6 +120,30 @@ def test_the_best_table_of_the_earlier_part_is_kept_where_a_run_is_resumed(tmp_p
     assert_same_run(qtab.load(path), whole.run)
 
 
+@pytest.mark.parametrize(
+    "function", [{"discretizer": lambda cell: cell // 2, "shape": (8,)}, {"action_mask": lambda _: np.arange(4) > 0}]
+)
+def test_the_best_table_of_a_run_with_a_function_is_kept_where_it_is_resumed(tmp_path, function):
+    path, short = tmp_path / "best.npz", {**LAKE, "episodes": 6, "max_episode_steps": 5, **function}
+    part = qtab.train(**short, callback=[KeepBest(path, 1, 2, seed=7), lambda now: now.episodes < 4], callback_every=4)
+    best = KeepBest(path, 1, 2, seed=7)
+    qtab.resume(part, callback=best)
+    assert best.run is not None
+    assert len(best.run.episode_returns) == 2  # all evaluations are equal, and the first is kept
+    assert best.run.config == part.config
+
+
+def test_the_table_of_another_run_with_the_same_returns_is_not_kept(tmp_path):
+    path, short = tmp_path / "best.npz", {**LAKE, "episodes": 6, "max_episode_steps": 2}  # too few to reach the goal
+    qtab.train(**short, learning_rate=0.7, callback=KeepBest(path, 1, 2))
+    part = qtab.train(**short, learning_rate=0.3, callback=lambda now: now.episodes < 4, callback_every=4)
+    best = KeepBest(path, 1, 2)
+    qtab.resume(part, callback=best)
+    assert best.run is not None
+    assert best.run.config.learning_rate == 0.3
+    assert qtab.load(path).config.learning_rate == 0.3
+
+
 def test_of_equal_evaluations_the_first_is_kept():
     best = KeepBest(episodes=1, every=2)
     qtab.train("MountainCar-v0", episodes=6, max_episode_steps=5, callback=best)

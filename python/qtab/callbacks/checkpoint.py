@@ -5,7 +5,7 @@ import os
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 
@@ -13,6 +13,7 @@ from qtab._utils import checks
 from qtab._utils.files import check_writable
 from qtab.callbacks.base import BaseCallback
 from qtab.config import Config
+from qtab.config.config import replace_checked
 from qtab.training.callbacks import Progress
 
 if TYPE_CHECKING:
@@ -105,12 +106,19 @@ def first_part(path: Path, run: "Run") -> "Run | None":
     """Returns the run in a file if it holds the first episodes of a run; None for any other file."""
     from qtab.results.storage import load
 
-    with suppress(OSError, ValueError):  # not the file of a run
-        found = load(path)
+    config = run.config
+    # A file does not hold the functions of its run.
+    functions: dict[str, Any] = {
+        name: setting for name in ("discretizer", "action_mask") if callable(setting := getattr(config, name))
+    }
+    with suppress(OSError, TypeError, ValueError):  # not the file of such a run
+        found = load(path, **functions)
         count = len(found.episode_returns)
-        if found.config.seed == run.config.seed and count <= len(run.episode_returns):
-            same = found.episode_returns.tobytes() == run.episode_returns[:count].tobytes()
-            return found if same else None
+        is_same = replace_checked(found.config, episodes=config.episodes) == config and all(
+            getattr(found, name).tobytes() == getattr(run, name)[:count].tobytes()
+            for name in ("episode_returns", "episode_lengths")
+        )
+        return found if is_same else None
     return None
 
 
