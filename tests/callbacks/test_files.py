@@ -150,6 +150,14 @@ def test_a_log_of_a_killed_process_may_end_within_a_line(tmp_path):
     assert float(rows[1]["mean_return"]) == run.episode_returns[2:6].mean()
 
 
+def test_a_log_to_which_an_editor_added_blank_lines_is_continued(tmp_path):
+    path = tmp_path / "log.csv"
+    part = qtab.train(CAR, callback=[CSVLogger(path, every=2), stop_after(4)], callback_every=4, **VARIED)
+    path.write_text(path.read_text() + "\n\n")
+    qtab.resume(part, callback=CSVLogger(path, every=2))
+    assert [int(row["episodes"]) for row in lines(path)] == [2, 4, 6, 8, 10]
+
+
 def test_another_log_is_not_continued(tmp_path):
     path = tmp_path / "log.csv"
     part = qtab.train(CAR, callback=[CSVLogger(path), stop_after(4)], callback_every=4, **VARIED)

@@ -74,7 +74,7 @@ class CSVLogger(MetricsLogger):
             return []
         # The last line may have been cut off when the process was killed.
         whole, _, _ = self.path.read_text(encoding="utf-8").rpartition("\n")
-        names, *lines = csv.reader(whole.splitlines() or [",".join(self._names)])
+        names, *lines = filter(None, csv.reader(whole.splitlines() or [",".join(self._names)]))
         if names != self._names:
             raise ValueError(
                 f"path must be the log of the earlier part, with the columns {', '.join(self._names)}, got "
