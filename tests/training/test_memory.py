@@ -102,6 +102,13 @@ def test_runs_of_one_call_give_back_the_memory_of_their_episodes():
     assert qtab.train_many(CAR, 20, threads=1, memory_limit=800_000, **settings).completed
 
 
+@pytest.mark.slow
+def test_processes_that_are_not_started_take_no_share_of_the_memory():
+    settings: dict[str, Any] = {"algorithm": "monte_carlo", "episodes": 1, "max_episode_steps": 5000}
+    settings |= {"env_kwargs": {"goal_velocity": 1.0}, "backend": "gymnasium"}
+    assert qtab.train_many(CAR, 1, threads=16, memory_limit=800_000, **settings).completed
+
+
 @pytest.mark.parametrize("seeds", [10**9, 10**12, 10**30])
 def test_too_many_seeds_are_refused_without_a_list_of_them(seeds):
     with pytest.raises(MemoryError, match=rf"^{seeds} runs need .* more than memory_limit="):

@@ -42,9 +42,10 @@ def train_in_processes(
     """
     # cloudpickle also takes functions of the main script, as in Gymnasium's vector environments.
     limit, left = memory
+    workers = min(workers, len(seeds))
     task = cloudpickle.dumps((_env_to_send(env), dict(settings), (limit, left // workers)))
     keep = results["tables"].shape[1] > 0
-    with process_pool(min(workers, len(seeds)), task) as executor:
+    with process_pool(workers, task) as executor:
         pending = {executor.submit(_train, seed, keep): index for index, seed in enumerate(seeds)}
         while pending:
             done, _ = wait(pending, timeout=POLL_SECONDS, return_when="FIRST_COMPLETED")
