@@ -103,6 +103,30 @@ def test_a_given_environment_must_be_that_of_the_training(call: Any) -> None:
     assert call(run, env=rescaled(), **more) is not None
 
 
+def test_another_time_limit_replaces_that_of_a_wrapped_environment() -> None:
+    run = trained(lambda: RescaleObservation(gym.make(CAR, max_episode_steps=15), np.float32(0), np.float32(1)))
+    longer: dict[str, Any] = {"max_episode_steps": 20, "progress": False}
+    again = qtab.train(config=run.config, **longer)
+    assert (again.config.max_episode_steps, again.episode_lengths.tolist()) == (20, [20, 20, 20])
+    assert qtab.evaluate(run, 2, seed=0, **longer).lengths.tolist() == [20, 20]
+    with pytest.raises(ValueError, match="max_episode_steps must be that of the run to resume, 15, got 20"):
+        qtab.train(resume=run, episodes=5, **longer)
+    with pytest.raises(TypeError, match="max_episode_steps must be an integer"):
+        qtab.train(config=run.config, max_episode_steps=20.5)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("make", "change"), [(easy, "its attribute goal_position was"), (rescaled, "the run was")])
+def test_other_arguments_do_not_undo_what_was_changed(make: Callable[[], Any], change: str) -> None:
+    run, other = trained(make), {"goal_velocity": 0.01}
+    message = rf"^env must be given: .* other env_kwargs are given, and .*{change}"
+    with pytest.raises(ValueError, match=message):
+        qtab.evaluate(run, 2, seed=0, env_kwargs=other)
+    with pytest.raises(ValueError, match=message):
+        qtab.train(config=run.config, env_kwargs=other)
+    unchanged = qtab.train(CAR, **SHORT)
+    assert qtab.train(config=unchanged.config, env_kwargs=other).config.env_kwargs == other
+
+
 def test_an_optimum_with_other_arguments_is_not_that_of_the_run() -> None:
     run = qtab.train("FrozenLake-v1", env_kwargs={"is_slippery": False}, episodes=5, seed=0)
     other = qtab.optimum("FrozenLake-v1")

@@ -1,15 +1,19 @@
 """The environment of a run, made again as it was in training."""
 
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from dataclasses import replace
 from functools import partial
 from typing import Any, Literal
 
 import gymnasium as gym
 
+from qtab._utils import checks
 from qtab.config import Config
+from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
 from qtab.envs.origin.again import cannot_be_made, make_again, needs_object
+from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.origin.differences import differences
 from qtab.envs.registry import ENTRIES, gymnasium_id, make_env, spec_of
@@ -54,7 +58,7 @@ def make_run_env(
     description = trained_on(config)
     if description is None or _others(config, env_kwargs):
         if description is not None:
-            _check_plain(description)
+            _check_plain(config, description)
         return make_env(spec, kwargs, max_episode_steps=limit, disable_env_checker=True)
     return make_again(description, spec, kwargs, limit)
 
@@ -104,14 +108,17 @@ def as_in_training(
     if description is None:
         return attempt(config.env, asked), config.env, asked
     if _others(config, asked.get("env_kwargs")):
-        _check_plain(description)
+        _check_plain(config, description)
         return attempt(config.env, asked), config.env, asked
     if not needs_object(description, spec_of_run(config.env)):
         resolved = attempt(config.env, asked)
         if not differences(description, environment_of(resolved)):
             return resolved, config.env, asked
         resolved.close()
-    make = partial(make_run_env, config, of="id")
+    limit = asked.get("max_episode_steps")
+    if is_set(limit):
+        limit = checks.count("max_episode_steps", limit, least=1)
+    make = partial(make_run_env, config, of="id", max_episode_steps=limit)
     asked["env_kwargs"] = {}
     return attempt(make, asked), make, asked
 
@@ -131,11 +138,12 @@ def _others(config: Config, env_kwargs: Any) -> bool:
     return not isinstance(env_kwargs, Mapping) or dict(env_kwargs) != dict(config.env_kwargs)
 
 
-def _check_plain(description: EnvironmentDescription) -> None:
-    """Checks that an environment can be made with other arguments than those of the training."""
-    if description.wrappers or description.table is not None:
-        changed = "it has wrappers" if description.wrappers else "its constructor makes another transition table"
-        raise cannot_be_made(description, f"other env_kwargs are given, and {changed}")
+def _check_plain(config: Config, description: EnvironmentDescription) -> None:
+    """Checks that the environment is what its id makes: otherwise other arguments would undo what was changed in it."""
+    with closing(make_env(spec_of_run(config.env), config.env_kwargs, disable_env_checker=True)) as env:
+        changed = differences(description, describe(env, is_new=True))
+    if changed:
+        raise cannot_be_made(description, f"other env_kwargs are given, and {'; '.join(changed)}")
 
 
 def with_origin_of(resolved: ResolvedRun, config: Config, names: Mapping[str, Any]) -> ResolvedRun:
