@@ -51,6 +51,12 @@ def test_the_config_of_a_run_repeats_it(env: str, settings: dict[str, Any]) -> N
     assert fields(qtab.train(env, config=run.config).config) == fields(run.config)
 
 
+@pytest.mark.filterwarnings("ignore:.*unversioned environment")
+def test_an_id_without_its_version_is_the_environment_of_the_config() -> None:
+    run = qtab.train("FrozenLake-v1", env_kwargs={"is_slippery": False}, episodes=2)
+    assert fields(qtab.train("FrozenLake", config=run.config).config) == fields(run.config)
+
+
 def test_the_config_of_a_run_on_an_object_repeats_it_on_another() -> None:
     run = qtab.train(Walk(), scale=(1.0, 1.0), episodes=20)
     again = qtab.train(Walk(), config=run.config)

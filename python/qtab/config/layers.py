@@ -14,6 +14,7 @@ from qtab.config.config import DEFAULTS, Config, replace_checked
 from qtab.config.options import applicable, freed_settings, is_set, turned_off
 from qtab.config.origin import copied
 from qtab.config.unknown import check_names
+from qtab.envs.registry import versioned
 
 Base: TypeAlias = Config | Mapping[str, Any]
 """The config that a call starts from: a complete one, such as that of a run, or some settings."""
@@ -41,6 +42,8 @@ def collect(
     if isinstance(config, Config):
         if "seed" not in arguments:
             config = replace_checked(config, seed=None)
+        if isinstance(env, str):
+            env = versioned(env)
         registered = gym.registry.get(config.env.rpartition(":")[2]) if isinstance(env, EnvSpec) else None
         if env is None or env in (config.env, registered):
             return config.env, config
