@@ -8,6 +8,7 @@ import pytest
 
 import qtab
 from qtab.config import presets
+from qtab.config.choices import CHOICES
 from qtab.config.options import OFF_BY_NONE, OPTIONS
 from support.environments import Walk
 
@@ -117,6 +118,43 @@ def test_a_keyword_drops_conflicting_options_of_a_config_but_not_of_a_mapping() 
     assert (other.config.algorithm, other.config.trace_decay, other.config.tilings) == ("q_learning", None, 32)
     with pytest.raises(ValueError, match=r"^trace_decay applies to algorithm .*, not to 'q_learning', got 0.5$"):
         qtab.train(CAR, config={"algorithm": "sarsa_lambda", "trace_decay": 0.5}, algorithm="q_learning")
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {},
+        {"exploration": "ucb"},
+        {"exploration": "softmax"},
+        {"algorithm": "dyna_q_plus"},
+        {
+            "learning_rate": 0.5,
+            "learning_rate_schedule": "exponential",
+            "epsilon": 0.5,
+            "epsilon_schedule": "exponential",
+        },
+    ],
+    ids=str,
+)
+def test_a_choice_of_a_config_that_another_replaces_takes_its_options_along(settings: dict[str, Any]) -> None:
+    short: dict[str, Any] = {"episodes": 1, "max_episode_steps": 2}
+    config = qtab.train(CAR, discretizer="bins", bins=2, **short, **settings).config
+    others = [
+        ("discretizer", "tiles"),
+        *((name, word) for name in ("algorithm", "exploration") for word in CHOICES[name]),
+    ]
+    for name, word in others:
+        assert getattr(qtab.train(config=config, **{name: word}).config, name) == word
+
+
+def test_a_replaced_environment_has_its_own_presets() -> None:
+    lake = qtab.train("FrozenLake-v1", preset="time_aware", episodes=1, env_kwargs={"is_slippery": False}).config
+    assert lake.replace(env="FrozenLake8x8-v1").env_kwargs == {"is_slippery": False}
+    run = qtab.train("FrozenLake-v1", preset="solved", episodes=1)
+    assert run.config.env_kwargs == {"map_name": "4x4"}  # as the id is registered
+    config = run.config.replace(env="CliffWalking-v1")
+    assert (config.preset, config.env_kwargs, config.max_episode_steps, config.episodes) == (None, {}, None, 1)
+    assert qtab.train(config=config, max_episode_steps=5).config.env == "CliffWalking-v1"
 
 
 def test_another_environment_ignores_the_configs_environment_specific_settings() -> None:

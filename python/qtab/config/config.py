@@ -234,7 +234,10 @@ class Config(WithOrigin):
         return html.summary(f"Config of {self.env}", shown)
 
     def replace(self, **changes: "Unpack[ConfigSettings]") -> "Config":
-        """Returns a copy with some settings changed; beside another environment what followed from the old one is open.
+        """Returns a copy with some settings changed.
+
+        With another ``env``, the config of a run loses its preset, the settings that training derived from the old
+        environment, and the arguments with which the old id is registered.
 
         Raises:
             TypeError: for an unknown setting, or a value of the wrong type.

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+import gymnasium as gym
+
 from qtab.config.options import fixed_settings, freed_settings
 from qtab.config.origin import Origin
 
@@ -20,7 +22,13 @@ def with_followers(
     own: dict[str, Any] = {}
     origin: Origin | None = config.origin
     if origin is not None and changes.get("env", config.env) != config.env:
-        own |= {name: defaults[name] for name in origin.derived}
+        spec = gym.registry.get(config.env.rpartition(":")[2])
+        registered = {} if spec is None else spec.kwargs
+        kwargs = config.env_kwargs.items()
+        own |= {name: defaults[name] for name in (*origin.derived, "preset")}
+        own["env_kwargs"] = {
+            name: value for name, value in kwargs if name not in registered or registered[name] != value
+        }
         origin = None
     algorithm = changes.get("algorithm", config.algorithm)
     own |= {name: defaults[name] for name in freed_settings(config.algorithm, algorithm)}

@@ -249,8 +249,12 @@ def turned_off(fields: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def applicable(fields: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns those of the settings in ``fields`` that go with the other settings."""
-    return {name: value for name, value in fields.items() if not mismatch(name, value, others)}
+    """Returns those of the settings in ``fields`` that go with the other settings; a choice takes its options along."""
+    kept = {name: value for name, value in fields.items() if not mismatch(name, value, others)}
+    for name, option in OPTIONS.items():
+        if option.choice in fields and option.choice not in kept:
+            kept.pop(name, None)
+    return kept
 
 
 def other_choice(name: str, value: str, excluded: Sequence[str], where: str) -> str:
