@@ -111,7 +111,7 @@ def test_a_saved_run_asks_for_its_function(tmp_path: Path) -> None:
         qtab.train(resume=loaded, discretizer=len)
     qtab.train("MountainCar-v0", **SETTINGS).save(tmp_path / "plain.npz")
     with pytest.raises(
-        TypeError, match="discretizer must be that of the file, which is 'round', no function, got <function cells"
+        TypeError, match="discretizer must be that of the file, which is 'round', not a function, got <function cells"
     ):
         qtab.load(tmp_path / "plain.npz", discretizer=cells)
     with pytest.raises(TypeError, match="discretizer must be that of the file, which is a function, got 3"):

@@ -124,7 +124,7 @@ def test_the_table_of_a_run_is_compared_whenever_all_its_episodes_are():
         assert "Q table  DIFFERENT\n" in str(report)
     part = qtab.verify(shifted, episodes=11)
     assert (part.equal, part.table_of_run) == (True, False)
-    sentence = "that of Rust, trained again: the run holds none after 11 episodes"
+    sentence = "from training again in Rust: the run holds none after 11 episodes"
     assert sentence in str(part)
     assert sentence in part._repr_html_()
     assert sentence not in str(qtab.verify(run))

@@ -50,7 +50,7 @@ class BaseCallback(ABC):
         """
 
     def on_resume(self, config: Config, env: gym.Env | None, earlier: "Run") -> None:  # noqa: ARG002
-        """Called instead of :meth:`on_start` where a run is resumed. Without a change it begins anew as well.
+        """Called instead of :meth:`on_start` when a run is resumed. By default it calls :meth:`on_start`.
 
         Args:
             config: The complete config of the whole run.

@@ -79,7 +79,7 @@ class Checkpoint(BaseCallback):
             self.saved = [path for _, path in sorted(self._saved_of(earlier))]
 
     def _saved_of(self, earlier: "Run") -> Iterator[tuple[int, Path]]:
-        """Each numbered file that holds the first episodes of a run, after their number."""
+        """Yields the number and the path of each numbered file that holds the first episodes of a run."""
         for path in self.path.parent.glob(f"{glob.escape(self.path.stem)}-*{glob.escape(self.path.suffix)}"):
             number = path.stem.removeprefix(f"{self.path.stem}-")
             if number.isdecimal() and first_part(path, earlier) is not None:

@@ -17,8 +17,8 @@ class CSVLogger(MetricsLogger):
     """Writes a line of numbers at intervals and at the end, each of which can be read at once.
 
     The first line has the names: ``episodes``, the number of finished ones, and the metrics. Numbers have all their
-    digits; a cell without a value is empty. A file that is there already is replaced; where a run is resumed, it is
-    continued after the episodes that the run had finished.
+    digits; a cell without a value is empty. A file that is there already is replaced; when a run is resumed, its
+    lines for the episodes that the run had finished are kept.
 
     Args:
         path: The file, such as ``"log.csv"``.

@@ -87,7 +87,7 @@ class EvaluateEvery(BaseCallback):
 def _require_another(config: Config) -> None:
     try:
         make_run_env(config).close()
-    except ValueError:  # it says what is missing, and asks for env=
+    except ValueError:  # its message already asks for env=
         raise
     except Exception as error:
         raise ValueError(f"env must be given: no other environment can be made from {config.env!r}") from error

@@ -74,7 +74,7 @@ class MetricsLogger(BaseCallback):
         self._start(config, 0)
 
     def on_resume(self, config: Config, env: gym.Env | None, earlier: "Run") -> None:  # noqa: ARG002
-        """Continues the log of the earlier part, without what it has of episodes that this part has not finished.
+        """Continues the log of the earlier part, without its entries for episodes after those that are resumed.
 
         Raises:
             ModuleNotFoundError: as for :meth:`on_start`.

@@ -28,7 +28,7 @@ class Fixed:
     values: Mapping[str, Any]
     """The value of each of these settings."""
     reason: str
-    """What follows "the algorithm, which" in a message."""
+    """Why: a message says "for algorithm ..., which" before it."""
 
 
 _WITH_TRACES = ("sarsa_lambda", "watkins_q_lambda")
@@ -97,10 +97,10 @@ _SCHEDULES: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "learning_rate": ("learning_rate_schedule", ("min_learning_rate", "learning_rate_warm_up")),
     "epsilon": ("epsilon_schedule", ("min_epsilon", "epsilon_warm_up")),
 }
-"""Of each rate that can fall: the setting that names its schedule, and those that only a falling rate has."""
+"""For each rate that can fall, the setting that names its schedule, and the settings that only a falling rate has."""
 
 OFF_BY_NONE = ("hashed_rows", "max_rows")
-"""The options of which None may be the choice of a run, and not only a choice that is left open."""
+"""The options for which None is a real value, not just "not set"."""
 
 ONE_STEP = (
     "q_learning",
@@ -229,7 +229,7 @@ def _belongs(name: str, rate: str) -> bool:
 
 
 def fixed_settings(algorithm: Any) -> Mapping[str, Any]:
-    """Returns the settings that have a single value for an algorithm; none for what is not an algorithm."""
+    """Returns the settings that have a single value for an algorithm; none if ``algorithm`` is not the name of one."""
     return FIXED[algorithm].values if isinstance(algorithm, str) and algorithm in FIXED else {}
 
 
@@ -249,7 +249,7 @@ def turned_off(fields: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def applicable(fields: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns those of the settings in ``fields`` that go with the other settings; a choice takes its options along."""
+    """Returns the settings in ``fields`` that fit the other settings, without the options of choices that do not."""
     kept = {name: value for name, value in fields.items() if not mismatch(name, value, others)}
     for name, option in OPTIONS.items():
         if option.choice in fields and option.choice not in kept:

@@ -14,7 +14,7 @@ C = TypeVar("C", bound="WithOrigin")
 class Origin:
     """The environment that a run was trained on, and which of its settings were derived.
 
-    Settings that nobody asked for are filled in when training begins. Those that follow from the environment or from
+    Settings that were not given are filled in when training begins. Those that follow from the environment or from
     other settings are derived: with another environment, or beside other settings, they are derived again.
     """
 

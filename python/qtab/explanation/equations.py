@@ -26,7 +26,7 @@ BOOTSTRAP = {
 
 G' is the return from the next step on."""
 SHOWN_REWARDS = 4
-"""Of more rewards, which n-step Sarsa has, only their discounted sum is shown."""
+"""With more rewards, as in n-step Sarsa, only their discounted sum is shown."""
 
 
 def number(value: float) -> str:

@@ -119,8 +119,8 @@ class _Repeated:
     def agrees_with(self, start: Start, run: Run) -> bool:
         """Whether the actions, the return, and every value after the episode are those of Rust.
 
-        Values that a learning rate of 0 never changes do not tell an environment that keeps something of its first
-        episode, such as a bandit problem, from a new one; the return does.
+        An environment that keeps a state from its first episode, such as a bandit problem, is not the same when it is
+        made again. With a learning rate of 0 the values do not show that, but the return does.
         """
         actions = tuple(choice.action for choice in self.watcher.choices[: len(self.watcher.steps)])
         returned = run.episode_returns[start.episode : start.episode + 1]

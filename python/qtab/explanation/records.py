@@ -57,7 +57,7 @@ class Choice:
 
 
 def _told_apart(one: float, other: float) -> tuple[str, str]:
-    """Returns two numbers with as many digits, three or more, as tell which one is smaller."""
+    """Formats two numbers with the fewest digits, at least three, that show which one is smaller."""
     for digits in range(3, 17):
         shown = f"{one:.{digits}g}", f"{other:.{digits}g}"
         if (float(shown[0]) < float(shown[1])) == (one < other):
@@ -158,8 +158,8 @@ class ExplainedStep:
     terminated: bool
     truncated: bool
     terminal: bool
-    """Whether the learner took the next state as terminal: it is, or the time limit ended the episode and
-    ``on_truncation="terminate"`` counts that as an end."""
+    """Whether the learner treated the next state as terminal: it is, or the time limit ended the episode with
+    ``on_truncation="terminate"``."""
     updates: tuple[Update, ...]
     """The updates that followed the step: one; for n-step methods none at first and several at the end of the episode.
     For Monte Carlo methods the update of this step, if it has one: they are made after the episode, from its last step
@@ -183,7 +183,7 @@ class ExplainedStep:
 
     @property
     def reward_text(self) -> str:
-        """The reward, and R, where a count bonus makes it another number."""
+        """The reward, and R if a count bonus makes it differ from the reward."""
         if not self.bonus:
             return f"{self.reward:.6g}"
         bonus = f"({self.bonus:.6g})" if self.bonus < 0 else f"{self.bonus:.6g}"

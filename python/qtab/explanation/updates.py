@@ -19,7 +19,7 @@ ActionValues = tuple[tuple[float, ...], ...]
 
 @dataclass(frozen=True)
 class Target:
-    """What the target of an update is made of, as the learner reports it."""
+    """The terms of the target of an update, as the learner reports them."""
 
     step: int | None
     """The step of S and A; None in planning."""

@@ -40,7 +40,7 @@ class SeenStep:
     bonus: float = 0.0
     """What the learner added to the reward."""
     terminal: bool = False
-    """Whether the learner took the next state as terminal, so that its value is zero."""
+    """Whether the learner treated the next state as terminal, so that its value is zero."""
     updates: list[Update] = field(default_factory=list)
     policy_updates: list[PolicyUpdate] = field(default_factory=list)
     planning: list[Update] = field(default_factory=list)
@@ -106,12 +106,12 @@ class Watcher(Observer):
         self._before_the_first.clear()
 
     def stepped(self, bonus: float, terminal: bool) -> None:
-        """Keeps how the learner takes the step."""
+        """Keeps the bonus of the step, and whether the learner treats its next state as terminal."""
         if self.active:
             self.steps[-1].bonus, self.steps[-1].terminal = bonus, terminal
 
     def target(self, step: int | None, rewards: Sequence[float], following: float | None) -> None:
-        """Keeps what the target of the next update is made of."""
+        """Keeps the terms of the target of the next update."""
         self._target = Target(step, tuple(rewards), following)
 
     def returned(self, step: int, target: float) -> None:
@@ -188,7 +188,7 @@ class Watcher(Observer):
             seen.traces = changed(seen.traces, Q)
 
     def _reported(self) -> Target:
-        """Takes the target that the learner has reported; every update has one of its own."""
+        """Returns the target that the learner reported for this update, and forgets it."""
         reported, self._target = self._target, None
         if reported is None:
             raise AssertionError(f"{self.config.algorithm} did not report the target of an update")

@@ -24,7 +24,7 @@ def action_value(P: Any, V: Sequence[float] | NDArray[np.float64], s: int, a: in
 
 
 def action_size(P: Any, V: Sequence[float] | NDArray[np.float64], s: int, a: int, discount: float) -> float:
-    """Σ p (|r| + γ |V(s')|): the magnitude of what an action value is the sum of."""
+    """Returns Σ p (|r| + γ |V(s')|): the sum of the magnitudes of the terms of an action value."""
     size = 0.0
     for p, s_next, r, terminated in P[s][a]:
         size += p * (abs(r) + discount * (0.0 if terminated else abs(V[s_next])))
@@ -34,7 +34,7 @@ def action_size(P: Any, V: Sequence[float] | NDArray[np.float64], s: int, a: int
 def value_iteration(P: Any, discount: float) -> NDArray[np.float64]:
     """V(s) ← max_a Σ p (r + γ V(s')), in place, until changes are in the last bits and shrink no more (eq. 4.10).
 
-    The last bits are those of the terms that the largest action value is the sum of.
+    The last bits are relative to the magnitudes of the terms of the largest action value.
     """
     V = np.zeros(len(P)).tolist()
     before = float("inf")

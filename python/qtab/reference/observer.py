@@ -43,11 +43,11 @@ class Observer:
 
         Args:
             bonus: What the learner adds to the reward: the count bonus, or 0.
-            terminal: Whether the learner takes the next state as terminal, so that its value is zero.
+            terminal: Whether the learner treats the next state as terminal, so that its value is zero.
         """
 
     def target(self, step: int | None, rewards: Sequence[float], following: float | None) -> None:
-        """Called before every update, with what its target is made of.
+        """Called before every update, with the terms of its target.
 
         Args:
             step: The number of the step in the episode, from 0; -1 is the last one of the episode before, and None one

@@ -165,7 +165,7 @@ class Task:
         return self.lengths[-1] - 1
 
     def target(self, reward: float, following: float | None) -> float:
-        """Returns R + γ times the value of the next state; None follows a terminal state."""
+        """Returns R + γ following, where ``following`` is the value of the next state: None if that is terminal."""
         self.observer.target(self.step_number, (reward,), following)
         return reward if following is None else reward + self.discount * following
 
@@ -180,7 +180,7 @@ class Task:
         rate: LearningRate | None = None,
         planned: bool = False,
     ) -> None:
-        """Q(S, A) <- Q(S, A) + α [R + γ following - Q(S, A)]; None follows a terminal state."""
+        """Q(S, A) <- Q(S, A) + α [R + γ following - Q(S, A)]; ``following`` is None if the next state is terminal."""
         self.observer.target(None if planned else self.step_number, (reward,), following)
         if following is None:
             self.end(Q, state, action, reward, rate)

@@ -18,7 +18,7 @@ def mark(z: Table, state: Rows, action: int, kind: Traces) -> None:
 
 
 def learn(task: Task, Q: Table, z: Table, state: Rows, action: int, target: float) -> None:
-    """W <- w + α z [target - Q(S, A)], whose traces z already know of S and A."""
+    """W <- w + α z [target - Q(S, A)], where the traces z already include S and A."""
     task.observer.before_update(Q, state, action, target)
     task.observer.traces(z)
     apply_td_error(task, Q, z, target - value(Q, state, action))

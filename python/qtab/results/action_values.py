@@ -79,8 +79,7 @@ def to_choose_from(run: "Run", observation: Any, action_masks: Any, steps: Any =
         masked = np.where(np.reshape(masks, values.shape), values, -np.inf)
         if np.isneginf(masked).all(axis=-1).any():
             raise ValueError(
-                "action_masks must leave an action that the state has by the run's initial_q, got "
-                f"{shown(action_masks)}"
+                f"action_masks must allow an action that is not -inf in the run's initial_q, got {shown(action_masks)}"
             )
         return masked
     available = _available(run, observation, rows)

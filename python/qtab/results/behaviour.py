@@ -13,7 +13,7 @@ def action_probabilities(config: Config, episodes: int, values: NDArray[np.float
     Args:
         config: The config of a run.
         episodes: The number of finished episodes, which determines ε.
-        values: (n, actions): the action values, -inf for actions that there are not; each row has one that there is.
+        values: (n, actions): the action values, -inf for unavailable actions; each row has an available one.
     """
     chosen = policy(config)
     if isinstance(chosen, EpsilonGreedy):

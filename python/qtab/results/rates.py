@@ -1,4 +1,4 @@
-"""The rates that the episodes of a run had, also where it was resumed with more episodes while a rate fell."""
+"""The rates of each episode of a run, even if it was resumed with more episodes while a rate fell."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -117,10 +117,10 @@ def check_function(function: Any, config: Config) -> None:
     """Checks that a function is given only for what was trained with one.
 
     Raises:
-        TypeError: if it is none, or the discretizer was none.
+        TypeError: if it is not a function, or the discretizer was not one.
     """
     if function is not None and (isinstance(config.discretizer, str | dict) or not callable(function)):
-        had = f"{config.discretizer!r}, no function" if isinstance(config.discretizer, str | dict) else "a function"
+        had = f"{config.discretizer!r}, not a function" if isinstance(config.discretizer, str | dict) else "a function"
         raise TypeError(f"discretizer must be that of the file, which is {had}, got {shown(function)}")
 
 

@@ -31,7 +31,7 @@ class CallbackList:
         """Starts the callbacks of a new run, or of one that continues ``earlier``.
 
         Returns:
-            The context at whose end those that were started end.
+            A context that ends the started callbacks when it exits.
         """
         environment = resolved.environment
         env = environment.env if isinstance(environment, PythonEnvironment) else None

@@ -204,7 +204,7 @@ def _enlarge(column: NDArray[Any], used: int, capacity: int) -> NDArray[Any]:
 
 
 def _read_only(column: NDArray[Any], used: int) -> NDArray[Any]:
-    """Returns a view of the used part: what one callback wrote to it, all later ones would read."""
+    """Returns a read-only view of the used part, so that a callback cannot change what later ones read."""
     view = column[:used]
     view.flags.writeable = False
     return view

@@ -1,4 +1,4 @@
-"""Which settings of a run nobody asked for."""
+"""The settings of a run that were derived, not given."""
 
 from qtab.config import Config
 from qtab.config.options import is_set
@@ -6,10 +6,10 @@ from qtab.discretizers import Discretizer
 
 
 def derived_settings(asked: Config, config: Config, discretizer: Discretizer) -> frozenset[str]:
-    """Returns the settings that were left open, and that follow from the environment or from other settings.
+    """Returns the settings that were not given, and that follow from the environment or from other settings.
 
     Args:
-        asked: What was asked for, over the preset.
+        asked: The settings that were given, and those of the preset.
         config: All settings of the run.
         discretizer: That of the run.
     """

@@ -77,7 +77,7 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
     """
     config = _config(name, run, episodes)
     _check_id(run, env)
-    # What was derived is not derived anew: a resumed run is the same run.
+    # Derived settings are kept, not derived again.
     kept = {"max_episode_steps": config.max_episode_steps, "backend": config.backend}
     if env is None:
         resolved = resolve_run(config, over(config, kept))
@@ -92,7 +92,7 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
 
 
 def has_finished(run: Run, episodes: Any, options: TrainingOptions) -> bool:
-    """Returns whether a run has all its episodes already, and no more are asked for; a message says so.
+    """Returns whether a run has all its episodes already and no more are asked for, which it logs.
 
     Args:
         run: The earlier part.

@@ -46,7 +46,7 @@ GREEDY: Mapping[str, Any] = {
     "epsilon_schedule": "constant",
     "ties": "first",
 }
-"""With a learning rate and an exploration rate of 0, training is evaluation: of the first of several greedy actions."""
+"""Settings with which training evaluates: it learns nothing, and takes the first of several greedy actions."""
 
 
 @with_fields

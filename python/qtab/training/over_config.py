@@ -18,7 +18,7 @@ from qtab.training.run_env import Attempt, as_in_training, with_origin_of
 def collect_for(
     env: Any, function: Callable[..., Any], config: Base | None, settings: Mapping[str, Any]
 ) -> tuple[Any, Base]:
-    """Calls :func:`qtab.config.layers.collect`, but keeps what was derived if the environment is the config's."""
+    """Calls :func:`qtab.config.layers.collect`, but keeps derived settings if an object is the config's environment."""
     given, base = collect(function, env, config, settings)
     if isinstance(env, gym.Env) and isinstance(config, Config):
         description = trained_on(config)

@@ -56,7 +56,7 @@ def _with_arrays(state: Any) -> Any:
 
 
 def state_of(trainer: _core.Trainer, resolved: ResolvedRun, snapshots: tuple[int, ...]) -> RunState | None:
-    """Returns what :func:`restore` will need; None, and a warning, if that fails: what was learned is worth more.
+    """Returns what :func:`restore` will need; None, with a warning, if that fails, so that what was learned is kept.
 
     Args:
         trainer: The trainer.

@@ -39,8 +39,8 @@ def make_run_env(
 
     Args:
         config: The config of the run.
-        of: Whose class to make, of the environments of Gymnasium that this package has as well, with equal numbers:
-            the faster one (this package's), Gymnasium's, or that of the run's id.
+        of: Which class to make for an environment that both Gymnasium and this package implement, with equal numbers:
+            "either" makes the faster one (this package's), "gymnasium" Gymnasium's, and "id" that of the run's id.
         env_kwargs: Other keyword arguments than the run's; None takes those.
         max_episode_steps: Another time limit; None takes the run's.
         render_mode: The render mode, if it is to be seen.
@@ -91,7 +91,7 @@ def resolve_made(env: Any, settings: Mapping[str, Any]) -> ResolvedRun:
 def as_in_training(
     config: Config, settings: Mapping[str, Any], attempt: Attempt
 ) -> tuple[ResolvedRun, Any, dict[str, Any]]:
-    """Resolves settings in the environment of a config's run: by its id where that makes the one of the training.
+    """Resolves settings in the environment of a config's run: by its id if that makes the environment of the training.
 
     Args:
         config: The config.

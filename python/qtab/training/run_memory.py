@@ -29,7 +29,7 @@ BYTES_PER_VISIT_COUNT = 4
 BYTES_PER_RECORDING = 512
 """About the size of a recorded episode without its actions: the state of a generator, as Python keeps it."""
 RESTORED = 3
-"""How many times as much memory as its bytes the state of a resumed run takes, about."""
+"""The approximate memory that restoring the state of a run takes, as a multiple of its size."""
 
 
 def tables_shape(resolved: ResolvedRun, runs: int) -> tuple[int, int, int, int]:

@@ -121,7 +121,8 @@ def judge(run: Run, optimum: "Optimum | None") -> Verdict:
 def _greedy_return(run: Run, optimum: "Optimum | None") -> tuple[float | None, bool]:
     """Returns the return of a run's greedy policy, and whether it is exact; None where Rust cannot play it.
 
-    What counts of preferences is the policy that was trained, their softmax: of the greedy one episodes are played.
+    With preferences the trained policy is their softmax. The exact return of the greedy policy would not decide for it,
+    so episodes are played instead, beside which the training episodes count.
     """
     if optimum is not None and optimum.exact and run.config.algorithm not in PREFERENCES:
         with suppress(ValueError):  # a table of other rows than the states

@@ -52,8 +52,8 @@ class Verification:
     trained_with: dict[str, str] | None = None
     """The platform and the versions of the run that are not those of this comparison; None where nothing differs."""
     table_of_run: bool = True
-    """Whether the Q table compared was the run's own. False where the run holds none after so many episodes: for its
-    first ones alone, and where it was stopped within an episode. It is then that of Rust, trained again."""
+    """Whether the Q table compared was the run's own. False if the run holds no table after exactly these episodes:
+    only its first ones are compared, or it was stopped within an episode. The table then comes from training again."""
 
     @property
     def equal(self) -> bool:
@@ -118,7 +118,7 @@ class Verification:
 
     @property
     def _other_table(self) -> str:
-        return f"that of Rust, trained again: the run holds none after {self.episodes:,} episodes"
+        return f"from training again in Rust: the run holds none after {self.episodes:,} episodes"
 
     @property
     def _place(self) -> str:

@@ -5,7 +5,7 @@ import numpy as np
 from qtab.reference.prediction.common import Prediction
 
 SETTLED = 1e-12
-"""The largest change of a value, as a fraction of the largest terms of its errors, at which values have settled."""
+"""Values have settled when no error is larger than this fraction of the largest sum of its terms' magnitudes so far."""
 
 
 def batch_td(prediction: Prediction) -> None:
