@@ -144,7 +144,8 @@ def test_a_choice_of_a_config_that_another_replaces_takes_its_options_along(sett
         *((name, word) for name in ("algorithm", "exploration") for word in CHOICES[name]),
     ]
     for name, word in others:
-        assert getattr(qtab.train(config=config, **{name: word}).config, name) == word
+        change: dict[str, Any] = {name: word}
+        assert getattr(qtab.train(config=config, **change).config, name) == word
 
 
 def test_a_replaced_environment_has_its_own_presets() -> None:

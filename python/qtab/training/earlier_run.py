@@ -82,7 +82,8 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
     if env is None:
         resolved = resolve_run(config, over(config, kept))
     else:
-        resolved = resolve(env, over(_without_kwargs(config, env), kept))
+        # The environment brings its own keyword arguments along.
+        resolved = resolve(env, over(config, {**kept, "env_kwargs": {}}))
         _check_settings(run, resolved.config, _OF_ENV)
         _check_env(run, resolved)
     origin = config.origin or resolved.config.origin
@@ -141,7 +142,7 @@ def check_agrees(run: Run, env: str | EnvSpec | gym.Env | None, settings: Mappin
     if env is None or isinstance(env, str):
         resolved = resolve_run(run.config, over(run.config, kept))
     else:
-        resolved = resolve(env, over(_without_kwargs(run.config, env), kept))
+        resolved = resolve(env, over(run.config, {"env_kwargs": {}, **kept}))
     resolved.close()
     _check_settings(run, resolved.config, (*_OF_ENV, *given))
     _check_env(run, resolved)
@@ -192,11 +193,6 @@ def _id(env: Any) -> str | None:
 def _bare(env: str) -> str:
     """An id without the package that it names."""
     return env.rpartition(":")[2]
-
-
-def _without_kwargs(config: Config, env: Any) -> Config:
-    """The config to resolve again: an environment or a spec that is given brings its own keyword arguments along."""
-    return config if env is None or isinstance(env, str) else replace_checked(config, env_kwargs={})
 
 
 def snapshots_of(options: TrainingOptions, total: int, earlier: Run | None) -> tuple[int, ...]:
