@@ -115,6 +115,20 @@ def test_another_time_limit_replaces_that_of_a_wrapped_environment() -> None:
         qtab.train(config=run.config, max_episode_steps=20.5)  # type: ignore[arg-type]
 
 
+def test_a_grid_has_no_time_limit_that_the_environment_would_shorten() -> None:
+    with pytest.raises(
+        ValueError, match=r"max_episode_steps must be at most 15 in the grid, the time limit .* got 20$"
+    ):
+        qtab.sweep(None, {"max_episode_steps": [5, 20]}, 1, config=trained(rescaled).config)
+
+
+@pytest.mark.slow
+def test_a_sweep_of_a_wrapped_environment_has_another_time_limit() -> None:
+    run = trained(lambda: RescaleObservation(gym.make(CAR, max_episode_steps=15), np.float32(0), np.float32(1)))
+    table = qtab.sweep(None, {"discount": [0.5]}, 1, config=run.config, max_episode_steps=20, threads=1)
+    assert table.run(0, 0).episode_lengths.tolist() == [20, 20, 20]
+
+
 @pytest.mark.parametrize(("make", "change"), [(easy, "its attribute goal_position was"), (rescaled, "the run was")])
 def test_other_arguments_do_not_undo_what_was_changed(make: Callable[[], Any], change: str) -> None:
     run, other = trained(make), {"goal_velocity": 0.01}

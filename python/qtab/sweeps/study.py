@@ -113,6 +113,13 @@ def plan_study(
         raise TypeError(f"{in_both[0]} must be either in the grid or shared by all settings, got both")
     overrides = [over(base or {}, {**shared, **setting}) for setting in settings]
     resolved = [resolve_template(env, {**given, "seed": max(numbers)}) for given in overrides]
+    for setting, run in zip(settings, resolved, strict=True):
+        asked = setting.get("max_episode_steps")
+        if asked is not None and asked > run.max_episode_steps:
+            raise ValueError(
+                f"max_episode_steps must be at most {run.max_episode_steps} in the grid, the time limit of the "
+                f"environment, got {asked}"
+            )
     return Study(env, settings, overrides, numbers, resolved, block)
 
 

@@ -89,7 +89,8 @@ def sweep(
         block = checks.count("block", block, least=1)
         env, base = collect(sweep, env, config, settings)
         if isinstance(base, Config) and env == base.env:
-            _, env, _ = as_in_training(base, over(base, {}), resolve_template)
+            time_limit: Any = {name: value for name, value in settings.items() if name == "max_episode_steps"}
+            _, env, _ = as_in_training(base, over(base, time_limit), resolve_template)
             base = base if isinstance(env, str) else replace_checked(base, env_kwargs={})
         if isinstance(env, str):
             env = spec_of(env)  # a worker process may not have imported the package that registers the id

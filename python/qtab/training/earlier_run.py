@@ -231,7 +231,7 @@ def _config(name: str, run: Run, episodes: Any) -> Config:
     if run.state is None:
         raise ValueError(
             f"{name} must have the state of its training, which runs of train_many and files of earlier versions do "
-            "not have; qtab.train(..., initial_q=run.q_table) learns on from its table"
+            "not have; qtab.train(..., initial_q=run.q_table) continues to learn from its table"
         )
     count = run.config.episodes if episodes is None else checks.count("episodes", episodes, least=1)
     if count <= finished:
