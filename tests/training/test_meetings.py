@@ -8,6 +8,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
+from gymnasium.envs.registration import WrapperSpec
 from gymnasium.wrappers import RescaleObservation, TransformReward
 
 import qtab
@@ -139,6 +140,16 @@ def test_other_arguments_do_not_undo_what_was_changed(make: Callable[[], Any], c
         qtab.train(config=run.config, env_kwargs=other)
     unchanged = qtab.train(CAR, **SHORT)
     assert qtab.train(config=unchanged.config, env_kwargs=other).config.env_kwargs == other
+
+
+def test_other_arguments_go_to_an_id_that_adds_wrappers() -> None:
+    clip = WrapperSpec("ClipReward", "gymnasium.wrappers:ClipReward", {"min_reward": -0.5, "max_reward": 0.0})
+    gym.register("QtabTests/Clipped-v0", gym.spec(CAR).entry_point, max_episode_steps=15, additional_wrappers=(clip,))
+    try:
+        run = trained(lambda: gym.make("QtabTests/Clipped-v0"))
+        assert qtab.evaluate(run, 1, seed=0, env_kwargs={"goal_velocity": 0.01}).returns.tolist() == [-7.5]
+    finally:
+        del gym.registry["QtabTests/Clipped-v0"]
 
 
 def test_an_optimum_with_other_arguments_is_not_that_of_the_run() -> None:
