@@ -52,6 +52,15 @@ def test_an_endless_greedy_policy_is_refused_at_once() -> None:
         planning.greedy_return()
 
 
+def test_values_that_do_not_settle_name_what_would_help() -> None:
+    """Rounded probabilities add up to more than the discount takes away."""
+    env = qtab.TabularEnv({0: {0: [(0.5 + 1e-10, 0, 1.0, False), (0.5, 0, 1.0, False)]}}, [1.0])
+    with pytest.raises(ValueError, match=r"^discount must be smaller here, got 0\.99999999999: the values still"):
+        qtab.policy_values(env, [0], discount=0.99999999999)
+    with pytest.raises(ValueError, match=r"^policy must end every episode here: .*; with a discount below 1 it still"):
+        qtab.policy_values(env, [0])
+
+
 HUGE = qtab.TabularEnv({0: {0: [(1.0, 1, 1e308, False)]}, 1: {0: [(1.0, 1, 1e308, True)]}}, [1.0, 0.0])
 
 

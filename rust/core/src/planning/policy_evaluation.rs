@@ -53,7 +53,7 @@ pub fn policy_evaluation(
 /// The expected number of visits of each state in an episode, η(s) = h(s) + Σ η(s̄) Σ π(a|s̄) p(s|s̄, a) (equation 9.2).
 ///
 /// # Errors
-/// `NoProperPolicy` if an episode may never end; `NotConverged`; `OutOfMemory`; `Stopped` after `stop` was set.
+/// `NoProperPolicy` if an episode may never end; `NotConverged`; `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.
 ///
 /// # Panics
 /// If `policy` does not hold a number for each pair.

@@ -46,6 +46,6 @@ impl PyExpectedUpdates {
     /// The expected return of the greedy policy from the initial states.
     fn greedy_return(&self, py: Python<'_>) -> PyResult<f64> {
         let expected = run_interruptible(py, |stop| self.planning.greedy_return(stop))?;
-        expected.map_err(of_policy)
+        expected.map_err(|error| of_policy(error, self.discount))
     }
 }

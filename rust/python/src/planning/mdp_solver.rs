@@ -112,7 +112,7 @@ impl PyMdpSolver {
     ) -> PyResult<(Array<'py, f64>, Option<Array<'py, i64>>)> {
         let policy = self.actions(policy.as_slice()?)?;
         let found = run_interruptible(py, |stop| policy_improvement(&self.0.table, &policy, discount, stop))?;
-        let (values, better) = found.map_err(of_policy)?;
+        let (values, better) = found.map_err(|error| of_policy(error, discount))?;
         let better = better.map(|better| indices(py, better.iter())).transpose()?;
         Ok((PyArray1::from_vec(py, values), better))
     }
@@ -126,7 +126,7 @@ impl PyMdpSolver {
     ) -> PyResult<PyPolicyValues<'py>> {
         let policy = self.by_state(policy.as_slice()?)?;
         let found = run_interruptible(py, |stop| policy_evaluation(&self.0.table, &policy, discount, stop))?;
-        let PolicyEvaluation { values, q_values, error, .. } = found.map_err(of_policy)?;
+        let PolicyEvaluation { values, q_values, error, .. } = found.map_err(|error| of_policy(error, discount))?;
         Ok((PyArray1::from_vec(py, values), PyArray1::from_vec(py, q_values), error))
     }
 
@@ -155,7 +155,7 @@ impl PyMdpSolver {
     fn expected_visits<'py>(&self, py: Python<'py>, policy: PyReadonlyArray1<'py, f64>) -> PyResult<Array<'py, f64>> {
         let policy = self.by_state(policy.as_slice()?)?;
         let visits = run_interruptible(py, |stop| expected_visits(&self.0.table, &policy, stop))?;
-        Ok(PyArray1::from_vec(py, visits.map_err(of_policy)?))
+        Ok(PyArray1::from_vec(py, visits.map_err(|error| of_policy(error, 1.0))?))
     }
 }
 

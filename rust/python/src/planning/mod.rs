@@ -24,13 +24,15 @@ fn to_py_err(error: PlanningError, discount: f64) -> PyErr {
 }
 
 /// Why a policy was not evaluated.
-fn of_policy(error: PlanningError) -> PyErr {
-    let text = match error {
-        PlanningError::NoProperPolicy(_) => "policy must end every episode here",
-        _ => "policy must end episodes in fewer steps here",
-    };
+fn of_policy(error: PlanningError, discount: f64) -> PyErr {
     of_any_method(error).unwrap_or_else(|| {
-        PyValueError::new_err(format!("{text}: {error}; with a discount below 1 it has values all the same"))
+        PyValueError::new_err(match error {
+            _ if discount < 1.0 => format!("discount must be smaller here, got {discount}: {error}"),
+            PlanningError::NoProperPolicy(_) => {
+                format!("policy must end every episode here: {error}; with a discount below 1 it still has values")
+            }
+            _ => format!("policy must end episodes in fewer steps here: {error}; a discount below 1 helps"),
+        })
     })
 }
 
