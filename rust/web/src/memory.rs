@@ -20,12 +20,11 @@ pub(crate) fn check(
         return Ok(());
     }
     let runs = if seeds == 1 { "1 run".to_string() } else { format!("{seeds} runs") };
-    let mib = |bytes: u64| bytes >> 20;
     Err(format!(
         "{runs} with a table of {rows} rows and {num_actions} actions would take {} MiB, and the page has {} MiB for them: \
          choose fewer cells, or fewer seeds",
-        mib(needed),
-        mib(MAX_BYTES),
+        needed.div_ceil(1 << 20),
+        MAX_BYTES >> 20,
     )
     .into())
 }
