@@ -73,3 +73,11 @@ def test_runs_of_different_discounts_have_scales_of_their_own() -> None:
     assert mesh(first).norm.vmin > 0.5 * mesh(second).norm.vmin
     same = plots.values([runs[0], qtab.train(**{**cliff, "seed": 1}, discount=0.5)]).figure.axes[:2]
     assert len({mesh(ax).norm for ax in same}) == 1
+
+
+def test_costs_of_numbered_states_without_a_map() -> None:
+    outcomes = [[(1.0, 1, 0.0, False)], [(1.0, 0, -1.0, True)]]
+    env = qtab.TabularEnv({0: dict(enumerate(outcomes)), 1: dict(enumerate(outcomes[::-1]))}, [1.0, 0.0])
+    best = qtab.optimum(env, max_episode_steps=1)
+    worst = qtab.train(env, episodes=1, max_episode_steps=1, seed=0, learning_rate=0.0, initial_q=-best.q_values)
+    assert shown(plots.difference(worst, best)).ravel().tolist() == [1.0, 1.0]

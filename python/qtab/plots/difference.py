@@ -106,7 +106,9 @@ def costs(subject: Subject, best: Subject, raster: Raster) -> NDArray[np.float64
             raise ValueError(
                 f"run must have a table of shape {best.discretizer.shape}, got {subject.discretizer.shape}"
             )
-        rows = best.discretizer.active_rows(raster.observations).reshape(*raster.rows.shape[:2], -1)
+        # Observations of a Discrete space have no components.
+        observations = raster.observations.reshape(-1, *best.discretizer.low.shape)
+        rows = best.discretizer.active_rows(observations).reshape(*raster.rows.shape[:2], -1)
     greedy = subject.greedy_actions(raster.rows)
     optimal = best.action_values(rows)[0]
     taken = np.take_along_axis(optimal, np.maximum(greedy, 0)[..., np.newaxis], axis=-1)[..., 0]
