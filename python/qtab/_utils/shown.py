@@ -21,4 +21,4 @@ def shown(value: Any) -> str:
 
 def counted(count: int, noun: str) -> str:
     """Returns a count with its noun: ``"1 number"``, ``"2 numbers"``."""
-    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"

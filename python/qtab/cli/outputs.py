@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from qtab._utils import checks
 from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
+from qtab._utils.shown import counted
 from qtab.callbacks import Checkpoint
 from qtab.config import Config
 from qtab.rendering.replay import replay_all
@@ -121,11 +122,6 @@ class Outputs:
         if different:
             returned = f"{different} of them returned something else than in training"
             self._say(f"{returned}: the environment keeps state besides its random generator")
-
-
-def counted(count: int, noun: str) -> str:
-    """Returns a number with its noun, such as ``1 episode`` or ``1,000 episodes``."""
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
 
 
 def last_episodes(count: int) -> str:

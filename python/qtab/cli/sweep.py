@@ -11,7 +11,7 @@ import tyro
 
 from qtab._utils import checks
 from qtab._utils.files import check_writable
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.cli.parsing import parse
 from qtab.cli.reporting import OutputFlags, Report
 from qtab.cli.study_file import read_study
@@ -69,7 +69,7 @@ def _run(options: Arguments, report: Report) -> None:
             given["threads"] = options.threads
         with _names_file(options.study), _says_what_is_kept(store, report):
             result = sweep(study.env, study.grid, store=store, progress=report.progress, **given, **study.config)
-    runs, settings = _counted(len(result), "run"), _counted(len(result.settings), "setting")
+    runs, settings = counted(len(result), "run"), counted(len(result.settings), "setting")
     report.text(f"{runs} of {settings} in {store}, {result.failed} failed")
     report.add(**_facts(result), store=store, confirmation=None)
     if options.confirm is not None:
@@ -150,10 +150,6 @@ def _says_what_is_kept(store: Path, report: Report) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt as error:
-        runs = _counted(len(getattr(error, "run", ())), "run")
+        runs = counted(len(getattr(error, "run", ())), "run")
         report.text(f"interrupted: kept {runs} in {store}; the same command resumes")
         raise
-
-
-def _counted(count: int, unit: str) -> str:
-    return f"{count:,} {unit}{'' if count == 1 else 's'}"

@@ -1,6 +1,7 @@
 """``qtab train``."""
 
-from qtab.cli.outputs import Outputs, counted
+from qtab._utils.shown import counted
+from qtab.cli.outputs import Outputs
 from qtab.cli.reporting import Report
 from qtab.cli.settings import with_initial_q
 from qtab.cli.train_arguments import COMMAND, flags_of, parse_arguments

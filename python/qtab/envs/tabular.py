@@ -10,7 +10,7 @@ from gymnasium.envs.toy_text.utils import categorical_sample
 from numpy.typing import ArrayLike
 
 from qtab import _core
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.envs.toy_text import ToyTextMixin
 
 Transition: TypeAlias = tuple[float, int, float, bool]
@@ -62,7 +62,7 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
         if self.spec is not None:
             return super().__repr__()
         states, actions = len(self.P), len(self.P[0])
-        return f"<{type(self).__name__}: {_counted(states, 'state')}, {_counted(actions, 'action')}>"
+        return f"<{type(self).__name__}: {counted(states, 'state')}, {counted(actions, 'action')}>"
 
     def _reset_in_python(self) -> tuple[int, dict[str, Any]]:
         """Resets in Gymnasium's code, for first-state distributions that Rust does not support, such as a list."""
@@ -114,7 +114,3 @@ def _copy(transition: Transition) -> Transition:
         return transition
     probability, next_state, reward, terminated = transition
     return float(probability), next_state, reward, terminated
-
-
-def _counted(count: int, unit: str) -> str:
-    return f"{count:,} {unit}{'' if count == 1 else 's'}"
