@@ -28,3 +28,18 @@ def test_a_policy_on_a_bandit_has_the_value_of_its_action(features: Any) -> None
         assert found.values.shape == (1, 1)
         assert abs(found.values[0, 0] - true) < 4.0 / np.sqrt(400)
         assert found.verify(episodes=20).equal
+
+
+def test_memory_of_runs_in_progress_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Batch TD keeps four sums for each state beside its value."""
+    monkeypatch.setattr("qtab.prediction.estimate.memory_limit", lambda _: 500)
+    settings: dict[str, Any] = {"episodes": 2, "seeds": [0], "record": 2}
+    qtab.estimate_values("FrozenLake-v1", "random", method="td", **settings)
+    with pytest.raises(MemoryError, match=r"^1 run of 'batch_td' with 1 recorded episode .* need 832 bytes"):
+        qtab.estimate_values("FrozenLake-v1", "random", method="batch_td", **settings)
+
+
+def test_true_values_beside_a_map_are_refused() -> None:
+    found = qtab.estimate_values("Blackjack-v1", "random", episodes=2, max_episode_steps=50)
+    with pytest.raises(ValueError, match="true_values must be None for values that are drawn as a map, got"):
+        found.plot(true_values=np.zeros(found.shape))

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import html, svg
 from qtab._utils.fields import with_fields
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.discretizers import Discretizer
 from qtab.prediction import storage
@@ -193,9 +194,12 @@ class ValueEstimates:
 
         Raises:
             ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+            ValueError: for ``true_values`` of another shape, or beside values that are drawn as a map.
         """
         from qtab.prediction.plot import draw_values
 
+        if true_values is not None and (self.rows is None or len(self.shape) > 1):
+            raise ValueError(f"true_values must be None for values that are drawn as a map, got {shown(true_values)}")
         if self.rows is None or (self.discretizer is not None and len(self.shape) > 1):
             from qtab.plots import values
 

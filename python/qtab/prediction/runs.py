@@ -13,7 +13,7 @@ from qtab import _core
 from qtab._utils import checks
 from qtab._utils.memory import check_memory, memory_left, memory_limit
 from qtab._utils.progress import ProgressBar
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.discretizers import Discretizer
 from qtab.planning.policies import GivenPolicy, probabilities
 from qtab.prediction.estimates import ValueEstimates
@@ -22,6 +22,18 @@ from qtab.prediction.learning_rates import AVERAGES_ONLY, schedule_of
 from qtab.prediction.observation_policies import ObservationPolicies, observation_policy, reads_observations
 from qtab.prediction.settings import PredictionSettings
 from qtab.training.resolved_run import ResolvedRun
+
+BYTES_PER_WEIGHT = 8 + 4
+"""What a run in progress keeps for each weight: the weight and how often it was updated."""
+BYTES_OF_METHOD = {
+    "td_lambda": 13,
+    "true_online_td_lambda": 13,
+    "offline_lambda_return": 8,
+    "monte_carlo": 8,
+    "importance_sampling": 16,
+    "batch_td": 32,
+}
+"""What a method adds to that: traces, the last visits, or sums over the visits."""
 
 
 def run_prediction(
@@ -56,8 +68,10 @@ def run_prediction(
         raise ValueError(f"learning_rate must lie in [0, 1] for a table, got {shown(settings.learning_rate)}")
     if not resolved.is_native and len(seeds) > 1:
         raise ValueError(f"seeds must be one seed for an environment that is stepped in Python, got {len(seeds)}")
-    size = len(seeds) * len(points) * n_weights * 8
-    check_memory(f"{len(seeds)} runs with {len(points)} recorded episodes (record= keeps fewer)", size, limit)
+    in_progress = min(threads, len(seeds)) * (BYTES_PER_WEIGHT + BYTES_OF_METHOD.get(settings.method, 0))
+    size = n_weights * (len(seeds) * len(points) * 8 + in_progress)
+    runs, recorded = counted(len(seeds), "run"), counted(len(points), "recorded episode")
+    check_memory(f"{runs} of {settings.method!r} with {recorded} (record= keeps fewer)", size, limit)
     weights = np.full((len(seeds), len(points), n_weights), np.nan)
     began = time.perf_counter()
     spec: Any = {**resolved.spec(), "learning_rate": schedule_of(vars(settings)).spec()}
