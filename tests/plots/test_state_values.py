@@ -81,3 +81,18 @@ def test_costs_of_numbered_states_without_a_map() -> None:
     best = qtab.optimum(env, max_episode_steps=1)
     worst = qtab.train(env, episodes=1, max_episode_steps=1, seed=0, learning_rate=0.0, initial_q=-best.q_values)
     assert shown(plots.difference(worst, best)).ravel().tolist() == [1.0, 1.0]
+
+
+@pytest.mark.parametrize("elsewhere", [0.0, 1e10])
+def test_rewards_that_cancel_tie_and_large_values_elsewhere_hide_no_cost(elsewhere: float) -> None:
+    """In state 0, the rewards 0.1, 0.2 and -0.3 add up to almost 0, the value of the other action."""
+    assert 0.1 + (0.2 - 0.3) > 0.0
+    rows = [(1, 0.1), (2, 0.2), (4, -0.3), (4, -elsewhere), (4, 0.0)]
+    table = {state: {key: [(1.0, to, reward, to == 4)] for key in range(2)} for state, (to, reward) in enumerate(rows)}
+    table[0][1] = [(1.0, 4, 0.0, True)]
+    table[4][1] = [(1.0, 4, -1.0, True)]
+    env = qtab.TabularEnv(table, np.eye(1, 5)[0])
+    second = np.tile([0.0, 1.0], (5, 1))
+    run = qtab.train(env, episodes=1, max_episode_steps=9, seed=0, learning_rate=0.0, initial_q=second)
+    cost = shown(plots.difference(run, qtab.optimum(env, max_episode_steps=9))).ravel()
+    assert cost[np.isfinite(cost)].tolist() == [1.0]

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 EXACT = 1e-9
 """A smaller cost, relative to the values of the two actions, is a tie between them."""
+CANCELLED = 1e-14
+"""So is a smaller cost relative to the largest value of all states: rounding leaves it where rewards cancel to 0."""
 APPROXIMATE = 1.0
 """For MountainCar's values, which are interpolated in a grid, a cost of up to one step is none."""
 
@@ -115,7 +117,8 @@ def costs(subject: Subject, best: Subject, raster: Raster) -> NDArray[np.float64
     highest = optimal.max(axis=-1)
     cost = highest - taken
     exact = isinstance(best.source, Optimum) and best.source.exact
-    tolerance = EXACT * np.maximum(np.abs(highest), np.abs(taken)) if exact else APPROXIMATE
+    of_actions = EXACT * np.maximum(np.abs(highest), np.abs(taken))
+    tolerance = np.maximum(of_actions, CANCELLED * np.nanmax(np.abs(optimal), initial=0.0)) if exact else APPROXIMATE
     return np.where(greedy < 0, np.nan, np.where(cost > tolerance, cost, 0.0))
 
 
