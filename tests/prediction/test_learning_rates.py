@@ -73,6 +73,37 @@ def test_a_schedule_is_saved_only_where_there_is_one(tmp_path: Any) -> None:
         assert "learning_rate_schedule" not in str(arrays["about"])
 
 
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"learning_rate": 0.5},
+        {"learning_rate": 0.5, "min_learning_rate": 0.1},
+        {"learning_rate": 0.5, "learning_rate_warm_up": 3},
+        {"learning_rate": 0.5, "min_learning_rate": 0.1, "learning_rate_schedule": "exponential"},
+        {"learning_rate": 0.5, "min_learning_rate": 0.1, "learning_rate_schedule": "visits"},
+    ],
+)
+def test_training_and_prediction_give_a_learning_rate_the_same_schedule(given: dict[str, Any], tmp_path: Any) -> None:
+    found = qtab.estimate_values(WALK, "random", episodes=9, **given)
+    trained = qtab.train("FrozenLake-v1", seed=0, episodes=9, **given).config
+    settings = found.settings
+    assert (settings.learning_rate_schedule or "constant") == trained.learning_rate_schedule
+    for name in ("min_learning_rate", "learning_rate_warm_up", "learning_rate_decay"):
+        assert getattr(settings, name) == getattr(trained, name), name
+    assert found.verify().equal
+    path = tmp_path / "values.npz"
+    found.save(path)
+    assert qtab.ValueEstimates.load(path).settings == settings
+
+
+def test_a_minimum_without_a_learning_rate_limits_that_of_the_visits() -> None:
+    found = qtab.estimate_values(WALK, "random", episodes=9, min_learning_rate=0.1)
+    by_visits = {"learning_rate_schedule": "visits", "min_learning_rate": 0.1}
+    np.testing.assert_array_equal(
+        found.weights, qtab.estimate_values(WALK, "random", episodes=9, **by_visits).weights, strict=True
+    )
+
+
 def test_a_falling_learning_rate_ends_nearer_to_the_values() -> None:
     exact = qtab.policy_values(WALK, "random")
     options: dict[str, Any] = {"learning_rate": 0.5, "episodes": 1000, "record": 1000, "seeds": 20}
@@ -95,9 +126,19 @@ def test_a_falling_learning_rate_ends_nearer_to_the_values() -> None:
             "learning_rate must be given for learning_rate_schedule 'linear', got None",
         ),
         (
-            {"learning_rate": 0.1, "min_learning_rate": 0.05},
+            {"learning_rate": 0.1, "learning_rate_schedule": "constant", "min_learning_rate": 0.05},
             ValueError,
             "min_learning_rate applies to learning_rate_schedule .*, not to 'constant', got 0.05",
+        ),
+        (
+            {"learning_rate": 0.1, "learning_rate_decay": 0.9},
+            ValueError,
+            "learning_rate_decay applies to learning_rate_schedule 'exponential', not to 'constant', got 0.9",
+        ),
+        (
+            {"learning_rate_warm_up": 5},
+            ValueError,
+            "learning_rate_warm_up applies to learning_rate_schedule .*, not to 'visits', got 5",
         ),
         (
             {"learning_rate": 0.1, "learning_rate_schedule": "linear", "min_learning_rate": 0.2},

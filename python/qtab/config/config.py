@@ -3,9 +3,8 @@
 Options, the settings that apply only beside certain choices, have None here; their defaults are in options.py.
 """
 
-import dataclasses
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from functools import wraps
 from typing import TYPE_CHECKING, Any
 
@@ -31,8 +30,9 @@ from qtab.config.choices import (
     Traces,
 )
 from qtab.config.followers import with_followers
-from qtab.config.options import PREFERENCES, fixed_settings, implied_schedules
+from qtab.config.options import PREFERENCES, fixed_settings
 from qtab.config.origin import WithOrigin, copied
+from qtab.config.rates import implied_schedules
 from qtab.config.unknown import check_names
 from qtab.config.validation import validated
 
@@ -245,12 +245,12 @@ class Config(WithOrigin):
         """
         check_names(changes, DEFAULTS)
         given, origin = with_followers(self, changes, DEFAULTS)
-        return copied(dataclasses.replace(self, **given), origin)
+        return copied(replace(self, **given), origin)
 
 
 DEFAULTS: Mapping[str, Any] = {
     field.name: field.default_factory() if callable(field.default_factory) else field.default
-    for field in dataclasses.fields(Config)
+    for field in fields(Config)
 }
 """The default of each field."""
 

@@ -93,12 +93,6 @@ OPTIONS: Mapping[str, Option] = {
     "high": Option("discretizer", ("bins", "tiles"), None),
 }
 
-_SCHEDULES: Mapping[str, tuple[str, tuple[str, ...]]] = {
-    "learning_rate": ("learning_rate_schedule", ("min_learning_rate", "learning_rate_warm_up")),
-    "epsilon": ("epsilon_schedule", ("min_epsilon", "epsilon_warm_up")),
-}
-"""For each rate that can fall, the setting that names its schedule, and the settings that only a falling rate has."""
-
 OFF_BY_NONE = ("hashed_rows", "max_rows")
 """The options for which None is a real value, not just "not set"."""
 
@@ -192,40 +186,6 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
     if (name, value) == ("exploration", "ucb") and algorithm in WITH_PROBABILITIES:
         return other_choice(name, value, ("ucb",), f"for algorithm {algorithm!r}")
     return None
-
-
-def implied_schedules(asked: Mapping[str, Any], fields: Mapping[str, Any]) -> dict[str, str]:
-    """Returns the schedules of the rates that were asked for without naming one.
-
-    A rate alone is constant. With a minimum or a warm-up it falls, linearly unless ``fields`` have another schedule.
-
-    Args:
-        asked: The settings that were asked for.
-        fields: All settings.
-    """
-    schedules: dict[str, str] = {}
-    for rate, (name, falling) in _SCHEDULES.items():
-        if is_set(asked.get(name)):
-            continue
-        falls = any(is_set(asked.get(option)) for option in falling)
-        if is_set(asked.get(rate)):
-            schedules[name] = "linear" if falls else "constant"
-        elif falls and fields[name] in (None, "constant"):
-            schedules[name] = "linear"
-    return applicable(schedules, fields)
-
-
-def without_rates(start: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the settings of a preset without the schedules of those rates that are asked for.
-
-    The schedule of a preset belongs to its rate: a rate that is asked for does not fall because the preset's does.
-    """
-    replaced = tuple(rate for rate in _SCHEDULES if is_set(asked.get(rate)))
-    return {name: value for name, value in start.items() if not any(_belongs(name, rate) for rate in replaced)}
-
-
-def _belongs(name: str, rate: str) -> bool:
-    return name == _SCHEDULES[rate][0] or (name in OPTIONS and OPTIONS[name].choice == _SCHEDULES[rate][0])
 
 
 def fixed_settings(algorithm: Any) -> Mapping[str, Any]:

@@ -82,8 +82,9 @@ def estimate_values(
         learning_rate: α, in [0, 2]: the fraction of the error that an update corrects; the active features share it.
             None takes 1 / n at the n-th visit of a feature, so that Monte Carlo values are averages of returns.
         learning_rate_schedule: How it falls: ``"linear"`` or ``"exponential"`` over the episodes, or ``"visits"``, as
-            learning_rate / n at the n-th visit of a feature, for methods without traces; None means ``"constant"``, or
-            ``"visits"`` without a learning rate.
+            learning_rate / n at the n-th visit of a feature, for methods without traces. None means ``"visits"``
+            without a learning rate, ``"linear"`` with a ``min_learning_rate`` or a ``learning_rate_warm_up``, and else
+            ``"constant"``.
         min_learning_rate: The lowest learning rate of a schedule, in [0, learning_rate]; None means 0.
         learning_rate_decay: The factor of ``"exponential"`` after each episode, in [0, 1]; None means 0.999.
         learning_rate_warm_up: The number of episodes before ``"linear"`` or ``"exponential"`` begins; None means 0.

@@ -7,6 +7,7 @@ from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config.choices import LearningRateSchedule
 from qtab.config.options import listed
+from qtab.config.rates import implied_schedule
 from qtab.config.schedules import ByVisits, Constant, Exponential, LearningRate, Linear
 
 ONE_STEP_SIZE = ("td_lambda", "true_online_td_lambda")
@@ -54,6 +55,8 @@ def checked_learning_rate(method: str, episodes: int, given: Mapping[str, Any]) 
     checked: dict[str, Any] = {}
     if value is not None:
         checked["learning_rate"] = value = checks.real("learning_rate", value, 0.0, LARGEST)
+    if schedule is None and implied_schedule("learning_rate", given, "visits") == "linear":
+        checked["learning_rate_schedule"] = schedule = "linear"
     kind = schedule or ("visits" if value is None else "constant")
     for name, (schedules, default) in OPTIONS.items():
         option = given[name]

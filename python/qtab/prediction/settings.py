@@ -56,7 +56,8 @@ class PredictionSettings:
     at the n-th visit of a feature, so that Monte Carlo values are averages of returns."""
     learning_rate_schedule: LearningRateSchedule | None = None
     """How the learning rate falls: linearly or exponentially over the episodes, or (visits) as learning_rate / n at the
-    n-th visit of a feature. None means constant, or visits without a learning rate."""
+    n-th visit of a feature. None means visits without a learning rate, linear with a min_learning_rate or a
+    learning_rate_warm_up, and else constant."""
     min_learning_rate: float | None = None
     """The lowest learning rate of a schedule, in [0, learning_rate]."""
     learning_rate_decay: float | None = None

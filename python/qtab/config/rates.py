@@ -1,0 +1,56 @@
+"""The schedules of rates that are asked for without naming one: whether they fall, and how."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from qtab.config.options import OPTIONS, applicable, is_set
+
+_SCHEDULES: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "learning_rate": ("learning_rate_schedule", ("min_learning_rate", "learning_rate_warm_up")),
+    "epsilon": ("epsilon_schedule", ("min_epsilon", "epsilon_warm_up")),
+}
+"""For each rate that can fall, the setting that names its schedule, and the settings that only a falling rate has."""
+
+
+def implied_schedules(asked: Mapping[str, Any], fields: Mapping[str, Any]) -> dict[str, str]:
+    """Returns the schedules of the rates that were asked for without naming one; see :func:`implied_schedule`.
+
+    Args:
+        asked: The settings that were asked for.
+        fields: All settings.
+    """
+    found = {name: implied_schedule(rate, asked, fields[name]) for rate, (name, _) in _SCHEDULES.items()}
+    return applicable({name: schedule for name, schedule in found.items() if schedule is not None}, fields)
+
+
+def implied_schedule(rate: str, asked: Mapping[str, Any], otherwise: str | None) -> str | None:
+    """Returns the schedule of a rate that was asked for without naming one; None where nothing implies one.
+
+    A rate alone is constant. With a minimum or a warm-up it falls: linearly, unless the rate itself was not asked for
+    and falls in another way.
+
+    Args:
+        rate: ``"learning_rate"`` or ``"epsilon"``.
+        asked: The settings that were asked for.
+        otherwise: The schedule of the rate that is used where none was asked for.
+    """
+    name, falling = _SCHEDULES[rate]
+    if is_set(asked.get(name)):
+        return None
+    falls = any(is_set(asked.get(option)) for option in falling)
+    if is_set(asked.get(rate)):
+        return "linear" if falls else "constant"
+    return "linear" if falls and otherwise in (None, "constant") else None
+
+
+def without_rates(start: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the settings of a preset without the schedules of those rates that are asked for.
+
+    The schedule of a preset belongs to its rate: a rate that is asked for does not fall because the preset's does.
+    """
+    replaced = tuple(rate for rate in _SCHEDULES if is_set(asked.get(rate)))
+    return {name: value for name, value in start.items() if not any(_belongs(name, rate) for rate in replaced)}
+
+
+def _belongs(name: str, rate: str) -> bool:
+    return name == _SCHEDULES[rate][0] or (name in OPTIONS and OPTIONS[name].choice == _SCHEDULES[rate][0])
