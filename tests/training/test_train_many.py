@@ -1,5 +1,6 @@
 """Many runs: each equals the single run of its seed, for any number of threads."""
 
+import importlib
 import sys
 from typing import Any
 
@@ -205,6 +206,27 @@ def test_a_failing_run_is_reported_with_its_seed_and_keeps_the_finished_ones():
     assert runs.seeds == (1,)
     assert not runs.completed
     assert_same_as_single_runs(runs, **STEEP)
+
+
+def test_the_config_has_the_seed_of_the_first_run_that_finished(monkeypatch, tmp_path):
+    """Threads finish in any order: an interruption may come while the first run is the only unfinished one."""
+    module = importlib.import_module("qtab.training.train_many")
+    train_in_threads = module.train_in_threads
+
+    def interrupted(resolved, seeds, results, *others, **options):
+        train_in_threads(resolved, seeds, results, *others, **options)
+        results["finished"][0] = False
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "train_in_threads", interrupted)
+    with pytest.raises(KeyboardInterrupt) as caught:
+        qtab.train_many(CAR, [4, 9, 2], tables=True, **SHORT)
+    runs = run_of(caught.value)
+    assert runs.seeds == (9, 2)
+    assert runs.config.seed == 9
+    assert qtab.train(config=runs.config).episode_returns.tobytes() == runs.episode_returns[0].tobytes()
+    runs.save(tmp_path / "runs.npz")
+    assert qtab.load_runs(tmp_path / "runs.npz").config == runs.config
 
 
 def test_a_number_of_seeds_counts_from_zero():

@@ -39,7 +39,7 @@ class Runs:
     """
 
     config: Config
-    """Everything needed to repeat the runs; its seed is that of the first run."""
+    """Everything needed to repeat the runs; its seed is that of the first run that is there."""
     seeds: tuple[int, ...]
     """(runs,): the seed of each."""
     episode_returns: NDArray[np.float64]
@@ -62,6 +62,11 @@ class Runs:
     """The versions of qtab, Gymnasium, NumPy and Python, and the platform."""
     action_masks: NDArray[np.bool_] | None = None
     """(runs, *cells, actions): which actions each cell of each run has; see :attr:`qtab.Run.action_masks`."""
+
+    def __post_init__(self) -> None:
+        """Gives the config the seed of the first run, also where the runs of earlier seeds did not finish."""
+        if self.seeds and self.config.seed != self.seeds[0]:
+            vars(self)["config"] = replace_checked(self.config, seed=self.seeds[0])
 
     def __repr__(self) -> str:
         runs, episodes = self.episode_returns.shape
@@ -149,7 +154,6 @@ class Runs:
         seeds = self.seeds[part]
         return replace(
             self,
-            config=replace_checked(self.config, seed=seeds[0]) if seeds else self.config,
             seeds=seeds,
             episode_returns=self.episode_returns[part],
             episode_lengths=self.episode_lengths[part],
