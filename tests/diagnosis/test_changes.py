@@ -1,11 +1,16 @@
 """Every change that a finding advises is accepted by ``Config.replace``, and can be trained."""
 
+import ast
+import re
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 
 import qtab
+from qtab.config.choices import ALGORITHM_NAMES
+from qtab.config.options import PREFERENCES, TABLES_ONLY
 from qtab.diagnosis.changes import change
 
 LAKE, CAR = "FrozenLake-v1", "MountainCar-v0"
@@ -121,3 +126,41 @@ def test_whatever_is_advised_can_be_trained(explored: dict[str, Any], rate: dict
             assert qtab.train(config=config, **given).tables.tobytes() == (
                 qtab.train(config=config.replace(**given)).tables.tobytes()
             )
+
+
+def named_settings(advice: str) -> Iterator[tuple[str, Any]]:
+    """The settings that an advice names as keywords, such as ``discount=0.99``, with their values."""
+    for found in re.finditer(r"\b([a-z_]+)=('[^']*'|\([^)]*\)|[-+.\w]*\w)", advice):
+        yield found[1], ast.literal_eval(found[2])
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHM_NAMES)
+def test_no_advice_names_a_setting_that_the_algorithm_refuses(algorithm: str) -> None:
+    """Not even in its text; and the changes that it tries can be trained."""
+    short: dict[str, Any] = {"algorithm": algorithm, "episodes": 60, "max_episode_steps": 40, "seed": 5}
+    runs = [qtab.train(env, **short) for env in (LAKE, "CliffWalking-v1")]
+    runs.append(qtab.train(CAR, **{**short, "episodes": 20}, discretizer="bins", bins=3))
+    if algorithm not in TABLES_ONLY:
+        narrow = {"discretizer": "tiles", "low": (-0.55, -0.001), "high": (-0.5, 0.001)}
+        runs.append(qtab.train(CAR, **{**short, "episodes": 20}, **narrow))
+    if algorithm not in PREFERENCES:
+        runs.append(qtab.train(LAKE, **short, epsilon=0.9, learning_rate=1.0, count_bonus=50.0, initial_q=9.0))
+    if algorithm not in ("gradient_bandit", "differential_sarsa", "differential_q_learning"):
+        runs.append(qtab.train("CliffWalking-v1", **short, discount=0.1))
+    findings = [(run.config, finding) for run in runs for finding in qtab.diagnose(run, seeds=0).findings]
+    assert len({finding.name for _, finding in findings}) > 1
+    for config, finding in findings:
+        for name, value in named_settings(finding.advice):
+            along = next((given for given in finding.changes if name in given), {})
+            assert getattr(config.replace(**{**along, name: value}), name) == value, finding.advice
+        for given in finding.changes:
+            if "preset" not in given:
+                qtab.train(config=config.replace(**given), episodes=2)
+
+
+def test_a_gradient_bandit_in_a_long_task_is_advised_another_algorithm() -> None:
+    run = qtab.train("CliffWalking-v1", seed=0, episodes=60, max_episode_steps=100, algorithm="gradient_bandit")
+    diagnosis = qtab.diagnose(run, seeds=0)
+    (finding,) = (found for found in diagnosis.findings if found.name == "horizon")
+    assert finding.title == "The algorithm, gradient_bandit, learns from the next reward alone."
+    assert [given["algorithm"] for given in finding.changes] == ["q_learning"]

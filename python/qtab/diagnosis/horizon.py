@@ -2,14 +2,17 @@
 
 import numpy as np
 
+from qtab.config.options import FIXED, fixed_settings
 from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import LONGEST_MOUNTAIN_CAR, Facts
-from qtab.diagnosis.finding import Finding, Unchecked, percent
+from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, percent
 
 LEAST_WEIGHT = 0.05
 """With less of its weight left at the start, a goal is hard to tell from no goal."""
 SHORT_SIGHTED = 0.5
 """With such a discount the agent looks at most two steps ahead: it is reported in any task of long episodes."""
+OTHER_ALGORITHM = "q_learning"
+"""What is advised instead of an algorithm without a discount."""
 
 
 def horizon(facts: Facts) -> Finding | Unchecked | None:
@@ -50,11 +53,19 @@ def horizon(facts: Facts) -> Finding | Unchecked | None:
             meaning += f" Without a goal in sight every state is worth {-ahead:.3g}, and all actions look the same."
     costs = bool((run.episode_returns < 0).all())
     better = 1.0 if costs else float(np.ceil(1000 * (1 - 1 / (5 * shortest))) / 1000)
+    algorithm = facts.config.algorithm
+    if "discount" in fixed_settings(algorithm):
+        title = f"The algorithm, {algorithm}, {FIXED[algorithm].reason}."
+        other = {"algorithm": OTHER_ALGORITHM, "exploration": "epsilon_greedy", "discount": better}
+        advice = f"use an algorithm that has a discount: {as_keywords(other)}"
+    else:
+        title, other = "The discount is too small for the way to the goal.", {"discount": better}
+        advice = f"use {as_keywords(other)}"
     return Finding(
         name="horizon",
-        title="The discount is too small for the way to the goal.",
+        title=title,
         evidence=evidence,
         meaning=meaning,
-        advice=f"use discount={better:g}" + (": with a cost for each step the values stay finite" if costs else ""),
-        changes=changes(facts.config, {"discount": better}),
+        advice=advice + (": with a cost for each step the values stay finite" if costs else ""),
+        changes=changes(facts.config, other),
     )
