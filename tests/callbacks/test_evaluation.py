@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.callbacks import EvaluateEvery, KeepBest, StopAtReturn
+from qtab.callbacks import CSVLogger, EvaluateEvery, KeepBest, StopAtReturn
 from support.environments import Walk
 from support.parity import assert_same_run, run_of
 
@@ -184,3 +184,48 @@ def test_a_run_does_not_stop_before_it_has_a_whole_window():
 def test_wrong_arguments_are_refused_by_name(kind, arguments, message):
     with pytest.raises((TypeError, ValueError), match=message):
         kind(**arguments)
+
+
+@pytest.mark.parametrize("make", [EvaluateEvery, KeepBest])
+def test_the_object_that_evaluated_the_earlier_part_continues(make):
+    short = {**LAKE, "episodes": 1500}
+    whole = make(episodes=20, every=250)
+    qtab.train(**short, callback=whole)
+    half: list[qtab.Run] = []
+
+    def fail(now: qtab.Progress) -> None:
+        half.append(now.run)
+        if len(half) == 2:
+            raise KeyboardInterrupt
+
+    evaluation = make(episodes=20, every=250)
+    with pytest.raises(KeyboardInterrupt):
+        qtab.train(**short, callback=[evaluation, fail], callback_every=500)
+    assert evaluation.evaluated_at == [250, 500, 750, 1000]
+    qtab.resume(half[0], callback=evaluation)  # without what was evaluated after it
+    assert evaluation.evaluated_at == whole.evaluated_at
+    assert evaluation.mean_returns.tobytes() == whole.mean_returns.tobytes()
+    if isinstance(whole, KeepBest):
+        assert evaluation.best_return == whole.best_return
+        assert_same_run(evaluation.run, whole.run)
+
+
+@pytest.mark.parametrize("change", [{"seed": 4}, {"learning_rate": 0.3}, {"episodes": 1000}])
+def test_evaluations_of_another_run_are_not_continued(change):
+    evaluation = EvaluateEvery(episodes=5, every=100)
+    part = qtab.train(**{**LAKE, "episodes": 400}, callback=lambda now: now.episodes < 200, callback_every=200)
+    qtab.train(**{**LAKE, "episodes": 400, **change}, callback=evaluation)
+    qtab.resume(part, callback=evaluation)
+    assert evaluation.evaluated_at == [300, 400]
+
+
+def test_a_logger_writes_no_evaluation_twice_where_a_run_is_resumed(tmp_path):
+    evaluation, path = EvaluateEvery(episodes=5, every=200), tmp_path / "log.csv"
+    callback: list[Any] = [evaluation, CSVLogger(path, every=50, metrics=["steps"], evaluation=evaluation)]
+    short = {**LAKE, "episodes": 400}
+    part = qtab.train(**short, callback=[*callback, lambda now: now.episodes < 250], callback_every=250)
+    qtab.resume(part, callback=callback)
+    lines = path.read_text(encoding="utf-8").splitlines()[1:]
+    evaluated = [int(line.split(",")[0]) for line in lines if not line.endswith(",")]
+    assert evaluation.evaluated_at == [200, 250, 400]
+    assert evaluated == [200, 400]  # the one at the stop came after the line of the same episode

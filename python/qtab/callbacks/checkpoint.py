@@ -106,20 +106,23 @@ def first_part(path: Path, run: "Run") -> "Run | None":
     """Returns the run in a file if it holds the first episodes of a run; None for any other file."""
     from qtab.results.storage import load
 
-    config = run.config
     # A file does not hold the functions of its run.
     functions: dict[str, Any] = {
-        name: setting for name in ("discretizer", "action_mask") if callable(setting := getattr(config, name))
+        name: setting for name in ("discretizer", "action_mask") if callable(setting := getattr(run.config, name))
     }
     with suppress(OSError, TypeError, ValueError):  # not the file of such a run
         found = load(path, **functions)
-        count = len(found.episode_returns)
-        is_same = replace_checked(found.config, episodes=config.episodes) == config and all(
-            getattr(found, name).tobytes() == getattr(run, name)[:count].tobytes()
-            for name in ("episode_returns", "episode_lengths")
-        )
-        return found if is_same else None
+        return found if is_first_part(found, run) else None
     return None
+
+
+def is_first_part(part: "Run", run: "Run") -> bool:
+    """Returns whether a run holds the first episodes of another one."""
+    count = len(part.episode_returns)
+    return replace_checked(part.config, episodes=run.config.episodes) == run.config and all(
+        getattr(part, name).tobytes() == getattr(run, name)[:count].tobytes()
+        for name in ("episode_returns", "episode_lengths")
+    )
 
 
 def file_path(name: str, path: "str | os.PathLike[str]") -> Path:

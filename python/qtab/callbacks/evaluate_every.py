@@ -1,5 +1,6 @@
 """``EvaluateEvery``: how good the greedy policy is, again and again during a run."""
 
+from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 import gymnasium as gym
@@ -22,6 +23,9 @@ class EvaluateEvery(BaseCallback):
 
     They take place in an environment of their own with a random generator of its own: the run is, bit for bit, the
     one that it would be without them.
+
+    Where a run is resumed with the object that evaluated its earlier part, the evaluations are continued. Another
+    object has those of the resumed part only.
 
     Args:
         episodes: The number of episodes of each evaluation.
@@ -55,6 +59,8 @@ class EvaluateEvery(BaseCallback):
         self.env = env
         self.evaluated_at: list[int] = []
         self.evaluations: list[Evaluation] = []
+        self._config: Config | None = None
+        """That of the run that was evaluated last."""
 
     @property
     def mean_returns(self) -> NDArray[np.float64]:
@@ -67,11 +73,23 @@ class EvaluateEvery(BaseCallback):
         Raises:
             ValueError: if there is no environment to evaluate in other than the one that is trained in.
         """
-        self.evaluated_at, self.evaluations = [], []
+        self.evaluated_at, self.evaluations, self._config = [], [], config
         if self.env is None:
             _require_another(config)
         elif env is not None and self.env.unwrapped is env.unwrapped:
             raise ValueError("env must be another environment than the one that is trained in, got the same one")
+
+    def on_resume(self, config: Config, env: gym.Env | None, earlier: "Run") -> None:
+        """Continues the evaluations of the earlier part, up to its last episode, if this object made them.
+
+        Raises:
+            ValueError: as for :meth:`on_start`.
+        """
+        finished = len(earlier.episode_returns) if self._config == earlier.config else 0
+        kept = bisect_right(self.evaluated_at, finished)
+        evaluated_at, evaluations = self.evaluated_at[:kept], self.evaluations[:kept]
+        self.on_start(config, env)
+        self.evaluated_at, self.evaluations = evaluated_at, evaluations
 
     def __call__(self, progress: Progress) -> bool | None:
         """Evaluates the greedy policy."""

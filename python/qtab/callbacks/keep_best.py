@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import gymnasium as gym
 
 from qtab._utils.files import check_writable
-from qtab.callbacks.checkpoint import file_path, first_part
+from qtab.callbacks.checkpoint import file_path, first_part, is_first_part
 from qtab.callbacks.evaluate_every import EvaluateEvery
 from qtab.config import Config
 from qtab.training.callbacks import Progress
@@ -65,15 +65,18 @@ class KeepBest(EvaluateEvery):
         self.run = self.best_return = None
 
     def on_resume(self, config: Config, env: gym.Env | None, earlier: "Run") -> None:
-        """Continues with the best run of the earlier part, where the file holds it; else it begins anew.
+        """Continues with the best run of the earlier part, where this object or its file holds it; else begins anew.
 
         Raises:
             OSError: if the file cannot be written.
             ValueError: as for :meth:`on_start`.
         """
-        self.on_start(config, env)
-        if self.path is not None and (best := first_part(self.path, earlier)) is not None:
-            self.run, self.best_return = best, self._evaluate(best).mean_return
+        held = self.run
+        super().on_resume(config, env, earlier)
+        if held is None or not self.evaluations or not is_first_part(held, earlier):
+            held = None if self.path is None else first_part(self.path, earlier)
+        if held is not None:
+            self.run, self.best_return = held, self._evaluate(held).mean_return
 
     def __call__(self, progress: Progress) -> bool | None:
         """Evaluates the greedy policy, and keeps the run if it is the best so far."""

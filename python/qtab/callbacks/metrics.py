@@ -85,7 +85,9 @@ class MetricsLogger(BaseCallback):
 
     def _start(self, config: Config, finished: int) -> None:  # noqa: ARG002
         """Begins a log, or continues that of so many finished episodes."""
-        self._episodes, self._evaluations = finished, 0
+        # An evaluation callback, which comes before the logger, has continued its evaluations already.
+        self._evaluations = len(self.evaluation.evaluations) if finished and self.evaluation else 0
+        self._episodes = finished
 
     def measure(self, progress: Progress) -> dict[str, float | int | None]:
         """Returns the metrics of the episodes since the last call; None where there is no value."""
