@@ -1,10 +1,13 @@
-"""Names in the figures stay inside their axes and cover no line; parameters have sequential colors."""
+"""Names in the figures stay inside their axes and cover no line; lines can be told apart by their colors and widths."""
 
+import dataclasses
 from typing import Any
 
 import numpy as np
 import pytest
 
+import qtab
+from qtab.book.drawing import draw_lines
 from qtab.book.drawing.colors import line_colors
 from qtab.book.drawing.end_labels import label_ends
 from qtab.book.drawing.top_labels import label_tops
@@ -61,3 +64,46 @@ def test_fractions_and_powers_are_values_of_a_parameter(names: list[str], values
     figure, ax = plt.subplots()
     assert line_colors([line(name, [0.0]) for name in names], ax) == sequential(values, ax)
     plt.close(figure)
+
+
+def distances(drawn: Any) -> Any:
+    """How far apart the colors of the lines are, in each pair."""
+    from matplotlib.colors import to_rgb
+
+    colors = np.array([to_rgb(one.get_color()) for one in drawn])
+    return np.linalg.norm(colors[:, None] - colors, axis=-1)[np.triu_indices(len(colors), 1)]
+
+
+def test_runs_that_differ_by_their_seeds_have_colors_without_an_order_and_no_names() -> None:
+    result = qtab.book.run("figure-2.1", progress=False)  # any experiment: only its layout counts
+    runs = [dataclasses.replace(line(f"run {k}", [1.0, k, 1.0]), named=False) for k in range(10)]
+    ax = draw_lines(dataclasses.replace(result, lines=tuple(runs)), None)
+    assert ax.get_legend() is None
+    assert not ax.texts
+    assert distances(ax.lines).min() > 0.15
+    few = qtab.book.EXPERIMENTS["figure-5.4"]
+    (setting,) = few.settings  # type: ignore[attr-defined]
+    short = dataclasses.replace(
+        setting, arguments={**setting.arguments, "episodes": 9, "record": [1, 4, 9]}, x=(1.0, 4.0, 9.0)
+    )
+    drawn: Any = dataclasses.replace(few, settings=(short,)).run(3, progress=False)
+    assert [one.name for one in drawn.lines] == ["run 1", "run 2", "run 3"]
+    assert drawn.plot().get_legend() is None
+    plt.close("all")
+
+
+def test_the_initial_values_of_example_6_2_do_not_hide_behind_those_after_one_episode() -> None:
+    ax: Any = qtab.book.run("example-6.2", runs=1, progress=False).plot()
+    drawn = {one.get_label(): one for one in ax.figure.axes[0].lines}
+    below, above = drawn["after 0 episodes"], drawn["after 1 episode"]
+    assert np.isclose(below.get_ydata(), above.get_ydata()).sum() >= 4
+    assert below.get_zorder() < above.get_zorder()
+    assert below.get_linewidth() > 2 * above.get_linewidth()
+    plt.close("all")
+
+
+@pytest.mark.parametrize("name", ["figure-13.1", "figure-13.2"])
+def test_a_figure_with_more_runs_than_the_books_says_so(name: str) -> None:
+    experiment = qtab.book.EXPERIMENTS[name]
+    assert experiment.runs == 1_000
+    assert "1,000 runs here, as a few that get stuck decide the mean of 100" in experiment.book

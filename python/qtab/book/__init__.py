@@ -1,4 +1,4 @@
-"""Experiments of Sutton & Barto, *Reinforcement Learning*, 2nd edition (2018), with the book's numbers of runs.
+"""Experiments of Sutton & Barto, *Reinforcement Learning*, 2nd edition (2018), one command each.
 
     import qtab
 

@@ -37,7 +37,7 @@ def run_all(
 
     Args:
         folder: The folder, which is created if it does not exist.
-        runs: The number of runs of each setting; None means as many as in the book.
+        runs: The number of runs of each setting; None means that of the full figure.
         seed: The seed of the first run of each setting.
         threads: The number of threads; None means one per core. It does not change the results.
         progress: Whether to show a progress bar for each experiment; None shows one on a terminal if it takes longer

@@ -20,7 +20,7 @@ class Description:
     unspecified: str
     """What the book does not state, and what is used here."""
     runs: int
-    """The number of runs of each setting, as in the book."""
+    """The number of runs of each setting: as in the book, unless ``book`` gives another one."""
     x_label: str
     y_label: str
     table_x: tuple[float, ...] | None = None

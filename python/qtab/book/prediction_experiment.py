@@ -59,8 +59,10 @@ class PredictionSetting:
     """The method that decides the color of the line; empty means the name of the line."""
     dashed: bool = False
     """Whether the line is dashed."""
+    broad: bool = False
+    """Whether the line is a broad one behind the others."""
     each_run: bool = False
-    """Whether each run is a line of its own: the name followed by its number."""
+    """Whether each run is a line of its own. The table calls it by the name and its number, the figure does not."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -145,6 +147,8 @@ def _line(setting: PredictionSetting, samples: FloatArray, diverged: int) -> Lin
         diverged=np.full(points, diverged),
         method=setting.method,
         dashed=setting.dashed,
+        broad=setting.broad,
+        named=not setting.each_run,
     )
 
 

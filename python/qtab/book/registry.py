@@ -91,7 +91,7 @@ def run(
 
     Args:
         name: Its name ("figure-10.4"), or its number ("10.4") if that is unique.
-        runs: The number of runs of each setting; None means as many as in the book.
+        runs: The number of runs of each setting; None means that of the full figure.
         seed: The seed of the first run of each setting; the other runs have the seeds after it.
         threads: The number of threads; None means one per core. It does not change the results.
         progress: Whether to show a progress bar; None shows one on a terminal if it takes longer than a second.

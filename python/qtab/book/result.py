@@ -49,6 +49,10 @@ class Line:
     """The method that decides the color of the line; empty means the name of the line."""
     dashed: bool = False
     """Whether the line is dashed."""
+    broad: bool = False
+    """Whether the line is a broad one behind the others, which coincide with it in many points."""
+    named: bool = True
+    """Whether the figure names the line. Runs that differ by their seeds alone have no names there."""
 
     def __repr__(self) -> str:
         """One line of text: the points are not shown."""

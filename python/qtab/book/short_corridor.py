@@ -8,6 +8,8 @@ BEST_RETURN = -6.0 - 4.0 * math.sqrt(2.0)
 """The return of the best policy, which goes right with probability 2 - √2."""
 MAX_EPISODE_STEPS = 1_000
 """A policy that has become almost deterministic would not reach the goal in any number of steps."""
+RUNS = 1_000
+BOOK_RUNS = "100 runs of 1,000 episodes (1,000 runs here, as a few that get stuck decide the mean of 100)"
 UNSPECIFIED = "the first policy (right with probability 0.05 here, as the returns of the book's first episodes show)"
 
 

@@ -20,12 +20,12 @@ ALL = "all"
 
 @dataclass(frozen=True)
 class Arguments:
-    """Run an experiment of Sutton & Barto's book with the book's number of runs, and print the results."""
+    """Run an experiment of Sutton & Barto's book, and print the results."""
 
     experiment: Annotated[tyro.conf.Positional[str | None], tyro.conf.arg(metavar="NAME")] = None
     """figure-10.4, or 10.4 if no example has the same number, or all; without a name, the experiments are listed."""
     runs: Annotated[int | None, OPTIONAL_INT] = None
-    """The number of runs of each setting; by default as many as in the book."""
+    """The number of runs of each setting; by default that of the full figure."""
     seed: Annotated[int, INT] = 0
     """The seed of the first run; the other runs have the seeds after it."""
     plot: Path | None = None

@@ -54,10 +54,10 @@ def line_colors(lines: Sequence[Line], ax: "Axes") -> list[Any]:
     """Returns a color for each line.
 
     Three or more values of one parameter, such as ``"n = 4"``, have sequential colors in their order. Methods have a
-    color each, the same in every figure. Other lines have the colors that are left.
+    color each, the same in every figure. Other lines have the colors that are left, also those without a name there.
     """
     names = list(dict.fromkeys(line.method or line.name for line in lines))
-    chosen: dict[str, Any] = _of_parameter(names, ax)
+    chosen: dict[str, Any] = _of_parameter([line.method or line.name for line in lines if line.named], ax)
     for name in names:
         if name not in chosen and (hue := METHOD_COLORS.get(name) or algorithm_color(name)):
             chosen[name] = readable(hue, ax)

@@ -1,5 +1,6 @@
 """Lines of the book's figures."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
 
 MAX_MARKERS = 40
 """A figure in which a line has more points than this is drawn without markers."""
+BROAD: Mapping[str, Any] = {"linewidth": 6, "alpha": 0.4, "zorder": 1}
+"""The style of a line that would hide others, or be hidden by them."""
 MOST_LABELED = 100
 """A logarithmic axis over less than this ratio is also labeled between the powers of ten."""
 
@@ -31,8 +34,9 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
         error = np.nan_to_num(line.error)
         low, high = line.mean - 2 * error, line.mean + 2 * error
         ax.fill_between(line.x, low, high, color=hue, alpha=0.25, linewidth=0)
-        style = "--" if line.dashed else "-"
-        ax.plot(line.x, line.mean, style, color=hue, linewidth=1.6, label=line.name, **marker)
+        style = BROAD if line.broad else {"linewidth": 1.6, **marker}
+        label = line.name if line.named else "_nolegend_"
+        ax.plot(line.x, line.mean, "--" if line.dashed else "-", color=hue, label=label, **style)
     if experiment.log_x:
         ax.set_xscale("log")
     if experiment.x_ticks is not None:

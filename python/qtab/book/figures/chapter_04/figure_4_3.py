@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from qtab.book.drawing import line_colors
+from qtab.book.drawing import BROAD, line_colors
 from qtab.book.exact_experiment import ExactExperiment, exact_line
 from qtab.book.result import Line, Result
 from qtab.book.runner import FloatArray
@@ -49,7 +49,7 @@ def _draw(result: Result, ax: "Axes | None") -> "Axes":
     upper, lower = figure.subplots(2, sharex=True)
     for line, hue in zip(values, line_colors(values, upper), strict=True):
         # The final values lie behind the others as a broad band: sweep 32 has almost reached them.
-        style = {"linewidth": 6, "alpha": 0.4, "zorder": 1} if line.name == FINAL else {"linewidth": 1.4}
+        style = BROAD if line.name == FINAL else {"linewidth": 1.4}
         upper.plot(line.x, line.mean, color=hue, label=line.name, **style)
     finish(upper, "", "value: the probability of winning", result.experiment.heading)
     lower.bar(policy.x, policy.mean, width=1.0, color=line_colors([policy], lower)[0])

@@ -25,6 +25,7 @@ EXPERIMENT = PredictionExperiment(
                 values_at(point),
                 _STATES,
                 max_runs=1,
+                broad=count == 0,  # after one episode, all values but one are still the initial ones
             )
             for point, count in enumerate(_SHOWN)
         ),

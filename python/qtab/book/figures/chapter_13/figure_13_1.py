@@ -2,19 +2,19 @@
 
 from qtab.book.measures import returns
 from qtab.book.setting import Setting
-from qtab.book.short_corridor import BEST_RETURN, ENV, MAX_EPISODE_STEPS, UNSPECIFIED, reinforce
+from qtab.book.short_corridor import BEST_RETURN, BOOK_RUNS, ENV, MAX_EPISODE_STEPS, RUNS, UNSPECIFIED, reinforce
 from qtab.book.training_experiment import TrainingExperiment
 
 EXPERIMENT = TrainingExperiment(
     name="figure-13.1",
     title="REINFORCE on the short corridor",
-    book="α = 2⁻¹², 2⁻¹³ and 2⁻¹⁴; 100 runs of 1,000 episodes",
+    book=f"α = 2⁻¹², 2⁻¹³ and 2⁻¹⁴; {BOOK_RUNS}",
     unspecified=UNSPECIFIED,
     settings=tuple(
         Setting(f"α = {text}", ENV, reinforce(log_alpha), returns)
         for log_alpha, text in ((-12, "2⁻¹²"), (-13, "2⁻¹³"), (-14, "2⁻¹⁴"))
     ),
-    runs=100,
+    runs=RUNS,
     max_episode_steps=MAX_EPISODE_STEPS,
     x_label="episode",
     y_label="total reward on episode",

@@ -2,7 +2,7 @@
 
 from qtab.book.measures import returns
 from qtab.book.setting import Setting
-from qtab.book.short_corridor import BEST_RETURN, ENV, MAX_EPISODE_STEPS, UNSPECIFIED, reinforce
+from qtab.book.short_corridor import BEST_RETURN, BOOK_RUNS, ENV, MAX_EPISODE_STEPS, RUNS, UNSPECIFIED, reinforce
 from qtab.book.training_experiment import TrainingExperiment
 
 _BASELINE = {"algorithm": "reinforce_with_baseline", "value_learning_rate": 2.0**-6}
@@ -10,14 +10,13 @@ _BASELINE = {"algorithm": "reinforce_with_baseline", "value_learning_rate": 2.0*
 EXPERIMENT = TrainingExperiment(
     name="figure-13.2",
     title="REINFORCE with and without a baseline",
-    book="REINFORCE with α = 2⁻¹³; with baseline α = 2⁻⁹ for the policy and 2⁻⁶ for the state values; 100 runs of "
-    "1,000 episodes",
+    book=f"REINFORCE with α = 2⁻¹³; with baseline α = 2⁻⁹ for the policy and 2⁻⁶ for the state values; {BOOK_RUNS}",
     unspecified=UNSPECIFIED,
     settings=(
         Setting("REINFORCE with baseline", ENV, reinforce(-9, **_BASELINE), returns),
         Setting("REINFORCE", ENV, reinforce(-13), returns),
     ),
-    runs=100,
+    runs=RUNS,
     max_episode_steps=MAX_EPISODE_STEPS,
     x_label="episode",
     y_label="total reward on episode",
