@@ -15,7 +15,9 @@ def trained(name: str, **settings: str) -> qtab.Runs:
     runs = qtab.train_many("MountainCar-v0", seeds=1000, **settings)
     final = runs.final_returns(100)
     print(f"{name}: {runs.episode_lengths.sum():,} steps in {time.perf_counter() - began:.1f} s")
-    print(f"{name}: {qtab.stats.mean(final)} over the last 100 episodes of {len(runs)} seeds, best {final.max():.1f}")
+    print(f"{name}: {qtab.stats.mean(final)} over the last 100 episodes of {len(runs):,} seeds")
+    reached = (final >= THRESHOLD).sum()
+    print(f"{name}: from {final.min():.1f} to {final.max():.1f}; {reached:,} of them reach {THRESHOLD:g}")
     return runs
 
 

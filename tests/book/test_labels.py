@@ -81,12 +81,12 @@ def test_runs_that_differ_by_their_seeds_have_colors_without_an_order_and_no_nam
     assert ax.get_legend() is None
     assert not ax.texts
     assert distances(ax.lines).min() > 0.15
-    few = qtab.book.EXPERIMENTS["figure-5.4"]
-    (setting,) = few.settings  # type: ignore[attr-defined]
+    few: Any = qtab.book.EXPERIMENTS["figure-5.4"]
+    (setting,) = few.settings
     short = dataclasses.replace(
         setting, arguments={**setting.arguments, "episodes": 9, "record": [1, 4, 9]}, x=(1.0, 4.0, 9.0)
     )
-    drawn: Any = dataclasses.replace(few, settings=(short,)).run(3, progress=False)
+    drawn = dataclasses.replace(few, settings=(short,)).run(3, progress=False)
     assert [one.name for one in drawn.lines] == ["run 1", "run 2", "run 3"]
     assert drawn.plot().get_legend() is None
     plt.close("all")

@@ -206,6 +206,7 @@ def test_the_object_that_evaluated_the_earlier_part_continues(make):
     assert evaluation.evaluated_at == whole.evaluated_at
     assert evaluation.mean_returns.tobytes() == whole.mean_returns.tobytes()
     if isinstance(whole, KeepBest):
+        assert whole.run is not None
         assert evaluation.best_return == whole.best_return
         assert_same_run(evaluation.run, whole.run)
 

@@ -141,7 +141,7 @@ def test_no_advice_names_a_setting_that_the_algorithm_refuses(algorithm: str) ->
     runs = [qtab.train(env, **short) for env in (LAKE, "CliffWalking-v1")]
     runs.append(qtab.train(CAR, **{**short, "episodes": 20}, discretizer="bins", bins=3))
     if algorithm not in TABLES_ONLY:
-        narrow = {"discretizer": "tiles", "low": (-0.55, -0.001), "high": (-0.5, 0.001)}
+        narrow: dict[str, Any] = {"discretizer": "tiles", "low": (-0.55, -0.001), "high": (-0.5, 0.001)}
         runs.append(qtab.train(CAR, **{**short, "episodes": 20}, **narrow))
     if algorithm not in PREFERENCES:
         runs.append(qtab.train(LAKE, **short, epsilon=0.9, learning_rate=1.0, count_bonus=50.0, initial_q=9.0))

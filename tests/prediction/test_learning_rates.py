@@ -98,7 +98,7 @@ def test_training_and_prediction_give_a_learning_rate_the_same_schedule(given: d
 
 def test_a_minimum_without_a_learning_rate_limits_that_of_the_visits() -> None:
     found = qtab.estimate_values(WALK, "random", episodes=9, min_learning_rate=0.1)
-    by_visits = {"learning_rate_schedule": "visits", "min_learning_rate": 0.1}
+    by_visits: dict[str, Any] = {"learning_rate_schedule": "visits", "min_learning_rate": 0.1}
     np.testing.assert_array_equal(
         found.weights, qtab.estimate_values(WALK, "random", episodes=9, **by_visits).weights, strict=True
     )
