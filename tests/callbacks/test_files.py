@@ -1,7 +1,6 @@
 """Checkpoints and logs: what they write, when, and what they refuse."""
 
 import csv
-import struct
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ import pytest
 import qtab
 from qtab.callbacks import Checkpoint, CSVLogger, EvaluateEvery, StopAtReturn, TensorBoardLogger
 from support.parity import assert_same_run
+from support.tensorboard import curves, purged_from
 
 CAR = "MountainCar-v0"
 SHORT: dict[str, Any] = {"seed": 6, "episodes": 10, "max_episode_steps": 30}
@@ -206,36 +206,6 @@ def test_a_log_of_an_interrupted_run_is_closed(tmp_path):
         qtab.train(CAR, callback=[log, fail], callback_every=5, **SHORT)
     assert log._file is None
     assert len(lines(tmp_path / "log.csv")) == 1
-
-
-def curves(folder: Path) -> dict[str, list[tuple[int, float]]]:
-    """The points of the curves in TensorBoard's only file in a folder: a length, a checksum, an event, a checksum."""
-    from tensorboardX.proto.event_pb2 import Event
-
-    (path,) = folder.iterdir()
-    content, at = path.read_bytes(), 0
-    found: dict[str, list[tuple[int, float]]] = {}
-    while at < len(content):
-        (length,) = struct.unpack_from("<Q", content, at)
-        event = Event.FromString(content[at + 12 : at + 12 + length])
-        for value in event.summary.value:
-            found.setdefault(value.tag, []).append((event.step, value.simple_value))
-        at += 16 + length
-    return found
-
-
-def purged_from(path: Path) -> int | None:
-    """The step from which on a file of TensorBoard replaces earlier ones."""
-    from tensorboardX.proto.event_pb2 import Event, SessionLog
-
-    content, at = path.read_bytes(), 0
-    while at < len(content):
-        (length,) = struct.unpack_from("<Q", content, at)
-        event = Event.FromString(content[at + 12 : at + 12 + length])
-        if event.session_log.status == SessionLog.START:
-            return event.step
-        at += 16 + length
-    return None
 
 
 def test_tensorboard_gets_the_curves(tmp_path):

@@ -16,13 +16,10 @@ from gymnasium.wrappers import (
     TransformObservation,
     TransformReward,
 )
-from hypothesis import given
-from hypothesis import strategies as st
 
 import qtab
 from qtab.envs.origin import describe, differences, make_again
 from qtab.envs.origin.description import EnvironmentDescription, from_json
-from qtab.envs.origin.values import NotRestorableError, describe_value, restored, same
 from qtab.envs.registry import ENTRIES, EXTRA
 
 CAR, LAKE = "MountainCar-v0", "FrozenLake-v1"
@@ -277,31 +274,3 @@ def test_a_description_from_a_file_writes_no_files(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="RecordVideo is not one that a run stores"):
         make_again(hostile, gym.spec(CAR), {"render_mode": "rgb_array"}, 200)
     assert not (tmp_path / "videos").exists()
-
-
-PLAIN = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats() | st.text("abc"),
-    lambda part: st.lists(part, max_size=3) | st.tuples(part, part) | st.dictionaries(st.text("xyz"), part, max_size=3),
-    max_leaves=6,
-)
-
-
-@given(PLAIN)
-def test_plain_values_are_restored_from_json(value: Any) -> None:
-    content = json.loads(json.dumps(describe_value(value), allow_nan=False))
-    assert same(content, describe_value(value))
-    assert repr(restored(content)) == repr(value)
-
-
-@pytest.mark.parametrize("value", [np.float32(0.1), np.array([[1.5, np.nan]]), np.int8(3), np.array([True, False])])
-def test_arrays_are_restored_with_their_dtypes(value: Any) -> None:
-    found = restored(json.loads(json.dumps(describe_value(value))))
-    assert np.asarray(found).dtype == value.dtype
-    assert np.asarray(found).tobytes() == value.tobytes()
-
-
-def test_of_large_arrays_a_digest_is_kept() -> None:
-    one, other = describe_value(np.zeros(10_000)), describe_value(np.ones(10_000))
-    assert not same(one, other)
-    with pytest.raises(NotRestorableError, match=r"an array of shape \(10000,\)"):
-        restored(one)

@@ -85,9 +85,9 @@ def restored(content: Any) -> Any:
     raise NotRestorableError(in_words(content))
 
 
-def with_types(stored: Mapping[str, Any], described: Mapping[str, Any]) -> dict[str, Any]:
+def with_types(stored: Mapping[str, Any], descriptions: Mapping[str, Any]) -> dict[str, Any]:
     """Returns arguments from JSON with the types that they had, such as tuples, where their descriptions agree."""
-    return {name: _with_type(value, described.get(name)) for name, value in stored.items()}
+    return {name: _with_type(value, descriptions.get(name)) for name, value in stored.items()}
 
 
 def _with_type(value: Any, content: Any) -> Any:
