@@ -28,9 +28,11 @@ class _Clock:
 def with_seconds(monkeypatch: pytest.MonkeyPatch, seconds: float) -> None:
     clock, train = _Clock(seconds), worker.train_setting
 
-    def train_setting(env: Any, overrides: Any, resolved: Any, seeds: Any, block: int, threads: int) -> Any:
+    def train_setting(
+        env: Any, overrides: Any, resolved: Any, seeds: Any, block: int, threads: int, memory_limit: int | None
+    ) -> Any:
         clock.now += clock.seconds * len(seeds) / threads
-        return train(env, overrides, resolved, seeds, block, threads)
+        return train(env, overrides, resolved, seeds, block, threads, memory_limit)
 
     monkeypatch.setattr(worker, "time", clock)
     monkeypatch.setattr(worker, "train_setting", train_setting)

@@ -33,6 +33,7 @@ def listing(
     rows: Sequence[Sequence[object]],
     picture: str = "",
     colors: Sequence[str] = (),
+    notes: Sequence[str] = (),
 ) -> str:
     """Returns a table with named columns, the first of which names the rows, and a picture.
 
@@ -42,10 +43,11 @@ def listing(
         rows: The values of each row; every text is escaped.
         picture: An SVG; empty for none.
         colors: The colors in the picture of the first rows; empty for a row that it does not show.
+        notes: Lines below the table and the picture.
     """
     lines = [_row("th", columns, "")]
     lines += [_row("td", row, color) for row, color in zip(rows, [*colors, *[""] * len(rows)], strict=False)]
-    return _box(heading, "".join(lines), picture)
+    return _box(heading, "".join(lines), picture + _below(notes))
 
 
 def report(heading: str, columns: Sequence[str], rows: Sequence[Sequence[object]], notes: Sequence[str] = ()) -> str:
@@ -64,8 +66,11 @@ def report(heading: str, columns: Sequence[str], rows: Sequence[Sequence[object]
         + "</tr>"
         for tag, row in [*([("th", columns)] if columns else []), *(("td", row) for row in rows)]
     ]
-    below = "".join(f'<div style="flex-basis:100%">{escape(note)}</div>' for note in notes)
-    return _box(heading, "".join(lines) if rows else "", below)
+    return _box(heading, "".join(lines) if rows else "", _below(notes))
+
+
+def _below(notes: Sequence[str]) -> str:
+    return "".join(f'<div style="flex-basis:100%">{escape(note)}</div>' for note in notes)
 
 
 def _sentences(tag: str, lines: Sequence[str], is_title: bool) -> str:

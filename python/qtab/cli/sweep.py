@@ -18,6 +18,7 @@ from qtab.cli.study_file import read_study
 from qtab.cli.usage import UsageError, flag, one_line, usage_errors
 from qtab.sweeps import StoreError, Sweep, sweep
 from qtab.sweeps.confirm import MAX_SEEDS
+from qtab.sweeps.run_versions import runs_by_versions, versions_note
 from qtab.sweeps.stored import read_store, store_path
 from qtab.sweeps.study import settings_of
 
@@ -71,6 +72,8 @@ def _run(options: Arguments, report: Report) -> None:
             result = sweep(study.env, study.grid, store=store, progress=report.progress, **given, **study.config)
     runs, settings = counted(len(result), "run"), counted(len(result.settings), "setting")
     report.text(f"{runs} of {settings} in {store}, {result.failed} failed")
+    if note := versions_note(result.run_versions):
+        report.text(note)
     report.add(**_facts(result), store=store, confirmation=None)
     if options.confirm is not None:
         with usage_errors(), _names_file(options.study):
@@ -124,6 +127,7 @@ def _facts(result: Sweep) -> dict[str, Any]:
         "failed": result.failed,
         "seeds": len(result.seeds),
         "seconds": result.seconds,
+        "versions": [{"runs": runs, "versions": one} for one, runs in runs_by_versions(result.run_versions)],
         "ranking": [
             {"setting": setting, "values": result.settings[setting], "mean_final_return": means[setting]}
             for setting in result.ranking()

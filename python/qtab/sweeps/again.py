@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from qtab._utils import checks
+from qtab._utils.versions import versions
 from qtab.results.run import Run
 from qtab.results.summary import summarize
 from qtab.sweeps.confirm import plan_again
@@ -42,6 +43,13 @@ def trained_again(sweep: "Sweep", setting: int, seed: int, env: Any) -> Run:
         if here != there:
             raise ValueError(
                 f"the run of setting {setting} with seed {seed} is different here: {name} is {here}, "
-                f"in the sweep {there}"
+                f"in the sweep {there}{_other_versions(sweep, found[0])}"
             )
     return run
+
+
+def _other_versions(sweep: "Sweep", row: int) -> str:
+    """What differs between the versions that trained a run of a sweep and those here, to follow a message."""
+    then, here = sweep.run_versions[row] if sweep.run_versions else None, versions()
+    others = [f"{name} {then.get(name)}" for name in here if then.get(name) != here[name]] if then else []
+    return f", which was trained with {', '.join(others)}" if others else ""

@@ -1,7 +1,7 @@
 """Settings of a sweep, trained again with other seeds."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,13 @@ from qtab._utils import checks, html
 from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.layers import over
+from qtab.config.origin import Origin, copied
+from qtab.envs.origin import differences
+from qtab.envs.origin.values import with_types
+from qtab.sweeps.run_versions import versions_note
 from qtab.sweeps.study import Study, to_cell
+from qtab.training.resolved_run import ResolvedRun
+from qtab.training.run_env import as_in_training, environment_of
 from qtab.training.train_many import resolve_template, seed_numbers
 
 if TYPE_CHECKING:
@@ -68,7 +74,8 @@ class Confirmation:
             for place, setting in enumerate(self.chosen)
         ]
         heading = f"Confirmation of {len(self.chosen)} of {len(self.swept.settings)} settings of {self.swept.env}"
-        return html.listing(heading, ("setting", *names, "mean in the sweep", "mean over the other seeds"), rows)
+        note, columns = self._versions_note(), ("setting", *names, "mean in the sweep", "mean over the other seeds")
+        return html.listing(heading, columns, rows, notes=[note] if note else [])
 
     def _mean(self, place: int) -> str:
         """The mean with its interval; without SciPy, or with a single run, no interval."""
@@ -78,7 +85,13 @@ class Confirmation:
         return f"{values.mean():.6g}" if len(values) else "no mean"
 
     def __str__(self) -> str:
-        return "\n".join(self._line(place, setting) for place, setting in enumerate(self.chosen))
+        lines = [self._line(place, setting) for place, setting in enumerate(self.chosen)]
+        note = self._versions_note()
+        return "\n".join([*lines, note] if note else lines)
+
+    def _versions_note(self) -> str:
+        """What differs between the versions that trained the runs of the sweep and those of the confirmation."""
+        return versions_note([*self.swept.run_versions, *self.confirmed.run_versions])
 
     def _line(self, place: int, setting: int) -> str:
         values = ", ".join(f"{name} {value}" for name, value in self.swept.settings[setting].items())
@@ -137,15 +150,21 @@ def plan_again(sweep: "Sweep", chosen: Sequence[int], numbers: tuple[int, ...], 
 
     Raises:
         TypeError: if ``env`` is an environment, which several runs cannot share.
-        ValueError: if the settings cannot be restored here.
+        ValueError: if the settings cannot be restored here, or their environment is another one, or cannot be made
+            again.
     """
     if sweep._source is not None:
         made = sweep._source[0] if env is None else env
         overrides = [sweep._source[1][index] for index in chosen]
     else:
-        made = _registered(sweep.env) if env is None else env
-        overrides = [_restored(sweep.configs[index], made) for index in chosen]
+        configs = [_restored(sweep, index) for index in chosen]
+        made = _made_again(configs[0]) if env is None else env
+        # A function passes the arguments to the environment itself.
+        own: dict[str, Any] = {"env_kwargs": {}} if callable(made) else {}
+        overrides = [{**over(config, {}), **own} for config in configs]
     resolved = [resolve_template(made, {**given, "seed": max(numbers)}) for given in overrides]
+    for index, run in zip(chosen, resolved, strict=True):
+        _check_environment(sweep, index, run)
     study = Study(made, [sweep.settings[index] for index in chosen], overrides, numbers, resolved, sweep.block)
     for index, config in zip(chosen, study.description.configs, strict=True):
         different = [
@@ -177,17 +196,41 @@ def _other_seeds(sweep: "Sweep", seeds: Any) -> tuple[int, ...]:
     return numbers
 
 
-def _registered(env: str) -> Any:
-    """Returns the spec of an id from a store. A store must not choose a module to import."""
-    spec = gym.registry.get(env.rpartition(":")[2])
+def _made_again(config: Config) -> Any:
+    """Returns the environment of a config from a store: the spec of its id, or a function that makes it as it was.
+
+    A store must not choose a module to import.
+    """
+    spec = gym.registry.get(config.env.rpartition(":")[2])
     if spec is None:
-        raise ValueError(f"the environment {env!r} of the store must be registered, or given as env=, but it is not")
-    return spec
+        raise ValueError(
+            f"the environment {config.env!r} of the store must be registered, or given as env=, but it is not"
+        )
+
+    def attempt(env: Any, settings: dict[str, Any]) -> ResolvedRun:
+        return resolve_template(spec if isinstance(env, str) else env, settings)
+
+    _, made, _ = as_in_training(config, over(config, {}), attempt)
+    return spec if isinstance(made, str) else made
 
 
-def _restored(config: Mapping[str, Any], env: Any) -> dict[str, Any]:
-    """Returns the overrides that give a config from a store."""
-    if isinstance(config["initial_q"], dict):
+def _restored(sweep: "Sweep", setting: int) -> Config:
+    """Returns the config of a setting from a store, which knows its environment as far as the store describes it."""
+    stored, environment = sweep.configs[setting], sweep._environments.get(setting)
+    if isinstance(stored["initial_q"], dict):
         raise ValueError("a store does not keep an array initial_q; use the table that qtab.sweep returned")
-    kwargs = {} if callable(env) else config["env_kwargs"]  # a function passes them to the environment itself
-    return over(Config(**{**config, "env_kwargs": kwargs}), {})
+    if environment is None:
+        return Config(**stored)
+    kwargs = with_types(stored["env_kwargs"], environment.kwargs)
+    return copied(Config(**{**stored, "env_kwargs": kwargs}), Origin(environment))
+
+
+def _check_environment(sweep: "Sweep", setting: int, resolved: ResolvedRun) -> None:
+    """Checks that a setting is trained again in its environment, as far as that is known.
+
+    Raises:
+        ValueError: if it is another one; the message says what differs.
+    """
+    environment = sweep._environments.get(setting)
+    if environment is not None and (found := differences(environment, environment_of(resolved))):
+        raise ValueError(f"env must be that of setting {setting} of the sweep, got another one: {'; '.join(found)}")

@@ -3,7 +3,7 @@
 import json
 import math
 import sqlite3
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
@@ -11,27 +11,36 @@ from pathlib import Path
 from qtab.sweeps.connection import StoreError, damaged, name_of
 from qtab.sweeps.description import SUMMARY_COLUMNS, Description, read_description
 from qtab.sweeps.digests import StoredRun, chunk_digest, combined, study_digest, to_text
+from qtab.sweeps.run_versions import UNKNOWN, check_places, named_versions
 
 FORMAT = "qtab sweep"
-FORMAT_VERSION = 2
-"""The version that is written. Version 1, without digests, is also read, and upgraded when its sweep resumes."""
+FORMAT_VERSION = 3
+"""The version that is written. Version 1, without digests, and version 2, without the versions of single runs, are also
+read, and upgraded when their sweep resumes."""
 
 _META = "CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL)"
 _RUNS = (
     f"CREATE TABLE runs ( run INTEGER PRIMARY KEY, seed TEXT NOT NULL, "
     f"{', '.join(f'{name} REAL' for name in SUMMARY_COLUMNS)}, curve BLOB NOT NULL, error TEXT )"
 )
-CHUNKS = (
+_CHUNKS = (
+    "CREATE TABLE chunks (start INTEGER PRIMARY KEY, stop INTEGER NOT NULL, owner TEXT, heartbeat REAL, seconds REAL, "
+    "digest TEXT, versions INTEGER, CONSTRAINT needs_newer_qtab CHECK (digest IS NULL OR versions IS NOT NULL))"
+)
+"""The runs ``start`` to ``stop`` - 1. With a digest they are stored; without, ``owner`` has claimed them, at the time
+``heartbeat``. ``versions`` is the place of the software that trained them among those that the store names.
+
+The constraint refuses what an earlier qtab would store that opened the file before another process upgraded it: such a
+process does not notice that the runs have other numbers after more seeds were added."""
+_CHUNKS_2 = (
     "CREATE TABLE chunks (start INTEGER PRIMARY KEY, stop INTEGER NOT NULL, owner TEXT, heartbeat REAL, seconds REAL, "
     "digest TEXT)"
 )
-"""The runs ``start`` to ``stop`` - 1. With a digest they are stored; without, ``owner`` has claimed them, at the time
-``heartbeat``."""
 _PIECES = (
     "CREATE TABLE pieces ( piece INTEGER PRIMARY KEY, owner TEXT, heartbeat REAL, done INTEGER NOT NULL DEFAULT 0 )"
 )
 """What version 1 calls a chunk."""
-_TABLES = {"1": {_META, _PIECES, _RUNS}, "2": {_META, CHUNKS, _RUNS}}
+_TABLES = {"1": {_META, _PIECES, _RUNS}, "2": {_META, _CHUNKS_2, _RUNS}, "3": {_META, _CHUNKS, _RUNS}}
 _RUN_COLUMNS = f"run, seed, {', '.join(SUMMARY_COLUMNS)}, curve, error"
 
 
@@ -66,6 +75,9 @@ class Contents:
     """The time that the chunks took, in seconds of their workers."""
     unchecked_runs: int
     """The number of runs that a version without digests wrote: damage to them before an upgrade is not found."""
+    places: Sequence[int]
+    """For each run, the place of the versions that trained it in :func:`qtab.sweeps.run_versions.named_versions`;
+    ``UNKNOWN`` where an earlier version did not store it."""
 
 
 def is_empty(connection: sqlite3.Connection) -> bool:
@@ -73,17 +85,17 @@ def is_empty(connection: sqlite3.Connection) -> bool:
     return not connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
 
 
-def create_tables(connection: sqlite3.Connection, description: Description, versions: str) -> None:
+def create_tables(connection: sqlite3.Connection, description: Description, versions: Mapping[str, str]) -> None:
     """Creates the tables for a study.
 
     Args:
         connection: The connection, in a transaction.
         description: The study.
-        versions: JSON text: the versions of the software that trains it.
+        versions: The versions of the process that creates the store.
     """
     for statement in sorted(_TABLES[str(FORMAT_VERSION)]):
         connection.execute(statement)
-    content = {"study": description.text, "versions": versions}
+    content = {"study": description.text, "versions": json.dumps(versions)}
     if description.environments is not None:
         content["environments"] = description.environments
     write_meta(connection, content, [])
@@ -114,7 +126,7 @@ def read_meta(connection: sqlite3.Connection, path: Path | None) -> dict[str, st
         raise StoreError(f"{name_of(path)} is not a sweep store")
     version = meta.get("version", "")
     if version not in _TABLES:
-        raise StoreError(f"{name_of(path)} has format version {version!r:.40}, but this qtab reads 1 and 2")
+        raise StoreError(f"{name_of(path)} has format version {version!r:.40}, but this qtab reads 1 to 3")
     if set(statements) - {"index"} != _TABLES[version] or len(statements) != len(_TABLES[version]) + 1:
         raise damaged(path, "it has other tables, views or triggers than a store")
     return meta
@@ -142,21 +154,28 @@ def read_contents(connection: sqlite3.Connection, path: Path | None) -> Contents
             except ValueError as reason:
                 raise ValueError(f"run {run}: {reason}") from None
         if meta["version"] == "1":
-            return Contents("1", meta, description, runs, 0.0, len(runs))
-        seconds = _check_chunks(connection, meta, description, runs)
-        return Contents(meta["version"], meta, description, runs, seconds, int(meta.get("unchecked_runs", "0")))
+            return Contents("1", meta, description, runs, 0.0, len(runs), [UNKNOWN] * len(runs))
+        seconds, places = _check_chunks(connection, meta, description, runs)
+        unchecked = int(meta.get("unchecked_runs", "0"))
+        return Contents(meta["version"], meta, description, runs, seconds, unchecked, places)
     except (ValueError, TypeError) as error:
         raise damaged(path, error) from error
 
 
 def _check_chunks(
     connection: sqlite3.Connection, meta: dict[str, str], description: Description, runs: list[StoredRun]
-) -> float:
-    """Compares the runs with their digests; returns the time that the chunks took, in seconds."""
-    after, position, total, digests = 0, 0, 0.0, []
-    for start, stop, seconds, digest in connection.execute(
-        "SELECT start, stop, seconds, digest FROM chunks ORDER BY start"
-    ):
+) -> tuple[float, list[int]]:
+    """Compares the runs with their digests.
+
+    Returns:
+        The time that the chunks took, in seconds, and the place of the versions of each run.
+    """
+    after, position, total = 0, 0, 0.0
+    digests: list[int] = []
+    places: list[int] = []
+    place = str(UNKNOWN) if meta["version"] == "2" else "versions"
+    query = f"SELECT start, stop, seconds, digest, {place} FROM chunks ORDER BY start"  # noqa: S608 - fixed names
+    for start, stop, seconds, digest, versions in connection.execute(query):
         if not (type(start) is int and type(stop) is int and after <= start < stop <= description.runs):
             raise ValueError(f"its chunk of runs {start!r} to {stop!r} overlaps another or is none of its study")
         after = stop
@@ -168,16 +187,20 @@ def _check_chunks(
             raise ValueError(f"runs are missing among {start} to {stop - 1}, which it says are finished")
         if not (isinstance(seconds, float) and math.isfinite(seconds)):
             raise ValueError(f"its chunk of runs {start} to {stop - 1} has no time")
-        expected = chunk_digest(start, stop, seconds, chunk)
+        if not (type(versions) is int and -(2**63) <= versions < 2**63):
+            raise ValueError(f"its chunk of runs {start} to {stop - 1} has no versions")
+        expected = chunk_digest(start, stop, seconds, chunk, None if meta["version"] == "2" else versions)
         if digest != to_text(expected):
             raise ValueError(f"its runs {start} to {stop - 1} differ from their digest")
         digests.append(expected)
+        places += [versions] * len(chunk)
         total += seconds
     if position < len(runs):
         raise ValueError(f"it has a run {runs[position][0]} that belongs to none of its finished chunks")
     if meta.get("digest") != to_text(combined(study_digest(meta), digests)):
         raise ValueError("its study or the number of its chunks differs from its digest")
-    return total
+    check_places(meta, set(places))
+    return total, places
 
 
 def read_runs(connection: sqlite3.Connection, runs: range) -> list[StoredRun]:
@@ -186,44 +209,71 @@ def read_runs(connection: sqlite3.Connection, runs: range) -> list[StoredRun]:
     return connection.execute(query, (runs.start, runs.stop)).fetchall()
 
 
-def insert_chunk(connection: sqlite3.Connection, rows: Sequence[StoredRun], seconds: float) -> int:
-    """Stores consecutive runs, which took so many seconds; returns their digest."""
+def insert_chunk(connection: sqlite3.Connection, rows: Sequence[StoredRun], seconds: float, place: int) -> int:
+    """Stores consecutive runs, which took so many seconds, with the place of their versions; returns their digest."""
     placeholders = ", ".join("?" * (len(SUMMARY_COLUMNS) + 4))
     connection.executemany(f"INSERT INTO runs VALUES ({placeholders})", rows)  # noqa: S608 - placeholders only
     start, stop = rows[0][0], rows[-1][0] + 1
-    digest = chunk_digest(start, stop, seconds, rows)
+    digest = chunk_digest(start, stop, seconds, rows, place)
     connection.execute(
-        "INSERT INTO chunks (start, stop, seconds, digest) VALUES (?, ?, ?, ?)", (start, stop, seconds, to_text(digest))
+        "INSERT INTO chunks (start, stop, seconds, digest, versions) VALUES (?, ?, ?, ?, ?)",
+        (start, stop, seconds, to_text(digest), place),
     )
     return digest
 
 
 def replace_runs(
-    connection: sqlite3.Connection, runs: Sequence[StoredRun], seconds: float, content: dict[str, str]
+    connection: sqlite3.Connection,
+    runs: Sequence[StoredRun],
+    places: Sequence[int],
+    seconds: float,
+    content: dict[str, str],
 ) -> None:
     """Writes all that a store holds anew, in a transaction; claims are withdrawn.
 
     Args:
         connection: The connection.
         runs: The runs in their order.
+        places: For each run, the place of its versions.
         seconds: The time that they took.
         content: What the store says about itself, as for :func:`write_meta`.
     """
     connection.execute("DELETE FROM runs")
     connection.execute("DELETE FROM chunks")
     digests = []
-    for _, group in groupby(enumerate(runs), lambda pair: pair[1][0] - pair[0]):
-        consecutive = [run for _, run in group]
-        digests.append(insert_chunk(connection, consecutive, seconds * len(consecutive) / len(runs)))
+    numbered = [(run[0] - index, place, run) for index, (run, place) in enumerate(zip(runs, places, strict=True))]
+    for (_, place), group in groupby(numbered, lambda one: one[:2]):
+        consecutive = [run for *_, run in group]
+        digests.append(insert_chunk(connection, consecutive, seconds * len(consecutive) / len(runs), place))
     write_meta(connection, content, digests)
 
 
-def add_versions(connection: sqlite3.Connection, meta: dict[str, str], versions: str) -> None:
-    """Notes that runs may be added by other versions than those that the store names already."""
-    others = [*json.loads(meta.get("other_versions", "[]")), json.loads(versions)]
-    changed = {**meta, "other_versions": json.dumps(others)}
+def place_of(connection: sqlite3.Connection, versions: Mapping[str, str]) -> int:
+    """Returns the place of versions among those that a store names, after adding them if they are new."""
+    query = "SELECT name, value FROM meta"
+    named = named_versions(dict(connection.execute(f"{query} WHERE name IN ('versions', 'other_versions')").fetchall()))
+    if versions in named:
+        return named.index(versions)
+    meta = dict(connection.execute(query).fetchall())
+    changed = {**meta, "other_versions": json.dumps([*named[1:], versions])}
     connection.execute("INSERT OR REPLACE INTO meta VALUES ('other_versions', ?)", (changed["other_versions"],))
     add_digests(connection, [study_digest(meta), study_digest(changed)])
+    return len(named)
+
+
+def upgrade(connection: sqlite3.Connection, contents: Contents) -> None:
+    """Turns a store of an earlier version into one of the present, inside a transaction; claims are withdrawn."""
+    connection.execute("DROP TABLE IF EXISTS pieces")
+    connection.execute("DROP TABLE IF EXISTS chunks")
+    connection.execute(_CHUNKS)
+    about = {**about_itself(contents), "unchecked_runs": str(contents.unchecked_runs)}
+    replace_runs(connection, contents.runs, contents.places, contents.seconds, about)
+
+
+def about_itself(contents: Contents) -> dict[str, str]:
+    """Returns what a store says about itself, as :func:`write_meta` takes it."""
+    kept = {name: text for name, text in contents.meta.items() if name not in ("format", "version", "digest")}
+    return {**kept, "study": contents.description.text}
 
 
 def add_digests(connection: sqlite3.Connection, chunks: Sequence[int]) -> None:

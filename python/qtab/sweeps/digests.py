@@ -16,9 +16,19 @@ def study_digest(meta: Mapping[str, str]) -> int:
     return int.from_bytes(hashlib.sha256(text.encode()).digest(), "big")
 
 
-def chunk_digest(start: int, stop: int, seconds: float, runs: Iterable[StoredRun]) -> int:
-    """Returns the digest of a chunk, ``start`` to ``stop`` - 1, and of its runs as they are stored."""
+def chunk_digest(start: int, stop: int, seconds: float, runs: Iterable[StoredRun], place: int | None) -> int:
+    """Returns the digest of a chunk, ``start`` to ``stop`` - 1, and of its runs as they are stored.
+
+    Args:
+        start: The index of the first run.
+        stop: The index after the last run.
+        seconds: The time that the runs took.
+        runs: The runs.
+        place: The place of their versions; None in stores of version 2, which do not hold it.
+    """
     digest = hashlib.sha256(struct.pack("<qqd", start, stop, seconds))
+    if place is not None:
+        digest.update(struct.pack("<q", place))
     for run, seed, *summary, curve, error in runs:
         texts = [seed.encode(), curve, b"" if error is None else error.encode()]
         digest.update(struct.pack("<q?3q", run, error is None, *map(len, texts)))

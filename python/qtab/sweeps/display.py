@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from qtab._utils import html, svg
+from qtab.sweeps.run_versions import versions_note
 
 if TYPE_CHECKING:
     from qtab.sweeps.results import Sweep
@@ -30,7 +31,8 @@ def sweep_html(sweep: "Sweep") -> str:
     heading = f"Sweep of {sweep.env}: {len(sweep.settings)} settings, {len(sweep):,} runs, {sweep.failed} failed"
     if len(best) < len(sweep.settings):
         heading += f"; the best {len(best)}"
+    note = versions_note(sweep.run_versions)
     curves = {f"setting {setting}": sweep.curves(setting).mean(axis=0) for setting in best}
     label = f"Mean learning curves in blocks of {sweep.block:,} episodes"
     colors = [svg.color(index) for index in range(len(best))]
-    return html.listing(heading, columns, rows, svg.lines(label, curves), colors)
+    return html.listing(heading, columns, rows, svg.lines(label, curves), colors, [note] if note else [])

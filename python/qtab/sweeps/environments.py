@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ import gymnasium as gym
 
 from qtab.config import Config
 from qtab.envs.class_code import LIBRARY
-from qtab.envs.origin.description import from_json
+from qtab.envs.origin.description import EnvironmentDescription, from_json
 from qtab.envs.origin.differences import differences
 from qtab.envs.registry import entry_for_id, make_env, spec_of
 from qtab.sweeps.connection import StoreError, damaged, name_of
@@ -23,19 +23,40 @@ FINGERPRINT_STEPS = 100
 
 
 def describe_environments(env: Any, resolved: Sequence[ResolvedRun]) -> str:
-    """Returns JSON text: each different environment of a study, with a fingerprint of what it does.
+    """Returns JSON text: each different environment of a study, with a fingerprint of what it does and its settings.
 
     Args:
         env: The environment of the study: an id, an EnvSpec, or a function that makes one.
         resolved: A run of each setting.
     """
     found: dict[str, dict[str, Any]] = {}
-    for run in resolved:
+    for setting, run in enumerate(resolved):
         content = environment_of(run).as_json()
         text = json.dumps(content, sort_keys=True)
         if text not in found:
-            found[text] = {"environment": content, "fingerprint": _fingerprint(env, run)}
+            found[text] = {"environment": content, "fingerprint": _fingerprint(env, run), "settings": []}
+        found[text]["settings"].append(setting)
     return json.dumps(list(found.values()))
+
+
+def stored_environments(meta: Mapping[str, str], settings: int, path: Path | None) -> dict[int, EnvironmentDescription]:
+    """Returns the environments of the settings of a store by their indices, as far as it describes them.
+
+    Raises:
+        StoreError: if the descriptions are damaged.
+    """
+    found: dict[int, EnvironmentDescription] = {}
+    try:
+        content = json.loads(meta.get("environments", "[]"))
+        for one in content:
+            environment = from_json(one["environment"])
+            for setting in one.get("settings", range(settings if len(content) == 1 else 0)):
+                if type(setting) is not int or not 0 <= setting < settings:
+                    raise ValueError(f"its environment has a setting {setting!r:.40}")
+                found[setting] = environment
+    except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
+        raise damaged(path, error) from error
+    return found
 
 
 def check_environments(stored: str | None, ours: str, path: Path | None) -> None:

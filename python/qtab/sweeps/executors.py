@@ -96,7 +96,7 @@ class ExecutorTraining:
     def _task(self, claim: range) -> bytes:
         study = self._study
         parts = [(setting, study.overrides[setting], seeds) for setting, seeds in study.split(claim)]
-        task: bytes = cloudpickle.dumps((study.env, parts, study.block, self._pace))
+        task: bytes = cloudpickle.dumps((study.env, parts, study.block, study.memory_limit, self._pace))
         return task
 
     def _collect(self) -> bool:
@@ -106,7 +106,7 @@ class ExecutorTraining:
         for future in sorted(done, key=_has_failed):  # stores what there is before an error ends the sweep
             submitted = self._pending[future]
             try:
-                records, seconds, self._pace = future.result()
+                records, seconds, self._pace, versions = future.result()
             except (BrokenExecutor, CancelledError) as error:
                 raise _ExecutorError(error) from error
             except Exception as error:
@@ -115,7 +115,7 @@ class ExecutorTraining:
                 continue
             del self._pending[future]
             self._slowest = max(self._slowest or 0.0, time.monotonic() - submitted.at)
-            self._store.commit(submitted.claim, records, seconds)
+            self._store.commit(submitted.claim, records, seconds, versions)
             self._report()
         return bool(done)
 

@@ -2,6 +2,7 @@
 
 import os
 
+from qtab.sweeps.environments import stored_environments
 from qtab.sweeps.results import Sweep, build_sweep
 from qtab.sweeps.stored import read_store, store_path
 
@@ -9,7 +10,8 @@ from qtab.sweeps.stored import read_store, store_path
 def load_sweep(path: "str | os.PathLike[str]") -> Sweep:
     """Returns the finished runs of a store, which may belong to a sweep that is still running.
 
-    The digests of the store are checked. A store from an earlier version of this package has none, which is logged.
+    The digests of the store are checked. A store from an earlier version of this package has none, or does not hold the
+    versions that trained each run, which is logged; it is also logged if runs were trained with different versions.
 
     Raises:
         OSError: if the file does not exist or cannot be read.
@@ -20,4 +22,5 @@ def load_sweep(path: "str | os.PathLike[str]") -> Sweep:
     if not found.exists():
         raise FileNotFoundError(f"store not found: {str(found)!r}")
     contents = read_store(found)
-    return build_sweep(contents, contents.description.settings)
+    environments = stored_environments(contents.meta, len(contents.description.settings), found)
+    return build_sweep(contents, environments=environments)

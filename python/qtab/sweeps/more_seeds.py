@@ -3,7 +3,7 @@
 import sqlite3
 from pathlib import Path
 
-from qtab.sweeps.database import read_contents, replace_runs
+from qtab.sweeps.database import about_itself, read_contents, replace_runs
 from qtab.sweeps.description import Description
 from qtab.sweeps.digests import StoredRun
 from qtab.sweeps.stored import check_study
@@ -31,7 +31,7 @@ def add_seeds(connection: sqlite3.Connection, path: Path | None, description: De
         setting, place = divmod(stored[0], len(old))
         return (setting * len(new) + places[old[place]], *stored[1:])
 
-    about = {name: value for name, value in contents.meta.items() if name not in ("format", "version", "digest")}
-    runs = sorted(map(renumbered, contents.runs), key=lambda stored: int(stored[0]))
-    replace_runs(connection, runs, contents.seconds, {**about, "study": description.text})
+    pairs = sorted(zip(map(renumbered, contents.runs), contents.places, strict=True), key=lambda pair: int(pair[0][0]))
+    runs, of_runs = [run for run, _ in pairs], [place for _, place in pairs]
+    replace_runs(connection, runs, of_runs, contents.seconds, {**about_itself(contents), "study": description.text})
     connection.execute(f"PRAGMA user_version = {(numbering(connection) + 1) % 2**31}")

@@ -1,6 +1,5 @@
 """The HTML page of a report."""
 
-import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -8,6 +7,7 @@ from qtab._utils.page import page as html_page
 from qtab._utils.page import paragraph, picture, section, table
 from qtab.sweeps.report_plots import MAX_SETTINGS, Picture
 from qtab.sweeps.results import Sweep
+from qtab.sweeps.run_versions import by_name, in_words, versions_note
 
 
 def page(
@@ -60,6 +60,8 @@ def _notes(sweep: Sweep, ranked: int) -> list[str]:
             f"{sweep.unchecked_runs:,} runs are from an earlier version of qtab without digests: damage to them cannot "
             "be found."
         )
+    if note := versions_note(sweep.run_versions):
+        notes.append(note)
     return notes
 
 
@@ -77,11 +79,11 @@ def _origin(sweep: Sweep, command: str | None) -> list[tuple[str, Any]]:
     rows: list[tuple[str, Any]] = [] if command is None else [("command", command)]
     rows += [("seeds", _seeds(sweep.seeds)), ("block", f"{sweep.block} episodes")]
     rows.append(("training", f"{sweep.seconds:.1f} s, summed over the processes that took part"))
-    try:
-        versions = json.loads(sweep.versions)
-    except (ValueError, RecursionError):
-        versions = {}
-    return rows + ([(str(name), value) for name, value in versions.items()] if isinstance(versions, dict) else [])
+    known = len(sweep) - list(sweep.run_versions).count(None)
+    for name, values in by_name(sweep.run_versions).items():
+        is_of_all = len(values) == 1 and known == len(sweep)
+        rows.append((name, values[0][0] if is_of_all else in_words(values)))
+    return rows if known else [*rows, ("versions", "unknown")]
 
 
 def _seeds(seeds: Sequence[int]) -> str:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 
+from qtab.envs.origin.registered import what_changes_returns
 from qtab.sweeps.results import Sweep
-from qtab.sweeps.thresholds import sweep_threshold
+from qtab.sweeps.thresholds import environments, sweep_threshold
 
 if TYPE_CHECKING:
     from qtab.planning import Optimum
@@ -80,15 +81,17 @@ def _spec(sweep: Sweep) -> Any:
 
 
 def _optimum(sweep: Sweep) -> "Optimum | None":
-    """Returns the optimum of the environment; None if it is not known, or if the settings differ in it."""
+    """Returns the optimum of the environment; None if it is not known, was changed, or differs between settings."""
     from qtab.planning import optimum
 
-    first = sweep.configs[0]
-    spec = _spec(sweep)
-    same = all(config[name] == first[name] for config in sweep.configs for name in ("env_kwargs", "max_episode_steps"))
-    if spec is not None and same:
-        with suppress(ValueError, TypeError, gym.error.Error):
-            return optimum(spec, env_kwargs=first["env_kwargs"], max_episode_steps=first["max_episode_steps"])
+    spec, found = _spec(sweep), environments(sweep)
+    if spec is None or len(found) > 1:
+        return None
+    _, kwargs, max_episode_steps, description = found[0]
+    if description is not None and what_changes_returns(description, spec, kwargs) is not None:
+        return None
+    with suppress(ValueError, TypeError, gym.error.Error):
+        return optimum(spec, env_kwargs=kwargs, max_episode_steps=max_episode_steps)
     return None
 
 

@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,12 +17,14 @@ from qtab._utils.suggestions import did_you_mean
 from qtab.sweeps.database import Contents
 from qtab.sweeps.description import SUMMARY_COLUMNS
 from qtab.sweeps.progress import Callback
-from qtab.sweeps.study import to_cell
+from qtab.sweeps.run_versions import Versions, different_versions, versions_of_runs
+from qtab.sweeps.study import Study, to_cell
 
 if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
+    from qtab.envs.origin import EnvironmentDescription
     from qtab.results.run import Run
     from qtab.sweeps.confirm import Confirmation
 
@@ -53,16 +55,21 @@ class Sweep:
     seconds: float = 0.0
     """The time that the training took, in seconds, summed over the processes that took part."""
     versions: str = "{}"
-    """The versions of the software that started the sweep, as JSON text."""
+    """The versions of the software that started the sweep, as JSON text; :attr:`run_versions` has those of each run."""
     unchecked_runs: int = 0
     """The number of runs that an earlier version of this package stored without digests, so that damage to them cannot
     be found."""
     _source: Any = field(default=None)
     """The environment and the overrides of each setting, if the sweep was trained in this process."""
+    run_versions: Sequence[Versions] = ()
+    """(runs,): the versions of the software that trained each run; None in stores of earlier versions."""
+    _environments: Mapping[int, "EnvironmentDescription"] = field(default_factory=dict)
+    """The environments of the settings, as far as they are known: a store of an earlier version does not hold them."""
 
     def __repr__(self) -> str:
         settings = f"{len(self.settings)} setting{'' if len(self.settings) == 1 else 's'}"
-        return f"<Sweep of {self.env}: {settings}, {len(self):,} runs, {self.failed} failed>"
+        versions = ", different versions" if different_versions(self.run_versions) else ""
+        return f"<Sweep of {self.env}: {settings}, {len(self):,} runs, {self.failed} failed{versions}>"
 
     def _repr_html_(self) -> str:
         """A table and the mean learning curves of the settings with the best mean final return, for notebooks."""
@@ -179,8 +186,9 @@ class Sweep:
             per: The name of a setting in the grid, such as ``"algorithm"``: trains the ``top`` best for each of its
                 values again. None takes the best of all.
             settings: The indices of the settings to train again, whatever their rank.
-            env: The environment, as for :func:`qtab.sweep`. None takes that of the sweep; in a sweep that was loaded
-                from a store, its id must be registered already.
+            env: The environment, as for :func:`qtab.sweep`, which must be that of the sweep. None takes that one; in a
+                sweep that was loaded from a store its id must be registered already, and its wrappers and changed
+                attributes are made again where the store describes them well enough.
             store: As for :func:`qtab.sweep`; it must be another file than that of this sweep.
             executor: As for :func:`qtab.sweep`.
             threads: As for :func:`qtab.sweep`.
@@ -192,7 +200,8 @@ class Sweep:
             RuntimeError: if the executor fails.
             StoreError: if the store is damaged, or belongs to another sweep.
             TypeError: for an argument of the wrong type.
-            ValueError: for seeds that the sweep used, an argument out of range, or settings that cannot be restored.
+            ValueError: for seeds that the sweep used, an argument out of range, settings that cannot be restored, or an
+                environment that cannot be made again or is another one; the message says what differs.
             KeyboardInterrupt: on Ctrl-C; its attribute ``run`` is the table of the finished runs.
         """
         from qtab.sweeps.confirm import Confirmation, chosen_settings, plan_confirmation
@@ -200,11 +209,9 @@ class Sweep:
 
         chosen = chosen_settings(self, top, per, settings)
         study = plan_confirmation(self, seeds, chosen, env)
-
-        def build(contents: Contents) -> Sweep:
-            return build_sweep(contents, study.settings, (study.env, study.overrides))
-
-        again = run_study(study, build, store, executor, threads, memory_limit, callback, progress)
+        again = run_study(
+            study, partial(build_sweep, study=study), store, executor, threads, memory_limit, callback, progress
+        )
         return Confirmation(tuple(chosen), self, again)
 
     def run(self, setting: int, seed: int, *, env: Any = None) -> "Run":
@@ -217,8 +224,8 @@ class Sweep:
 
         Raises:
             TypeError: for an argument of the wrong type.
-            ValueError: for an argument out of range, a run that failed, or one that gives other results here than those
-                of the table.
+            ValueError: for an argument out of range, a run that failed, an environment that cannot be made again or is
+                another one, or a run that gives other results here than those of the table.
         """
         from qtab.sweeps.again import trained_again
 
@@ -246,8 +253,17 @@ class Sweep:
         return arrow_table(self.columns, INTEGER_COLUMNS, ("error",))
 
 
-def build_sweep(contents: Contents, settings: Sequence[Mapping[str, Any]], source: Any = None) -> Sweep:
-    """Returns the table of the stored runs of a study."""
+def build_sweep(
+    contents: Contents, study: Study | None = None, environments: Mapping[int, "EnvironmentDescription"] | None = None
+) -> Sweep:
+    """Returns the table of the stored runs of a study.
+
+    Args:
+        contents: What the store holds.
+        study: The study, if it was planned in this process.
+        environments: The environments of the settings, as far as the store describes them, without a study.
+    """
+    settings = contents.description.settings if study is None else study.settings
     description, runs = contents.description, contents.runs
     indices = np.array([run[0] for run in runs], dtype=np.int64)
     setting, position = np.divmod(indices, len(description.seeds))
@@ -270,7 +286,9 @@ def build_sweep(contents: Contents, settings: Sequence[Mapping[str, Any]], sourc
         seconds=contents.seconds,
         versions=contents.meta.get("versions", "{}"),
         unchecked_runs=contents.unchecked_runs,
-        _source=source,
+        _source=study and (study.env, study.overrides),
+        run_versions=versions_of_runs(contents.meta, contents.places),
+        _environments=study.environments if study else environments or {},
     )
 
 

@@ -5,17 +5,16 @@ whether another process still lives: a process that finds no other runs also tra
 the first result is stored.
 """
 
-import json
 import logging
 import os
 import stat
 import time
 import uuid
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
-from qtab._utils.versions import versions
+from qtab._utils.versions import versions as versions_here
 from qtab.sweeps import version_1
 from qtab.sweeps.connection import (
     StoreError,
@@ -27,20 +26,22 @@ from qtab.sweeps.connection import (
     when_unlocked,
 )
 from qtab.sweeps.database import (
+    FORMAT_VERSION,
     Contents,
     RunRecord,
     add_digests,
-    add_versions,
     create_tables,
     insert_chunk,
     is_empty,
+    place_of,
     read_contents,
     read_meta,
     read_runs,
+    upgrade,
 )
 from qtab.sweeps.description import Description
 from qtab.sweeps.more_seeds import add_seeds, numbering
-from qtab.sweeps.stored import check_study, known_versions, store_path, warn_unchecked, warn_unknown
+from qtab.sweeps.stored import check_study, store_path, warn_unchecked, warn_unknown
 
 _LOGGER = logging.getLogger("qtab")
 
@@ -102,7 +103,9 @@ class Store:
         self._claims.append(claimed)
         return claimed
 
-    def commit(self, claim: range, records: Sequence[RunRecord], seconds: float) -> None:
+    def commit(
+        self, claim: range, records: Sequence[RunRecord], seconds: float, versions: Mapping[str, str] | None = None
+    ) -> None:
         """Stores the results of the first runs of a claim in one transaction, and releases the others.
 
         Runs that another process has stored meanwhile are left as they are. If their results differ, this is logged.
@@ -111,6 +114,7 @@ class Store:
             claim: What :meth:`claim` returned.
             records: The results of its first runs, or of all of them.
             seconds: The time that they took.
+            versions: The versions of the process that trained them; None means those of this one.
         """
         trained = range(claim.start, claim.start + len(records))
         rows = [record.as_row(run) for run, record in zip(trained, records, strict=True)]
@@ -121,8 +125,9 @@ class Store:
             stored = self._ranges("start < ? AND stop > ?", *bounds)
             digests = []
             for part in _gaps(trained, stored):
+                place = place_of(self._connection, versions or versions_here())
                 of_part = rows[part.start - trained.start : part.stop - trained.start]
-                digests.append(insert_chunk(self._connection, of_part, seconds * len(part) / len(trained)))
+                digests.append(insert_chunk(self._connection, of_part, seconds * len(part) / len(trained), place))
             add_digests(self._connection, digests)
             others = {run[0]: run for part in stored for run in read_runs(self._connection, part)}
         different = [row[0] for row in rows if row[0] in others and others[row[0]] != row]
@@ -164,14 +169,15 @@ class Store:
             self._connection.execute("PRAGMA synchronous = NORMAL")
         with self._transaction(), bounded(self._connection, path):
             if is_empty(self._connection):
-                create_tables(self._connection, self._description, json.dumps(versions()))
+                create_tables(self._connection, self._description, versions_here())
                 self._numbering = numbering(self._connection)
                 return
-            if read_meta(self._connection, path)["version"] == "1":
+            if read_meta(self._connection, path)["version"] != str(FORMAT_VERSION):
                 contents = read_contents(self._connection, path)
                 check_study(contents, self._description, path)
-                version_1.check_chunks(self._connection, path, contents)
-                version_1.upgrade(self._connection, contents)
+                if contents.version == "1":
+                    version_1.check_chunks(self._connection, path, contents)
+                upgrade(self._connection, contents)
         with bounded(self._connection, path), self._reading():  # another process may change both
             number = numbering(self._connection)
             contents = read_contents(self._connection, path)  # finds damage now instead of after the training
@@ -184,11 +190,6 @@ class Store:
                 add_seeds(self._connection, path, self._description)
                 number = numbering(self._connection)
         self._numbering = number
-        if path is not None and versions() not in known_versions(contents.meta):
-            with self._transaction():
-                meta = read_meta(self._connection, path)
-                if versions() not in known_versions(meta):
-                    add_versions(self._connection, meta, json.dumps(versions()))
 
     def _first_unclaimed(self) -> range | None:
         """Returns the first runs that are neither stored nor claimed; None if there are none."""

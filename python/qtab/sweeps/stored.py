@@ -1,9 +1,8 @@
 """What a store holds, read without writing to it."""
 
-import json
 import logging
 import os
-from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from qtab.sweeps.connection import StoreError, is_writable, name_of, reading
 from qtab.sweeps.database import Contents, is_empty, read_contents
 from qtab.sweeps.description import Description
 from qtab.sweeps.environments import check_environments
+from qtab.sweeps.run_versions import UNKNOWN, named_versions, versions_note, versions_of_runs
 
 _LOGGER = logging.getLogger("qtab")
 
@@ -74,6 +74,7 @@ def read_store(path: Path) -> Contents:
         if contents.version == "1":
             version_1.check_chunks(connection, path, contents)
         warn_unchecked(contents, path)
+        warn_versions(contents, path)
         return contents
 
 
@@ -98,14 +99,6 @@ def check_study(contents: Contents, description: Description, path: Path | None)
     )
 
 
-def known_versions(meta: Mapping[str, str]) -> list[Any]:
-    """Returns the versions of the processes that have used a store, the first one's first."""
-    try:
-        return [json.loads(meta.get("versions", "{}")), *json.loads(meta.get("other_versions", "[]"))]
-    except ValueError:
-        return []
-
-
 def warn_unknown(contents: Contents, path: Path | None) -> None:
     """Logs which information a store lacks, and that its results come from other versions than these."""
     if "environments" not in contents.meta:
@@ -117,7 +110,7 @@ def warn_unknown(contents: Contents, path: Path | None) -> None:
     here = versions()
     others = [
         f"{name} {one.get(name)}"
-        for one in known_versions(contents.meta)
+        for one in _versions_before(contents)
         if isinstance(one, dict) and one
         for name in here
         if one.get(name) != here[name]
@@ -126,6 +119,21 @@ def warn_unknown(contents: Contents, path: Path | None) -> None:
         _LOGGER.warning(
             "%s has results made with %s, which these may differ from", name_of(path), ", ".join(dict.fromkeys(others))
         )
+
+
+def _versions_before(contents: Contents) -> list[Any]:
+    """The different versions of the runs of a store; where these are not known, those that the store names."""
+    if UNKNOWN not in contents.places:
+        return versions_of_runs(contents.meta, sorted(set(contents.places)))
+    with suppress(ValueError):
+        return named_versions(contents.meta)
+    return []
+
+
+def warn_versions(contents: Contents, path: Path | None) -> None:
+    """Logs if runs were trained with different versions, or with unknown ones."""
+    if note := versions_note(versions_of_runs(contents.meta, contents.places)):
+        _LOGGER.warning("%s: %s", name_of(path), note)
 
 
 def warn_unchecked(contents: Contents, path: Path | None) -> None:

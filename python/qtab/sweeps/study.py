@@ -12,14 +12,17 @@ import numpy as np
 
 from qtab._utils import checks
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
+from qtab._utils.memory import memory_limit as memory_limit_in_bytes
 from qtab.config import DEFAULTS
 from qtab.config.discretizer import function_name
 from qtab.config.layers import Base, over
 from qtab.config.stored import stored_settings
 from qtab.config.unknown import check_names
+from qtab.envs.origin import EnvironmentDescription
 from qtab.sweeps import designs
 from qtab.sweeps.description import Description, read_description
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.run_env import environment_of
 from qtab.training.run_memory import bytes_in_progress
 from qtab.training.train_many import resolve_template, seed_numbers
 
@@ -44,18 +47,26 @@ class Study:
     """The resolved config of each setting."""
     block: int
     """The number of episodes that each point of a learning curve averages."""
+    memory_limit: int | None = None
+    """The most memory that a single run may take, in bytes; None means half of the memory of the machine it is on."""
 
     @property
     def runs(self) -> int:
         """The number of runs."""
         return len(self.settings) * len(self.seeds)
 
-    def check_memory(self, limit: int) -> None:
-        """Checks that a single run of each setting fits into the memory limit, in bytes.
+    @property
+    def environments(self) -> dict[int, EnvironmentDescription]:
+        """The environment of each setting by its index."""
+        return {setting: environment_of(resolved) for setting, resolved in enumerate(self.resolved)}
+
+    def check_memory(self) -> None:
+        """Checks that a single run of each setting fits into the memory limit.
 
         Raises:
             MemoryError: if it does not; the message says how much it needs.
         """
+        limit = memory_limit_in_bytes(self.memory_limit)
         for resolved in self.resolved:
             episodes = resolved.config.episodes
             # The trainer's lists are copied to arrays.

@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
 from gymnasium.envs.registration import EnvSpec
@@ -17,7 +18,6 @@ from qtab.config.layers import collect, over
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
 from qtab.envs.registry import spec_of
-from qtab.sweeps.database import Contents
 from qtab.sweeps.load import load_sweep
 from qtab.sweeps.progress import SweepProgress
 from qtab.sweeps.results import Sweep, build_sweep, empty_sweep
@@ -62,8 +62,9 @@ def sweep(
         executor: Trains the runs: any :class:`concurrent.futures.Executor`, such as Dask's ``client.get_executor()``.
             None trains on threads of this process, or in worker processes if Python steps the environment.
         threads: The number of threads or processes without an executor; None means one per core.
-        memory_limit: The most memory that a single run may need, and the table of all runs, in bytes; None means half
-            of the machine's memory.
+        memory_limit: The most memory that each single run may take, and the table of all runs, in bytes. It holds for
+            each run by itself, however many are trained at the same time and in whichever process. None means half of
+            the memory of the machine that trains the run.
         block: The number of episodes that each point of a stored learning curve averages.
         callback: Called with a :class:`SweepProgress` about every second, after each chunk of runs that was stored.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the runs take more
@@ -76,7 +77,8 @@ def sweep(
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
-        MemoryError: if a run or the table would need more than ``memory_limit``, before any training.
+        MemoryError: if a run or the table would need more than ``memory_limit``, before any training. A run in which
+            what its algorithm stores of episodes or of its model exceeds it fails.
         OSError: if the store cannot be written, or is deleted during the sweep.
         RuntimeError: if the executor fails; the message tells how many runs are kept.
         StoreError: if the store is damaged, has another format version, or belongs to another sweep.
@@ -98,11 +100,9 @@ def sweep(
         study = plan_study(env, grid, seeds, block, settings, base, limit)
         for resolved in study.resolved:
             log_default_limit(resolved)
-
-        def build(contents: Contents) -> Sweep:
-            return build_sweep(contents, study.settings, (study.env, study.overrides))
-
-        return run_study(study, build, store, executor, threads, memory_limit, callback, progress)
+        return run_study(
+            study, partial(build_sweep, study=study), store, executor, threads, memory_limit, callback, progress
+        )
     except KeyboardInterrupt as error:
         if not hasattr(error, "run"):  # it was interrupted before it trained
             attach(error, run=_stored(store, env, block))

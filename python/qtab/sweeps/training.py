@@ -8,7 +8,6 @@ from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
-from qtab._utils import memory
 from qtab._utils.attach import attach
 from qtab._utils.progress import ProgressBar, check_progress
 from qtab.sweeps.database import Contents
@@ -47,7 +46,7 @@ def run_study(
         store: The file, or None for a store in memory.
         executor: Trains the runs; None trains them here, or in worker processes if Python steps the environment.
         threads: The number of threads or processes without an executor; None means one per core.
-        memory_limit: The most memory that a single run may need, in bytes; None means half of the machine's memory.
+        memory_limit: The most memory that a single run may take, in bytes; None means half of the machine's memory.
         callback: Receives the progress.
         progress: Whether to show a progress bar; None shows one on a terminal or in a notebook after a second.
 
@@ -61,7 +60,8 @@ def run_study(
         raise TypeError(f"callback must be a function of the progress or None, got {callback!r}")
     check_progress(progress)
     path = None if store is None else store_path(store)
-    study.check_memory(memory.memory_limit(memory_limit))
+    study = replace(study, memory_limit=memory_limit)
+    study.check_memory()
     description = study.description
     if path is not None:
         description = replace(description, environments=describe_environments(study.env, study.resolved))

@@ -1,4 +1,4 @@
-"""Stores of format version 1, which have no digests: the check of their chunks, and their upgrade to version 2."""
+"""Stores of format version 1, which have no digests: the check of their chunks."""
 
 import sqlite3
 from collections.abc import Mapping
@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from qtab.sweeps.connection import damaged
-from qtab.sweeps.database import CHUNKS, Contents, replace_runs
+from qtab.sweeps.database import Contents
 from qtab.sweeps.description import Description
 
 _STEPS = {"rust": 2**26, "gymnasium": 2**16}
@@ -38,14 +38,6 @@ def check_chunks(connection: sqlite3.Connection, path: Path | None, contents: Co
     if found != expected:
         what = f"run {min(expected - found)} is missing" if expected - found else "it has runs of unfinished chunks"
         raise damaged(path, f"{what}, going by its finished chunks")
-
-
-def upgrade(connection: sqlite3.Connection, contents: Contents) -> None:
-    """Turns a store into one of the present version, inside a transaction. Claims are released."""
-    connection.execute("DROP TABLE pieces")
-    connection.execute(CHUNKS)
-    meta = {"study": contents.description.text, "unchecked_runs": str(len(contents.runs))}
-    replace_runs(connection, contents.runs, 0.0, meta)
 
 
 def _chunks(description: Description) -> list[range]:

@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from qtab import _core
-from qtab._utils.memory import memory_left, memory_limit
+from qtab._utils.memory import BYTES_PER_EPISODE, memory_left
+from qtab._utils.memory import memory_limit as bytes_limit
+from qtab._utils.versions import versions
 from qtab.results.summary import block_means, summarize
 from qtab.sweeps.database import RunRecord
 from qtab.sweeps.pace import CHUNK_SECONDS, Pace
 from qtab.training.process_pool import train_unless_stopped
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
+from qtab.training.run_memory import bytes_in_progress
 from qtab.training.train_many import allocate_results, resolve_template, train_in_threads
 
 if TYPE_CHECKING:
@@ -26,20 +29,20 @@ Part = tuple[int, Mapping[str, Any], ResolvedRun | None, Sequence[int]]
 """The index of a setting, its overrides, its resolved config (None to resolve it here), and seeds."""
 
 
-def train_chunk(task: bytes) -> tuple[list[RunRecord], float, Pace]:
+def train_chunk(task: bytes) -> tuple[list[RunRecord], float, Pace, dict[str, str]]:
     """Trains the first runs of a chunk on one thread, for about a second; see :func:`train_parts`.
 
     Args:
-        task: ``(env, [(setting, overrides, seeds), ...], block, pace)``, pickled by cloudpickle.
+        task: ``(env, [(setting, overrides, seeds), ...], block, memory_limit, pace)``, pickled by cloudpickle.
 
     Returns:
-        The records, the time that they took in seconds, and the pace.
+        The records, the time that they took in seconds, the pace, and the versions of this process.
     """
-    env, parts, block, pace = pickle.loads(task)  # noqa: S301 - from the process that submitted it
+    env, parts, block, limit, pace = pickle.loads(task)  # noqa: S301 - from the process that submitted it
     began = time.perf_counter()
     unresolved = [(setting, overrides, None, seeds) for setting, overrides, seeds in parts]
-    records = train_parts(env, unresolved, block, threads=1, pace=pace)
-    return records, time.perf_counter() - began, pace
+    records = train_parts(env, unresolved, block, 1, limit, pace)
+    return records, time.perf_counter() - began, pace, versions()
 
 
 def train_claim(study: "Study", store: "Store", claim: range, threads: int, pace: Pace) -> None:
@@ -48,11 +51,13 @@ def train_claim(study: "Study", store: "Store", claim: range, threads: int, pace
         (setting, study.overrides[setting], study.resolved[setting], seeds) for setting, seeds in study.split(claim)
     ]
     began = time.perf_counter()
-    records = train_parts(study.env, parts, study.block, threads, pace)
+    records = train_parts(study.env, parts, study.block, threads, study.memory_limit, pace)
     store.commit(claim, records, time.perf_counter() - began)
 
 
-def train_parts(env: Any, parts: Sequence[Part], block: int, threads: int, pace: Pace) -> list[RunRecord]:
+def train_parts(
+    env: Any, parts: Sequence[Part], block: int, threads: int, memory_limit: int | None, pace: Pace
+) -> list[RunRecord]:
     """Trains runs in their order for about a second, and at least one; returns the records of those that it trained."""
     records: list[RunRecord] = []
     began = time.perf_counter()
@@ -69,30 +74,51 @@ def train_parts(env: Any, parts: Sequence[Part], block: int, threads: int, pace:
                 return records
             batch = seeds[trained : trained + pace.runs(setting, resolved, left, at_least=threads)]
             before = time.perf_counter()
-            records += train_setting(env, overrides, resolved, batch, block, threads)
+            records += train_setting(env, overrides, resolved, batch, block, threads, memory_limit)
             pace.record(setting, resolved, len(batch), time.perf_counter() - before)
             trained += len(batch)
     return records
 
 
 def train_setting(
-    env: Any, overrides: Mapping[str, Any], resolved: ResolvedRun, seeds: Sequence[int], block: int, threads: int
+    env: Any,
+    overrides: Mapping[str, Any],
+    resolved: ResolvedRun,
+    seeds: Sequence[int],
+    block: int,
+    threads: int,
+    memory_limit: int | None,
 ) -> list[RunRecord]:
-    """Trains one setting with each seed. The error of a run that fails is recorded, and the other runs continue."""
+    """Trains one setting with each seed. The error of a run that fails is recorded, and the other runs continue.
+
+    A run fails if it alone needs more than ``memory_limit``, so that the results do not depend on ``threads``.
+    """
+    memory = _memory_of_run(resolved, memory_limit)
     if not resolved.is_native:
-        return [_train_in_python(env, overrides, seed, block) for seed in seeds]
+        return [_train_in_python(env, overrides, seed, block, memory) for seed in seeds]
     results, _ = allocate_results(resolved, len(seeds), threads, keep_tables=False, limit=2**63)
-    memory = memory_left(0, memory_limit(None))
     failed = dict(train_in_threads(resolved, seeds, results, threads, memory, keep_going=True))
     records = _records(seeds, block, results["returns"], results["lengths"], results["terminated"])
-    return [_failure(record.seed, failed[index]) if index in failed else record for index, record in enumerate(records)]
+    for index, error in failed.items():
+        records[index] = _failure(seeds[index], error)
+        if isinstance(error, MemoryError) and len(seeds) > 1:  # the runs shared the memory that one may take
+            (records[index],) = train_setting(env, overrides, resolved, [seeds[index]], block, 1, memory_limit)
+    return records
 
 
-def _train_in_python(env: Any, overrides: Mapping[str, Any], seed: int, block: int) -> RunRecord:
+def _memory_of_run(resolved: ResolvedRun, memory_limit: int | None) -> tuple[int, int]:
+    """Returns the memory limit of a run, and what it leaves for what grows while the run trains, in bytes."""
+    # The episodes are copied to arrays.
+    needed = bytes_in_progress(resolved) + resolved.config.episodes * BYTES_PER_EPISODE
+    return memory_left(needed, bytes_limit(memory_limit))
+
+
+def _train_in_python(
+    env: Any, overrides: Mapping[str, Any], seed: int, block: int, memory: tuple[int, int]
+) -> RunRecord:
     try:
         resolved = resolve(env() if callable(env) else env, {**overrides, "seed": seed}, owns_env=True)
         try:
-            memory = memory_left(0, memory_limit(None))
             trainer = _core.Trainer(resolved.spec(), resolved.seed, memory=memory)
             train_unless_stopped(trainer, resolved.config.episodes)
             returns, lengths, terminated = (column[np.newaxis] for column in trainer.episodes())

@@ -1,0 +1,94 @@
+"""The versions of the software that trained the runs of a store, and what messages and reports show of them."""
+
+import json
+from collections import Counter
+from collections.abc import Mapping, Sequence, Set
+from typing import Any
+
+from qtab._utils.shown import counted
+
+Versions = Mapping[str, str] | None
+"""The versions by name, as :func:`qtab._utils.versions.versions` returns them; None where they are not known."""
+UNKNOWN = -1
+"""The place of versions that an earlier version of this package did not store."""
+SHOWN_VALUES = 5
+"""How many versions of the same software messages show."""
+
+
+def named_versions(meta: Mapping[str, str]) -> list[Any]:
+    """Returns the versions that a store names: of the process that created it, and of others that trained its runs.
+
+    Raises:
+        ValueError: if they are not JSON.
+    """
+    try:
+        return [json.loads(meta.get("versions", "{}")), *json.loads(meta.get("other_versions", "[]"))]
+    except (TypeError, RecursionError) as error:
+        raise ValueError(f"its versions are not JSON: {error}") from None
+
+
+def check_places(meta: Mapping[str, str], places: Set[Any]) -> None:
+    """Checks that runs have versions that their store names.
+
+    Raises:
+        ValueError: if they do not.
+    """
+    named = [None, *named_versions(meta)] if places - {UNKNOWN} else [None]
+    for place in places:
+        if not (type(place) is int and UNKNOWN <= place < len(named) - 1):
+            raise ValueError(f"its runs have the versions {place!r:.40}, which it does not name")
+        one = named[place + 1]
+        if place != UNKNOWN and not (isinstance(one, dict) and all(isinstance(text, str) for text in one.values())):
+            raise ValueError("its versions are not texts")
+
+
+def versions_of_runs(meta: Mapping[str, str], places: Sequence[int]) -> list[Versions]:
+    """Returns the versions of each run of a store that was checked."""
+    if all(place == UNKNOWN for place in places):
+        return [None] * len(places)
+    named = [*named_versions(meta), None]  # the last one is at the place UNKNOWN
+    return [named[place] for place in places]
+
+
+def runs_by_versions(of_runs: Sequence[Versions]) -> list[tuple[Versions, int]]:
+    """Returns the different versions of runs with the number of their runs, the most frequent first."""
+    distinct = {id(one): one for one in of_runs}
+    found: dict[str, tuple[Versions, int]] = {}
+    for key, runs in Counter(map(id, of_runs)).items():
+        text = json.dumps(distinct[key], sort_keys=True)
+        found[text] = (distinct[key], runs + (found[text][1] if text in found else 0))
+    return sorted(found.values(), key=lambda pair: -pair[1])
+
+
+def by_name(of_runs: Sequence[Versions]) -> dict[str, list[tuple[str, int]]]:
+    """Returns the values of each version by its name, with the number of their runs, the most frequent first."""
+    values: dict[str, Counter[str]] = {}
+    for one, runs in runs_by_versions(of_runs):
+        for name, value in (one or {}).items():
+            values.setdefault(name, Counter())[value] += runs
+    return {name: counter.most_common() for name, counter in values.items()}
+
+
+def different_versions(of_runs: Sequence[Versions]) -> dict[str, list[tuple[str, int]]]:
+    """Returns those of :func:`by_name` of which runs have different ones."""
+    return {name: values for name, values in by_name(of_runs).items() if len(values) > 1}
+
+
+def versions_note(of_runs: Sequence[Versions]) -> str:
+    """Returns sentences that say in which versions runs differ, and of how many these are unknown; "" if in none."""
+    notes = []
+    if differ := different_versions(of_runs):
+        parts = [f"{name} {in_words(values)}" for name, values in differ.items()]
+        notes.append(f"The runs were trained with different versions: {'; '.join(parts)}.")
+    unknown = sum(runs for one, runs in runs_by_versions(of_runs) if one is None)
+    if unknown:
+        runs, them = counted(unknown, "run"), "it" if unknown == 1 else "them"
+        notes.append(f"An earlier version of qtab stored {runs} without the versions that trained {them}.")
+    return " ".join(notes)
+
+
+def in_words(values: Sequence[tuple[str, int]]) -> str:
+    """Returns the values of a version with the numbers of their runs."""
+    shown = [f"{value} ({counted(runs, 'run')})" for value, runs in values[:SHOWN_VALUES]]
+    left = len(values) - SHOWN_VALUES
+    return ", ".join([*shown, f"and {left} more"] if left > 0 else shown)
