@@ -79,7 +79,7 @@ CASES: dict[str, Case] = {
     "a car": Case(lambda: CAR, "box", settings=(_CAR_LIMITS,)),
     "a pole": Case(lambda: "CartPole-v1", "box", settings=(_POLE_LIMITS,)),
     "an object": Case(lambda: gym.make("FrozenLake-v1"), "discrete"),
-    "a rescaled car": Case(lambda: RescaleObservation(gym.make(CAR), np.float64(0.0), np.float64(1.0)), "box"),
+    "a rescaled car": Case(lambda: RescaleObservation(gym.make(CAR), np.float32(0), np.float32(1)), "box"),
     "a weak car": Case(_weak_car, "box", settings=(_CAR_LIMITS,)),
     "another reward": Case(
         lambda: TransformReward(gym.make("FrozenLake-v1"), lambda reward: 3.0 * float(reward) - 0.25),

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.config.config import DEFAULTS
-from support.meetings import Case, meetings
+from support.meetings import CASES, Case, meetings
 from support.parity import assert_same_run
 
 ARGUMENTS = {
@@ -183,6 +183,15 @@ CHECKS: list[Callable[[Case, qtab.Run, Path], None]] = [
     check_step,
     check_many,
 ]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_environment_trains(name: str) -> None:
+    case = CASES[name]
+    bins: dict[str, Any] = {"discretizer": "bins", "bins": 2} if case.kind == "box" else {}
+    for settings in case.settings:
+        run = qtab.train(case.make(), episodes=2, max_episode_steps=4, seed=0, **bins, **settings)
+        assert run.completed
 
 
 @pytest.mark.slow
