@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from qtab.callbacks import Checkpoint
+from qtab.callbacks import BaseCallback, Checkpoint
 from qtab.config.choices import Algorithm
 from support.gridworld import Room, StoppedError, StoppingRoom
 from support.learner_settings import run_settings
@@ -58,6 +58,20 @@ def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, dat
             assert_resumed(qtab.resume(stored), whole)
 
 
+class Timer(BaseCallback):
+    """Starts a timer when training begins: while a run is set up, it could not be attached to the exception."""
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__(every=10**9)
+        self.seconds = seconds
+
+    def on_start(self, config: qtab.Config, env: gym.Env | None) -> None:
+        signal.setitimer(signal.ITIMER_VIRTUAL, self.seconds)
+
+    def __call__(self, progress: qtab.Progress) -> None:
+        pass
+
+
 def stopped_by_a_timer(seconds: float, env: str, **config: Any) -> qtab.Run:
     """A run that a signal stopped, most probably in the middle of an episode."""
 
@@ -66,10 +80,9 @@ def stopped_by_a_timer(seconds: float, env: str, **config: Any) -> qtab.Run:
 
     gc.disable()  # an exception raised while hypothesis's callback sees a collection would be lost
     before = signal.signal(signal.SIGVTALRM, stop)
-    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
     try:
         with pytest.raises(StoppedError) as caught:
-            qtab.train(env, **config)
+            qtab.train(env, callback=Timer(seconds), **config)
     finally:
         signal.setitimer(signal.ITIMER_VIRTUAL, 0)
         signal.signal(signal.SIGVTALRM, before)
