@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import qtab
 from qtab.config.choices import Algorithm
-from qtab.config.options import PREFERENCES, TABLES_ONLY, WITH_PROBABILITIES
+from qtab.config.options import NO_MASKED_TILES, PREFERENCES, TABLES_ONLY, WITH_PROBABILITIES
 from support.learner_settings import BY_EPISODE, explorations, learning_rates, own_options, possible_explorations
 from support.masked import MASKS, SHORT, TILES, MaskedGraph
 from support.parity import assert_same_run
@@ -36,7 +36,7 @@ def masked_runs(draw: st.DrawFn) -> tuple[NDArray[Any], str, dict[str, Any]]:
     shown = draw(st.sampled_from(["discrete", "box"]))
     features: dict[str, Any] = {"discretizer": "identity"}
     if shown == "box":
-        features = BINS if algorithm in (*TABLES_ONLY, *PREFERENCES) else draw(st.sampled_from([BINS, TILES]))
+        features = BINS if algorithm in (*TABLES_ONLY, *NO_MASKED_TILES) else draw(st.sampled_from([BINS, TILES]))
     return (
         masks,
         shown,

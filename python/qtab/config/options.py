@@ -108,6 +108,11 @@ ONE_STEP = (
 """The algorithms that can assign a value at a terminal state, as the article does, if they learn a table."""
 TABLES_ONLY = ("dyna_q", "dyna_q_plus", *MONTE_CARLO, "prioritized_sweeping", "gradient_bandit")
 """The algorithms that do not work with tile coding."""
+NO_MASKED_TILES = (*PREFERENCES, *_WITH_TARGET_POLICY)
+"""The algorithms that do not work with action masks and tile coding together.
+
+They update states after the next one is seen, and only the mask of the last one is known.
+"""
 
 
 _CHECKED = (
@@ -168,9 +173,7 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
         return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"
     if name == "exploration" and algorithm in PREFERENCES and value != "softmax":
         return f"exploration must be 'softmax' for algorithm {algorithm!r}, got {shown(value)}"
-    late = (*PREFERENCES, *_WITH_TARGET_POLICY)
-    if name == "action_mask" and value is not False and algorithm in late and with_tiles:
-        # They update states after the next one is seen, and only the mask of the last one is known.
+    if name == "action_mask" and value is not False and algorithm in NO_MASKED_TILES and with_tiles:
         return f"action_mask must be False for algorithm {algorithm!r} with discretizer 'tiles', got {shown(value)}"
     if (name, value) == ("on_truncation", "bootstrap") and fields["time_aware"]:
         return "on_truncation must be 'terminate' for time_aware=True, whose last step nothing follows, got 'bootstrap'"
