@@ -82,6 +82,19 @@ def test_masks_that_differ_within_a_cell_are_kept_to(algorithm: Any, exploration
     assert qtab.verify(run, env=MaskedGraph(every, "none", "box")).equal
 
 
+@pytest.mark.parametrize("algorithm", ["n_step_tree_backup", "n_step_q_sigma"])
+@pytest.mark.parametrize("exploration", [{"epsilon": 0.7}, {"epsilon": 0.7, "ties": "random"}, {"temperature": 0.5}])
+def test_an_action_that_its_cell_no_longer_has_is_backed_up_with_probability_zero(
+    algorithm: Any, exploration: dict[str, Any]
+) -> None:
+    chosen: dict[str, Any] = {"algorithm": algorithm, "target_policy": "behavior", "seed": 3, **BINS, **SHORT}
+    if "temperature" in exploration:
+        chosen["exploration"] = "softmax"
+    every = np.ones_like(MASKS)
+    run = qtab.train(MaskedGraph(every, "none", "box"), action_mask=of_first_number, **chosen, **exploration)
+    assert qtab.verify(run, env=MaskedGraph(every, "none", "box")).equal
+
+
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_taxi_with_its_own_masks_is_the_same_in_rust_in_python_and_in_the_reference(algorithm: Any) -> None:
     chosen: dict[str, Any] = {"algorithm": algorithm, "seed": 1, "episodes": 4, "max_episode_steps": 60}

@@ -99,6 +99,8 @@ impl Policy for AnyPolicy {
     fn probability(&mut self, values: &[f64], action: usize) -> f64 {
         match self {
             Self::EpsilonGreedy { epsilon, ties } => ties.probability(epsilon.value(), values, values.len(), action),
+            // An action that was taken before the mask of its state changed.
+            Self::MaskedEpsilonGreedy { .. } if !is_available(&values[action]) => 0.0,
             Self::MaskedEpsilonGreedy { epsilon, ties } => {
                 let count = values.iter().filter(|&value| is_available(value)).count();
                 ties.probability(epsilon.value(), values, count, action)
@@ -167,7 +169,7 @@ mod tests {
         assert_eq!(EpsilonGreedy::linear(0.25, 0.25, 1).probability(&values, 0), 0.8125);
         let masked = [4.0, 4.0, f64::NEG_INFINITY, -1.0];
         let mut policy = AnyPolicy::MaskedEpsilonGreedy { epsilon: Schedule::constant(0.75), ties: TieBreaking::First };
-        assert_eq!([0, 3].map(|action| policy.probability(&masked, action)), [0.5, 0.25]);
+        assert_eq!([0, 2, 3].map(|action| policy.probability(&masked, action)), [0.5, 0.0, 0.25]);
         assert_eq!(AnyPolicy::softmax(1.0, 4).probability(&[0.0; 4], 3), 0.25);
     }
 
