@@ -3,7 +3,7 @@
 import contextlib
 import json
 import sqlite3
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -53,12 +53,20 @@ HARMLESS = ["PRAGMA user_version = 7", "PRAGMA journal_mode = DELETE", "VACUUM"]
 NESTED = "[" * 5000 + "]" * 5000
 
 
-def execute(path: Path, script: str, values: tuple[Any, ...] = ()) -> None:
-    """Executes statements, unless the tables refuse a value."""
+@contextlib.contextmanager
+def connected(path: Path) -> Iterator[sqlite3.Connection]:
+    """A connection for a store that may be damaged already: errors end the block, and so do endless views."""
     with (
-        contextlib.suppress(sqlite3.Error, OverflowError, UnicodeError),
+        contextlib.suppress(sqlite3.Error, OverflowError, RecursionError, ValueError),
         contextlib.closing(sqlite3.connect(path, isolation_level=None)) as connection,
     ):
+        connection.set_progress_handler(lambda: 1, 1_000_000)
+        yield connection
+
+
+def execute(path: Path, script: str, values: tuple[Any, ...] = ()) -> None:
+    """Executes statements, unless the tables refuse a value."""
+    with connected(path) as connection:
         for statement in [script] if "TRIGGER" in script else script.split("; "):
             connection.execute(statement, values)
 
@@ -112,11 +120,10 @@ def json_damage(draw: st.DrawFn) -> Damage:
         return [change(inner) for inner in item] if isinstance(item, list) else item
 
     def damage(path: Path) -> None:
-        with contextlib.closing(sqlite3.connect(path)) as connection, contextlib.suppress(sqlite3.Error, ValueError):
+        with connected(path) as connection:
             (text,) = connection.execute("SELECT value FROM meta WHERE name = 'study'").fetchone() or ("{}",)
             changed = json.dumps(change(json.loads(text)) if name != "all" else value) if raw is None else raw
             connection.execute("UPDATE meta SET value = ? WHERE name = 'study'", (changed,))
-            connection.commit()
 
     return damage
 

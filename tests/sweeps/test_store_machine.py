@@ -12,7 +12,7 @@ from hypothesis.stateful import RuleBasedStateMachine, precondition, rule
 
 import qtab
 from qtab.sweeps import pace
-from support.damage import DAMAGE, Damage
+from support.damage import DAMAGE, STATEMENTS, Damage, execute
 from support.sweeps import assert_equal
 
 LAKE = "FrozenLake-v1"
@@ -102,3 +102,14 @@ def whole_key(table: qtab.Sweep) -> tuple[Any, Any]:
 TestStore: Any = StoreMachine.TestCase
 TestStore.settings = settings(max_examples=max(settings().max_examples // 8, 1), stateful_step_count=8, deadline=None)
 TestStore.pytestmark = [pytest.mark.slow]
+
+
+@pytest.mark.parametrize("table", ["meta", "runs"])
+def test_damage_to_a_store_with_an_endless_view_ends(tmp_path: Path, table: str) -> None:
+    path = tmp_path / "study.db"
+    qtab.sweep(LAKE, {"learning_rate": [0.1]}, store=path, seeds=1, episodes=5)
+    (endless,) = [statement for statement in STATEMENTS if f"CREATE VIEW {table}" in statement]
+    execute(path, endless)
+    execute(path, f"SELECT count(*) FROM {table}")  # noqa: S608 - names above
+    with pytest.raises(qtab.StoreError):
+        qtab.load_sweep(path)
