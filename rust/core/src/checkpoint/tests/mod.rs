@@ -30,6 +30,8 @@ type Run<F, L> = Trainer<NativeTask<MountainCar, F>, L, AgentRng>;
 #[derive(Clone, Debug)]
 struct Setup {
     steps: u64,
+    /// The time limit of the episodes.
+    limit: u64,
     seed: u32,
     mt19937: bool,
     visits: bool,
@@ -61,7 +63,7 @@ impl Setup {
         L: Learner<F::Active>,
     {
         let seed = SeedSequence::new(&[self.seed]);
-        let task = NativeTask::new(MountainCar::default(), features, Some(LIMIT), Pcg64::new(&seed));
+        let task = NativeTask::new(MountainCar::default(), features, Some(self.limit), Pcg64::new(&seed));
         let rng = if self.mt19937 { AgentRng::mt19937(self.seed) } else { AgentRng::pcg64(&seed) };
         Trainer::new(task, learner, rng)
     }
@@ -163,15 +165,19 @@ impl Setup {
     fn check_tables<F: Features<[f32; 2], Active = [u32; 1]> + Clone>(&self, grid: &F) {
         let rows = grid.len();
         self.check_all(grid, 1);
-        // More planning than is done in one call, so that a run can stop within a step.
-        let planning = if self.damage.is_empty() { 9000 } else { 3 };
+        // More planning than is done in one call, so that a run can stop within a step. It takes long: a few steps do.
+        let (planner, planning) = if self.damage.is_empty() {
+            (Self { limit: LIMIT / 10, steps: 1000 * self.steps, ..self.clone() }, 9000)
+        } else {
+            (self.clone(), 3)
+        };
         let (agent, stop) = (|| self.agent(rows, 1), StopFlag::new());
         let model = || Model::new(rows, ACTIONS, &stop).expect("a small model");
-        self.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(model(), planning) });
+        planner.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(model(), planning) });
         let stochastic = || StochasticModel::new(rows, ACTIONS, &stop).expect("a small model");
         self.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(stochastic(), 5) });
         let sweeping = || PrioritizedSweeping::new(model(), planning, 1e-4, &stop).expect("a small model");
-        self.check(grid, || TdLearner { agent: agent(), rule: sweeping() });
+        planner.check(grid, || TdLearner { agent: agent(), rule: sweeping() });
         let pairs = rows * ACTIONS;
         for exploring_starts in [false, true] {
             let rule = || MonteCarloControl::new(pairs, LIMIT, exploring_starts, &stop).expect("a few pairs");
@@ -180,7 +186,7 @@ impl Setup {
         let off_policy = || OffPolicyMonteCarlo::new(pairs, LIMIT, (1.0, 0.0), &stop).expect("a few pairs");
         self.check(grid, || TdLearner { agent: agent(), rule: off_policy() });
         let dyna_q_plus = || DynaQPlus::new(model(), planning, 1e-3, &StopFlag::new()).expect("a small model");
-        self.check(grid, || TdLearner { agent: agent(), rule: dyna_q_plus() });
+        planner.check(grid, || TdLearner { agent: agent(), rule: dyna_q_plus() });
     }
 }
 
@@ -189,8 +195,9 @@ fn rounding() -> impl Features<[f32; 2], Active = [u32; 1]> + Clone {
 }
 
 fn setup() -> impl Strategy<Value = Setup> {
-    (0..EPISODES as u64 * LIMIT, any::<u32>(), any::<bool>(), any::<bool>())
-        .prop_map(|(steps, seed, mt19937, visits)| Setup { steps, seed, mt19937, visits, damage: Vec::new() })
+    (0..EPISODES as u64 * LIMIT, any::<u32>(), any::<bool>(), any::<bool>()).prop_map(
+        |(steps, seed, mt19937, visits)| Setup { steps, limit: LIMIT, seed, mt19937, visits, damage: Vec::new() },
+    )
 }
 
 proptest! {

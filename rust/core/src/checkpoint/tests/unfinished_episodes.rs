@@ -1,6 +1,6 @@
 //! Checkpoints within an episode: at its time limit, and where it is lost.
 
-use super::{ACTIONS, Setup};
+use super::{ACTIONS, LIMIT, Setup};
 use crate::checkpoint::{Checkpoint, CheckpointError, EpisodeProgress, Persist};
 use crate::envs::classic_control::MountainCar;
 use crate::features::{Axis, Features, Rounding};
@@ -12,7 +12,7 @@ use crate::random::{AgentRng, Pcg64, SeedSequence};
 use crate::tasks::{NativeTask, Next, Task, TimeAware, Transition};
 use crate::{Budget, Learner, StopFlag, Trainer};
 
-const SETUP: Setup = Setup { steps: 0, seed: 7, mt19937: false, visits: false, damage: Vec::new() };
+const SETUP: Setup = Setup { steps: 0, limit: LIMIT, seed: 7, mt19937: false, visits: false, damage: Vec::new() };
 
 /// A time limit whose episodes take several calls to be learned from.
 const LONG: u64 = 9000;
