@@ -62,17 +62,14 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::envs::tabular::test_support::probabilities;
 
     proptest! {
         #[test]
         fn the_guide_table_changes_no_state(
-            weights in prop::collection::vec(prop_oneof![0.0..1.0, Just(0.0), Just(1e-9)], 1..40),
-            short in prop_oneof![Just(0.0), 0.0..1e-10],
+            probabilities in probabilities(prop_oneof![0.0..1.0, Just(0.0), Just(1e-9)], 40),
             draws in prop::collection::vec(0..ABOVE_ALL, 20),
         ) {
-            let total: f64 = weights.iter().sum();
-            prop_assume!(total > 0.0);
-            let probabilities: Vec<f64> = weights.iter().map(|weight| weight / total * (1.0 - short)).collect();
             let (states, thresholds) = (InitialStates::new(&probabilities), thresholds(&probabilities));
             // Draws next to a threshold, and those at the ends of the parts, matter most.
             let parts = (0..64).map(|part| part << 47);

@@ -9,6 +9,8 @@ mod outcome_distribution;
 mod racetrack;
 mod short_corridor;
 mod tabular_mdp;
+#[cfg(test)]
+mod test_support;
 
 pub use invalid_mdp::InvalidMdp;
 pub use maximization_bias::{MaximizationBias, STATES as MAXIMIZATION_BIAS_STATES};

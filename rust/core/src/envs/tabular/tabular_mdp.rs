@@ -185,6 +185,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::envs::tabular::test_support::probabilities;
     use crate::random::{Rng, TWO_POW_53};
 
     /// A generator that returns given numbers.
@@ -273,18 +274,14 @@ mod tests {
     proptest! {
         #[test]
         fn sampling_matches_categorical_sample(
-            weights in prop::collection::vec(prop_oneof![0.0..1.0, Just(0.0)], 1..12),
-            short in prop_oneof![Just(0.0), 0.0..1e-10],
+            probabilities in probabilities(prop_oneof![0.0..1.0, Just(0.0)], 12),
             place in 0.0..1.0,
             at_a_sum in any::<prop::sample::Index>(),
         ) {
-            let total: f64 = weights.iter().sum();
-            prop_assume!(total > 0.0);
-            let probabilities: Vec<f64> = weights.iter().map(|weight| weight / total * (1.0 - short)).collect();
             let mut sum = 0.0;
             let sums: Vec<f64> = probabilities.iter().map(|probability| { sum += probability; sum }).collect();
             let outcomes = (0..).zip(&probabilities).map(|(state, &probability)| outcome(probability, state)).collect();
-            let rest = vec![vec![outcome(1.0, 0)]; weights.len() - 1];
+            let rest = vec![vec![outcome(1.0, 0)]; probabilities.len() - 1];
             let table = TabularMdp::new(1, &probabilities, &[vec![outcomes], rest].concat()).expect("a valid table");
             let sum = at_a_sum.get(&sums);
             // Draws are multiples of 2⁻⁵³. Those next to a sum matter most.
