@@ -3,8 +3,6 @@
 mod any_policy;
 mod epsilon_greedy;
 mod policy;
-mod single_state;
-mod single_state_ucb;
 mod softmax;
 mod tie_breaking;
 mod ucb;
@@ -13,8 +11,6 @@ pub use any_policy::AnyPolicy;
 pub(crate) use any_policy::random_available_action;
 pub use epsilon_greedy::EpsilonGreedy;
 pub use policy::Policy;
-pub use single_state::SingleStateEpsilonGreedy;
-pub use single_state_ucb::SingleStateUcb;
 pub use softmax::Softmax;
 pub use tie_breaking::TieBreaking;
 pub use ucb::Ucb;

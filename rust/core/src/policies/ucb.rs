@@ -44,35 +44,13 @@ impl Ucb {
     /// The upper bounds of the values.
     #[inline]
     fn bounds(&mut self, row: u32, values: &[f64]) -> &[f64] {
-        let log = (self.time(row) as f64).ln();
         let counts = &self.counts[row as usize * self.bounds.len()..][..self.bounds.len()];
+        let time = 1 + counts.iter().map(|&count| u64::from(count)).sum::<u64>();
+        let log = (time as f64).ln();
         for ((bound, &count), &value) in self.bounds.iter_mut().zip(counts).zip(values) {
             *bound = upper_bound(self.confidence, log, count, value);
         }
         &self.bounds
-    }
-
-    /// c / √N(a) in a table with one row, after so many more choices of the action: infinite for one that was never chosen.
-    #[inline]
-    pub(super) fn scale_at(&self, action: usize, more: u32) -> f64 {
-        match self.counts[action].saturating_add(more) {
-            0 => f64::INFINITY,
-            count => self.confidence / f64::from(count).sqrt(),
-        }
-    }
-
-    /// t: one more than the number of choices in a row.
-    #[inline]
-    pub(super) fn time(&self, row: u32) -> u64 {
-        let counts = &self.counts[row as usize * self.bounds.len()..][..self.bounds.len()];
-        1 + counts.iter().map(|&count| u64::from(count)).sum::<u64>()
-    }
-
-    /// Counts a choice.
-    #[inline]
-    pub(super) fn count(&mut self, row: u32, action: usize) {
-        let count = &mut self.counts(row)[action];
-        *count = count.saturating_add(1);
     }
 
     /// The action with the largest bound. It counts as chosen. Draws one `integers` to break a tie at random.
@@ -80,7 +58,8 @@ impl Ucb {
     pub(super) fn choose(&mut self, row: u32, values: &[f64], rng: &mut impl Rng) -> usize {
         let ties = self.ties;
         let action = ties.greedy(self.bounds(row, values), rng);
-        self.count(row, action);
+        let count = &mut self.counts(row)[action];
+        *count = count.saturating_add(1);
         action
     }
 

@@ -108,8 +108,7 @@ impl<const N: usize> QTable<N> {
     ///
     /// # Panics
     /// With [`TerminalUpdate::Assign`] and several active rows.
-    #[expect(clippy::inline_always, reason = "a call would take a tenth of the time of a bandit's step")]
-    #[inline(always)]
+    #[inline]
     pub fn update_terminal(
         &mut self,
         rows: &[u32],

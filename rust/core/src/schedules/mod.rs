@@ -4,10 +4,8 @@ mod learning_rate;
 mod schedule;
 mod step_size;
 mod update_log;
-mod visit_rate;
 
 pub use learning_rate::LearningRate;
 pub use schedule::{Decay, Schedule};
 pub use step_size::StepSize;
 pub use update_log::{LoggedUpdate, UpdateLog};
-pub use visit_rate::VisitRate;

@@ -31,80 +31,58 @@ pub type OptimalActions = Arc<Vec<AtomicBool>>;
 /// episode is one action.
 ///
 /// It is a task, not an environment, because the problem outlasts an episode.
-///
-/// With `RECORDS` it records whether the optimal action was taken in each episode.
 #[derive(Clone, Debug)]
-pub struct KArmedBandit<const RECORDS: bool = false> {
+pub struct KArmedBandit {
     testbed: Testbed,
-    /// The number of actions whose true values walk after each action: all or none.
-    walking: u64,
     /// q⁎; empty before the first reset.
     values: Vec<f64>,
     /// The action with the largest true value.
     optimal: usize,
     rng: Pcg64,
-    /// Empty without `RECORDS`.
+    /// Of each episode to record; empty if none is recorded.
     optimal_actions: OptimalActions,
-    /// The number of finished episodes; 0 without `RECORDS`.
+    /// The number of finished episodes since the construction.
     episode: usize,
 }
 
 impl KArmedBandit {
     /// A problem of the testbed; `rng` is the environment's generator.
     pub fn new(testbed: Testbed, rng: Pcg64) -> Self {
-        let walking = if testbed.random_walk == 0.0 { 0 } else { testbed.num_actions as u64 };
-        Self { testbed, walking, values: Vec::new(), optimal: 0, rng, optimal_actions: Arc::default(), episode: 0 }
+        Self { testbed, values: Vec::new(), optimal: 0, rng, optimal_actions: Arc::default(), episode: 0 }
     }
 
-    /// The same, recording whether the optimal action is taken in each of so many episodes.
+    /// Records whether the optimal action is taken in each of so many episodes, from the first one on.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn recording(self, episodes: usize) -> Result<(KArmedBandit<true>, OptimalActions), AllocationError> {
+    pub fn record(&mut self, episodes: usize) -> Result<OptimalActions, AllocationError> {
         let mut flags = with_capacity(episodes)?;
         flags.resize_with(episodes, AtomicBool::default);
-        let optimal_actions = Arc::new(flags);
-        let Self { testbed, walking, values, optimal, rng, episode, .. } = self;
-        let task = KArmedBandit {
-            testbed,
-            walking,
-            values,
-            optimal,
-            rng,
-            optimal_actions: Arc::clone(&optimal_actions),
-            episode,
-        };
-        Ok((task, optimal_actions))
+        self.optimal_actions = Arc::new(flags);
+        Ok(Arc::clone(&self.optimal_actions))
     }
-}
 
-impl<const RECORDS: bool> KArmedBandit<RECORDS> {
     /// Draws q⁎.
-    #[cold]
     fn draw(&mut self) {
         let Testbed { num_actions, mean, deviation, .. } = self.testbed;
         self.values = (0..num_actions).map(|_| mean + deviation * self.rng.standard_normal()).collect();
         self.optimal = argmax(&self.values);
     }
 
-    /// q⁎(a) ← q⁎(a) + an increment of its own. Returns the reward, which the caller then need not keep during the call.
-    #[cold]
-    fn walk(&mut self, reward: f64) -> f64 {
+    /// q⁎(a) ← q⁎(a) + an independent increment, for each action.
+    fn walk(&mut self) {
         for value in &mut self.values {
             *value += self.testbed.random_walk * self.rng.standard_normal();
         }
         self.optimal = argmax(&self.values);
-        reward
     }
 }
 
-impl<const RECORDS: bool> Task for KArmedBandit<RECORDS> {
+impl Task for KArmedBandit {
     type State = ();
     type Active = [u32; 1];
     type Error = OutOfBounds;
 
-    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
-    #[inline(always)]
     fn reset(&mut self) -> Result<((), [u32; 1]), OutOfBounds> {
         if self.values.is_empty() {
             self.draw();
@@ -112,32 +90,21 @@ impl<const RECORDS: bool> Task for KArmedBandit<RECORDS> {
         Ok(((), [0]))
     }
 
-    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
-    #[inline(always)]
     fn step(&mut self, _state: &mut (), action: usize) -> Result<Transition<[u32; 1]>, OutOfBounds> {
-        let noise = self.rng.standard_normal();
-        let mut reward = self.values[action] + noise;
-        if RECORDS {
-            if let Some(flag) = self.optimal_actions.get(self.episode) {
-                flag.store(action == self.optimal, Ordering::Relaxed);
-            }
-            self.episode += 1;
+        let reward = self.values[action] + self.rng.standard_normal();
+        if let Some(flag) = self.optimal_actions.get(self.episode) {
+            flag.store(action == self.optimal, Ordering::Relaxed);
         }
-        if self.walking != 0 {
-            reward = self.walk(reward);
+        self.episode += 1;
+        if self.testbed.random_walk != 0.0 {
+            self.walk();
         }
         Ok(Transition { reward, next: Next::Terminal })
     }
 
-    #[inline]
-    fn has_single_steps(&self) -> bool {
-        true
-    }
-
     /// A random walk draws a number for each action.
-    #[inline]
     fn step_work(&self) -> u64 {
-        self.walking
+        if self.testbed.random_walk == 0.0 { 0 } else { self.testbed.num_actions as u64 }
     }
 
     fn active_rows(&self, _state: &()) -> Result<[u32; 1], OutOfBounds> {
@@ -158,7 +125,7 @@ impl<const RECORDS: bool> Task for KArmedBandit<RECORDS> {
 }
 
 /// The snapshot is the number of 64-bit words drawn since seeding, and the buffered 32-bit half.
-impl<const RECORDS: bool> RngSnapshot for KArmedBandit<RECORDS> {
+impl RngSnapshot for KArmedBandit {
     type Snapshot = (u64, Option<u32>);
 
     fn rng_snapshot(&self) -> Result<Self::Snapshot, OutOfBounds> {

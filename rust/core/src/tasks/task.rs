@@ -127,13 +127,6 @@ pub trait Task {
         0
     }
 
-    /// Whether the first step of each episode leads to a terminal state, and each state has all actions. The trainer then
-    /// has less to do between steps.
-    #[inline]
-    fn has_single_steps(&self) -> bool {
-        false
-    }
-
     /// Which actions the last state has, the one that `reset` or `step` led to; `None` if each state has all of them, or if
     /// the learner knows the masks. Unspecified after a terminal state.
     #[inline]

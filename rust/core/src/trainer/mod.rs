@@ -1,9 +1,8 @@
-//! A training run as a value, and the only training loop, with a shorter form for episodes of a single step.
+//! A training run as a value, and the only training loop.
 
 mod advance_loop;
 mod episode_log;
 mod prepared_step;
-mod single_step;
 
 use self::advance_loop::AdvanceLoop;
 pub use self::episode_log::EpisodeLog;
@@ -136,10 +135,6 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
                     continue;
                 }
                 Some(episode) => episode,
-                None if self.task.has_single_steps() => {
-                    self.advance_single_steps(rng, budget, &mut work)?;
-                    continue;
-                }
                 None => self.begin_episode(rng)?,
             };
             let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length, .. } = episode;

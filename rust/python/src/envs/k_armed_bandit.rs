@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use pyo3::intern;
 use pyo3::prelude::*;
-use qtab_core::tasks::Testbed;
+use qtab_core::tasks::{KArmedBandit, Testbed};
 
 use super::native_env::NativeEnv;
+use crate::convert::Seed;
 use crate::error::invalid;
-use crate::runs::{RunFactory, bandit_runs, testbed_runs};
+use crate::rng::environment_rng;
+use crate::runs::{AnyRecordings, RunFactory, boxed_factory, testbed_runs};
 use crate::spec::RunSpec;
 
 pub(crate) struct KArmedBanditEnv(Testbed);
@@ -33,7 +35,9 @@ fn testbed(env: &Bound<'_, PyAny>) -> PyResult<Testbed> {
 impl NativeEnv for KArmedBanditEnv {
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         self.check(spec)?;
-        Ok(bandit_runs(self.0, spec))
+        let testbed = self.0;
+        let new_task = move |seed: &Seed| KArmedBandit::new(testbed, environment_rng(seed));
+        Ok(boxed_factory(new_task, (1, 1), spec, AnyRecordings::Native))
     }
 
     fn testbed_runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {

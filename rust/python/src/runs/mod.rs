@@ -15,7 +15,7 @@ mod run;
 mod specialized;
 mod tilings;
 
-pub(crate) use bandit::{bandit_runs, testbed_runs};
+pub(crate) use bandit::testbed_runs;
 pub(crate) use factory::{RunBatch, RunFactory};
 pub(crate) use generic::{boxed_factory, generic, generic_box};
 pub(crate) use python_env::PythonEnv;
