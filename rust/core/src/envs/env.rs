@@ -45,27 +45,6 @@ pub trait Env {
     /// May panic if the action is out of range. The caller checks actions that come from outside.
     fn step(&self, state: Self::State, action: Self::Action, rng: &mut impl Rng) -> Step<Self::State>;
 
-    /// What [`step_prepared`](Self::step_prepared) needs of the state, computed before the action is known.
-    #[inline]
-    fn prepare(&self, _state: &Self::State) -> f64 {
-        0.0
-    }
-
-    /// [`step`](Self::step), with the same result, from a state for which [`prepare`](Self::prepare) returned `prepared`.
-    ///
-    /// # Panics
-    /// As `step`.
-    #[inline]
-    fn step_prepared(
-        &self,
-        state: Self::State,
-        _prepared: f64,
-        action: Self::Action,
-        rng: &mut impl Rng,
-    ) -> Step<Self::State> {
-        self.step(state, action, rng)
-    }
-
     /// The observation of a state.
     fn observe(&self, state: &Self::State) -> Self::Observation;
 }

@@ -22,10 +22,8 @@ trait DynTask<R, X> {
     /// Takes a step and writes the active rows, which are unspecified after a terminal state. Returns the reward too: both
     /// are returned in registers, and the rows are written once. A [`Transition`] is copied from one layout to another
     /// instead, and read across the words in which it was written. `None` says that the step has failed, and that the task
-    /// keeps the error. With `prepares`, the step must be prepared, and the one after it will be.
-    fn step(&mut self, action: usize, prepares: bool, active: &mut R) -> (f64, Option<NextKind>);
-    /// Prepares the next step.
-    fn prepare_step(&mut self);
+    /// keeps the error.
+    fn step(&mut self, action: usize, active: &mut R) -> (f64, Option<NextKind>);
     /// The error of the step that has failed.
     fn take_error(&mut self) -> X;
     fn action_mask(&self) -> Option<&[bool]>;
@@ -41,7 +39,6 @@ struct StepCode<'a, T: Task, X> {
     state: &'a mut T::State,
     error: &'a mut Option<X>,
     action: usize,
-    prepares: bool,
     active: &'a mut T::Active,
 }
 
@@ -50,21 +47,13 @@ impl<T: Task, X: From<T::Error>> SimdCode for StepCode<'_, T, X> {
 
     #[inline(always)]
     fn run<S: Simd>(self, _simd: S) -> (f64, Option<NextKind>) {
-        if !self.prepares {
-            self.task.prepare_step(self.state);
-        }
-        let stepped = match self.task.step_into(self.state, self.action, self.active) {
+        match self.task.step_into(self.state, self.action, self.active) {
             Ok((reward, next)) => (reward, Some(next)),
             Err(error) => {
                 *self.error = Some(error.into());
                 (0.0, None)
             }
-        };
-        if self.prepares {
-            // The rows are written, so that the learner need not wait.
-            self.task.prepare_step(self.state);
         }
-        stepped
     }
 }
 
@@ -75,16 +64,10 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T, X> {
         Ok(active)
     }
 
-    fn step(&mut self, action: usize, prepares: bool, active: &mut T::Active) -> (f64, Option<NextKind>) {
+    fn step(&mut self, action: usize, active: &mut T::Active) -> (f64, Option<NextKind>) {
         let Some(state) = &mut self.state else { unreachable!("a trainer resets a task before it steps it") };
-        let step = StepCode { task: &mut self.task, state, error: &mut self.error, action, prepares, active };
+        let step = StepCode { task: &mut self.task, state, error: &mut self.error, action, active };
         if T::USES_VECTORS { self.level.run(step) } else { SimdLevel::PLAIN.run(step) }
-    }
-
-    fn prepare_step(&mut self) {
-        if let Some(state) = &self.state {
-            self.task.prepare_step(state);
-        }
     }
 
     fn take_error(&mut self) -> X {
@@ -120,8 +103,6 @@ pub struct BoxedTask<R, X> {
     /// What the last step wrote; `None` before the first reset.
     active: Option<R>,
     step_work: u64,
-    /// Whether the next step is prepared. Then each step prepares the one after it.
-    prepared: bool,
     /// Whether the task has action masks. Where it has none, no call is made to ask for them.
     has_masks: bool,
 }
@@ -138,7 +119,6 @@ impl<R: ActiveRows + 'static, X: Send + 'static> BoxedTask<R, X> {
             has_masks: task.action_mask().is_some(),
             task: Box::new(StatefulTask { task, state: None, error: None, level: SimdLevel::detect() }),
             active: None,
-            prepared: false,
         }
     }
 }
@@ -150,29 +130,14 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
 
     fn reset(&mut self) -> Result<((), R), X> {
         let active = self.task.reset()?;
-        self.prepared = false;
         self.active = Some(active);
         Ok(((), active))
     }
 
     #[inline(always)]
     fn step(&mut self, (): &mut (), action: usize) -> Result<Transition<R>, X> {
-        self.prepared = false;
-        self.step_prepared(&mut (), action)
-    }
-
-    #[inline(always)]
-    fn prepare_step(&mut self, (): &()) {
-        if !self.prepared {
-            self.task.prepare_step();
-            self.prepared = true;
-        }
-    }
-
-    #[inline(always)]
-    fn step_prepared(&mut self, (): &mut (), action: usize) -> Result<Transition<R>, X> {
         let Some(active) = &mut self.active else { unreachable!("a trainer resets a task before it steps it") };
-        let (reward, next) = self.task.step(action, self.prepared, active);
+        let (reward, next) = self.task.step(action, active);
         match next {
             Some(next) => Ok(Transition { reward, next: next.with_rows(*active) }),
             None => Err(self.task.take_error()),
@@ -181,7 +146,7 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
 
     #[inline(always)]
     fn step_into(&mut self, (): &mut (), action: usize, active: &mut R) -> Result<(f64, NextKind), X> {
-        let (reward, next) = self.task.step(action, self.prepared, active);
+        let (reward, next) = self.task.step(action, active);
         next.map(|next| (reward, next)).ok_or_else(|| self.task.take_error())
     }
 
@@ -208,7 +173,6 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
     }
 
     fn persist(&mut self, state: Option<&mut ()>, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.prepared = false;
         self.task.persist(state.is_some(), checkpoint)
     }
 }

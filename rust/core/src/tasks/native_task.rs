@@ -12,20 +12,13 @@ pub struct NativeTask<E, F> {
     pub(crate) env: E,
     pub(crate) features: F,
     pub(crate) max_episode_steps: u64,
-    rng: Pcg64,
-    /// What [`Env::prepare`] returned for the state before the next step.
-    prepared: f64,
+    pub(crate) rng: Pcg64,
 }
 
 impl<E, F> NativeTask<E, F> {
     /// `rng` is the environment's generator, seeded as `env.reset(seed=…)` seeds it. `None` means no time limit.
     pub fn new(env: E, features: F, max_episode_steps: Option<u64>, rng: Pcg64) -> Self {
-        Self { env, features, max_episode_steps: max_episode_steps.unwrap_or(u64::MAX), rng, prepared: 0.0 }
-    }
-
-    /// The environment's random generator.
-    pub fn rng(&self) -> &Pcg64 {
-        &self.rng
+        Self { env, features, max_episode_steps: max_episode_steps.unwrap_or(u64::MAX), rng }
     }
 }
 
@@ -64,26 +57,13 @@ where
 
     #[expect(clippy::inline_always, reason = "as for `step`")]
     #[inline(always)]
-    fn prepare_step(&mut self, state: &Self::State) {
-        self.prepared = self.env.prepare(&state.state);
-    }
-
-    #[expect(clippy::inline_always, reason = "as for `step`")]
-    #[inline(always)]
-    fn step_prepared(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<F::Active>, OutOfBounds> {
-        let step = self.env.step_prepared(state.state, self.prepared, action, &mut self.rng);
-        self.transition(state, step)
-    }
-
-    #[expect(clippy::inline_always, reason = "as for `step`")]
-    #[inline(always)]
     fn step_into(
         &mut self,
         state: &mut Self::State,
         action: usize,
         active: &mut F::Active,
     ) -> Result<(f64, NextKind), OutOfBounds> {
-        let step = self.env.step_prepared(state.state, self.prepared, action, &mut self.rng);
+        let step = self.env.step(state.state, action, &mut self.rng);
         *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
         self.features.write_active_rows(&self.env.observe(&step.state), active)?;
         Ok((step.reward, self.next_kind(&step, state.elapsed)))

@@ -72,28 +72,8 @@ pub trait Task {
     /// As for `reset`.
     fn step(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<Self::Active>, Self::Error>;
 
-    /// Computes in advance what [`step_prepared`](Self::step_prepared) needs of the state besides the action. Where a learner
-    /// has much to do between two steps, the processor computes it meanwhile.
-    #[inline]
-    fn prepare_step(&mut self, _state: &Self::State) {}
-
-    /// [`step`](Self::step), with the same result, from the state for which [`prepare_step`](Self::prepare_step) was called
-    /// last.
-    ///
-    /// # Errors
-    /// As for `reset`.
-    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
-    #[inline(always)]
-    fn step_prepared(
-        &mut self,
-        state: &mut Self::State,
-        action: usize,
-    ) -> Result<Transition<Self::Active>, Self::Error> {
-        self.step(state, action)
-    }
-
-    /// [`step_prepared`](Self::step_prepared), which writes the active rows and returns the reward. The rows are unspecified
-    /// after a terminal state. Many rows are copied less often this way than in a [`Transition`].
+    /// [`step`](Self::step), which writes the active rows and returns the reward. The rows are unspecified after a terminal
+    /// state.
     ///
     /// # Errors
     /// As for `reset`.
@@ -105,7 +85,7 @@ pub trait Task {
         action: usize,
         active: &mut Self::Active,
     ) -> Result<(f64, NextKind), Self::Error> {
-        let Transition { reward, next } = self.step_prepared(state, action)?;
+        let Transition { reward, next } = self.step(state, action)?;
         let kind = match next {
             Next::NonTerminal(next_active) => {
                 *active = next_active;

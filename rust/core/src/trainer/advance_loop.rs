@@ -115,10 +115,9 @@ mod tests {
         (bits(&trainer.learner().agent.table), trainer.take_episodes().lengths)
     }
 
-    fn check_prepared<const N: usize>() {
-        // The wrapper does not prepare steps.
-        let unprepared = VisitCounter::new(task::<N>(), N * ROWS, 3, &StopFlag::new()).expect("a few counts");
-        let expected = train(unprepared, N, u64::MAX);
+    fn check_boxed<const N: usize>() {
+        let wrapped = VisitCounter::new(task::<N>(), N * ROWS, 3, &StopFlag::new()).expect("a few counts");
+        let expected = train(wrapped, N, u64::MAX);
         for work in [7, 500, u64::MAX] {
             assert_eq!(train(task::<N>(), N, work), expected);
             let boxed: BoxedTask<ActiveTiles<N>, OutOfBounds> = BoxedTask::new(task::<N>());
@@ -127,8 +126,8 @@ mod tests {
     }
 
     #[test]
-    fn prepared_steps_are_the_same_steps() {
-        check_prepared::<8>();
-        check_prepared::<16>();
+    fn a_boxed_or_wrapped_task_has_the_same_steps() {
+        check_boxed::<8>();
+        check_boxed::<16>();
     }
 }

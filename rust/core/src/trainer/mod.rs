@@ -2,7 +2,6 @@
 
 mod advance_loop;
 mod episode_log;
-mod prepared_step;
 
 use self::advance_loop::AdvanceLoop;
 pub use self::episode_log::EpisodeLog;
@@ -11,6 +10,9 @@ use crate::memory::{AllocationError, MemoryRoom, RunMemory};
 use crate::random::Rng;
 use crate::tasks::{Next, Task, Transition};
 use crate::training_error::TrainingError;
+
+/// Active rows of at most this many bytes are copied in registers.
+const IN_REGISTERS: usize = 32;
 
 /// How far `advance` goes: it stops at whichever limit it reaches first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,6 +122,11 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         self.learner.reserve(budget.work, &mut self.memory)
     }
 
+    /// Whether the task writes the active rows of a step. A result that holds many rows would be copied through memory, in
+    /// pieces that differ from copy to copy, and the processor would wait for each: with 8 to 32 tilings and a boxed task for
+    /// a quarter of the run, although the instructions are the same within 2 %.
+    const WRITES_ROWS: bool = size_of::<T::Active>() > IN_REGISTERS;
+
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn advance_with(&mut self, rng: &mut R, budget: Budget) -> Result<(), T::Error> {
@@ -138,14 +145,13 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
                 None => self.begin_episode(rng)?,
             };
             let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length, .. } = episode;
-            self.prepare_step(&state);
             loop {
                 let transition = if Self::WRITES_ROWS {
                     let mut next_active = active;
-                    let (reward, next) = self.step_into(&mut state, action, &mut next_active)?;
+                    let (reward, next) = self.task.step_into(&mut state, action, &mut next_active)?;
                     Transition { reward, next: next.with_rows(next_active) }
                 } else {
-                    self.step(&mut state, action)?
+                    self.task.step(&mut state, action)?
                 };
                 if let Some(mask) = self.task.action_mask()
                     && let Next::NonTerminal(next_state) | Next::Truncated(next_state) = transition.next

@@ -68,7 +68,7 @@ fn check_at<E, F, A, U, const N: usize, const M: usize, const K: usize>(
         }
         assert_eq!(run.episodes(), alone.episodes());
         assert_eq!(run.rng, alone.rng);
-        assert_eq!(run.task.rng(), alone.task.rng());
+        assert_eq!(run.task.rng, alone.task.rng);
         let bits = |run: &SimdTrainer<E, F, N, A, U>| {
             run.learner.agent.table.values().iter().map(|value| value.to_bits()).collect::<Vec<_>>()
         };

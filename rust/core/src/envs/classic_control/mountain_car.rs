@@ -115,23 +115,6 @@ impl Env for MountainCar {
         self.transition(state, action)
     }
 
-    /// The cosine of the slope: the longest of the operations by far.
-    #[inline]
-    fn prepare(&self, state: &MountainCarState) -> f64 {
-        (3.0 * state.position).cos()
-    }
-
-    #[inline]
-    fn step_prepared(
-        &self,
-        state: MountainCarState,
-        cosine: f64,
-        action: usize,
-        _rng: &mut impl Rng,
-    ) -> Step<MountainCarState> {
-        self.transition_on(state, cosine, action)
-    }
-
     #[inline]
     fn observe(&self, state: &MountainCarState) -> [f32; 2] {
         [state.position as f32, state.velocity as f32]
@@ -142,15 +125,9 @@ impl MountainCar {
     /// One step. It is deterministic, so it needs no random generator.
     #[inline]
     pub fn transition(&self, state: MountainCarState, action: usize) -> Step<MountainCarState> {
-        self.transition_on(state, self.prepare(&state), action)
-    }
-
-    /// The same, with the cosine of the slope.
-    #[inline]
-    fn transition_on(&self, state: MountainCarState, cosine: f64, action: usize) -> Step<MountainCarState> {
         let MountainCarState { mut position, mut velocity } = state;
         let acceleration = DIRECTIONS[action] * self.force;
-        velocity += acceleration + cosine * (-self.gravity);
+        velocity += acceleration + (3.0 * position).cos() * (-self.gravity);
         velocity = clip(velocity, -self.max_speed, self.max_speed);
         position += velocity;
         position = clip(position, self.min_position, self.max_position);
@@ -255,13 +232,7 @@ mod tests {
             let bits = |(position, velocity, terminated): (f64, f64, bool)| {
                 (position.to_bits(), velocity.to_bits(), terminated)
             };
-            let before = MountainCarState { position, velocity };
-            let prepared = car.step_prepared(before, car.prepare(&before), action, &mut rng);
             let expected = gymnasium(&car, position, velocity, action);
-            prop_assert_eq!(
-                bits((prepared.state.position, prepared.state.velocity, prepared.terminated)),
-                bits((state.position, state.velocity, terminated))
-            );
             prop_assert!(
                 bits((state.position, state.velocity, terminated)) == bits(expected)
                     || expected.0.is_nan() && state.position.is_nan()
